@@ -1,0 +1,232 @@
+//! The limit cycle that a run of the relay law ends in, and its Floquet multipliers.
+//!
+//! The Poincaré section is the entry into a strong push, where the angle is at its boundary. The fundamental
+//! matrix of one cycle is the product of exact derivatives: the flow's between switchings, and at each switching
+//! that of its time. A guard's time moves so that the angle stays on its level; a brake lasts k_t times the push
+//! before it, so its duration moves k_t times as much.
+
+use std::collections::VecDeque;
+
+use nalgebra::{DMatrix, RowDVector, Schur};
+
+use crate::body::{Arc, Body, State};
+use crate::law::Phase;
+use crate::record::{Command, Record, RecordError, Sample, Trigger};
+use crate::time::Instant;
+
+/// Cycles of more pushes than this are not looked for.
+const LONGEST: usize = 16;
+/// Switchings that are kept: enough for two of the longest cycles.
+const KEPT: usize = 16 * LONGEST;
+/// Two passes of the section are the same cycle if they agree so well, relative to the motion.
+const SAME: f64 = 1e-6;
+/// Multipliers are not computed for more modes: the eigenproblem grows with the third power.
+const MOST_MODES: usize = 64;
+
+/// A limit cycle of a simulated run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// Which boundaries push back.
+    pub kind: Kind,
+    /// Period (s).
+    pub period: f64,
+    /// Pushes from the section's boundary in one period.
+    pub order: usize,
+    /// Whether the second half mirrors the first.
+    pub symmetric: bool,
+    /// Fraction of the time under strong torque.
+    pub duty: f64,
+    /// Integral of the absolute torque over one period (N m s).
+    pub impulse: f64,
+    /// Floquet multipliers: absolute value and argument (rad), largest first. Empty where they are not defined
+    /// (sampled measurement) or too many.
+    pub multipliers: Vec<(f64, f64)>,
+}
+
+/// Which boundaries push back in a cycle.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Both, as often.
+    TwoSided,
+    /// One.
+    OneSided,
+    /// Both, one more often.
+    Mixed,
+}
+
+impl Kind {
+    /// The kind as a word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::TwoSided => "two-sided",
+            Self::OneSided => "one-sided",
+            Self::Mixed => "mixed",
+        }
+    }
+}
+
+/// Watches a run for its limit cycle.
+#[derive(Clone, Debug)]
+pub struct CycleWatch {
+    arc: Arc,
+    excitations: usize,
+    smooth: bool,
+    switchings: VecDeque<Switching>,
+}
+
+#[derive(Clone, Debug)]
+struct Switching {
+    at: Instant,
+    phase: Phase,
+    trigger: Trigger,
+    torque: f64,
+    gain: f64,
+    state: State,
+}
+
+impl CycleWatch {
+    /// A watch over a body whose angle is measured continuously (`smooth`) or not.
+    pub fn new(body: &Body, smooth: bool) -> Self {
+        let excitations = body.modes().len();
+        Self { arc: body.arc(), excitations, smooth, switchings: VecDeque::with_capacity(KEPT + 1) }
+    }
+
+    /// The cycle that the run ended in, if it did.
+    pub fn cycle(mut self) -> Option<Cycle> {
+        self.switchings.make_contiguous();
+        let switchings = self.switchings.as_slices().0;
+        let sections_of = |phase: Phase| -> Vec<usize> {
+            (0..switchings.len()).filter(|&i| switchings[i].phase == phase).collect()
+        };
+        let right = sections_of(Phase::RightPush);
+        let sections = if right.len() > 1 { right } else { sections_of(Phase::LeftPush) };
+        let last = *sections.last()?;
+        let order = (1..=LONGEST.min(sections.len() - 1)).find(|order| {
+            let first = sections[sections.len() - 1 - order];
+            same(&switchings[first].state, &switchings[last].state)
+        })?;
+        let first = sections[sections.len() - 1 - order];
+        let one = &switchings[first..=last];
+        let span = |pair: &[Switching]| pair[1].at.since(pair[0].at).seconds();
+        let period = one[one.len() - 1].at.since(one[0].at).seconds();
+        let count = |phase| one[1..].iter().filter(|s| s.phase == phase).count();
+        let kind = match (count(Phase::RightPush), count(Phase::LeftPush)) {
+            (0, _) | (_, 0) => Kind::OneSided,
+            (right, left) if right == left => Kind::TwoSided,
+            _ => Kind::Mixed,
+        };
+        let strong = |s: &Switching| {
+            matches!(s.phase, Phase::RightPush | Phase::RightBrake | Phase::LeftPush | Phase::LeftBrake)
+        };
+        let pairs = || one.windows(2);
+        Some(Cycle {
+            kind,
+            period,
+            order,
+            symmetric: symmetric(one),
+            duty: pairs().filter(|pair| strong(&pair[0])).map(span).sum::<f64>() / period,
+            impulse: pairs().map(|pair| pair[0].torque.abs() * span(pair)).sum(),
+            multipliers: if self.smooth && self.excitations <= MOST_MODES {
+                multipliers(&mut self.arc, one)
+            } else {
+                Vec::new()
+            },
+        })
+    }
+}
+
+impl Record for CycleWatch {
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        if let Sample::Switching(command, state) = sample {
+            let Command { state: phase, cause: trigger, torque_nm: torque, gain, .. } = *command;
+            // The oldest one's state is used again: a watch of a long run allocates nothing.
+            let mut switching =
+                if self.switchings.len() == KEPT { self.switchings.pop_front() } else { None }
+                    .unwrap_or_else(|| Switching {
+                        at: now,
+                        phase,
+                        trigger,
+                        torque,
+                        gain,
+                        state: State::default(),
+                    });
+            switching.state.clone_from(state);
+            (switching.at, switching.phase, switching.trigger) = (now, phase, trigger);
+            (switching.torque, switching.gain) = (torque, gain);
+            self.switchings.push_back(switching);
+        }
+        Ok(())
+    }
+}
+
+/// Whether two passes of the section are the same: rates and modes agree relative to their size.
+fn same(a: &State, b: &State) -> bool {
+    let size: f64 = b.modes.iter().map(|m| m.displacement.abs() + m.quadrature.abs()).sum();
+    let rate = b.rigid_rate.abs();
+    let modes = a.modes.iter().zip(&b.modes).all(|(p, q)| {
+        (p.displacement - q.displacement).abs() <= SAME * size
+            && (p.quadrature - q.quadrature).abs() <= SAME * size
+    });
+    modes && (a.rigid_rate - b.rigid_rate).abs() <= SAME * rate
+}
+
+/// Whether the second half of a cycle mirrors its first.
+fn symmetric(one: &[Switching]) -> bool {
+    let middle = (one.len() - 1) / 2;
+    let (first, half) = (&one[0], &one[middle]);
+    if first.torque != -half.torque {
+        return false;
+    }
+    let mirrored = State {
+        rigid_angle: -half.state.rigid_angle,
+        rigid_rate: -half.state.rigid_rate,
+        modes: half
+            .state
+            .modes
+            .iter()
+            .map(|m| crate::body::Phase { displacement: -m.displacement, quadrature: -m.quadrature })
+            .collect(),
+    };
+    same(&mirrored, &first.state)
+}
+
+/// The eigenvalues of the cycle's fundamental matrix on the section, largest first.
+fn multipliers(arc: &mut Arc, one: &[Switching]) -> Vec<(f64, f64)> {
+    let size = 2 + 2 * one[0].state.modes.len();
+    let mut fundamental = DMatrix::<f64>::identity(size, size);
+    // How the duration of the last push moves with the state on the section.
+    let mut push = RowDVector::<f64>::zeros(size);
+    let mut end = one[0].state.clone();
+    for pair in one.windows(2) {
+        let (from, to) = (&pair[0], &pair[1]);
+        let h = to.at.since(from.at).seconds();
+        arc.depart(&from.state, from.torque);
+        let sight = arc.at(h, &mut end);
+        for mut column in fundamental.column_iter_mut() {
+            arc.carry(h, column.as_mut_slice());
+        }
+        let duration = match to.trigger {
+            Trigger::Timeout => &push * from.gain,
+            // The angle is the sum of the rigid angle and all displacements: every second component.
+            Trigger::Guard => {
+                let mut angle = RowDVector::<f64>::zeros(size);
+                for component in (0..size).step_by(2) {
+                    angle += fundamental.row(component);
+                }
+                angle * (-1.0 / sight.rate)
+            }
+        };
+        fundamental += arc.velocity(&end) * &duration;
+        push = duration;
+    }
+    let Some(schur) = Schur::try_new(fundamental, f64::EPSILON, 10_000) else { return Vec::new() };
+    let mut eigenvalues: Vec<(f64, f64)> = schur
+        .complex_eigenvalues()
+        .iter()
+        .map(|z| (crate::phasor::abs(*z), crate::phasor::arg(*z)))
+        .collect();
+    eigenvalues.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
+    // Off the section nothing is left after a cycle: one eigenvalue is zero, and says nothing.
+    eigenvalues.pop();
+    eigenvalues
+}

@@ -1,0 +1,6 @@
+//! What a scenario or a run means: integrals, limit cycles, stability.
+
+pub mod cycle;
+pub mod elliptic;
+pub mod rigid_cycle;
+pub mod swing_integral;

@@ -1,0 +1,179 @@
+//! The limit cycle of the relay law on a rigid body, in closed form.
+//!
+//! With q = sqrt(2 m_u gamma), r = m_eps/m_u and v0 the speed at which a boundary is reached, z =
+//! (v0 + sqrt(v0² + q²))/q describes the cycle; beta = k_t (1 - k_t)(1 - r). Derived from the corrected law (2) of
+//! seed paper 1, which refers to relations published elsewhere.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::body::{Body, Mode};
+use crate::law::{Relay, Sides};
+
+/// A limit cycle of the relay law on a rigid body.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct RigidCycle {
+    /// How many boundaries push back in a cycle.
+    pub sides: Sides,
+    /// Speed at which a boundary is reached (rad/s).
+    pub entry_rate_rad_s: f64,
+    /// Duration of a strong push, tau_1 (s).
+    pub push_s: f64,
+    /// Duration of a strong brake, tau_2 (s).
+    pub brake_s: f64,
+    /// Duration of the coast under the weak torque (s).
+    pub coast_s: f64,
+    /// Period, T_0 (s).
+    pub period_s: f64,
+    /// Largest angle (rad).
+    pub angle_max_rad: f64,
+    /// Least angle (rad).
+    pub angle_min_rad: f64,
+    /// Fraction of the time under strong torque.
+    pub duty: f64,
+    /// Torque impulse, strong and weak, per hour (N m s; rad/s on a body without inertia).
+    pub impulse_per_hour_nm_s: f64,
+    /// Multiplier of a small deviation over a half cycle (two-sided) or a cycle (one-sided).
+    pub multiplier: f64,
+    /// Whether deviations die out.
+    pub stable: bool,
+}
+
+/// A gain at which the cycle's odd harmonic meets a mode.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Resonance {
+    /// Index of the mode.
+    pub mode: usize,
+    /// Number of the harmonic, odd: the even ones vanish by symmetry.
+    pub harmonic: u32,
+    /// Period of the cycle there (s).
+    pub period_s: f64,
+    /// Braking gain there.
+    pub k_t: f64,
+}
+
+/// The law's numbers on a rigid body.
+struct Rigid {
+    strong: f64,
+    weak: f64,
+    eps: f64,
+    gamma: f64,
+    inertia: f64,
+    /// Angle of the left boundary, if it pushes back (rad).
+    left: f64,
+}
+
+impl Rigid {
+    fn new(law: &Relay, inertia: f64) -> Self {
+        Self {
+            strong: law.strong.get() / inertia,
+            weak: law.weak.get() / inertia,
+            eps: law.dead_zone.get(),
+            gamma: law.hysteresis.get(),
+            inertia,
+            left: match law.sides {
+                Sides::Two => -law.dead_zone.get(),
+                Sides::One => f64::NEG_INFINITY,
+            },
+        }
+    }
+
+    fn cycle(&self, sides: Sides, k_t: f64) -> Option<RigidCycle> {
+        let Self { strong, weak, eps, gamma, inertia, left } = *self;
+        if weak <= 0.0 {
+            return None;
+        }
+        let q = libm::sqrt(2.0 * strong * gamma);
+        let r = weak / strong;
+        let width = 2.0 * weak * (2.0 * eps - gamma) / (q * q);
+        let beta = k_t * (1.0 - k_t) * (1.0 - r);
+        let numerator = match sides {
+            Sides::Two => 1.0 - k_t - width + r * k_t,
+            Sides::One => 1.0 - k_t + r + r * k_t,
+        };
+        let z2 = numerator / beta;
+        if z2 <= 1.0 || !z2.is_finite() {
+            return None;
+        }
+        let z = libm::sqrt(z2);
+        let entry = 0.5 * q * (z - 1.0 / z);
+        let (push, angle_max) = (q * z / strong, eps + entry * entry / (2.0 * strong));
+        let brake = k_t * push;
+        let exit = -0.5 * q * ((1.0 - 2.0 * k_t) * z + 1.0 / z);
+        let (coast, halves, angle_min) = match sides {
+            Sides::Two => ((-exit - entry) / weak, 2.0, -angle_max),
+            Sides::One => ((entry - exit) / weak, 1.0, eps - entry * entry / (2.0 * weak)),
+        };
+        // A two-sided coast that would turn round, or a one-sided one that meets the left boundary, is no cycle.
+        if coast <= 0.0 || (sides == Sides::One && angle_min <= left) {
+            return None;
+        }
+        let multiplier = 1.0 - 4.0 * beta * z2 * z2 / (z2 * z2 - 1.0);
+        let half = push + brake + coast;
+        let impulse = strong * (push + brake) + weak * coast;
+        Some(RigidCycle {
+            sides,
+            entry_rate_rad_s: entry,
+            push_s: push,
+            brake_s: brake,
+            coast_s: coast,
+            period_s: halves * half,
+            angle_max_rad: angle_max,
+            angle_min_rad: angle_min,
+            duty: (push + brake) / half,
+            impulse_per_hour_nm_s: inertia * impulse / half * 3600.0,
+            multiplier,
+            stable: multiplier.abs() < 1.0,
+        })
+    }
+}
+
+/// The limit cycles of a relay law on a body with its modes left out: those that exist at this gain, two-sided
+/// first. A law with one side has the one-sided cycle only, which then needs no left boundary to stay clear of.
+pub fn cycles(law: &Relay, body: &Body, k_t: f64) -> Vec<RigidCycle> {
+    let rigid = Rigid::new(law, body.inertia());
+    let candidates: &[Sides] = match law.sides {
+        Sides::Two => &[Sides::Two, Sides::One],
+        Sides::One => &[Sides::One],
+    };
+    candidates.iter().filter_map(|&sides| rigid.cycle(sides, k_t)).collect()
+}
+
+/// The gains between `low` and `high` at which an odd harmonic of the two-sided cycle meets a mode, by mode and
+/// harmonic.
+pub fn resonances(law: &Relay, body: &Body, low: f64, high: f64) -> Vec<Resonance> {
+    let rigid = Rigid::new(law, body.inertia());
+    let period = |k_t: f64| rigid.cycle(Sides::Two, k_t).map(|cycle| cycle.period_s);
+    let (Some(shortest), Some(longest)) = (period(low), period(high)) else { return Vec::new() };
+    let mut found = Vec::new();
+    for (mode, w) in body.modes().iter().map(|mode: &Mode| mode.frequency.get()).enumerate() {
+        let turns = |period: f64| w * period / (2.0 * std::f64::consts::PI);
+        let first = libm::ceil(turns(shortest)) as u32;
+        let last = libm::floor(turns(longest)) as u32;
+        for harmonic in (first..=last).filter(|harmonic| harmonic % 2 == 1) {
+            let target = 2.0 * std::f64::consts::PI * f64::from(harmonic) / w;
+            found.push(Resonance {
+                mode,
+                harmonic,
+                period_s: target,
+                k_t: bisect(low, high, |k_t| period(k_t).unwrap_or(f64::INFINITY) - target),
+            });
+        }
+    }
+    found
+}
+
+/// The root of an increasing function, to the last bit.
+fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if f(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! What the control system believes: the only thing that a law reads.
+
+/// Written by the sensor and by the adaptation, read by the law.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Belief {
+    /// Measured angle (rad).
+    pub angle: f64,
+    /// The law's tunable parameter as adapted so far; for the relay law the braking gain `k_t`.
+    pub gain: f64,
+}

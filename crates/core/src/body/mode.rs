@@ -1,0 +1,172 @@
+//! One elastic mode, x'' + 2 zeta w x' + w² x = k m, and its exact flow for any damping.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Phase;
+use crate::quantity::{Finite, Frequency, NonNegative};
+
+/// An elastic mode as a scenario describes it (seed paper 1, equation (1), with damping added).
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mode {
+    /// Natural frequency w (rad/s).
+    pub frequency: Frequency,
+    /// Modal gain k: modal acceleration for each unit of the rigid body's.
+    pub gain: Finite,
+    /// Damping ratio zeta: 0 undamped, 1 critical.
+    #[serde(default)]
+    pub damping: NonNegative,
+    /// Displacement at the start (rad).
+    #[serde(default)]
+    pub displacement: Finite,
+    /// Rate at the start (rad/s).
+    #[serde(default)]
+    pub rate: Finite,
+}
+
+impl Mode {
+    /// Excitability k/w²: the static displacement for each unit of reduced moment (s²).
+    pub fn excitability(&self) -> f64 {
+        self.gain.get() / (self.frequency.get() * self.frequency.get())
+    }
+
+    /// The phase at the start of a run.
+    pub fn start(&self) -> Phase {
+        Phase { displacement: self.displacement.get(), quadrature: self.rate.get() / self.frequency.get() }
+    }
+}
+
+/// The constants of a mode's flow.
+#[derive(Copy, Clone, Debug)]
+pub struct Flow {
+    /// Natural frequency (rad/s).
+    pub frequency: f64,
+    /// Static displacement for each unit of reduced moment (s²).
+    pub excitability: f64,
+    /// Bound of |x''| for a unit distance from equilibrium (1/s²).
+    pub stiffness: f64,
+    regime: Regime,
+}
+
+#[derive(Copy, Clone, Debug)]
+enum Regime {
+    Undamped,
+    /// Decay rate and damped frequency.
+    Under(f64, f64),
+    /// Decay rate, the slower of the two real rates, and half their difference.
+    Over(f64, f64, f64),
+}
+
+impl Flow {
+    /// The flow of a mode.
+    pub fn new(mode: &Mode) -> Self {
+        let (w, zeta) = (mode.frequency.get(), mode.damping.get());
+        let regime = if zeta == 0.0 {
+            Regime::Undamped
+        } else if zeta < 1.0 {
+            Regime::Under(zeta * w, w * libm::sqrt((1.0 - zeta) * (1.0 + zeta)))
+        } else {
+            let root = libm::sqrt((zeta - 1.0) * (zeta + 1.0));
+            Regime::Over(zeta * w, w / (zeta + root), w * root)
+        };
+        Self {
+            frequency: w,
+            excitability: mode.excitability(),
+            stiffness: w * w * libm::sqrt(1.0 + 4.0 * zeta * zeta),
+            regime,
+        }
+    }
+
+    /// The derivative with time of the deviation from equilibrium (displacement, rate / w).
+    pub fn velocity(&self, displacement: f64, quadrature: f64) -> [f64; 2] {
+        let decay = match self.regime {
+            Regime::Undamped => 0.0,
+            Regime::Under(decay, _) | Regime::Over(decay, ..) => decay,
+        };
+        [self.frequency * quadrature, -self.frequency * displacement - 2.0 * decay * quadrature]
+    }
+
+    /// The 2 x 2 transition matrix over `h` seconds, row by row, of the deviation from equilibrium
+    /// (displacement, rate / w).
+    #[inline]
+    pub fn transition(&self, h: f64) -> [f64; 4] {
+        let (decay, c, s) = match self.regime {
+            Regime::Undamped => {
+                let (sin, cos) = libm::sincos(self.frequency * h);
+                return [cos, sin, -sin, cos];
+            }
+            Regime::Under(decay, damped) => {
+                let (sin, cos) = libm::sincos(damped * h);
+                let shrink = libm::exp(-decay * h);
+                (decay, shrink * cos, shrink * sin / damped)
+            }
+            Regime::Over(decay, slow, split) => {
+                let shrink = libm::exp(-slow * h);
+                // (1 - exp(-2 split h)) / (2 split), and its limit h at critical damping.
+                let spread = -libm::expm1(-2.0 * split * h);
+                let s = if split > 0.0 { spread / (2.0 * split) } else { h };
+                (decay, shrink * (1.0 - 0.5 * spread), shrink * s)
+            }
+        };
+        let cross = self.frequency * s;
+        [c + decay * s, cross, -cross, c - decay * s]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mode(frequency: f64, damping: f64) -> Mode {
+        Mode {
+            frequency: Frequency::new(frequency).expect("in range"),
+            gain: Finite::default(),
+            damping: NonNegative::new(damping).expect("in range"),
+            displacement: Finite::default(),
+            rate: Finite::default(),
+        }
+    }
+
+    /// exp(A h) by scaling and squaring of its Taylor series: nothing in common with the closed form.
+    fn exponential(frequency: f64, damping: f64, h: f64) -> [f64; 4] {
+        let squarings = 24;
+        let step = h / f64::from(1 << squarings);
+        let a = [0.0, frequency * step, -frequency * step, -2.0 * damping * frequency * step];
+        let times = |p: [f64; 4], q: [f64; 4]| {
+            [
+                p[0] * q[0] + p[1] * q[2],
+                p[0] * q[1] + p[1] * q[3],
+                p[2] * q[0] + p[3] * q[2],
+                p[2] * q[1] + p[3] * q[3],
+            ]
+        };
+        let mut term = [1.0, 0.0, 0.0, 1.0];
+        let mut sum = term;
+        for n in 1..12 {
+            term = times(term, a).map(|v| v / f64::from(n));
+            sum = std::array::from_fn(|i| sum[i] + term[i]);
+        }
+        for _ in 0..squarings {
+            sum = times(sum, sum);
+        }
+        sum
+    }
+
+    #[test]
+    fn transition_is_the_matrix_exponential_in_every_regime() {
+        for frequency in [1e-4, 0.44, 37.0, 1e3] {
+            for damping in [0.0, 1e-6, 0.005, 0.5, 0.999_999, 1.0, 1.000_001, 3.0] {
+                for turns in [1e-3, 0.7, 5.0] {
+                    let h = turns / frequency;
+                    let exact = exponential(frequency, damping, h);
+                    let flow = Flow::new(&mode(frequency, damping)).transition(h);
+                    for (a, b) in flow.iter().zip(exact) {
+                        // The reference itself loses 2^24 roundings.
+                        assert!((a - b).abs() < 2e-8, "w {frequency}, zeta {damping}: {a} {b}");
+                    }
+                }
+            }
+        }
+    }
+}

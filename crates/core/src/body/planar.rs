@@ -1,0 +1,187 @@
+//! The planar body: one angle, any number of elastic modes, driven by one moment.
+//!
+//! x_r'' = m, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i m, x = x_r + sum x_i, with m = torque / inertia
+//! (seed paper 1, equation (1)). Under a constant torque the rigid part is a parabola and every mode turns
+//! about its shifted equilibrium, so that no step size exists.
+
+use nalgebra::DVector;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::mode::Flow;
+use super::{Mode, Phase, Sight, State};
+use crate::guard::Guard;
+use crate::quantity::{Finite, Positive};
+
+/// A planar body as a scenario describes it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Planar {
+    /// Moment of inertia (kg m²). Left out, it is 1, and every torque is a reduced moment (rad/s²).
+    #[serde(default = "unit")]
+    pub inertia: Positive,
+    /// Rigid angle at the start (rad).
+    #[serde(default)]
+    pub angle: Finite,
+    /// Rigid rate at the start (rad/s).
+    #[serde(default)]
+    pub rate: Finite,
+    /// Elastic modes.
+    #[serde(default)]
+    pub modes: Vec<Mode>,
+}
+
+fn unit() -> Positive {
+    Positive::ONE
+}
+
+impl Planar {
+    /// The state at the start of a run.
+    pub fn start(&self) -> State {
+        State {
+            rigid_angle: self.angle.get(),
+            rigid_rate: self.rate.get(),
+            modes: self.modes.iter().map(Mode::start).collect(),
+        }
+    }
+}
+
+/// The motion under one constant torque, from the state in which it began.
+#[derive(Clone, Debug)]
+pub struct Arc {
+    mobility: f64,
+    moment: f64,
+    angle: f64,
+    rate: f64,
+    modes: Vec<Swing>,
+    /// Sum of the modes' equilibria, and of their largest distances from them (rad).
+    centre: f64,
+    reach: f64,
+    /// No |x''| on the arc is larger (rad/s²).
+    curvature: f64,
+}
+
+/// One mode on an arc: its equilibrium, and the deviation in which the arc began.
+#[derive(Clone, Debug)]
+struct Swing {
+    flow: Flow,
+    equilibrium: f64,
+    from: Phase,
+}
+
+impl Arc {
+    /// The arc of a body, not yet departed.
+    pub fn new(body: &Planar) -> Self {
+        let swing = |mode| Swing { flow: Flow::new(mode), equilibrium: 0.0, from: Phase::default() };
+        Self {
+            mobility: 1.0 / body.inertia.get(),
+            moment: 0.0,
+            angle: 0.0,
+            rate: 0.0,
+            modes: body.modes.iter().map(swing).collect(),
+            centre: 0.0,
+            reach: 0.0,
+            curvature: 0.0,
+        }
+    }
+
+    /// Begins the arc anew: from this state, under this torque (N m).
+    pub fn depart(&mut self, from: &State, torque: f64) {
+        self.moment = torque * self.mobility;
+        self.angle = from.rigid_angle;
+        self.rate = from.rigid_rate;
+        self.centre = 0.0;
+        self.reach = 0.0;
+        self.curvature = self.moment.abs();
+        for (swing, phase) in self.modes.iter_mut().zip(&from.modes) {
+            let equilibrium = swing.flow.excitability * self.moment;
+            let displacement = phase.displacement - equilibrium;
+            swing.equilibrium = equilibrium;
+            swing.from = Phase { displacement, quadrature: phase.quadrature };
+            let distance = libm::sqrt(displacement * displacement + phase.quadrature * phase.quadrature);
+            self.centre += equilibrium;
+            self.reach += distance;
+            self.curvature += swing.flow.stiffness * distance;
+        }
+    }
+
+    /// The state `h` seconds after departure, and what a sensor sees of it.
+    #[inline]
+    pub fn at(&self, h: f64, state: &mut State) -> Sight {
+        state.rigid_angle = self.angle + h * (self.rate + 0.5 * self.moment * h);
+        state.rigid_rate = self.rate + self.moment * h;
+        let mut sight = Sight { angle: state.rigid_angle, rate: state.rigid_rate };
+        for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
+            let [xx, xy, yx, yy] = swing.flow.transition(h);
+            let Phase { displacement: x, quadrature: y } = swing.from;
+            phase.displacement = swing.equilibrium + (xx * x + xy * y);
+            phase.quadrature = yx * x + yy * y;
+            sight.angle += phase.displacement;
+            sight.rate += swing.flow.frequency * phase.quadrature;
+        }
+        sight
+    }
+
+    /// What a sensor sees at departure.
+    pub fn origin(&self) -> Sight {
+        let mut sight = Sight { angle: self.angle, rate: self.rate };
+        for swing in &self.modes {
+            sight.angle += swing.equilibrium + swing.from.displacement;
+            sight.rate += swing.flow.frequency * swing.from.quadrature;
+        }
+        sight
+    }
+
+    /// A time after departure (s) before which the guard cannot trip: until then the rigid parabola with
+    /// all modes at full swing towards the guard stays short of its level.
+    pub fn earliest(&self, guard: Guard) -> f64 {
+        let towards = guard.side.sign();
+        let gap = towards * (guard.level - self.angle - self.centre) - self.reach;
+        if gap <= 0.0 {
+            return 0.0;
+        }
+        let (rate, moment) = (towards * self.rate, towards * self.moment);
+        let discriminant = rate * rate + 2.0 * moment * gap;
+        if discriminant < 0.0 || (rate <= 0.0 && moment <= 0.0) {
+            return f64::INFINITY;
+        }
+        let root = libm::sqrt(discriminant);
+        if rate > 0.0 { 2.0 * gap / (rate + root) } else { (root - rate) / moment }
+    }
+
+    /// A time (s) for which the guard cannot trip, given what a sensor sees now: the first root of
+    /// gap - speed t - curvature t²/2.
+    #[inline]
+    pub fn stride(&self, guard: Guard, now: Sight) -> f64 {
+        let gap = guard.gap(now.angle);
+        let speed = guard.side.sign() * now.rate;
+        let root = libm::sqrt(speed * speed + 2.0 * self.curvature * gap);
+        if speed > 0.0 {
+            2.0 * gap / (speed + root)
+        } else if self.curvature > 0.0 {
+            (root - speed) / self.curvature
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Carries a small deviation of the state over `h` seconds. Its components are the rigid angle and rate, then
+    /// displacement and quadrature of each mode.
+    pub fn carry(&self, h: f64, deviation: &mut [f64]) {
+        deviation[0] += h * deviation[1];
+        for (swing, pair) in self.modes.iter().zip(deviation[2..].chunks_exact_mut(2)) {
+            let [xx, xy, yx, yy] = swing.flow.transition(h);
+            (pair[0], pair[1]) = (xx * pair[0] + xy * pair[1], yx * pair[0] + yy * pair[1]);
+        }
+    }
+
+    /// The derivative of a state with time on this arc, in the components of [`Arc::carry`].
+    pub fn velocity(&self, state: &State) -> DVector<f64> {
+        let mut velocity = vec![state.rigid_rate, self.moment];
+        for (swing, phase) in self.modes.iter().zip(&state.modes) {
+            let from_rest = phase.displacement - swing.equilibrium;
+            velocity.extend(swing.flow.velocity(from_rest, phase.quadrature));
+        }
+        DVector::from_vec(velocity)
+    }
+}

@@ -1,0 +1,195 @@
+//! Campaigns: many runs of one scenario, in parallel, told in order.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use thiserror::Error;
+use toml::{Table, Value};
+
+use crate::document::{self, Document, ScenarioError};
+use crate::metrics::{Gather, Metrics};
+use crate::random::Seed;
+use crate::record::{Provenance, Record};
+use crate::scenario::Scenario;
+use crate::sim::{Simulation, SimulationError};
+
+/// Runs that are handed to the threads at a time: what a stopped campaign loses at most.
+const BLOCK: u64 = 256;
+
+/// A run that failed.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The keys drawn for it make no valid scenario.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// Its simulation could not go on.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+/// Many runs of one scenario.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    scenario: Scenario,
+    table: Table,
+    origin: String,
+    grid: Option<Grid>,
+}
+
+/// One key varied evenly over a range: run i has value i.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// The key.
+    pub key: String,
+    /// First value.
+    pub start: f64,
+    /// Last value.
+    pub end: f64,
+    /// How many values.
+    pub count: u64,
+}
+
+impl Grid {
+    fn value(&self, index: u64) -> f64 {
+        let part = if self.count > 1 { index as f64 / (self.count - 1) as f64 } else { 0.0 };
+        self.start * (1.0 - part) + self.end * part
+    }
+}
+
+/// One run of a campaign: its scenario with the drawn keys set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// The number of the run.
+    pub number: u64,
+    /// What is simulated.
+    pub scenario: Scenario,
+    /// The value of each key that varies.
+    pub drawn: Vec<Value>,
+}
+
+/// What a run came to.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The number of the run.
+    pub number: u64,
+    /// The value of each key that varies.
+    pub drawn: Vec<Value>,
+    /// Its metrics, or why it failed.
+    pub metrics: Result<Metrics, RunError>,
+}
+
+impl Campaign {
+    /// The campaign of a scenario over its `[uncertain]` keys and, with a grid, over that key too.
+    pub fn new(scenario: Scenario, origin: &str, grid: Option<Grid>) -> Result<Self, ScenarioError> {
+        let mut table = scenario.to_table();
+        // What was drawn is said by the keys themselves.
+        table.remove("uncertain");
+        let campaign = Self { scenario, table, origin: origin.to_owned(), grid };
+        if let Some(grid) = &campaign.grid {
+            // A key that does not exist, or a bound that is not accepted, fails all runs: say so at once.
+            for value in [grid.start, grid.end] {
+                campaign.scenario_with(&[(&grid.key, campaign.like(&grid.key, value))])?;
+            }
+        }
+        Ok(campaign)
+    }
+
+    /// The scenario that the runs are drawn from.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// The keys that vary from run to run, in the order of [`Run::drawn`].
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        let grid = self.grid.iter().map(|grid| grid.key.as_str());
+        grid.chain(self.scenario.uncertain.keys().map(String::as_str))
+    }
+
+    /// A run, with its keys drawn. It is the same whichever runs are made beside it.
+    pub fn run(&self, number: u64) -> Result<Run, ScenarioError> {
+        let drawn = self.draw(number);
+        if drawn.is_empty() {
+            let scenario = Scenario { uncertain: Default::default(), ..self.scenario.clone() };
+            return Ok(Run { number, scenario, drawn });
+        }
+        let keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
+        Ok(Run { number, scenario: self.scenario_with(&keys)?, drawn })
+    }
+
+    /// Simulates a run and gathers its metrics, beside another record.
+    pub fn simulate(run: &Run, record: impl Record) -> Result<Metrics, SimulationError> {
+        let mut both = (Gather::new(&run.scenario), record);
+        Simulation::new(&run.scenario, run.number).run(&mut both)?;
+        Ok(both.0.finish(&run.scenario))
+    }
+
+    /// Makes runs on the threads of the current rayon pool and tells of each, in order of their numbers.
+    ///
+    /// `work` simulates one run, on any thread; `tell` may stop the campaign with an error.
+    pub fn each<E>(
+        &self,
+        runs: Range<u64>,
+        work: impl Fn(&Run) -> Result<Metrics, RunError> + Sync,
+        mut tell: impl FnMut(Outcome) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut from = runs.start;
+        while from < runs.end {
+            let block = from..runs.end.min(from + BLOCK);
+            from = block.end;
+            let outcomes: Vec<Outcome> = block
+                .into_par_iter()
+                .map(|number| match self.run(number) {
+                    Ok(run) => Outcome { number, metrics: work(&run), drawn: run.drawn },
+                    Err(error) => {
+                        let drawn = self.draw(number);
+                        Outcome { number, drawn, metrics: Err(error.into()) }
+                    }
+                })
+                .collect();
+            for outcome in outcomes {
+                tell(outcome)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What the log of a run says about where it comes from.
+    pub fn provenance(run: &Run) -> Provenance {
+        Provenance {
+            scenario: run.scenario.name.clone(),
+            toml: run.scenario.to_toml(),
+            seed: run.scenario.seed,
+            run: run.number,
+            epoch_ns: run.scenario.epoch_ns(),
+            layout: run.scenario.layout(),
+        }
+    }
+
+    fn draw(&self, number: u64) -> Vec<Value> {
+        let grid = self.grid.iter().map(|grid| self.like(&grid.key, grid.value(number)));
+        let seed = Seed { scenario: self.scenario.seed, run: number };
+        let drawn = self.scenario.uncertain.iter().map(|(key, distribution)| {
+            let mut stream = seed.stream(&format!("uncertain {key}"));
+            // The scenario was checked: every uncertain key holds a number.
+            let nominal = document::get(&self.table, key).unwrap_or(&Value::Float(f64::NAN));
+            distribution.draw(nominal, &mut stream)
+        });
+        grid.chain(drawn).collect()
+    }
+
+    /// A number as the type that a key has in the scenario.
+    fn like(&self, key: &str, value: f64) -> Value {
+        match document::get(&self.table, key) {
+            Some(Value::Integer(_)) => Value::Integer(libm::round(value) as i64),
+            _ => Value::Float(value),
+        }
+    }
+
+    fn scenario_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {
+        let mut document = Document::from_table(&self.origin, self.table.clone());
+        for (key, value) in keys {
+            document.set(key, value.clone())?;
+        }
+        Scenario::from_document(&document)
+    }
+}

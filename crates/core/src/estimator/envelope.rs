@@ -1,0 +1,175 @@
+//! The envelope of the elastic modes, a = sum a_i, and its mean over consecutive windows.
+//!
+//! Each mode is a phasor Z = x + i (x' + s x)/w_d with s = zeta w and w_d its damped frequency; a_i = abs(Z).
+//! Without damping that is the paper's a_i² = x_i² + (x_i'/w_i)² (seed paper 1, equation (4)). While the torque
+//! is constant, Z turns about its equilibrium c: Z = c + W exp(-(s + i w_d) h).
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::swing_integral;
+use crate::body::{Mode, State};
+use crate::phasor::{Complex, Phasor, abs, polar};
+use crate::time::{Instant, Span};
+
+/// An envelope observer as a scenario describes it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Envelope {
+    /// How the phasors are followed.
+    #[serde(default)]
+    pub form: Form,
+    /// Length of the windows over which the envelope is averaged (s).
+    pub window: Span,
+    /// The modes as the observer knows them; left out, they are the body's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modes: Option<Vec<Mode>>,
+}
+
+/// How the phasors are followed. All forms agree to rounding as long as the model is right.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// Dynamic estimation: the paper's A and B, equation (3), integrated exactly.
+    #[default]
+    Dynamic,
+    /// Trigonometric: each switching of the torque adds one phasor.
+    Trigonometric,
+    /// Read from the body itself: what an ideal observer would see.
+    Truth,
+}
+
+/// The observer at work.
+#[derive(Clone, Debug)]
+pub struct Observer {
+    form: Form,
+    mobility: f64,
+    tracks: Vec<Track>,
+    now: Instant,
+    /// Integral of the total envelope since the window began (rad s).
+    integral: f64,
+}
+
+/// One mode's phasor.
+#[derive(Clone, Debug)]
+struct Track {
+    frequency: f64,
+    damped: f64,
+    decay: f64,
+    excitability: f64,
+    /// In the turning frame, whose axis is at exp(-i w_d t): the phasor itself (dynamic), or its deviation from
+    /// equilibrium (trigonometric).
+    frame: Phasor,
+    equilibrium: Phasor,
+    /// Deviation from equilibrium now.
+    deviation: Phasor,
+    /// The turning frame's axis now, exp(i w_d t).
+    axis: Phasor,
+}
+
+impl Observer {
+    /// An observer of a body whose modes the scenario describes, with the inertia that turns torque to moment.
+    pub fn new(spec: &Envelope, body_modes: &[Mode], inertia: f64) -> Self {
+        let modes = spec.modes.as_deref().unwrap_or(body_modes);
+        Self {
+            form: spec.form,
+            mobility: 1.0 / inertia,
+            tracks: modes.iter().map(Track::new).collect(),
+            now: Instant::START,
+            integral: 0.0,
+        }
+    }
+
+    /// Follows the modes to `now` under the torque that held since the last call. `truth` is the body's state
+    /// now, of which only the form `truth` knows.
+    pub fn advance(&mut self, now: Instant, truth: &State) {
+        let h = now.since(self.now).seconds();
+        let t = now.seconds();
+        self.now = now;
+        for (index, track) in self.tracks.iter_mut().enumerate() {
+            self.integral += track.integral(h);
+            let from = track.axis;
+            track.axis = polar(1.0, track.damped * t);
+            let shrink = if track.decay > 0.0 { libm::exp(-track.decay * h) } else { 1.0 };
+            match self.form {
+                Form::Dynamic => {
+                    track.frame = track.frame * shrink + track.equilibrium * (track.axis - from * shrink);
+                    track.deviation = track.frame * track.axis.conj() - track.equilibrium;
+                }
+                Form::Trigonometric => {
+                    track.frame *= shrink;
+                    track.deviation = track.frame * track.axis.conj();
+                }
+                Form::Truth => {
+                    let phase = truth.modes[index];
+                    let rate = track.frequency * phase.quadrature;
+                    let z = track.phasor(phase.displacement, rate);
+                    track.deviation = z - track.equilibrium;
+                }
+            }
+        }
+    }
+
+    /// Takes over a torque that is commanded from now on (N m).
+    pub fn command(&mut self, torque: f64) {
+        let moment = torque * self.mobility;
+        for track in &mut self.tracks {
+            let equilibrium = track.phasor(track.excitability * moment, 0.0);
+            let shift = track.equilibrium - equilibrium;
+            track.equilibrium = equilibrium;
+            track.deviation += shift;
+            if self.form == Form::Trigonometric {
+                track.frame += shift * track.axis;
+            }
+        }
+    }
+
+    /// Integral of the total envelope since the last call (rad s), and a new window.
+    pub fn close_window(&mut self) -> f64 {
+        std::mem::take(&mut self.integral)
+    }
+
+    /// The envelope of each mode at an instant (rad) that is not before the last call of `advance`, under the
+    /// torque that holds.
+    pub fn at(&self, now: Instant) -> impl Iterator<Item = f64> + '_ {
+        let h = now.since(self.now).seconds();
+        self.tracks.iter().map(move |track| {
+            let turn = polar(libm::exp(-track.decay * h), -track.damped * h);
+            abs(track.equilibrium + track.deviation * turn)
+        })
+    }
+}
+
+impl Track {
+    fn new(mode: &Mode) -> Self {
+        let (frequency, zeta) = (mode.frequency.get(), mode.damping.get());
+        let mut track = Self {
+            frequency,
+            damped: frequency * libm::sqrt((1.0 - zeta) * (1.0 + zeta)),
+            decay: zeta * frequency,
+            excitability: mode.excitability(),
+            frame: Phasor::default(),
+            equilibrium: Phasor::default(),
+            deviation: Phasor::default(),
+            axis: Complex { re: 1.0, im: 0.0 },
+        };
+        // The equilibrium is 0 until the first command, and the frame not yet turned.
+        track.frame = track.phasor(mode.displacement.get(), mode.rate.get());
+        track.deviation = track.frame;
+        track
+    }
+
+    fn phasor(&self, displacement: f64, rate: f64) -> Phasor {
+        Complex { re: displacement, im: (rate + self.decay * displacement) / self.damped }
+    }
+
+    /// Integral of the mode's envelope over the next `h` seconds.
+    fn integral(&self, h: f64) -> f64 {
+        if self.decay > 0.0 {
+            let Self { equilibrium, deviation, decay, damped, .. } = *self;
+            swing_integral::damped(equilibrium, deviation, decay, damped, h)
+        } else {
+            swing_integral::undamped(self.equilibrium.re, self.deviation, self.frequency, h)
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Control laws: state machines that answer every event with a hold.
+
+mod relay;
+
+use crate::belief::Belief;
+use crate::guard::Guard;
+use crate::label::labels;
+use crate::one_of::one_of;
+use crate::time::Instant;
+
+pub use relay::{Relay, Sides};
+
+one_of! {
+    /// The kinds of law.
+    Law: Control {
+        /// Relay with dead zone, hysteresis and a timed brake.
+        Relay(Relay),
+    }
+}
+
+/// What every law does.
+pub trait Control {
+    /// Answers an event.
+    fn decide(&mut self, now: Instant, cause: Cause, belief: &Belief) -> Hold;
+
+    /// The state that the law is in.
+    fn state(&self) -> Phase;
+
+    /// The value that the law's tunable parameter starts with.
+    fn gain(&self) -> f64;
+}
+
+labels! {
+    /// The states of all laws, by the names under which they are logged.
+    Phase {
+        /// Relay: weak push before the first boundary is reached.
+        Start = "W0",
+        /// Relay: strong push to the left, from beyond the right boundary.
+        RightPush = "RACC",
+        /// Relay: strong timed brake of the leftward motion.
+        RightBrake = "RBRK",
+        /// Relay: weak push to the right, while coasting inside the dead zone.
+        WeakRight = "W+",
+        /// Relay: strong push to the right, from beyond the left boundary.
+        LeftPush = "LACC",
+        /// Relay: strong timed brake of the rightward motion.
+        LeftBrake = "LBRK",
+        /// Relay: weak push to the left, while coasting inside the dead zone.
+        WeakLeft = "W-",
+    }
+}
+
+/// Why a law is asked.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// The run begins.
+    Start,
+    /// The guard of this index tripped.
+    Guard(usize),
+    /// The time of the hold has come.
+    Timeout,
+}
+
+/// A law's answer: the torque from now on, and when to be asked again.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Hold {
+    /// Torque command (N m), or reduced moment (rad/s²) on a body without inertia.
+    pub torque: f64,
+    /// Ask again at this instant.
+    pub until: Option<Instant>,
+    /// Ask again when one of these trips.
+    pub guards: Guards,
+}
+
+/// At most two guards.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Guards([Guard; 2], usize);
+
+impl Guards {
+    /// No guard.
+    pub const NONE: Self = Self([Guard::at_least(0.0); 2], 0);
+
+    /// One guard, of index 0.
+    pub const fn one(guard: Guard) -> Self {
+        Self([guard; 2], 1)
+    }
+
+    /// Two guards, of indices 0 and 1.
+    pub const fn two(first: Guard, second: Guard) -> Self {
+        Self([first, second], 2)
+    }
+}
+
+impl std::ops::Deref for Guards {
+    type Target = [Guard];
+    fn deref(&self) -> &[Guard] {
+        &self.0[..self.1]
+    }
+}

@@ -1,0 +1,117 @@
+//! The relay law with dead zone, hysteresis and a timed brake (seed paper 1, equation (2), corrected).
+//!
+//! Beyond a boundary of the dead zone a strong torque pushes back until the angle has returned by the
+//! hysteresis; then a strong brake lasts `k_t` times as long as the push; then a weak torque opposes the
+//! motion that is left, until a boundary is reached again. As printed, equation (2) cannot be executed: the
+//! brake's condition has the wrong sign, and its OR and AND clauses are a state machine's memory.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Cause, Control, Guards, Hold, Phase};
+use crate::belief::Belief;
+use crate::guard::Guard;
+use crate::quantity::{Fraction, NonNegative, Positive};
+use crate::time::{Instant, Span};
+
+/// The relay law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Relay {
+    /// Half width of the dead zone, eps (rad).
+    pub dead_zone: Positive,
+    /// Hysteresis, gamma (rad): how far back inside a boundary the brake begins.
+    pub hysteresis: Positive,
+    /// Strong torque `m_u` (N m; rad/s² on a body without inertia).
+    pub strong: Positive,
+    /// Weak torque `m_eps` in the dead zone (N m; rad/s² on a body without inertia).
+    pub weak: NonNegative,
+    /// Braking gain: duration of the brake for each second of the push.
+    pub k_t: Fraction,
+    /// Which boundaries of the dead zone push back.
+    #[serde(default)]
+    pub sides: Sides,
+    #[serde(skip)]
+    phase: Option<Phase>,
+    #[serde(skip)]
+    pushed_at: Instant,
+}
+
+/// Which boundaries of the dead zone push back.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Sides {
+    /// Both (equation (2)).
+    #[default]
+    Two,
+    /// The right one only (the paper's first, unnumbered law).
+    One,
+}
+
+impl Control for Relay {
+    fn decide(&mut self, now: Instant, cause: Cause, belief: &Belief) -> Hold {
+        let phase = self.next(cause, belief);
+        let brake = Span::from_seconds(belief.gain * now.since(self.pushed_at).seconds());
+        if matches!(phase, Phase::RightPush | Phase::LeftPush) {
+            self.pushed_at = now;
+        }
+        self.phase = Some(phase);
+        self.hold(phase, now + brake)
+    }
+
+    fn state(&self) -> Phase {
+        self.phase.unwrap_or(Phase::Start)
+    }
+
+    fn gain(&self) -> f64 {
+        self.k_t.get()
+    }
+}
+
+impl Relay {
+    /// The state that an event leads to.
+    fn next(&self, cause: Cause, belief: &Belief) -> Phase {
+        match (self.state(), cause) {
+            (_, Cause::Start) if self.right().holds(belief.angle) => Phase::RightPush,
+            (_, Cause::Start) if self.sides == Sides::Two && self.left().holds(belief.angle) => {
+                Phase::LeftPush
+            }
+            (_, Cause::Start) => Phase::Start,
+            (Phase::RightPush, _) => Phase::RightBrake,
+            (Phase::RightBrake, _) => Phase::WeakRight,
+            (Phase::LeftPush, _) => Phase::LeftBrake,
+            (Phase::LeftBrake, _) => Phase::WeakLeft,
+            // The dead zone is left through the right boundary, guard 0, or the left one.
+            (_, Cause::Guard(0) | Cause::Timeout) => Phase::RightPush,
+            (_, Cause::Guard(_)) => Phase::LeftPush,
+        }
+    }
+
+    /// What a state commands; `braked` is when a brake that begins now ends.
+    fn hold(&self, phase: Phase, braked: Instant) -> Hold {
+        let back = self.dead_zone.get() - self.hysteresis.get();
+        let (strong, weak) = (self.strong.get(), self.weak.get());
+        let until_guards = |torque, guards| Hold { torque, until: None, guards };
+        let until_braked = |torque| Hold { torque, until: Some(braked), guards: Guards::NONE };
+        let boundaries = match self.sides {
+            Sides::Two => Guards::two(self.right(), self.left()),
+            Sides::One => Guards::one(self.right()),
+        };
+        match phase {
+            Phase::Start | Phase::WeakRight => until_guards(weak, boundaries),
+            Phase::WeakLeft => until_guards(-weak, boundaries),
+            Phase::RightPush => until_guards(-strong, Guards::one(Guard::at_most(back))),
+            Phase::LeftPush => until_guards(strong, Guards::one(Guard::at_least(-back))),
+            Phase::RightBrake => until_braked(strong),
+            Phase::LeftBrake => until_braked(-strong),
+        }
+    }
+
+    fn right(&self) -> Guard {
+        Guard::at_least(self.dead_zone.get())
+    }
+
+    fn left(&self) -> Guard {
+        Guard::at_most(-self.dead_zone.get())
+    }
+}

@@ -1,0 +1,58 @@
+//! The engine of flexsc: attitude control of flexible spacecraft, simulated exactly.
+//!
+//! A [`Scenario`] is what the user wrote; a [`Simulation`] is what moves; a [`record::Record`] is the only way
+//! out. Within a run data goes one way round:
+//!
+//! ```text
+//! body --truth--> sensor --measurement--> estimator --belief--> law --hold--> body
+//!                                             |                  ^
+//!                                             +--> adaptation ---+
+//! ```
+//!
+//! ```
+//! use flexsc_core::{Scenario, Simulation, record::{Detail, Trace}};
+//!
+//! let scenario = Scenario::parse("relay.toml", r#"
+//!     duration = 100.0                  # s
+//!     [body.planar]
+//!     angle = 4.5e-4                    # rad
+//!     rate = 2.2e-5                     # rad/s
+//!     [law.relay]
+//!     dead_zone = 5e-4                  # rad
+//!     hysteresis = 1e-4                 # rad
+//!     strong = 4e-5                     # rad/s²
+//!     weak = 1e-6                       # rad/s²
+//!     k_t = 0.31
+//! "#)?;
+//! let mut trace = Trace::new(Detail::Events);
+//! Simulation::new(&scenario, 0).run(&mut trace)?;
+//! let switchings = trace.topic("/command").expect("a topic of every log");
+//! assert_eq!(switchings.len(), 13);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod adaptation;
+pub mod analysis;
+pub mod belief;
+pub mod body;
+pub mod campaign;
+pub mod document;
+pub mod estimator;
+pub mod guard;
+mod label;
+pub mod law;
+pub mod metrics;
+mod one_of;
+pub mod phasor;
+pub mod quantity;
+pub mod random;
+pub mod record;
+pub mod scenario;
+pub mod sensor;
+mod sim;
+pub mod time;
+pub mod uncertain;
+
+pub use document::{Document, ScenarioError};
+pub use scenario::Scenario;
+pub use sim::{Simulation, SimulationError};

@@ -1,0 +1,91 @@
+//! Numbers that are valid by construction: a scenario that deserialises holds no other.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// A number type with a range: its deserialiser refuses every other number, naming what it got.
+macro_rules! quantity {
+    ($(#[$doc:meta])* $name:ident, $accepts:expr, $words:literal, $schema:tt) => {
+        $(#[$doc])*
+        #[derive(Copy, Clone, Debug, PartialEq, PartialOrd, Serialize)]
+        #[serde(transparent)]
+        pub struct $name(f64);
+
+        impl $name {
+            /// The number, if it is in range.
+            pub fn new(value: f64) -> Option<Self> {
+                let accepts: fn(f64) -> bool = $accepts;
+                accepts(value).then_some(Self(value))
+            }
+
+            /// The number itself.
+            pub const fn get(self) -> f64 {
+                self.0
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let value = f64::deserialize(deserializer)?;
+                Self::new(value).ok_or_else(|| {
+                    serde::de::Error::custom(format!(concat!("must be ", $words, ", got {}"), value))
+                })
+            }
+        }
+
+        impl JsonSchema for $name {
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!($schema)
+            }
+        }
+    };
+}
+
+quantity!(
+    /// Any finite number.
+    Finite, f64::is_finite, "a finite number", {"type": "number"}
+);
+quantity!(
+    /// A number above zero.
+    Positive, |v| v.is_finite() && v > 0.0, "a positive number",
+    {"type": "number", "exclusiveMinimum": 0}
+);
+quantity!(
+    /// Zero or a number above it.
+    NonNegative, |v| v.is_finite() && v >= 0.0, "a number of 0 or more",
+    {"type": "number", "minimum": 0}
+);
+quantity!(
+    /// A number strictly between 0 and 1.
+    Fraction, |v| v > 0.0 && v < 1.0, "a number between 0 and 1",
+    {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+);
+quantity!(
+    /// The natural frequency of an elastic mode (rad/s).
+    Frequency, |v| (1e-4..=1e3).contains(&v), "a natural frequency of 1e-4 to 1e3 rad/s",
+    {"type": "number", "minimum": 1e-4, "maximum": 1e3}
+);
+
+/// The zero that a key left out stands for.
+macro_rules! zero_by_default {
+    ($($name:ident),*) => {
+        $(impl Default for $name {
+            fn default() -> Self {
+                Self(0.0)
+            }
+        })*
+    };
+}
+
+zero_by_default!(Finite, NonNegative);
+
+impl Positive {
+    /// Exactly one.
+    pub const ONE: Self = Self(1.0);
+}

@@ -1,0 +1,96 @@
+//! Seeded randomness: one independent stream for each (scenario seed, run, consumer).
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// The seed of one run: the scenario's, and the number of the run.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Seed {
+    /// The scenario's seed.
+    pub scenario: u64,
+    /// The number of the run, from 0.
+    pub run: u64,
+}
+
+impl Seed {
+    /// The stream of one named consumer. No other stream moves when a consumer is added.
+    pub fn stream(self, consumer: &str) -> Stream {
+        let mut key = [0_u8; 32];
+        key[..8].copy_from_slice(&self.scenario.to_le_bytes());
+        key[8..16].copy_from_slice(&self.run.to_le_bytes());
+        key[16..24].copy_from_slice(&fnv1a(consumer).to_le_bytes());
+        Stream { source: ChaCha8Rng::from_seed(key), spare: None }
+    }
+}
+
+/// FNV-1a: a published hash with fixed constants, the same everywhere.
+fn fnv1a(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+/// A stream of random numbers, the same on every machine.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    source: ChaCha8Rng,
+    spare: Option<f64>,
+}
+
+impl Stream {
+    /// Uniform on [0, 1), a multiple of 2^-53.
+    pub fn uniform(&mut self) -> f64 {
+        (self.source.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+    }
+
+    /// Uniform over `0..count`.
+    pub fn index(&mut self, count: usize) -> usize {
+        ((self.uniform() * count as f64) as usize).min(count - 1)
+    }
+
+    /// Normal with mean 0 and standard deviation 1 (Box-Muller).
+    pub fn normal(&mut self) -> f64 {
+        if let Some(spare) = self.spare.take() {
+            return spare;
+        }
+        let radius = libm::sqrt(-2.0 * libm::log(1.0 - self.uniform()));
+        let (sin, cos) = libm::sincos(2.0 * std::f64::consts::PI * self.uniform());
+        self.spare = Some(radius * sin);
+        radius * cos
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streams_are_independent_of_each_other() {
+        let seed = Seed { scenario: 7, run: 57 };
+        let alone: Vec<f64> = {
+            let mut stream = seed.stream("sensor");
+            (0..4).map(|_| stream.uniform()).collect()
+        };
+        let mut other = seed.stream("adaptation");
+        let mut stream = seed.stream("sensor");
+        let beside: Vec<f64> = (0..4).map(|_| (other.uniform(), stream.uniform()).1).collect();
+        assert_eq!(alone, beside);
+        assert_ne!(other.uniform(), stream.uniform());
+        let next_run = Seed { run: 58, ..seed }.stream("sensor").uniform();
+        assert_ne!(alone[0], next_run);
+    }
+
+    #[test]
+    fn normal_has_the_moments_of_a_normal() {
+        let mut stream = Seed { scenario: 1, run: 0 }.stream("normal");
+        let n = 100_000;
+        let draws: Vec<f64> = (0..n).map(|_| stream.normal()).collect();
+        let mean = draws.iter().sum::<f64>() / f64::from(n);
+        let variance = draws.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / f64::from(n);
+        let kurtosis = draws.iter().map(|z| (z - mean).powi(4)).sum::<f64>() / f64::from(n);
+        // Three standard errors: 1/sqrt(n), sqrt(2/n), sqrt(24/n) for variance one.
+        assert!(mean.abs() < 0.0095, "{mean}");
+        assert!((variance - 1.0).abs() < 0.0135, "{variance}");
+        assert!((kurtosis / variance.powi(2) - 3.0).abs() < 0.05, "{kurtosis}");
+    }
+}

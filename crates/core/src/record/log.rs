@@ -1,0 +1,262 @@
+//! Reading logs back: any topic as columns, by the schema that the file itself carries.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use mcap::records::Record as McapRecord;
+use mcap::{McapError, MessageStream, WriteOptions, Writer};
+use prost_reflect::{
+    DescriptorPool, DynamicMessage, FieldDescriptor, Kind, MessageDescriptor, ReflectMessage,
+};
+use thiserror::Error;
+
+use super::topics::label_of;
+use super::{Column, Columns};
+
+/// A log that cannot be used.
+#[derive(Debug, Error)]
+pub enum LogError {
+    /// The file cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file ends early: its run was killed.
+    #[error(
+        "{}: the log is torn (its run was killed, or still runs)\n\nhint: `flexsc log recover {}` saves \
+         what was written",
+        path.display(), path.display()
+    )]
+    Torn {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file is no MCAP file, or a damaged one.
+    #[error("{}: not a readable MCAP log: {source}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: McapError,
+    },
+    /// The log has no such topic.
+    #[error("{}: no topic `{topic}` in this log\n\nhint: it has {topics}", path.display())]
+    NoTopic {
+        /// The file.
+        path: PathBuf,
+        /// The topic asked for.
+        topic: String,
+        /// Those that there are.
+        topics: String,
+    },
+    /// A message cannot be decoded.
+    #[error("{}: topic `{topic}` cannot be decoded: {why}", path.display())]
+    Undecodable {
+        /// The file.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// Why.
+        why: String,
+    },
+}
+
+/// A log in memory.
+pub struct Log {
+    path: PathBuf,
+    bytes: Vec<u8>,
+    epoch_ns: u64,
+    metadata: BTreeMap<String, String>,
+    topics: Vec<String>,
+    scenario: Option<String>,
+}
+
+impl Log {
+    /// Reads a log file.
+    pub fn open(path: &Path) -> Result<Self, LogError> {
+        let io = |source| LogError::Io { path: path.to_owned(), source };
+        let bytes = fs::read(path).map_err(io)?;
+        let damaged = |source| LogError::Damaged { path: path.to_owned(), source };
+        if !bytes.starts_with(mcap::MAGIC) {
+            return Err(damaged(McapError::BadMagic));
+        }
+        if !bytes.ends_with(mcap::MAGIC) {
+            return Err(LogError::Torn { path: path.to_owned() });
+        }
+        let summary = mcap::Summary::read(&bytes).map_err(damaged)?.unwrap_or_default();
+        let mut metadata = BTreeMap::new();
+        for index in &summary.metadata_indexes {
+            metadata.extend(mcap::read::metadata(&bytes, index).map_err(damaged)?.metadata);
+        }
+        let mut scenario = None;
+        for index in summary.attachment_indexes.iter().filter(|i| i.name == "scenario.toml") {
+            let attachment = mcap::read::attachment(&bytes, index).map_err(damaged)?;
+            scenario = Some(String::from_utf8_lossy(&attachment.data).into_owned());
+        }
+        let mut topics: Vec<_> = summary.channels.values().map(|c| c.topic.clone()).collect();
+        topics.sort();
+        let epoch_ns = metadata.get("epoch_ns").and_then(|ns| ns.parse().ok()).unwrap_or(0);
+        Ok(Self { path: path.to_owned(), bytes, epoch_ns, metadata, topics, scenario })
+    }
+
+    /// The topics that the log has.
+    pub fn topics(&self) -> &[String] {
+        &self.topics
+    }
+
+    /// What the log says about its run: `scenario`, `seed`, `run`, `version`, `end`, ...
+    pub fn metadata(&self) -> &BTreeMap<String, String> {
+        &self.metadata
+    }
+
+    /// The scenario that was run, as TOML.
+    pub fn scenario(&self) -> Option<&str> {
+        self.scenario.as_deref()
+    }
+
+    /// The rows of a topic. The first column is `time_s`: the messages' own, or else their log time.
+    pub fn columns(&self, topic: &str) -> Result<Columns, LogError> {
+        let no_topic = || LogError::NoTopic {
+            path: self.path.clone(),
+            topic: topic.to_owned(),
+            topics: self.topics.join(", "),
+        };
+        if !self.topics.iter().any(|t| t == topic) {
+            return Err(no_topic());
+        }
+        let damaged = |source| LogError::Damaged { path: self.path.clone(), source };
+        let undecodable =
+            |why| LogError::Undecodable { path: self.path.clone(), topic: topic.to_owned(), why };
+        let mut found: Option<(MessageDescriptor, Columns)> = None;
+        let mut times = Vec::new();
+        for message in MessageStream::new(&self.bytes).map_err(damaged)? {
+            let message = message.map_err(damaged)?;
+            if message.channel.topic != topic {
+                continue;
+            }
+            if found.is_none() {
+                let schema = message.channel.schema.as_ref();
+                let schema = schema.ok_or_else(|| undecodable("no schema".to_owned()))?;
+                let pool = DescriptorPool::decode(&*schema.data);
+                let pool = pool.map_err(|error| undecodable(error.to_string()))?;
+                let descriptor = pool.get_message_by_name(&schema.name);
+                let descriptor =
+                    descriptor.ok_or_else(|| undecodable("no message in its schema".to_owned()))?;
+                let columns = empty(&descriptor);
+                found = Some((descriptor, columns));
+            }
+            let Some((descriptor, columns)) = &mut found else { continue };
+            let row = DynamicMessage::decode(descriptor.clone(), &*message.data);
+            push(columns, descriptor, &row.map_err(|error| undecodable(error.to_string()))?);
+            times.push((message.log_time - self.epoch_ns) as f64 / 1e9);
+        }
+        let (_, mut columns) = found.ok_or_else(no_topic)?;
+        if columns.get("time_s").is_none() {
+            columns.columns.insert(0, ("time_s".to_owned(), Column::Numbers(times)));
+        }
+        Ok(columns)
+    }
+}
+
+fn empty(message: &MessageDescriptor) -> Columns {
+    let column = |field: FieldDescriptor| {
+        let column = match field.kind() {
+            Kind::Double | Kind::Float => Column::Numbers(Vec::new()),
+            Kind::Enum(of) => {
+                let labels = of.values().map(|value| label_of(value.name())).collect();
+                Column::Labels(Vec::new(), labels)
+            }
+            Kind::Message(of) => Column::Rows(Vec::new(), empty(&of)),
+            Kind::String => Column::Texts(Vec::new()),
+            _ => Column::Counts(Vec::new()),
+        };
+        (field.name().to_owned(), column)
+    };
+    Columns { columns: message.fields().map(column).collect() }
+}
+
+fn push(columns: &mut Columns, descriptor: &MessageDescriptor, row: &DynamicMessage) {
+    for ((_, column), field) in columns.columns.iter_mut().zip(descriptor.fields()) {
+        let value = row.get_field(&field);
+        match column {
+            Column::Numbers(values) => values.push(value.as_f64().unwrap_or(f64::NAN)),
+            Column::Counts(values) => values.push(value.as_u64().unwrap_or(0)),
+            Column::Labels(values, _) => values.push(value.as_enum_number().unwrap_or(0) as u8),
+            Column::Texts(values) => values.push(value.as_str().unwrap_or_default().to_owned()),
+            Column::Rows(counts, inner) => {
+                let rows = value.as_list().unwrap_or_default();
+                counts.push(rows.len() as u32);
+                for row in rows.iter().filter_map(|row| row.as_message()) {
+                    push(inner, &row.descriptor(), row);
+                }
+            }
+        }
+    }
+}
+
+/// Copies what is whole in a torn log into a new one, and tells how many messages it saved.
+pub fn recover(torn: &Path, whole: &Path) -> Result<u64, LogError> {
+    let bytes = fs::read(torn).map_err(|source| LogError::Io { path: torn.to_owned(), source })?;
+    let out = |source| LogError::Io { path: whole.to_owned(), source };
+    let failed = |source| LogError::Damaged { path: whole.to_owned(), source };
+    if !bytes.starts_with(mcap::MAGIC) {
+        let source = McapError::BadMagic;
+        return Err(LogError::Damaged { path: torn.to_owned(), source });
+    }
+    let file = BufWriter::new(fs::File::create(whole).map_err(out)?);
+    let options =
+        WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
+    let mut writer = Writer::with_options(file, options).map_err(failed)?;
+    let saved = copy_records(&bytes, &mut writer).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    writer.into_inner().flush().map_err(out)?;
+    Ok(saved)
+}
+
+fn copy_records(bytes: &[u8], writer: &mut Writer<BufWriter<fs::File>>) -> Result<u64, McapError> {
+    let mut schemas = BTreeMap::from([(0, 0)]);
+    let mut channels = BTreeMap::new();
+    let mut pending = BTreeMap::new();
+    let mut saved = 0;
+    let options = mcap::read::Options::IgnoreEndMagic | mcap::read::Options::ValidateChunkCrcs;
+    let records = mcap::read::ChunkFlattener::new_with_options(bytes, options)?;
+    // The first record that cannot be read is where the log was torn.
+    for record in records.map_while(Result::ok) {
+        match record {
+            McapRecord::Schema { header, data } => {
+                let id = writer.add_schema(&header.name, &header.encoding, &data)?;
+                schemas.insert(header.id, id);
+            }
+            // Held back until its first message, so that no chunk is without one.
+            McapRecord::Channel(channel) => {
+                pending.insert(channel.id, channel);
+            }
+            McapRecord::Message { mut header, data } => {
+                if let Some(c) = pending.remove(&header.channel_id) {
+                    let schema = schemas.get(&c.schema_id).copied().unwrap_or(0);
+                    let id = writer.add_channel(schema, &c.topic, &c.message_encoding, &c.metadata)?;
+                    channels.insert(c.id, id);
+                }
+                header.channel_id = channels.get(&header.channel_id).copied().unwrap_or(0);
+                writer.write_to_known_channel(&header, &data)?;
+                saved += 1;
+            }
+            McapRecord::Attachment { header, data, .. } => writer.attach(&mcap::Attachment {
+                log_time: header.log_time,
+                create_time: header.create_time,
+                name: header.name,
+                media_type: header.media_type,
+                data,
+            })?,
+            McapRecord::Metadata(metadata) => writer.write_metadata(&metadata)?,
+            McapRecord::DataEnd(_) => break,
+            _ => {}
+        }
+    }
+    Ok(saved)
+}

@@ -1,0 +1,246 @@
+//! The log file: a run as MCAP, whose bytes depend on the scenario, the seed and the version alone.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Attachment, McapError, WriteOptions, Writer};
+
+use super::proto::{Encoder, descriptor_set, full_name};
+use super::row::TopicRow;
+use super::topics::index_of;
+use super::{Detail, Metrics, Params, Record, RecordError, Sample, TOPICS, TakeRow};
+use crate::time::Instant;
+
+/// A chunk is closed after so many messages: what a killed run loses at most.
+const MESSAGES_PER_FLUSH: u64 = 2000;
+
+/// What a log says about where it comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Provenance {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// The scenario with all defaults and drawn values, as TOML.
+    pub toml: String,
+    /// Seed of the scenario.
+    pub seed: u64,
+    /// Number of the run.
+    pub run: u64,
+    /// Date of the run's start in nanoseconds since 1970 UTC; 0 if the scenario has none.
+    pub epoch_ns: u64,
+    /// A viewer layout for this kind of run.
+    pub layout: Option<&'static str>,
+}
+
+/// How a run ended.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum RunEnd {
+    /// It reached its duration.
+    Complete,
+    /// The user stopped it.
+    Interrupted,
+    /// It failed.
+    Failed,
+}
+
+/// A run's log, written while it runs.
+pub struct McapLog<W: Write + Seek> {
+    writer: Writer<W>,
+    detail: Detail,
+    epoch_ns: u64,
+    /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`].
+    channels: Vec<Option<(u16, u32)>>,
+    since_flush: u64,
+    last: Instant,
+    buffer: Vec<u8>,
+}
+
+impl<W: Write + Seek> McapLog<W> {
+    /// A log with its provenance written.
+    pub fn new(writer: W, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
+        let options =
+            WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
+        let mut writer = Writer::with_options(writer, options).map_err(failure)?;
+        attach(&mut writer, "scenario.toml", "application/toml", &from.toml)?;
+        if let Some(layout) = from.layout {
+            attach(&mut writer, "layout.json", "application/json", layout)?;
+        }
+        let metadata = [
+            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            ("scenario", from.scenario.clone()),
+            ("seed", from.seed.to_string()),
+            ("run", from.run.to_string()),
+            ("epoch_ns", from.epoch_ns.to_string()),
+            ("time_base", "simulated nanoseconds past epoch_ns".to_owned()),
+            ("units", "SI: rad, s, kg m², N m; suffixes of the fields name them".to_owned()),
+        ];
+        let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
+        write_metadata(&mut writer, "flexsc.run", metadata.into())?;
+        let mut log = Self {
+            writer,
+            detail,
+            epoch_ns: from.epoch_ns,
+            channels: vec![None; TOPICS.len()],
+            since_flush: 0,
+            last: Instant::START,
+            buffer: Vec::new(),
+        };
+        let params = Params {
+            scenario: from.scenario.clone(),
+            seed: from.seed,
+            run: from.run,
+            toml: from.toml.clone(),
+        };
+        log.take(Instant::START, &params)?;
+        Ok(log)
+    }
+
+    /// Writes the metrics, how the run ended, and the file's summary.
+    pub fn finish(mut self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
+        if !metrics.metrics.is_empty() {
+            self.take(self.last, metrics)?;
+        }
+        let end = match end {
+            RunEnd::Complete => "complete",
+            RunEnd::Interrupted => "interrupted",
+            RunEnd::Failed => "failed",
+        };
+        let metadata = [("end", end.to_owned()), ("time_s", self.last.to_string())];
+        let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
+        write_metadata(&mut self.writer, "flexsc.end", metadata.into())?;
+        self.writer.finish().map_err(failure)?;
+        Ok(self.writer.into_inner())
+    }
+
+    fn channel(&mut self, index: usize) -> Result<(u16, u32), RecordError> {
+        if let Some(channel) = self.channels[index] {
+            return Ok(channel);
+        }
+        let topic = &TOPICS[index];
+        let (name, data) = (full_name(topic.message), descriptor_set(topic));
+        let schema = self.writer.add_schema(&name, "protobuf", &data).map_err(failure)?;
+        let none = BTreeMap::new();
+        let id = self.writer.add_channel(schema, topic.name, "protobuf", &none);
+        Ok((id.map_err(failure)?, 0))
+    }
+}
+
+impl<W: Write + Seek> TakeRow for McapLog<W> {
+    fn detail(&self) -> Detail {
+        self.detail
+    }
+
+    fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
+        let index = const { index_of(R::TOPIC.name) };
+        let (channel_id, sequence) = self.channel(index)?;
+        self.channels[index] = Some((channel_id, sequence.wrapping_add(1)));
+        self.buffer.clear();
+        Encoder::encode(row, &mut self.buffer);
+        let log_time = self.epoch_ns + now.nanoseconds();
+        let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
+        self.writer.write_to_known_channel(&header, &self.buffer).map_err(failure)?;
+        self.last = now;
+        self.since_flush += 1;
+        // Only after a message: a chunk without one would start at time 0 for a viewer.
+        if self.since_flush == MESSAGES_PER_FLUSH {
+            self.since_flush = 0;
+            self.writer.flush().map_err(failure)?;
+        }
+        Ok(())
+    }
+}
+
+impl<W: Write + Seek> Record for McapLog<W> {
+    fn dense(&self) -> bool {
+        self.detail == Detail::Full
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        self.take_sample(now, sample)
+    }
+}
+
+/// A log on disk, under a `.partial` name until it is finished.
+pub struct LogFile {
+    log: McapLog<BufWriter<File>>,
+    path: PathBuf,
+    partial: PathBuf,
+}
+
+impl LogFile {
+    /// Creates the file beside its final place.
+    pub fn create(path: &Path, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
+        let mut partial = path.as_os_str().to_owned();
+        partial.push(".partial");
+        let partial = PathBuf::from(partial);
+        let file = BufWriter::new(File::create(&partial)?);
+        let log = McapLog::new(file, from, detail).inspect_err(|_| discard(&partial))?;
+        Ok(Self { log, path: path.to_owned(), partial })
+    }
+
+    /// Finishes the log, gives it its final name, and tells its size in bytes. A log that cannot be finished is
+    /// removed.
+    pub fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<u64, RecordError> {
+        let Self { log, path, partial } = self;
+        let finish = || -> Result<u64, RecordError> {
+            let file = log.finish(metrics, end)?.into_inner().map_err(io::IntoInnerError::into_error)?;
+            let bytes = file.metadata()?.len();
+            fs::rename(&partial, &path)?;
+            Ok(bytes)
+        };
+        finish().inspect_err(|_| discard(&partial))
+    }
+
+    /// Removes what was written.
+    pub fn discard(self) {
+        discard(&self.partial);
+    }
+}
+
+impl Record for LogFile {
+    fn dense(&self) -> bool {
+        self.log.dense()
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        self.log.record(now, sample)
+    }
+}
+
+/// Removes a file that is of no use. That it cannot be removed is no news beside why it is of no use.
+fn discard(path: &Path) {
+    let _ = fs::remove_file(path);
+}
+
+fn attach<W: Write + Seek>(
+    writer: &mut Writer<W>,
+    name: &str,
+    media_type: &str,
+    text: &str,
+) -> Result<(), RecordError> {
+    let attachment = Attachment {
+        log_time: 0,
+        create_time: 0,
+        name: name.to_owned(),
+        media_type: media_type.to_owned(),
+        data: text.as_bytes().into(),
+    };
+    writer.attach(&attachment).map_err(failure)
+}
+
+fn write_metadata<W: Write + Seek>(
+    writer: &mut Writer<W>,
+    name: &str,
+    metadata: BTreeMap<String, String>,
+) -> Result<(), RecordError> {
+    writer.write_metadata(&Metadata { name: name.to_owned(), metadata }).map_err(failure)
+}
+
+fn failure(error: McapError) -> RecordError {
+    match error {
+        McapError::Io(error) => RecordError::Io(error),
+        other => RecordError::Io(io::Error::other(other)),
+    }
+}

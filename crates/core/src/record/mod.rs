@@ -1,0 +1,149 @@
+//! The record: the only way out of a simulation.
+
+mod columns;
+mod log;
+mod mcap;
+mod proto;
+pub mod row;
+mod topics;
+mod trace;
+
+use std::io;
+
+use thiserror::Error;
+
+use crate::body::State;
+use crate::time::Instant;
+
+pub use columns::{Column, Columns};
+pub use log::{Log, LogError, recover};
+pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
+pub use topics::{
+    Adaptation, Attitude, Command, Envelope, Law, Metric, Metrics, ModeEnvelope, ModeMotion, Modes, Params,
+    Rate, TOPICS, Trigger, WindowMean,
+};
+pub use trace::Trace;
+
+/// What a simulation tells while it runs.
+#[derive(Copy, Clone, Debug)]
+pub enum Sample<'a> {
+    /// The run begins with the law in this state.
+    Begin(&'a Law),
+    /// The law switched, with the body in this state.
+    Switching(&'a Command, &'a State),
+    /// The motion at one instant: at each period of a dense record, and at every switching.
+    Motion(&'a Motion),
+    /// What the law does, once a second of a dense record.
+    Law(&'a Law),
+    /// A window of the envelope's mean ended.
+    Window(&'a WindowMean),
+    /// The adaptation took a step.
+    Adaptation(&'a Adaptation),
+}
+
+/// The motion at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Angles.
+    pub attitude: Attitude,
+    /// Rates.
+    pub rate: Rate,
+    /// Modes.
+    pub modes: Modes,
+    /// Envelope, if the scenario has an observer.
+    pub envelope: Option<Envelope>,
+}
+
+/// An observer of a simulation.
+pub trait Record {
+    /// Whether the record wants the motion at each period of the scenario's log.
+    fn dense(&self) -> bool {
+        false
+    }
+
+    /// Takes a sample.
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError>;
+}
+
+/// A record could not be kept.
+#[derive(Debug, Error)]
+pub enum RecordError {
+    /// The log could not be written.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// The user asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Records nothing, at no cost.
+impl Record for () {
+    fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
+        Ok(())
+    }
+}
+
+impl<R: Record + ?Sized> Record for &mut R {
+    fn dense(&self) -> bool {
+        (**self).dense()
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        (**self).record(now, sample)
+    }
+}
+
+/// Records if there is something to record to.
+impl<R: Record> Record for Option<R> {
+    fn dense(&self) -> bool {
+        self.as_ref().is_some_and(Record::dense)
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        self.as_mut().map_or(Ok(()), |record| record.record(now, sample))
+    }
+}
+
+/// Records to both.
+impl<A: Record, B: Record> Record for (A, B) {
+    fn dense(&self) -> bool {
+        self.0.dense() || self.1.dense()
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        self.0.record(now, sample)?;
+        self.1.record(now, sample)
+    }
+}
+
+/// How much of a run is recorded.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Detail {
+    /// Switchings, window means, adaptation: all that changes.
+    #[default]
+    Events,
+    /// Also the motion at each period of the scenario's log, and at every switching.
+    Full,
+}
+
+/// A thing that takes rows of any topic: a log file, or columns in memory.
+trait TakeRow {
+    fn detail(&self) -> Detail;
+    fn take<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
+
+    /// Takes the rows that a sample consists of.
+    fn take_sample(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        match sample {
+            Sample::Begin(law) | Sample::Law(law) => self.take(now, law),
+            Sample::Switching(command, _) => self.take(now, command),
+            Sample::Window(mean) => self.take(now, mean),
+            Sample::Adaptation(step) => self.take(now, step),
+            Sample::Motion(motion) => {
+                self.take(now, &motion.attitude)?;
+                self.take(now, &motion.rate)?;
+                self.take(now, &motion.modes)?;
+                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))
+            }
+        }
+    }
+}

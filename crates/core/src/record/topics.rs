@@ -1,0 +1,186 @@
+//! The topics of a log: what each row holds, with its units.
+
+use super::row::{label_cells, rows};
+use crate::adaptation::Decision;
+use crate::label::{Labels, labels};
+use crate::law::Phase;
+use crate::time::Instant;
+
+labels! {
+    /// Why the law was asked.
+    Trigger {
+        /// A guard of the measured angle tripped.
+        Guard = "guard",
+        /// The time of the hold had come.
+        Timeout = "timeout",
+    }
+}
+
+label_cells!(Phase, Trigger, Decision);
+
+rows! {
+    /// A switching: the law changed its state, and from this instant on commands this torque.
+    Command = "/command" {
+        /// Time since the start, rounded to a double (s).
+        time_s: f64,
+        /// Whole seconds of the exact time.
+        time_whole_s: u64,
+        /// Femtoseconds of the exact time past the whole second.
+        time_fs: u64,
+        /// State of the law that begins.
+        state: Phase,
+        /// What made the law decide.
+        cause: Trigger,
+        /// Torque from now on (N m; rad/s² on a body without inertia).
+        torque_nm: f64,
+        /// Angle, elastic part included (rad).
+        angle_rad: f64,
+        /// Rate, elastic part included (rad/s).
+        rate_rad_s: f64,
+        /// The law's tunable parameter (k_t of the relay law).
+        gain: f64,
+    }
+    /// What the law does: at the start, and once a second in a full log.
+    Law = "/law" {
+        /// State of the law.
+        state: Phase,
+        /// Torque (N m; rad/s² on a body without inertia).
+        torque_nm: f64,
+        /// The law's tunable parameter (k_t of the relay law).
+        gain: f64,
+    }
+    /// Angles.
+    Attitude = "/attitude" {
+        /// Angle, elastic part included (rad).
+        angle_rad: f64,
+        /// Angle of the body as if it were rigid (rad).
+        rigid_rad: f64,
+        /// Angle as the sensor gives it (rad).
+        measured_rad: f64,
+        /// Angle, elastic part included (degrees).
+        angle_deg: f64,
+    }
+    /// Rates.
+    Rate = "/rate" {
+        /// Rate, elastic part included (rad/s).
+        rate_rad_s: f64,
+        /// Rate of the body as if it were rigid (rad/s).
+        rigid_rad_s: f64,
+    }
+    /// One elastic mode.
+    ModeMotion {
+        /// Displacement (rad).
+        displacement_rad: f64,
+        /// Rate (rad/s).
+        rate_rad_s: f64,
+    }
+    /// The elastic modes, in the order of the scenario.
+    Modes = "/modes" {
+        /// Sum of all displacements (rad).
+        elastic_rad: f64,
+        /// Each mode.
+        modes: Vec<ModeMotion>,
+    }
+    /// The envelope of one elastic mode.
+    ModeEnvelope {
+        /// Envelope (rad).
+        envelope_rad: f64,
+    }
+    /// The envelope of the elastic modes, as the observer gives it.
+    Envelope = "/envelope" {
+        /// Total envelope: the sum over the modes (rad).
+        envelope_rad: f64,
+        /// Each mode's.
+        modes: Vec<ModeEnvelope>,
+    }
+    /// The mean envelope over the window that ended.
+    WindowMean = "/envelope_mean" {
+        /// Number of the window, from 0.
+        window: u64,
+        /// When the window began (s).
+        from_s: f64,
+        /// When it ended (s).
+        to_s: f64,
+        /// Mean of the total envelope over the window (rad).
+        mean_rad: f64,
+        /// The law's tunable parameter during the window (k_t of the relay law).
+        gain: f64,
+    }
+    /// A step of the adaptation, taken at the end of a window.
+    Adaptation = "/adaptation" {
+        /// Number of the window that ended, from 0.
+        window: u64,
+        /// What was decided.
+        decision: Decision,
+        /// Relative change of the mean envelope since the window before.
+        change: f64,
+        /// Random part of the largest move, in [-1, 1].
+        draw: f64,
+        /// The gain from now on.
+        gain: f64,
+        /// Consecutive settled windows.
+        settled: u64,
+    }
+    /// One metric, or one element of it.
+    Metric {
+        /// Name, as `flexsc schema --metrics` explains it.
+        name: String,
+        /// Unit.
+        unit: String,
+        /// Position in a metric that is a list, else 0.
+        index: u64,
+        /// Value; NaN where there is none.
+        value: f64,
+        /// Value of a metric that is a word.
+        text: String,
+    }
+    /// The metrics of the run, once at its end.
+    Metrics = "/metrics" {
+        /// Each metric.
+        metrics: Vec<Metric>,
+    }
+    /// What was simulated, once at the start.
+    Params = "/params" {
+        /// Name of the scenario.
+        scenario: String,
+        /// Seed of the scenario.
+        seed: u64,
+        /// Number of the run.
+        run: u64,
+        /// The scenario with all defaults, as TOML.
+        toml: String,
+    }
+}
+
+/// The position of a topic in [`TOPICS`], found when the program is compiled.
+pub const fn index_of(name: &str) -> usize {
+    let mut index = 0;
+    while !same(TOPICS[index].name.as_bytes(), name.as_bytes()) {
+        index += 1;
+    }
+    index
+}
+
+const fn same(a: &[u8], b: &[u8]) -> bool {
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
+}
+
+impl Command {
+    /// The three time fields of an instant.
+    pub fn times(now: Instant) -> (f64, u64, u64) {
+        let (whole, femtoseconds) = now.parts();
+        (now.seconds(), whole, femtoseconds)
+    }
+}
+
+/// The label of an enumeration's value, by its identifier in the schema of a log.
+pub fn label_of(identifier: &str) -> String {
+    let all = [&Phase::LABELS, &Trigger::LABELS, &Decision::LABELS];
+    let mut labels = all.iter().flat_map(|of| of.labels);
+    let label = labels.find(|label| Labels::identifier(label) == identifier);
+    label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())
+}

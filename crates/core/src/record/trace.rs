@@ -1,0 +1,64 @@
+//! The trace: a run's rows in memory, as columns.
+
+use super::row::TopicRow;
+use super::topics::index_of;
+use super::{Column, Columns, Detail, Record, RecordError, Sample, TOPICS, TakeRow};
+use crate::time::Instant;
+
+/// Columns of every topic, each with the time of its rows.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    detail: Detail,
+    /// In the order of [`TOPICS`].
+    topics: Vec<(Vec<f64>, Columns)>,
+}
+
+impl Trace {
+    /// A trace of this detail.
+    pub fn new(detail: Detail) -> Self {
+        let topics = TOPICS.iter().map(|t| (Vec::new(), Columns::new(t.fields))).collect();
+        Self { detail, topics }
+    }
+
+    /// The columns of each topic that has rows, by its name without the slash. The first column is `time_s`.
+    pub fn into_columns(self) -> impl Iterator<Item = (&'static str, Columns)> {
+        TOPICS.iter().zip(self.topics).filter(|(_, (times, _))| !times.is_empty()).map(
+            |(topic, (times, mut columns))| {
+                if columns.get("time_s").is_none() {
+                    columns.columns.insert(0, ("time_s".to_owned(), Column::Numbers(times)));
+                }
+                (topic.name.trim_start_matches('/'), columns)
+            },
+        )
+    }
+
+    /// The columns of a topic by its name with the slash.
+    pub fn topic(&self, name: &str) -> Option<&Columns> {
+        let index = TOPICS.iter().position(|t| t.name == name)?;
+        Some(&self.topics[index].1)
+    }
+}
+
+impl TakeRow for Trace {
+    fn detail(&self) -> Detail {
+        self.detail
+    }
+
+    fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
+        let index = const { index_of(R::TOPIC.name) };
+        let (times, columns) = &mut self.topics[index];
+        times.push(now.seconds());
+        columns.push(row);
+        Ok(())
+    }
+}
+
+impl Record for Trace {
+    fn dense(&self) -> bool {
+        self.detail() == Detail::Full
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        self.take_sample(now, sample)
+    }
+}

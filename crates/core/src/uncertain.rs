@@ -1,0 +1,78 @@
+//! Uncertain keys: what a Monte Carlo campaign draws anew for each run.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use toml::Value;
+
+use crate::quantity::{Finite, Positive};
+use crate::random::Stream;
+
+/// The distribution of one key of the scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Distribution {
+    /// Uniform between two values.
+    Uniform([Finite; 2]),
+    /// Uniform in the logarithm between two positive values.
+    LogUniform([Positive; 2]),
+    /// Normal with this mean and standard deviation.
+    Normal(Normal),
+    /// The scenario's own value, times a factor uniform on 1 - this to 1 + this.
+    RelativeUniform(Positive),
+    /// The scenario's own value, times a normal factor of mean 1 and this standard deviation.
+    RelativeNormal(Positive),
+    /// One of these values, each as likely.
+    Choice(Vec<Finite>),
+}
+
+/// A normal distribution.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Normal {
+    /// Mean.
+    pub mean: Finite,
+    /// Standard deviation.
+    pub sd: Positive,
+}
+
+impl Distribution {
+    /// What is wrong with the distribution of a key that has this value, if anything is.
+    pub fn problem(&self, nominal: Option<&Value>) -> Option<String> {
+        match self {
+            Self::Uniform([low, high]) if low >= high => {
+                Some(format!("needs [low, high] in this order, got [{}, {}]", low.get(), high.get()))
+            }
+            Self::LogUniform([low, high]) if low >= high => {
+                Some(format!("needs [low, high] in this order, got [{}, {}]", low.get(), high.get()))
+            }
+            Self::Choice(values) if values.is_empty() => {
+                Some("needs at least one value to choose from".to_owned())
+            }
+            _ => match nominal {
+                Some(Value::Integer(_) | Value::Float(_)) => None,
+                Some(other) => Some(format!("varies a number, but that key holds a {}", other.type_str())),
+                None => Some("names no key of this scenario".to_owned()),
+            },
+        }
+    }
+
+    /// Draws a value for a key that has this one in the scenario.
+    pub fn draw(&self, nominal: &Value, stream: &mut Stream) -> Value {
+        let own = nominal.as_float().or(nominal.as_integer().map(|i| i as f64)).unwrap_or(f64::NAN);
+        let between = |low: f64, high: f64, stream: &mut Stream| low + (high - low) * stream.uniform();
+        let drawn = match self {
+            Self::Uniform([low, high]) => between(low.get(), high.get(), stream),
+            Self::LogUniform([low, high]) => {
+                libm::exp(between(libm::log(low.get()), libm::log(high.get()), stream))
+            }
+            Self::Normal(Normal { mean, sd }) => mean.get() + sd.get() * stream.normal(),
+            Self::RelativeUniform(part) => own * between(1.0 - part.get(), 1.0 + part.get(), stream),
+            Self::RelativeNormal(sd) => own * (1.0 + sd.get() * stream.normal()),
+            Self::Choice(values) => values[stream.index(values.len())].get(),
+        };
+        match nominal {
+            Value::Integer(_) => Value::Integer(libm::round(drawn) as i64),
+            _ => Value::Float(drawn),
+        }
+    }
+}

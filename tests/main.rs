@@ -1,0 +1,3 @@
+//! All integration tests of flexsc, one binary.
+
+mod relay;
