@@ -1,1 +1,100 @@
-//! x
+//! The command `flexsc`: one file a verb. Text goes to stderr, data to stdout.
+
+mod campaign;
+mod check;
+mod cycle;
+mod export;
+mod failure;
+mod log;
+mod modes;
+mod schema;
+mod simulate;
+mod stop;
+mod sweep;
+
+use std::ffi::OsString;
+use std::io::Write;
+
+use clap::{CommandFactory, Parser, Subcommand};
+
+use failure::Failure;
+
+/// Attitude control of flexible spacecraft, simulated exactly, fast and reproducibly.
+#[derive(Parser)]
+#[command(name = "flexsc", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Simulate scenarios: once each, or many times over their uncertain keys
+    Simulate(simulate::Args),
+    /// Simulate a scenario once for each value of a key
+    Sweep(sweep::Args),
+    /// Tell the elastic modes of a scenario's body
+    Modes(modes::Args),
+    /// Tell the limit cycles of a scenario's relay law on a rigid body, and its resonances
+    Cycle(cycle::Args),
+    /// Print a topic of a log as a table
+    Export(export::Args),
+    /// Look into logs, and save torn ones
+    Log(log::Args),
+    /// Check scenario files
+    Check(check::Args),
+    /// Print the JSON Schema of scenarios, for editors, or what the metrics mean
+    Schema(schema::Args),
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
+
+/// Runs the command with these arguments, the program's name first, and tells its exit code: 0 done, 1 a run
+/// failed or a file could not be written, 2 bad input, 130 interrupted.
+pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // What cannot be printed has nobody to read it.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(2);
+        }
+    };
+    let done = match cli.verb {
+        Verb::Simulate(args) => simulate::run(&args),
+        Verb::Sweep(args) => sweep::run(&args),
+        Verb::Modes(args) => modes::run(&args),
+        Verb::Cycle(args) => cycle::run(&args),
+        Verb::Export(args) => export::run(&args),
+        Verb::Log(args) => log::run(&args),
+        Verb::Check(args) => check::run(&args),
+        Verb::Schema(args) => schema::run(&args),
+        Verb::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "flexsc", &mut script);
+            print(&script)
+        }
+    };
+    match done {
+        Ok(()) => 0,
+        Err(failure) => failure.tell(),
+    }
+}
+
+/// Writes data to stdout.
+fn print(data: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(data).and_then(|()| out.flush()).map_err(Failure::Stdout)
+}
+
+/// Writes a line of text to stderr.
+macro_rules! say {
+    ($($text:tt)*) => {
+        // Nobody may be listening; what matters goes to stdout and to files.
+        { let _ = writeln!(std::io::stderr().lock(), $($text)*); }
+    };
+}
+pub(crate) use say;

@@ -1,5 +1,6 @@
 //! Campaigns: many runs of one scenario, in parallel, told in order.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -109,7 +110,7 @@ impl Campaign {
     pub fn run(&self, number: u64) -> Result<Run, ScenarioError> {
         let drawn = self.draw(number);
         if drawn.is_empty() {
-            let scenario = Scenario { uncertain: Default::default(), ..self.scenario.clone() };
+            let scenario = Scenario { uncertain: BTreeMap::new(), ..self.scenario.clone() };
             return Ok(Run { number, scenario, drawn });
         }
         let keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();

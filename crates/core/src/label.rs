@@ -8,7 +8,7 @@ pub struct Labels {
     /// What each value means.
     pub docs: &'static [&'static str],
     /// The label of each value.
-    pub labels: &'static [&'static str],
+    pub values: &'static [&'static str],
 }
 
 impl Labels {
@@ -32,12 +32,12 @@ macro_rules! labels {
             pub const LABELS: $crate::label::Labels = $crate::label::Labels {
                 name: stringify!($name),
                 docs: &[$($value_doc),+],
-                labels: &[$($label),+],
+                values: &[$($label),+],
             };
 
             /// The label of the value.
             pub const fn label(self) -> &'static str {
-                Self::LABELS.labels[self as usize]
+                Self::LABELS.values[self as usize]
             }
         }
     };

@@ -27,7 +27,7 @@
 //! let mut trace = Trace::new(Detail::Events);
 //! Simulation::new(&scenario, 0).run(&mut trace)?;
 //! let switchings = trace.topic("/command").expect("a topic of every log");
-//! assert_eq!(switchings.len(), 13);
+//! assert_eq!(switchings.len(), 15); // six in each cycle of 44 s
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -50,6 +50,7 @@ pub mod record;
 pub mod scenario;
 pub mod sensor;
 mod sim;
+pub mod statistics;
 pub mod time;
 pub mod uncertain;
 

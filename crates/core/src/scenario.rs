@@ -136,6 +136,11 @@ impl Scenario {
         self.epoch.as_ref().and_then(nanoseconds_since_1970).unwrap_or(0)
     }
 
+    /// The JSON Schema of scenarios.
+    pub fn schema() -> serde_json::Value {
+        schemars::schema_for!(Scenario).to_value()
+    }
+
     /// A viewer layout for logs of this kind of scenario.
     pub fn layout(&self) -> Option<&'static str> {
         let Law::Relay(_) = &self.law;

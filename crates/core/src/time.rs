@@ -29,6 +29,12 @@ fn seconds(femtoseconds: i128) -> f64 {
     }
 }
 
+/// Whole seconds and what is left, so that long spans keep their ticks.
+fn split(seconds: f64) -> (f64, f64) {
+    let whole = libm::trunc(seconds);
+    (whole, seconds - whole)
+}
+
 impl Instant {
     /// The start of every run.
     pub const START: Self = Self(0);
@@ -62,15 +68,16 @@ impl Span {
 
     /// The span nearest to a number of seconds.
     pub fn from_seconds(seconds: f64) -> Self {
-        let ticks = libm::round(seconds * FEMTOSECONDS_F64);
-        if ticks.abs() < 9e18 { Self(i128::from(ticks as i64)) } else { Self(ticks as i128) }
+        let (whole, part) = if seconds.abs() < 9e3 { (0.0, seconds) } else { split(seconds) };
+        let ticks = libm::round(part * FEMTOSECONDS_F64) as i64;
+        Self(whole as i128 * FEMTOSECONDS + i128::from(ticks))
     }
 
     /// The longest span that is not above a number of seconds.
     pub fn from_seconds_down(seconds: f64) -> Self {
-        let ticks = seconds * FEMTOSECONDS_F64;
         // A cast truncates, which for a positive number rounds down.
-        if ticks < 9e18 { Self(i128::from(ticks as i64)) } else { Self(ticks as i128) }
+        let (whole, part) = if seconds < 9e3 { (0.0, seconds) } else { split(seconds) };
+        Self(whole as i128 * FEMTOSECONDS + i128::from((part * FEMTOSECONDS_F64) as i64))
     }
 
     /// The span in seconds, rounded to the nearest double.

@@ -17,8 +17,10 @@ fn principal(phi: f64, complement: f64) -> f64 {
     let (sin, cos) = libm::sincos(phi);
     let m = 1.0 - complement;
     let (c2, s2) = (cos * cos, sin * sin);
-    let (rf, rd) = carlson(c2, c2 + complement * s2, 1.0);
-    sin * (rf - m * s2 * rd / 3.0)
+    let y = c2 + complement * s2;
+    let (rf, rd) = carlson(c2, 1.0, y);
+    // DLMF 19.25.10: no two terms of different sign, so nothing cancels near m = 1.
+    sin * (complement * (rf + m * s2 * rd / 3.0) + m * cos / libm::sqrt(y))
 }
 
 /// Carlson's R_F and R_D of the same arguments. At most one of x, y is zero.
@@ -78,7 +80,7 @@ mod tests {
         (0.3, 0.5, 0.297_775_371_953_160_21),
         (1.2, 0.9, 1.178_119_934_598_459_41),
         (-1.5, 0.01, -1.008_366_245_703_958_26),
-        (1.570_796_326_794_896_6, 1e-12, 1.000_000_000_007_350_9),
+        (FRAC_PI_2, 1e-12, 1.000_000_000_007_350_9),
         (7.0, 0.3, 5.642_682_813_850_744_22),
         (-40.0, 1e-6, -25.254_988_053_818_972_3),
         (2.0, 0.0, 1.090_702_573_174_318_3),

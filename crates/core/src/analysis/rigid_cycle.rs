@@ -139,25 +139,27 @@ pub fn cycles(law: &Relay, body: &Body, k_t: f64) -> Vec<RigidCycle> {
     candidates.iter().filter_map(|&sides| rigid.cycle(sides, k_t)).collect()
 }
 
-/// The gains between `low` and `high` at which an odd harmonic of the two-sided cycle meets a mode, by mode and
-/// harmonic.
-pub fn resonances(law: &Relay, body: &Body, low: f64, high: f64) -> Vec<Resonance> {
+/// The gains at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The even harmonics
+/// vanish by symmetry.
+pub fn resonances(law: &Relay, body: &Body) -> Vec<Resonance> {
+    /// Between neighbours on this grid of gains the period is monotonic.
+    const GRID: u32 = 4096;
     let rigid = Rigid::new(law, body.inertia());
     let period = |k_t: f64| rigid.cycle(Sides::Two, k_t).map(|cycle| cycle.period_s);
-    let (Some(shortest), Some(longest)) = (period(low), period(high)) else { return Vec::new() };
     let mut found = Vec::new();
     for (mode, w) in body.modes().iter().map(|mode: &Mode| mode.frequency.get()).enumerate() {
         let turns = |period: f64| w * period / (2.0 * std::f64::consts::PI);
-        let first = libm::ceil(turns(shortest)) as u32;
-        let last = libm::floor(turns(longest)) as u32;
-        for harmonic in (first..=last).filter(|harmonic| harmonic % 2 == 1) {
-            let target = 2.0 * std::f64::consts::PI * f64::from(harmonic) / w;
-            found.push(Resonance {
-                mode,
-                harmonic,
-                period_s: target,
-                k_t: bisect(low, high, |k_t| period(k_t).unwrap_or(f64::INFINITY) - target),
-            });
+        for cell in 0..GRID {
+            let [low, high] = [cell, cell + 1].map(|edge| f64::from(edge) / f64::from(GRID));
+            let (Some(from), Some(to)) = (period(low).map(turns), period(high).map(turns)) else { continue };
+            let between = (libm::ceil(from.min(to)) as u32)..=(libm::floor(from.max(to)) as u32);
+            for harmonic in between.filter(|harmonic| harmonic % 2 == 1) {
+                let rising = if to > from { 1.0 } else { -1.0 };
+                let short = |k_t| rising * (period(k_t).map_or(from, turns) - f64::from(harmonic));
+                let k_t = bisect(low, high, short);
+                let period_s = 2.0 * std::f64::consts::PI * f64::from(harmonic) / w;
+                found.push(Resonance { mode, harmonic, period_s, k_t });
+            }
         }
     }
     found

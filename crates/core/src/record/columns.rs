@@ -67,7 +67,7 @@ impl Column {
             Kind::Number => Self::Numbers(Vec::new()),
             Kind::Count => Self::Counts(Vec::new()),
             Kind::Label(labels) => {
-                let owned = labels.labels.iter().map(|&l| l.to_owned()).collect();
+                let owned = labels.values.iter().map(|&l| l.to_owned()).collect();
                 Self::Labels(Vec::new(), owned)
             }
             Kind::Text => Self::Texts(Vec::new()),

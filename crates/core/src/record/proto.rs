@@ -63,7 +63,7 @@ fn enumeration_file(labels: &Labels) -> FileDescriptorProto {
     FileDescriptorProto {
         enum_type: vec![EnumDescriptorProto {
             name: Some(labels.name.to_owned()),
-            value: labels.labels.iter().enumerate().map(value).collect(),
+            value: labels.values.iter().enumerate().map(value).collect(),
             ..EnumDescriptorProto::default()
         }],
         source_code_info: Some(SourceCodeInfo {

@@ -180,7 +180,7 @@ impl Command {
 /// The label of an enumeration's value, by its identifier in the schema of a log.
 pub fn label_of(identifier: &str) -> String {
     let all = [&Phase::LABELS, &Trigger::LABELS, &Decision::LABELS];
-    let mut labels = all.iter().flat_map(|of| of.labels);
+    let mut labels = all.iter().flat_map(|of| of.values);
     let label = labels.find(|label| Labels::identifier(label) == identifier);
     label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())
 }

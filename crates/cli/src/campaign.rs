@@ -1,0 +1,293 @@
+//! Running a campaign: its table `runs.csv`, its statistics, its progress.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::Instant as WallInstant;
+
+use flexsc_core::SimulationError;
+use flexsc_core::campaign::{Campaign, Outcome, Run, RunError};
+use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::record::RecordError;
+use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::{print, say, stop};
+
+/// What of a campaign is run, and what is made of it.
+pub struct Job<'a> {
+    /// The runs.
+    pub range: Range<u64>,
+    /// Whether they are a part of a campaign: its tables are then named so.
+    pub part: bool,
+    /// The directory of the tables, if any are wanted.
+    pub table: Option<&'a Path>,
+    /// What the tables' names begin with, where several campaigns share a directory.
+    pub prefix: Option<&'a str>,
+    /// Threads.
+    pub jobs: Option<u16>,
+    /// Whether each run is printed as JSON.
+    pub json: bool,
+}
+
+/// Runs a campaign; `work` simulates one run.
+pub fn run(
+    study: &Campaign,
+    job: &Job<'_>,
+    work: impl Fn(&Run) -> Result<Metrics, RunError> + Sync + Send,
+) -> Result<(), Failure> {
+    let began = WallInstant::now();
+    let threads = usize::from(job.jobs.unwrap_or(0));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::Arguments(format!("--jobs: {error}")))?;
+    let runs = job.range.end - job.range.start;
+    let bar = stop::bar(runs, "runs");
+    let mut table = job.table.map(|dir| Table::create(&dir.join(job.file("runs")))).transpose()?;
+    let mut telling = Telling { study, json: job.json, table: table.as_mut(), all: Vec::new(), failed: None };
+    let done = pool.install(|| {
+        study.each(job.range.clone(), work, |outcome| {
+            bar.inc(1);
+            telling.tell(outcome)
+        })
+    });
+    bar.finish_and_clear();
+    let Telling { all, failed, .. } = telling;
+    if let Err(failure) = done {
+        if let Some(table) = table {
+            table.abandon(&failure);
+        }
+        return Err(failure);
+    }
+    let table = table.map(Table::finish).transpose()?;
+    let statistics = statistics(&all);
+    if let Some(dir) = job.table {
+        write_statistics(&dir.join(job.file("statistics")), &statistics)?;
+    }
+    if !job.json {
+        let name = &study.scenario().name;
+        say!("{name}   {runs} runs, {:.2} s", began.elapsed().as_secs_f64());
+        tell_statistics(&statistics, all.len());
+        if let Some(path) = table {
+            say!("  table          {}", path.display());
+        }
+    }
+    match failed {
+        None => Ok(()),
+        Some((failed, number, why)) => Err(Failure::Runs { failed, runs, number, why }),
+    }
+}
+
+impl Job<'_> {
+    fn file(&self, kind: &str) -> String {
+        let prefix = self.prefix.map_or(String::new(), |name| format!("{name}-"));
+        let part =
+            if self.part { format!("-{}-{}", self.range.start, self.range.end) } else { String::new() };
+        format!("{prefix}{kind}{part}.csv")
+    }
+}
+
+/// What is told of each run, in order.
+struct Telling<'a> {
+    study: &'a Campaign,
+    json: bool,
+    table: Option<&'a mut Table>,
+    all: Vec<Metrics>,
+    /// How many runs failed, and the first of them.
+    failed: Option<(u64, u64, String)>,
+}
+
+impl Telling<'_> {
+    fn tell(&mut self, outcome: Outcome) -> Result<(), Failure> {
+        if let Err(RunError::Simulation(SimulationError::Record(error))) = outcome.metrics {
+            return Err(match error {
+                RecordError::Io(source) => Failure::Write {
+                    path: PathBuf::from(format!("the log of run {}", outcome.number)),
+                    source,
+                },
+                RecordError::Interrupted => Failure::Interrupted(format!(" at run {}", outcome.number)),
+            });
+        }
+        if let Some(table) = &mut self.table {
+            table.row(self.study, &outcome)?;
+        }
+        if self.json {
+            print(&line(self.study, &outcome))?;
+        }
+        match outcome.metrics {
+            Ok(metrics) => self.all.push(metrics),
+            Err(error) => {
+                let first = self.failed.take();
+                let (failed, number, why) = first.unwrap_or_else(|| (0, outcome.number, error.to_string()));
+                self.failed = Some((failed + 1, number, why));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The line of a run for machines.
+fn line(study: &Campaign, outcome: &Outcome) -> Vec<u8> {
+    let drawn: serde_json::Map<_, _> =
+        study.keys().zip(&outcome.drawn).map(|(key, value)| (key.to_owned(), json!(value))).collect();
+    let mut object = json!({
+        "scenario": study.scenario().name,
+        "run": outcome.number,
+        "seed": study.scenario().seed,
+        "drawn": drawn,
+    });
+    match &outcome.metrics {
+        Ok(metrics) => object["metrics"] = metrics.to_json(),
+        Err(error) => object["error"] = json!(error.to_string()),
+    }
+    format!("{object}\n").into_bytes()
+}
+
+/// The table of a campaign, under a `.partial` name until it is finished.
+struct Table {
+    path: PathBuf,
+    partial: PathBuf,
+    writer: csv::Writer<BufWriter<File>>,
+    /// Names of the metrics, known with the first run that has any; the rows before it wait.
+    metrics: Option<Vec<&'static str>>,
+    waiting: Vec<Vec<String>>,
+}
+
+impl Table {
+    fn create(path: &Path) -> Result<Self, Failure> {
+        let partial = PathBuf::from(format!("{}.partial", path.display()));
+        let file = File::create(&partial).map_err(Failure::write(path))?;
+        let writer = csv::Writer::from_writer(BufWriter::new(file));
+        Ok(Self { path: path.to_owned(), partial, writer, metrics: None, waiting: Vec::new() })
+    }
+
+    fn row(&mut self, study: &Campaign, outcome: &Outcome) -> Result<(), Failure> {
+        let mut cells = vec![outcome.number.to_string(), study.scenario().seed.to_string()];
+        cells.extend(outcome.drawn.iter().map(ToString::to_string));
+        match &outcome.metrics {
+            Err(error) => {
+                let error = error.to_string();
+                if let Some(count) = self.metrics.as_ref().map(Vec::len) {
+                    cells.extend(std::iter::repeat_n(String::new(), count));
+                    cells.push(error);
+                    return self.write(cells);
+                }
+                cells.push(error);
+                self.waiting.push(cells);
+                Ok(())
+            }
+            Ok(metrics) => {
+                if self.metrics.is_none() {
+                    self.header(study, metrics)?;
+                }
+                cells.extend(metrics.0.iter().map(|(_, value)| cell(value)));
+                cells.push(String::new());
+                self.write(cells)
+            }
+        }
+    }
+
+    fn header(&mut self, study: &Campaign, metrics: &Metrics) -> Result<(), Failure> {
+        let names: Vec<&'static str> = metrics.0.iter().map(|(meaning, _)| meaning.name).collect();
+        let mut header = vec!["run".to_owned(), "seed".to_owned()];
+        header.extend(study.keys().map(str::to_owned));
+        header.extend(names.iter().map(|&name| name.to_owned()));
+        header.push("error".to_owned());
+        self.write(header)?;
+        for mut cells in std::mem::take(&mut self.waiting) {
+            let error = cells.pop().unwrap_or_default();
+            cells.extend(std::iter::repeat_n(String::new(), names.len()));
+            cells.push(error);
+            self.write(cells)?;
+        }
+        self.metrics = Some(names);
+        Ok(())
+    }
+
+    fn write(&mut self, cells: Vec<String>) -> Result<(), Failure> {
+        let written = self.writer.write_record(cells).map_err(std::io::Error::from);
+        written.map_err(Failure::write(&self.path))
+    }
+
+    fn finish(mut self) -> Result<PathBuf, Failure> {
+        // All runs failed: the rows are all there is.
+        let waiting = std::mem::take(&mut self.waiting);
+        for cells in waiting {
+            self.write(cells)?;
+        }
+        let Self { path, partial, mut writer, .. } = self;
+        writer
+            .flush()
+            .and_then(|()| fs::rename(&partial, &path))
+            .inspect_err(|_| discard(&partial))
+            .map_err(Failure::write(&path))?;
+        Ok(path)
+    }
+
+    /// A stopped campaign keeps the rows that it has; one that cannot be written keeps nothing.
+    fn abandon(self, why: &Failure) {
+        if matches!(why, Failure::Interrupted(_)) {
+            let _ = self.finish();
+        } else {
+            discard(&self.partial);
+        }
+    }
+}
+
+/// Removes a file that is of no use.
+fn discard(path: &Path) {
+    let _ = fs::remove_file(path);
+}
+
+/// A metric as a cell: a list as JSON, and what is not a number as nothing.
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Number(number) if number.is_nan() => String::new(),
+        Value::Number(number) => format!("{number:e}"),
+        Value::Word(word) => (*word).to_owned(),
+        Value::Count(_) | Value::Numbers(_) => value.to_json().to_string(),
+    }
+}
+
+fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failure> {
+    let write = || -> Result<(), csv::Error> {
+        let mut writer = csv::Writer::from_path(path)?;
+        let mut header: Vec<String> = ["metric", "unit", "runs", "mean", "sd"].map(str::to_owned).into();
+        header.extend(QUANTILES.map(|q| format!("q{:02.0}", 100.0 * q)));
+        writer.write_record(header)?;
+        for s in statistics {
+            let mut cells = vec![s.name.to_owned(), s.unit.to_owned(), s.runs.to_string()];
+            let numbers = [s.mean, s.sd].into_iter().chain(s.quantiles);
+            cells.extend(numbers.map(|n| if n.is_nan() { String::new() } else { format!("{n:e}") }));
+            writer.write_record(cells)?;
+        }
+        writer.flush()?;
+        Ok(())
+    };
+    write().map_err(|error| Failure::write(path)(error.into()))
+}
+
+fn tell_statistics(statistics: &[Statistics], runs: usize) {
+    if runs == 0 {
+        return;
+    }
+    let quantiles = QUANTILES.map(|q| format!("{:>11}", format!("{:.0} %", 100.0 * q))).concat();
+    say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", "metric", "runs", "mean", "sd");
+    for s in statistics {
+        let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
+        say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
+    }
+}
+
+/// A number in at most ten characters.
+fn short(number: f64) -> String {
+    if number.is_nan() {
+        "-".to_owned()
+    } else if number == 0.0 || (1e-3..1e6).contains(&number.abs()) {
+        let digits = if number.abs() >= 1e3 { 1 } else { 4 };
+        format!("{number:.digits$}")
+    } else {
+        format!("{number:.3e}")
+    }
+}

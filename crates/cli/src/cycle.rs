@@ -1,0 +1,70 @@
+//! `flexsc cycle`: limit cycles on a rigid body in closed form, and their resonances with the modes.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
+use flexsc_core::law::{Law, Sides};
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::{print, say, simulate};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scenario file
+    scenario: PathBuf,
+    /// Set a key of the scenario, such as law.relay.k_t=0.34
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let scenario = simulate::load(&args.scenario, &args.set, None)?;
+    let Law::Relay(law) = &scenario.law;
+    let k_t = law.k_t.get();
+    let cycles = cycles(law, &scenario.body, k_t);
+    let resonances = resonances(law, &scenario.body);
+    if args.json {
+        let object = json!({
+            "scenario": scenario.name,
+            "k_t": k_t,
+            "cycles": cycles,
+            "resonances": resonances,
+        });
+        return print(format!("{object}\n").as_bytes());
+    }
+    say!("{}   k_t = {k_t}, modes left out", scenario.name);
+    if cycles.is_empty() {
+        say!("  no limit cycle exists");
+    }
+    for cycle in &cycles {
+        let kind = if cycle.sides == Sides::Two { "two-sided" } else { "one-sided" };
+        let stability = if cycle.stable { "stable" } else { "unstable" };
+        say!("  {kind} cycle, {stability}: multiplier {:.4}", cycle.multiplier);
+        say!("    period         {:.9} s", cycle.period_s);
+        say!("    push           {:.9} s", cycle.push_s);
+        say!("    brake          {:.9} s", cycle.brake_s);
+        say!("    coast          {:.9} s", cycle.coast_s);
+        say!("    entry rate     {:.9e} rad/s", cycle.entry_rate_rad_s);
+        say!("    angle          {:.6e} to {:.6e} rad", cycle.angle_min_rad, cycle.angle_max_rad);
+        say!("    duty           {:.4} under strong torque", cycle.duty);
+        say!("    impulse        {:.6e} N m s per hour", cycle.impulse_per_hour_nm_s);
+    }
+    if !resonances.is_empty() {
+        say!("  resonances of the two-sided cycle:");
+    }
+    for r in &resonances {
+        say!(
+            "    mode {}, harmonic {:>2}: period {:.4} s at k_t = {:.6}",
+            r.mode,
+            r.harmonic,
+            r.period_s,
+            r.k_t
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,65 @@
+//! What can go wrong, and the exit code that says so.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use flexsc_core::record::LogError;
+use flexsc_core::{ScenarioError, SimulationError};
+use thiserror::Error;
+
+use crate::say;
+
+/// Why the command did not do what it was asked.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// A scenario is not accepted.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The arguments do not fit each other.
+    #[error("{0}")]
+    Arguments(String),
+    /// A log is not accepted.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// A run failed.
+    #[error("{name}: {source}")]
+    Run { name: String, source: SimulationError },
+    /// Some runs of a campaign failed.
+    #[error("{failed} of {runs} runs failed; the first: run {number}: {why}")]
+    Runs { failed: u64, runs: u64, number: u64, why: String },
+    /// A file could not be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write { path: PathBuf, source: io::Error },
+    /// A figure could not be drawn.
+    #[error("cannot draw {}: {why}", path.display())]
+    Draw { path: PathBuf, why: String },
+    /// Stdout is closed.
+    #[error("cannot write to stdout: {0}")]
+    Stdout(io::Error),
+    /// The user asked to stop.
+    #[error("interrupted{0}")]
+    Interrupted(String),
+}
+
+impl Failure {
+    /// A failure to write a file.
+    pub fn write(path: &Path) -> impl FnOnce(io::Error) -> Self + '_ {
+        move |source| Self::Write { path: path.to_owned(), source }
+    }
+
+    /// Says what went wrong, and returns the exit code.
+    pub fn tell(&self) -> u8 {
+        // A reader that has enough, such as `head`, is no failure.
+        if let Self::Stdout(error) = self
+            && error.kind() == io::ErrorKind::BrokenPipe
+        {
+            return 0;
+        }
+        say!("error: {self}");
+        match self {
+            Self::Scenario(_) | Self::Arguments(_) | Self::Log(_) => 2,
+            Self::Interrupted(_) => 130,
+            _ => 1,
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! `flexsc log`: what is in a log, and saving torn ones.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Subcommand;
+use flexsc_core::record::{Log, recover};
+
+use crate::failure::Failure;
+use crate::{print, say};
+
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Save what is whole in the log of a killed run
+    Recover {
+        /// The torn log, such as relay.mcap.partial
+        torn: PathBuf,
+        /// The log to write [default: the torn log's name with -recovered.mcap]
+        #[arg(short, long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+    /// Print the scenario that a log was made from, with all its defaults
+    Scenario {
+        /// The log
+        log: PathBuf,
+    },
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    match &args.verb {
+        Verb::Recover { torn, out } => {
+            let name = torn.display().to_string();
+            let stem = name.trim_end_matches(".partial").trim_end_matches(".mcap");
+            let whole = out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-recovered.mcap")));
+            if whole == *torn {
+                return Err(Failure::Arguments(format!("{name}: a log cannot be recovered into itself")));
+            }
+            let saved = recover(torn, &whole)?;
+            say!("{saved} messages saved in {}", whole.display());
+            Ok(())
+        }
+        Verb::Scenario { log } => print(Log::open(log)?.scenario().unwrap_or_default().as_bytes()),
+    }
+}

@@ -1,0 +1,25 @@
+//! `flexsc schema`: the form of scenarios for editors, and the meaning of metrics and topics.
+
+use flexsc_core::Scenario;
+use flexsc_core::metrics;
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::print;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// What the metrics mean, instead of the form of scenarios
+    #[arg(long)]
+    metrics: bool,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let document = if args.metrics {
+        let meaning = |m: &metrics::Meaning| json!({"name": m.name, "unit": m.unit, "doc": m.doc});
+        metrics::ALL.iter().map(meaning).collect()
+    } else {
+        Scenario::schema()
+    };
+    print(format!("{document:#}\n").as_bytes())
+}

@@ -1,0 +1,274 @@
+//! `flexsc simulate`: single runs with their logs, and campaigns.
+
+use std::collections::BTreeSet;
+use std::io::Write;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::Instant as WallInstant;
+
+use clap::ValueEnum;
+use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd};
+use flexsc_core::{Document, Scenario, SimulationError};
+use serde_json::json;
+
+use crate::campaign;
+use crate::failure::Failure;
+use crate::stop::{self, Progress, Stop};
+use crate::{print, say};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scenario files
+    #[arg(required = true, value_name = "SCENARIO")]
+    scenarios: Vec<PathBuf>,
+    /// Directory for logs and tables, made if it is not there [default: this one, for logs only]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Set a key of the scenario, such as law.relay.k_t=0.34
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Monte Carlo over the scenario's [uncertain] keys and seeds: N runs, or runs LO to HI - 1
+    #[arg(long, value_name = "N|LO:HI", value_parser = runs)]
+    runs: Option<Runs>,
+    /// Seed, instead of the scenario's
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// What logs hold [default: events; none in a campaign]
+    #[arg(long, value_name = "DETAIL")]
+    log: Option<LogDetail>,
+    /// Print one JSON object for each run on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// Which runs of a campaign, and whether it was given as a part.
+#[derive(Clone)]
+struct Runs {
+    range: Range<u64>,
+    part: bool,
+}
+
+/// What a log holds.
+#[derive(Copy, Clone, PartialEq, ValueEnum)]
+enum LogDetail {
+    /// No log
+    None,
+    /// All that changes: switchings, window means, adaptation
+    Events,
+    /// Also the motion at each period of the scenario's log, and at every switching
+    Full,
+}
+
+impl LogDetail {
+    fn detail(self) -> Option<Detail> {
+        match self {
+            Self::None => None,
+            Self::Events => Some(Detail::Events),
+            Self::Full => Some(Detail::Full),
+        }
+    }
+}
+
+fn runs(text: &str) -> Result<Runs, String> {
+    let number = |text: &str| {
+        text.parse::<u64>().map_err(|_| format!("`{text}` is not a number of runs; give N or LO:HI"))
+    };
+    let (range, part) = match text.split_once(':') {
+        Some((low, high)) => (number(low)?..number(high)?, true),
+        None => (0..number(text)?, false),
+    };
+    if range.is_empty() { Err("there is no run in it".to_owned()) } else { Ok(Runs { range, part }) }
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    // Every scenario is checked before anything is written.
+    let scenarios = args
+        .scenarios
+        .iter()
+        .map(|path| Ok((load(path, &args.set, args.seed)?, path.display().to_string())))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    let mut names = BTreeSet::new();
+    for (scenario, origin) in &scenarios {
+        if !names.insert(&scenario.name) {
+            let name = &scenario.name;
+            return Err(Failure::Arguments(format!(
+                "{origin}: another scenario is named `{name}` too, and their logs would have one name\n\n\
+                 hint: give it a `name`, or run them one by one"
+            )));
+        }
+    }
+    if let Some(out) = &args.out {
+        std::fs::create_dir_all(out).map_err(Failure::write(out))?;
+    }
+    stop::listen();
+    let several = scenarios.len() > 1;
+    for (scenario, origin) in scenarios {
+        let name = scenario.name.clone();
+        let study = Campaign::new(scenario, &origin, None)?;
+        match &args.runs {
+            None => single(&study, args)?,
+            Some(runs) => {
+                let default = LogDetail::None;
+                let job = campaign::Job {
+                    range: runs.range.clone(),
+                    part: runs.part,
+                    table: args.out.as_deref(),
+                    prefix: several.then_some(name.as_str()),
+                    jobs: args.jobs,
+                    json: args.json,
+                };
+                let detail = args.log.unwrap_or(default).detail();
+                let directory = args.out.as_deref().unwrap_or(Path::new(""));
+                campaign::run(&study, &job, |run| match detail {
+                    None => Ok(Campaign::simulate(run, Stop)?),
+                    Some(detail) => {
+                        let path = directory.join(format!("{}-{}.mcap", run.scenario.name, run.number));
+                        let (metrics, _) = logged(run, &path, detail, Stop)?;
+                        Ok(metrics)
+                    }
+                })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Reads a scenario file with some keys set.
+pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
+    let mut document = Document::load(path)?;
+    for text in set {
+        let Some((key, value)) = text.split_once('=') else {
+            return Err(Failure::Arguments(format!(
+                "--set {text}: not a KEY=VALUE, such as law.relay.k_t=0.34"
+            )));
+        };
+        document.set_text(key.trim(), value.trim())?;
+    }
+    let mut scenario = Scenario::from_document(&document)?;
+    scenario.seed = seed.unwrap_or(scenario.seed);
+    Ok(scenario)
+}
+
+/// Runs a scenario once, with its log.
+fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
+    let scenario = study.scenario().clone();
+    let name = scenario.name.clone();
+    let run = Run { number: 0, scenario, drawn: Vec::new() };
+    let path = args.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.mcap"));
+    let began = WallInstant::now();
+    let mut progress = Progress::new(run.scenario.duration);
+    let record = (Stop, &mut progress);
+    let result = match args.log.unwrap_or(LogDetail::Events).detail() {
+        None => Campaign::simulate(&run, record).map(|metrics| (metrics, None)),
+        Some(detail) => logged(&run, &path, detail, record).map(|(metrics, bytes)| (metrics, Some(bytes))),
+    };
+    progress.finish();
+    let took = began.elapsed().as_secs_f64();
+    let (metrics, bytes) = result.map_err(|source| match source {
+        SimulationError::Record(RecordError::Io(source)) => Failure::Write { path: path.clone(), source },
+        SimulationError::Record(RecordError::Interrupted) => {
+            Failure::Interrupted(interrupted(args.log, &path))
+        }
+        source => Failure::Run { name: name.clone(), source },
+    })?;
+    if args.json {
+        print(&line(&run, &metrics))?;
+    } else {
+        summary(&run.scenario, &metrics, took);
+        if let Some(bytes) = bytes {
+            say!("  log            {} ({:.0} kB)", path.display(), bytes as f64 / 1e3);
+        }
+    }
+    Ok(())
+}
+
+fn interrupted(log: Option<LogDetail>, path: &Path) -> String {
+    if log == Some(LogDetail::None) {
+        String::new()
+    } else {
+        format!("; {} holds the run up to there", path.display())
+    }
+}
+
+/// Simulates a run into a log file, and tells its size. An interrupted run leaves a finished log, a failed one
+/// too, and one that cannot be written none.
+fn logged(
+    run: &Run,
+    path: &Path,
+    detail: Detail,
+    record: impl flexsc_core::record::Record,
+) -> Result<(Metrics, u64), SimulationError> {
+    let mut log = LogFile::create(path, &Campaign::provenance(run), detail)?;
+    match Campaign::simulate(run, (&mut log, record)) {
+        Ok(metrics) => {
+            let bytes = log.finish(&metrics.to_row(), RunEnd::Complete)?;
+            Ok((metrics, bytes))
+        }
+        Err(SimulationError::Record(RecordError::Io(error))) => {
+            log.discard();
+            Err(RecordError::Io(error).into())
+        }
+        Err(error) => {
+            let interrupted = matches!(error, SimulationError::Record(RecordError::Interrupted));
+            let end = if interrupted { RunEnd::Interrupted } else { RunEnd::Failed };
+            log.finish(&Metrics::default().to_row(), end)?;
+            Err(error)
+        }
+    }
+}
+
+/// The line of a run for machines.
+pub fn line(run: &Run, metrics: &Metrics) -> Vec<u8> {
+    let object = json!({
+        "scenario": run.scenario.name,
+        "run": run.number,
+        "seed": run.scenario.seed,
+        "metrics": metrics.to_json(),
+    });
+    format!("{object}\n").into_bytes()
+}
+
+/// The summary of a run for people.
+fn summary(scenario: &Scenario, metrics: &Metrics, took: f64) {
+    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    say!(
+        "{}   {} s, {} modes, {} switchings, {:.1} ms",
+        scenario.name,
+        scenario.duration.seconds(),
+        scenario.body.modes().len(),
+        number("switchings"),
+        took * 1e3
+    );
+    if let Some(Value::Numbers(means)) = metrics.get("envelope_window_means_rad")
+        && let (Some(first), Some(last)) = (means.first(), means.last())
+    {
+        let change = 100.0 * (last / first - 1.0);
+        say!("  envelope       {first:.3e} -> {last:.3e} rad  (window means, {change:+.0} %)");
+    }
+    if scenario.adaptation.is_some() {
+        let frozen = number("gain_frozen_at_s");
+        let end = if frozen.is_finite() { format!("frozen at {frozen} s") } else { "not frozen".to_owned() };
+        say!("  k_t            {:.4} -> {:.4}, {end}", number("gain_initial"), number("gain_final"));
+    }
+    if let Some(Value::Word(kind)) = metrics.get("cycle_kind") {
+        let (period, largest) = (number("cycle_period_s"), number("cycle_multiplier_max"));
+        if period.is_finite() {
+            let multiplier =
+                if largest.is_finite() { format!(", multiplier {largest:.3}") } else { String::new() };
+            say!("  cycle          {kind}, period {period:.6} s{multiplier}");
+        } else {
+            say!("  cycle          {kind}");
+        }
+    }
+}
+
+impl From<SimulationError> for Failure {
+    fn from(source: SimulationError) -> Self {
+        Self::Run { name: "simulation".to_owned(), source }
+    }
+}

@@ -1,0 +1,61 @@
+//! `flexsc sweep`: a scenario once for each value of a key.
+
+use std::path::PathBuf;
+
+use flexsc_core::campaign::{Campaign, Grid};
+
+use crate::failure::Failure;
+use crate::stop::{self, Stop};
+use crate::{campaign, simulate};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scenario file
+    scenario: PathBuf,
+    /// The key, and its first value, last value and number of values, such as law.relay.k_t=0.28:0.40:2401
+    #[arg(long, value_name = "KEY=START:END:COUNT", value_parser = grid)]
+    vary: Grid,
+    /// Directory for the tables, made if it is not there
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Set a key of the scenario, such as duration=1e4
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Seed, instead of the scenario's
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Print one JSON object for each run on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+fn grid(text: &str) -> Result<Grid, String> {
+    let form = || format!("`{text}` is not KEY=START:END:COUNT, such as law.relay.k_t=0.28:0.40:25");
+    let (key, range) = text.split_once('=').ok_or_else(form)?;
+    let [start, end, count] = range.split(':').collect::<Vec<_>>()[..] else { return Err(form()) };
+    let bound = |text: &str| text.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(form);
+    let count: u64 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
+    Ok(Grid { key: key.to_owned(), start: bound(start)?, end: bound(end)?, count })
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let scenario = simulate::load(&args.scenario, &args.set, args.seed)?;
+    let origin = args.scenario.display().to_string();
+    let study = Campaign::new(scenario, &origin, Some(args.vary.clone()))?;
+    if let Some(out) = &args.out {
+        std::fs::create_dir_all(out).map_err(Failure::write(out))?;
+    }
+    stop::listen();
+    let job = campaign::Job {
+        range: 0..args.vary.count,
+        part: false,
+        table: args.out.as_deref(),
+        prefix: None,
+        jobs: args.jobs,
+        json: args.json,
+    };
+    campaign::run(&study, &job, |run| Ok(Campaign::simulate(run, Stop)?))
+}

@@ -1,0 +1,76 @@
+//! Statistics of a campaign: mean, standard deviation and quantiles of every metric.
+
+use crate::metrics::{Metrics, Value};
+
+/// The quantiles that are told.
+pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+
+/// The statistics of one metric over the runs that have a value of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistics {
+    /// Name of the metric.
+    pub name: &'static str,
+    /// Unit of the metric.
+    pub unit: &'static str,
+    /// Runs that have a value.
+    pub runs: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation, with runs - 1 in the denominator; NaN for a single run.
+    pub sd: f64,
+    /// The [`QUANTILES`], interpolated linearly between order statistics.
+    pub quantiles: [f64; 5],
+}
+
+/// The statistics of every metric that is a number, over runs of one scenario.
+pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
+    let Some(first) = runs.first() else { return Vec::new() };
+    let numeric = first.0.iter().enumerate().filter_map(|(index, (meaning, value))| {
+        matches!(value, Value::Count(_) | Value::Number(_)).then_some((index, *meaning))
+    });
+    numeric
+        .map(|(index, meaning)| {
+            let value = |metrics: &Metrics| match metrics.0[index].1 {
+                Value::Count(count) => count as f64,
+                Value::Number(number) => number,
+                _ => f64::NAN,
+            };
+            let mut values: Vec<f64> = runs.iter().map(value).filter(|v| v.is_finite()).collect();
+            values.sort_by(f64::total_cmp);
+            let n = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+            Statistics {
+                name: meaning.name,
+                unit: meaning.unit,
+                runs: values.len(),
+                mean,
+                sd: libm::sqrt(squares / (n - 1.0)),
+                quantiles: QUANTILES.map(|q| quantile(&values, q)),
+            }
+        })
+        .collect()
+}
+
+/// The quantile of sorted values; NaN without any.
+fn quantile(sorted: &[f64], q: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let place = q * last as f64;
+    let (below, part) = (place as usize, place - libm::floor(place));
+    let above = (below + 1).min(last);
+    sorted[below] * (1.0 - part) + sorted[above] * part
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_interpolate_as_numpy_does() {
+        // numpy.quantile([1, 2, 4, 8], [0.05, 0.25, 0.5, 0.75, 0.95])
+        let exact = [1.15, 1.75, 3.0, 5.0, 7.4];
+        for (q, exact) in QUANTILES.into_iter().zip(exact) {
+            assert!((quantile(&[1.0, 2.0, 4.0, 8.0], q) - exact).abs() < 1e-14);
+        }
+    }
+}
