@@ -139,8 +139,8 @@ pub fn cycles(law: &Relay, body: &Body, k_t: f64) -> Vec<RigidCycle> {
     candidates.iter().filter_map(|&sides| rigid.cycle(sides, k_t)).collect()
 }
 
-/// The gains at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The even harmonics
-/// vanish by symmetry.
+/// The gains from 0.02 to 1 at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The even
+/// harmonics vanish by symmetry.
 pub fn resonances(law: &Relay, body: &Body) -> Vec<Resonance> {
     /// Between neighbours on this grid of gains the period is monotonic.
     const GRID: u32 = 4096;
@@ -150,7 +150,8 @@ pub fn resonances(law: &Relay, body: &Body) -> Vec<Resonance> {
     for (mode, w) in body.modes().iter().map(|mode: &Mode| mode.frequency.get()).enumerate() {
         let turns = |period: f64| w * period / (2.0 * std::f64::consts::PI);
         for cell in 0..GRID {
-            let [low, high] = [cell, cell + 1].map(|edge| f64::from(edge) / f64::from(GRID));
+            let gain = |edge: u32| 0.02 + 0.98 * f64::from(edge) / f64::from(GRID);
+            let (low, high) = (gain(cell), gain(cell + 1));
             let (Some(from), Some(to)) = (period(low).map(turns), period(high).map(turns)) else { continue };
             let between = (libm::ceil(from.min(to)) as u32)..=(libm::floor(from.max(to)) as u32);
             for harmonic in between.filter(|harmonic| harmonic % 2 == 1) {
