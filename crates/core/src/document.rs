@@ -6,10 +6,13 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
-use toml::{Table, Value};
+use toml::{Spanned, Table, Value};
 
 /// No scenario is longer (bytes).
 const LONGEST: u64 = 4 << 20;
+
+/// Errors show no more of a line than this before and after the place that they are about (characters).
+const SHOWN: usize = 80;
 
 /// A scenario that cannot be used. Its text names file, line, key, what was found and what is accepted.
 #[derive(Debug, Error)]
@@ -42,7 +45,7 @@ pub enum ScenarioError {
 pub struct Document {
     /// Where it comes from, for errors.
     origin: String,
-    text: String,
+    text: Option<String>,
     table: Table,
     changed: Vec<String>,
 }
@@ -72,13 +75,13 @@ impl Document {
 
     /// Takes a text. `origin` is what errors call it.
     pub fn parse(origin: &str, text: String) -> Result<Self, ScenarioError> {
-        let table = text.parse::<Table>().map_err(|error| Self::pointed(origin, &text, &error))?;
-        Ok(Self { origin: origin.to_owned(), text, table, changed: Vec::new() })
+        let table = text.parse::<Table>().map_err(|error| pointed(origin, &text, &error))?;
+        Ok(Self { origin: origin.to_owned(), text: Some(text), table, changed: Vec::new() })
     }
 
     /// Takes a table that has no text, such as a Python dictionary.
     pub fn from_table(origin: &str, table: Table) -> Self {
-        Self { origin: origin.to_owned(), text: String::new(), table, changed: Vec::new() }
+        Self { origin: origin.to_owned(), text: None, table, changed: Vec::new() }
     }
 
     /// Where the document comes from.
@@ -101,63 +104,197 @@ impl Document {
 
     /// The document as the type that it describes.
     pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, ScenarioError> {
-        if self.changed.is_empty() && !self.text.is_empty() {
-            return toml::from_str(&self.text)
-                .map_err(|error| Self::pointed(&self.origin, &self.text, &error));
+        if let (Some(text), true) = (&self.text, self.changed.is_empty()) {
+            return toml::from_str(text).map_err(|error| pointed(&self.origin, text, &error));
         }
         Value::Table(self.table.clone()).try_into().map_err(|error: toml::de::Error| {
             let text = error.to_string();
             let text = text.trim_end();
             let (why, key) = text.rsplit_once("\nin `").unwrap_or((text, ""));
-            let set = if self.changed.is_empty() {
-                String::new()
-            } else {
-                format!(" (with {} set)", self.changed.join(", "))
+            let key = key.trim_end_matches('`');
+            let found = get(&self.table, key).map(Value::type_str);
+            let place = match (key, self.changed.as_slice()) {
+                ("", []) => return ScenarioError::Invalid(format!("{}: {}", self.origin, explained(why, None))),
+                (_, []) => format!("`{key}`"),
+                ("", changed) => format!("with {} set", changed.join(", ")),
+                (_, changed) => format!("`{key}` (with {} set)", changed.join(", ")),
             };
-            self.key_error(&format!("`{}`{set}", key.trim_end_matches('`')), explained(why))
+            self.key_error(&place, explained(why, found))
         })
+    }
+
+    /// An error at the first value of which a part was left unread: what was read of it is in `understood`.
+    pub fn unread(&self, understood: &Table) -> Option<ScenarioError> {
+        let mut pairs = self.table.iter().filter_map(|(key, value)| Some((key, value, understood.get(key)?)));
+        let (key, why) = pairs.find_map(|(key, given, read)| unread(&bare_or_quoted(key), given, read))?;
+        Some(self.inconsistent(&key, &why))
     }
 
     /// An error at a key, pointed at its value if the text has it.
     pub fn inconsistent(&self, key: &str, why: &str) -> ScenarioError {
-        let found = DeTable::parse(&self.text).ok().and_then(|table| span_of(table.get_ref(), key));
-        match found {
-            Some(span) if !self.changed.iter().any(|k| k == key) => {
-                let message = format!("`{key}` {why}");
-                ScenarioError::Invalid(point(&self.origin, &self.text, span, &message))
+        if let Some(text) = self.text.as_ref().filter(|_| !self.changed.iter().any(|k| k == key)) {
+            let table = DeTable::parse(text).ok();
+            if let Some(span) = table.and_then(|table| span_of(table.get_ref(), key)) {
+                return ScenarioError::Invalid(point(&self.origin, text, span, &format!("`{key}` {why}")));
             }
-            _ => self.key_error(&format!("`{key}`"), why.to_owned()),
         }
+        self.key_error(&format!("`{key}`"), why.to_owned())
     }
 
     fn key_error(&self, key: &str, why: String) -> ScenarioError {
         ScenarioError::Key { origin: self.origin.clone(), key: key.to_owned(), why }
     }
-
-    fn pointed(origin: &str, text: &str, error: &toml::de::Error) -> ScenarioError {
-        let why = explained(error.message());
-        ScenarioError::Invalid(match error.span() {
-            Some(span) => {
-                let table = DeTable::parse(text).ok();
-                let key = table.and_then(|table| key_at(table.get_ref(), span.start));
-                let message = key.map_or(why.clone(), |key| format!("`{key}`: {why}"));
-                point(origin, text, span, &message)
-            }
-            None => format!("{origin}: {why}"),
-        })
-    }
 }
 
-/// serde's words, where they would puzzle, in words of a scenario.
-fn explained(message: &str) -> String {
+/// The parser's error, told by key and place.
+fn pointed(origin: &str, text: &str, error: &toml::de::Error) -> ScenarioError {
+    let Some(span) = error.span() else {
+        return ScenarioError::Invalid(format!("{origin}: {}", explained(error.message(), None)));
+    };
+    let table = DeTable::parse(text).ok();
+    let place = table.as_ref().and_then(|table| place_of(table.get_ref(), &span));
+    let message = match place {
+        None => explained(error.message(), None),
+        Some((key, value)) => {
+            let why = explained(error.message(), Some(value.type_str()));
+            let why = bracketed(&key, &text[span.start..], &why).unwrap_or(why);
+            match value {
+                DeValue::Table(kinds) if why.ends_with(MORE_THAN_ONE) => {
+                    let given: Vec<_> = kinds.keys().map(|kind| format!("`{}`", kind.get_ref())).collect();
+                    format!("`{key}`: {why}: {}", given.join(", "))
+                }
+                // A path without quotes is read as tables within tables.
+                _ if key.starts_with("uncertain.") && why.contains("is not known here") => {
+                    format!("`{key}`: {why}; the path of an uncertain key stands in quotes")
+                }
+                _ => format!("`{key}`: {why}"),
+            }
+        }
+    };
+    ScenarioError::Invalid(point(origin, text, span, &message))
+}
+
+const MORE_THAN_ONE: &str = "exactly one kind is accepted here, and more than one is given";
+
+/// serde's words, where they would puzzle, in words of a scenario. `found` is the type of what was found.
+fn explained(message: &str, found: Option<&str>) -> String {
     let message = message.trim_end();
+    let what = match found {
+        Some("datetime") => "a date",
+        Some("array") => "an array",
+        Some("integer" | "float") => "a number",
+        Some("boolean") => "true or false",
+        Some("string") => "a string",
+        _ => "a table",
+    };
     if message.starts_with("wanted exactly 1 element, more than 1") {
-        return "exactly one kind is accepted here, and more than one is given".to_owned();
+        return MORE_THAN_ONE.to_owned();
     }
     if message.starts_with("wanted exactly 1 element") {
         return "exactly one kind is needed here, and none is given".to_owned();
     }
-    message.replace("invalid type: ", "found ").replace("expected f64", "expected a number")
+    if message == "wanted string or table" {
+        return format!("found {what}, expected the name of a kind or a table");
+    }
+    if message.contains("unit variant, expected") {
+        return "found only the name of a kind that needs values of its own: a table".to_owned();
+    }
+    if message == "u64 value was too large" {
+        return format!("expected {}", expected("u64"));
+    }
+    if let Some(found) = message.strip_suffix(" as i128, expected any valid TOML value") {
+        let found = found.trim_start_matches("invalid type: ");
+        return format!("found {found}, which is too large; a number so large is written with a point");
+    }
+    for (words, start) in [("unknown field ", "unknown key "), ("missing field ", "missing key ")] {
+        if let Some(rest) = message.strip_prefix(words) {
+            return format!("{start}{rest}");
+        }
+    }
+    if let Some((unknown, known)) = message.strip_prefix("unknown variant ").and_then(|m| m.split_once(", ")) {
+        return format!("{unknown} is not known here, {known}");
+    }
+    for invalid in ["invalid type: ", "invalid value: ", "invalid length "] {
+        let parts = message.strip_prefix(invalid).and_then(|rest| rest.rsplit_once(", expected "));
+        if let Some((got, wanted)) = parts {
+            let got = match got {
+                "map" => what.to_owned(),
+                "sequence" => "an array".to_owned(),
+                _ if invalid == "invalid length " => format!("an array of length {got}"),
+                _ => shortened(&got.replacen("floating point", "number", 1)),
+            };
+            return format!("found {got}, expected {}", expected(wanted));
+        }
+    }
+    match message {
+        "string values must be quoted, expected literal string" => {
+            "found no TOML value; a text stands in quotes".to_owned()
+        }
+        "invalid float, expected nothing" => "found no number that TOML knows".to_owned(),
+        "integer number overflowed" => "found no whole number that fits 64 bits".to_owned(),
+        "floating-point number overflowed" => "found a number that is too large for a double".to_owned(),
+        _ => message.to_owned(),
+    }
+}
+
+/// What serde expected, in words of a scenario.
+fn expected(wanted: &str) -> &str {
+    match wanted {
+        "f64" => "a number",
+        "u32" => "a whole number from 0 to 4294967295",
+        "u64" => "a whole number from 0 to 9223372036854775807",
+        "a sequence" => "an array",
+        "a map" => "a table",
+        "a boolean" => "true or false",
+        "a TOML datetime" => "a date and time without quotes, such as 2026-03-20T14:46:00Z",
+        _ if wanted.starts_with("struct ") => "a table",
+        _ => wanted,
+    }
+}
+
+/// Says which brackets a header needs, if it has the wrong ones.
+fn bracketed(key: &str, place: &str, why: &str) -> Option<String> {
+    let double = place.starts_with("[[");
+    let key = if double { key.rsplit_once('[')?.0 } else { key };
+    match why {
+        "found a table, expected a number" if double => {
+            Some(format!("there is only one: expected `[{key}]`, found `[[{key}]]`"))
+        }
+        "found a table, expected an array" if place.starts_with('[') => {
+            Some(format!("there can be several: expected `[[{key}]]`, found `[{key}]`"))
+        }
+        _ => None,
+    }
+}
+
+/// A text that fits a message.
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// The first part of a value that is not in what was read of it: the key, and why.
+fn unread(key: &str, given: &Value, read: &Value) -> Option<(String, String)> {
+    match (given, read) {
+        (Value::Table(given), Value::Table(read)) => given.iter().find_map(|(name, value)| {
+            unread(&format!("{key}.{}", bare_or_quoted(name)), value, read.get(name)?)
+        }),
+        (Value::Array(given), Value::Array(read)) if given.len() > read.len() => {
+            let why = format!("has {} values, expected {}", given.len(), read.len());
+            Some((key.to_owned(), why))
+        }
+        (Value::Array(given), Value::Array(read)) => given
+            .iter()
+            .zip(read)
+            .enumerate()
+            .find_map(|(index, (given, read))| unread(&format!("{key}[{index}]"), given, read)),
+        (Value::Array(_), Value::Table(_)) => {
+            Some((key.to_owned(), "is an array, expected a table".to_owned()))
+        }
+        _ => None,
+    }
 }
 
 /// The message with the line that it is about and a caret under the place.
@@ -168,12 +305,14 @@ fn point(origin: &str, text: &str, span: Range<usize>, message: &str) -> String 
     let line_number = before.matches('\n').count() + 1;
     let column = text[line_start..start].chars().count();
     let line = text[line_start..].lines().next().unwrap_or_default();
-    let width = text[start..span.end.min(text.len()).max(start)]
-        .lines()
-        .next()
-        .map_or(1, |marked| marked.chars().count().max(1));
+    let marked = text[start..span.end.min(text.len()).max(start)].lines().next().unwrap_or_default();
+    // A line may be as long as the file, and hold what a terminal obeys.
+    let hidden = column.saturating_sub(SHOWN);
+    let printable = |c: char| if c.is_control() { ' ' } else { c };
+    let line: String = line.chars().skip(hidden).take(2 * SHOWN).map(printable).collect();
+    let width = marked.chars().count().clamp(1, SHOWN);
     let (number, gutter) = (line_number.to_string(), " ".repeat(line_number.to_string().len()));
-    let (indent, carets) = (" ".repeat(column), "^".repeat(width));
+    let (indent, carets) = (" ".repeat(column - hidden), "^".repeat(width));
     format!(
         "{origin}:{line_number}:{}: {message}\n{gutter} |\n{number} | {line}\n{gutter} | {indent}{carets}",
         column + 1,
@@ -187,17 +326,39 @@ enum Step<'a> {
     Index(usize),
 }
 
+/// The steps of a path. A key that holds a dot stands in quotes: `uncertain."law.relay.k_t"`.
 fn steps(path: &str) -> Option<Vec<Step<'_>>> {
     let mut steps = Vec::new();
-    for part in path.split('.') {
-        let mut pieces = part.split('[');
-        let key = pieces.next().filter(|key| !key.is_empty())?;
-        steps.push(key.parse().map_or(Step::Key(key), Step::Index));
-        for piece in pieces {
-            steps.push(Step::Index(piece.strip_suffix(']')?.parse().ok()?));
+    let mut rest = path;
+    loop {
+        if let Some(quoted) = rest.strip_prefix('"') {
+            let (key, after) = quoted.split_once('"')?;
+            steps.push(Step::Key(key));
+            rest = after;
+        } else {
+            let (key, after) = rest.split_at(rest.find(['.', '[']).unwrap_or(rest.len()));
+            if key.is_empty() {
+                return None;
+            }
+            steps.push(key.parse().map_or(Step::Key(key), Step::Index));
+            rest = after;
         }
+        while let Some(indexed) = rest.strip_prefix('[') {
+            let (index, after) = indexed.split_once(']')?;
+            steps.push(Step::Index(index.parse().ok()?));
+            rest = after;
+        }
+        if rest.is_empty() {
+            return Some(steps);
+        }
+        rest = rest.strip_prefix('.')?;
     }
-    Some(steps)
+}
+
+/// A key as it stands in a path.
+fn bare_or_quoted(key: &str) -> String {
+    let bare = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+    if !key.is_empty() && key.chars().all(bare) { key.to_owned() } else { format!("\"{key}\"") }
 }
 
 /// The value at a path.
@@ -261,30 +422,53 @@ fn span_of(table: &DeTable<'_>, path: &str) -> Option<Range<usize>> {
     Some(value.span())
 }
 
-/// The path of the innermost key whose value stands at a place in the text.
-fn key_at(table: &DeTable<'_>, offset: usize) -> Option<String> {
-    let mut found = None;
+/// The path and the value of a place in the text: of the value that stands there exactly, or else of the innermost
+/// one around it.
+fn place_of<'a>(table: &'a DeTable<'a>, span: &Range<usize>) -> Option<(String, &'a DeValue<'a>)> {
+    let mut around = None;
     for (key, value) in table {
-        let within = match value.get_ref() {
-            DeValue::Table(inner) => key_at(inner, offset),
-            DeValue::Array(array) => array.iter().enumerate().find_map(|(index, element)| {
-                let inner = match element.get_ref() {
-                    DeValue::Table(table) => key_at(table, offset).map(|k| format!("[{index}].{k}")),
-                    _ => None,
-                };
-                let here = || element.span().contains(&offset).then(|| format!("[{index}]"));
-                inner.or_else(here)
-            }),
-            _ => None,
-        };
-        if let Some(inner) = within {
-            let joint = if inner.starts_with('[') { "" } else { "." };
-            found = Some(format!("{}{joint}{inner}", key.get_ref()));
-        } else if value.span().contains(&offset) && found.is_none() {
-            found = Some(key.get_ref().to_string());
+        let found = place_in(bare_or_quoted(key.get_ref()), value, span);
+        match found {
+            Some((true, path, value)) => return Some((path, value)),
+            Some((false, path, value)) => around = around.or(Some((path, value))),
+            None => {}
         }
     }
-    found
+    around
+}
+
+/// The same within one value, and whether the place is exact.
+fn place_in<'a>(
+    path: String,
+    value: &'a Spanned<DeValue<'a>>,
+    span: &Range<usize>,
+) -> Option<(bool, String, &'a DeValue<'a>)> {
+    let exact = value.span() == *span;
+    // The span of a table is its header, or that of an inline one its braces: its keys may stand elsewhere.
+    let mut around = (!exact && value.span().contains(&span.start)).then_some(());
+    let mut inner = None;
+    if !exact {
+        let parts: Box<dyn Iterator<Item = (String, &Spanned<DeValue<'_>>)>> = match value.get_ref() {
+            DeValue::Table(table) => {
+                let key = |key: &str| format!("{path}.{}", bare_or_quoted(key));
+                Box::new(table.iter().map(move |(k, v)| (key(k.get_ref()), v)))
+            }
+            DeValue::Array(array) => {
+                Box::new(array.iter().enumerate().map(|(index, v)| (format!("{path}[{index}]"), v)))
+            }
+            _ => Box::new(std::iter::empty()),
+        };
+        for (path, part) in parts {
+            match place_in(path, part, span) {
+                Some(found @ (true, ..)) => return Some(found),
+                found => inner = inner.or(found),
+            }
+        }
+    }
+    if inner.is_some() {
+        around = None;
+    }
+    inner.or_else(|| (exact || around.is_some()).then(|| (exact, path, value.get_ref())))
 }
 
 #[cfg(test)]
@@ -302,5 +486,8 @@ mod tests {
         assert!(set(&mut table, "a.b[2].c", Value::Integer(7)).is_err());
         assert!(set(&mut table, "a.b.c", Value::Integer(7)).is_err());
         assert!(set(&mut table, "a..c", Value::Integer(7)).is_err());
+        set(&mut table, "x.\"y.z\"[0]", Value::Integer(7)).expect_err("no array");
+        set(&mut table, "x.\"y.z\"", Value::Integer(7)).expect("made");
+        assert_eq!(get(&table, "x").and_then(|x| x.get("y.z")), Some(&Value::Integer(7)));
     }
 }

@@ -71,26 +71,38 @@ pub struct Trip {
 /// The first tick within `horizon` of departure at which one of the guards holds. The state there is put into
 /// `state`.
 pub fn locate(arc: &Arc, guards: &[Guard], horizon: Span, state: &mut State) -> Option<Trip> {
-    let mut after = Span::ZERO;
     let mut sight = arc.origin();
     if let Some(guard) = guards.iter().position(|guard| guard.holds(sight.angle)) {
         arc.at(0.0, state);
-        return Some(Trip { after, guard, sight });
+        return Some(Trip { after: Span::ZERO, guard, sight });
     }
-    let mut stride = guards
-        .iter()
-        .fold(f64::INFINITY, |stride, &guard| stride.min(arc.stride(guard, sight).max(arc.earliest(guard))));
-    while after < horizon && sight.angle.is_finite() {
-        let step = Span::from_seconds_down(stride.min(horizon.seconds())).max(Span::TICK);
-        after = (after + step).min(horizon);
-        sight = arc.at(after.seconds(), state);
-        stride = f64::INFINITY;
-        for (index, &guard) in guards.iter().enumerate() {
-            if guard.holds(sight.angle) {
-                return Some(Trip { after, guard: index, sight });
+    let first = |&guard| match arc.earliest(guard) {
+        0.0 => arc.stride(guard, sight),
+        jump => jump,
+    };
+    let mut stride = guards.iter().map(first).fold(f64::INFINITY, f64::min);
+    // Ticks are counted in 64 bits, from the latest of a row of bases.
+    let mut base = Span::ZERO;
+    loop {
+        let (base_s, last) = (base.seconds(), horizon.minus(base).leading_femtoseconds());
+        let mut ticks = 0;
+        while ticks < last && sight.angle.is_finite() {
+            // The tick before the stride's end is certain not to trip: the next one is the first that can.
+            ticks = ticks.saturating_add((stride * 1e15) as i64).saturating_add(1).min(last);
+            sight = arc.at(base_s + ticks as f64 / 1e15, state);
+            stride = f64::INFINITY;
+            for (index, &guard) in guards.iter().enumerate() {
+                if guard.holds(sight.angle) {
+                    return Some(Trip { after: base + Span::from_femtoseconds(ticks), guard: index, sight });
+                }
+                if !arc.is_clear(guard, sight, stride) {
+                    stride = stride.min(arc.stride(guard, sight));
+                }
             }
-            stride = stride.min(arc.stride(guard, sight));
+        }
+        base = base + Span::from_femtoseconds(last);
+        if base >= horizon || !sight.angle.is_finite() {
+            return None;
         }
     }
-    None
 }

@@ -194,7 +194,7 @@ impl Simulation {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.watch.as_ref().map(|watch| watch.closes);
         let due = [trip, self.hold.until, self.next_sample, closes, self.next_dense];
-        due.into_iter().flatten().min().unwrap_or(self.end + Span::TICK)
+        due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
     /// Does what is due now.
@@ -381,7 +381,7 @@ impl Plant {
     }
 
     fn check(&self, now: Instant) -> Result<(), SimulationError> {
-        let Sight { angle, rate } = self.sight;
+        let Sight { angle, rate, .. } = self.sight;
         if angle.is_finite() && rate.is_finite() {
             Ok(())
         } else {

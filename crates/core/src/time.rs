@@ -2,119 +2,151 @@
 
 use std::borrow::Cow;
 use std::fmt;
-use std::ops::{Add, AddAssign, Sub};
+use std::ops::{Add, AddAssign};
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-const FEMTOSECONDS: i128 = 1_000_000_000_000_000;
+const FEMTOSECONDS: i64 = 1_000_000_000_000_000;
 const FEMTOSECONDS_F64: f64 = 1e15;
+/// Spans below so many seconds fit 64 bits of femtoseconds.
+const SHORT_S: i64 = 9_000;
 /// The longest span that a scenario may name: 300 000 years.
 const LONGEST_S: f64 = 1e13;
 
 /// An instant of simulated time, counted from the start of the run.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Instant(i128);
+pub struct Instant(Ticks);
 
 /// A length of simulated time.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Span(i128);
+pub struct Span(Ticks);
 
-fn seconds(femtoseconds: i128) -> f64 {
-    // The conversion from 64 bits is one instruction, from 128 bits a call.
-    if let Ok(short) = i64::try_from(femtoseconds) {
-        short as f64 / FEMTOSECONDS_F64
-    } else {
-        femtoseconds as f64 / FEMTOSECONDS_F64
-    }
+/// Whole seconds, and 0 to 10^15 - 1 femtoseconds past them: an exact integer whose operations stay within 64 bits.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+struct Ticks {
+    whole: i64,
+    part: i64,
 }
 
-/// Whole seconds and what is left, so that long spans keep their ticks.
-fn split(seconds: f64) -> (f64, f64) {
-    let whole = libm::trunc(seconds);
-    (whole, seconds - whole)
+impl Ticks {
+    /// From femtoseconds that fit 64 bits.
+    fn short(femtoseconds: i64) -> Self {
+        Self { whole: femtoseconds.div_euclid(FEMTOSECONDS), part: femtoseconds.rem_euclid(FEMTOSECONDS) }
+    }
+
+    /// Nearest to a number of seconds.
+    fn from_seconds(seconds: f64) -> Self {
+        let nearest = |seconds: f64| Self::short(libm::round(seconds * FEMTOSECONDS_F64) as i64);
+        if seconds.abs() < SHORT_S as f64 {
+            return nearest(seconds);
+        }
+        let whole = libm::trunc(seconds);
+        let part = nearest(seconds - whole);
+        Self { whole: whole as i64 + part.whole, ..part }
+    }
+
+    fn seconds(self) -> f64 {
+        if self.whole.abs() < SHORT_S {
+            (self.whole * FEMTOSECONDS + self.part) as f64 / FEMTOSECONDS_F64
+        } else {
+            self.whole as f64 + self.part as f64 / FEMTOSECONDS_F64
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        let part = self.part + other.part;
+        let carry = i64::from(part >= FEMTOSECONDS);
+        Self { whole: self.whole + other.whole + carry, part: part - carry * FEMTOSECONDS }
+    }
+
+    fn minus(self, other: Self) -> Self {
+        let part = self.part - other.part;
+        let borrow = i64::from(part < 0);
+        Self { whole: self.whole - other.whole - borrow, part: part + borrow * FEMTOSECONDS }
+    }
 }
 
 impl Instant {
     /// The start of every run.
-    pub const START: Self = Self(0);
+    pub const START: Self = Self(Ticks { whole: 0, part: 0 });
 
-    /// The instant in seconds, rounded to the nearest double.
+    /// The instant in seconds, rounded to a double.
     pub fn seconds(self) -> f64 {
-        seconds(self.0)
+        self.0.seconds()
     }
 
     /// Whole seconds, and the femtoseconds past them: the instant without rounding.
     pub fn parts(self) -> (u64, u64) {
-        ((self.0 / FEMTOSECONDS) as u64, (self.0 % FEMTOSECONDS) as u64)
+        (self.0.whole as u64, self.0.part as u64)
     }
 
     /// The instant in nanoseconds, rounded down: the time base of logs.
     pub fn nanoseconds(self) -> u64 {
-        (self.0 / 1_000_000) as u64
+        self.0.whole as u64 * 1_000_000_000 + self.0.part as u64 / 1_000_000
     }
 
     /// The span since an earlier instant.
+    #[inline]
     pub fn since(self, earlier: Self) -> Span {
-        Span(self.0 - earlier.0)
+        Span(self.0.minus(earlier.0))
     }
 }
 
 impl Span {
     /// No time at all.
-    pub const ZERO: Self = Self(0);
+    pub const ZERO: Self = Self(Ticks { whole: 0, part: 0 });
     /// The shortest span there is.
-    pub const TICK: Self = Self(1);
+    pub const TICK: Self = Self(Ticks { whole: 0, part: 1 });
 
     /// The span nearest to a number of seconds.
+    #[inline]
     pub fn from_seconds(seconds: f64) -> Self {
-        let (whole, part) = if seconds.abs() < 9e3 { (0.0, seconds) } else { split(seconds) };
-        let ticks = libm::round(part * FEMTOSECONDS_F64) as i64;
-        Self(whole as i128 * FEMTOSECONDS + i128::from(ticks))
+        Self(Ticks::from_seconds(seconds))
     }
 
-    /// The longest span that is not above a number of seconds.
-    pub fn from_seconds_down(seconds: f64) -> Self {
-        // A cast truncates, which for a positive number rounds down.
-        let (whole, part) = if seconds < 9e3 { (0.0, seconds) } else { split(seconds) };
-        Self(whole as i128 * FEMTOSECONDS + i128::from((part * FEMTOSECONDS_F64) as i64))
+    /// The span of so many femtoseconds.
+    #[inline]
+    pub fn from_femtoseconds(femtoseconds: i64) -> Self {
+        Self(Ticks::short(femtoseconds))
     }
 
-    /// The span in seconds, rounded to the nearest double.
+    /// The femtoseconds of the span, or of its first 9000 s.
+    pub fn leading_femtoseconds(self) -> i64 {
+        let Ticks { whole, part } = self.0;
+        if whole < SHORT_S { whole * FEMTOSECONDS + part } else { SHORT_S * FEMTOSECONDS }
+    }
+
+    /// What is left of the span after another.
+    #[must_use]
+    pub fn minus(self, other: Self) -> Self {
+        Self(self.0.minus(other.0))
+    }
+
+    /// The span in seconds, rounded to a double.
+    #[inline]
     pub fn seconds(self) -> f64 {
-        seconds(self.0)
-    }
-
-    /// How often the span fits into a longer one.
-    pub fn count_in(self, longer: Self) -> u64 {
-        (longer.0 / self.0) as u64
+        self.0.seconds()
     }
 }
 
 impl Add<Span> for Instant {
     type Output = Self;
     fn add(self, span: Span) -> Self {
-        Self(self.0 + span.0)
+        Self(self.0.plus(span.0))
     }
 }
 
 impl AddAssign<Span> for Instant {
     fn add_assign(&mut self, span: Span) {
-        self.0 += span.0;
+        *self = *self + span;
     }
 }
 
 impl Add for Span {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0)
-    }
-}
-
-impl Sub for Span {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self(self.0 - other.0)
+        Self(self.0.plus(other.0))
     }
 }
 
@@ -175,5 +207,16 @@ mod tests {
         let instant = Instant::START + year + Span::TICK;
         assert_eq!(instant.to_string(), "31557600.000000000000001");
         assert_eq!(instant.since(Instant::START + year), Span::TICK);
+        assert_eq!(instant.nanoseconds(), 31_557_600_000_000_000);
+    }
+
+    #[test]
+    fn sums_and_differences_carry() {
+        let (a, b) = (Span::from_seconds(1.75), Span::from_seconds(2.5));
+        assert_eq!(a + b, Span::from_seconds(4.25));
+        let (early, late) = (Instant::START + a, Instant::START + b);
+        assert_eq!(late.since(early), Span::from_seconds(0.75));
+        assert_eq!(early.since(late).seconds(), -0.75);
+        assert!(early < late && Span::ZERO < Span::TICK);
     }
 }

@@ -88,4 +88,6 @@ pub struct Sight {
     pub angle: f64,
     /// Rate, elastic part included (rad/s).
     pub rate: f64,
+    /// Acceleration, elastic part included (rad/s²).
+    pub acceleration: f64,
 }

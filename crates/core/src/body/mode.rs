@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Phase;
+use super::{Phase, Sight};
 use crate::quantity::{Finite, Frequency, NonNegative};
 
 /// An elastic mode as a scenario describes it (seed paper 1, equation (1), with damping added).
@@ -46,6 +46,10 @@ pub struct Flow {
     pub excitability: f64,
     /// Bound of |x''| for a unit distance from equilibrium (1/s²).
     pub stiffness: f64,
+    /// Bound of |x'''| for a unit distance from equilibrium (1/s³).
+    pub jerk: f64,
+    /// Twice the decay rate, 2 zeta w (1/s).
+    drag: f64,
     regime: Regime,
 }
 
@@ -73,18 +77,30 @@ impl Flow {
         Self {
             frequency: w,
             excitability: mode.excitability(),
+            // x'' = -w² (x + 2 zeta y) and x''' = -w³ (y - 2 zeta x - 4 zeta² y) in (x, y) of length 1.
             stiffness: w * w * libm::sqrt(1.0 + 4.0 * zeta * zeta),
+            jerk: w
+                * w
+                * w
+                * libm::sqrt(4.0 * zeta * zeta + (1.0 - 4.0 * zeta * zeta) * (1.0 - 4.0 * zeta * zeta)),
+            drag: 2.0 * zeta * w,
             regime,
         }
     }
 
+    /// Adds the mode's part to what a sensor sees, for a deviation from equilibrium.
+    #[inline]
+    pub fn add_sight(&self, equilibrium: f64, displacement: f64, quadrature: f64, sight: &mut Sight) {
+        let [rate, quadrature_rate] = self.velocity(displacement, quadrature);
+        sight.angle += equilibrium + displacement;
+        sight.rate += rate;
+        sight.acceleration += self.frequency * quadrature_rate;
+    }
+
     /// The derivative with time of the deviation from equilibrium (displacement, rate / w).
+    #[inline]
     pub fn velocity(&self, displacement: f64, quadrature: f64) -> [f64; 2] {
-        let decay = match self.regime {
-            Regime::Undamped => 0.0,
-            Regime::Under(decay, _) | Regime::Over(decay, ..) => decay,
-        };
-        [self.frequency * quadrature, -self.frequency * displacement - 2.0 * decay * quadrature]
+        [self.frequency * quadrature, -self.frequency * displacement - self.drag * quadrature]
     }
 
     /// The 2 x 2 transition matrix over `h` seconds, row by row, of the deviation from equilibrium

@@ -59,6 +59,8 @@ pub struct Arc {
     reach: f64,
     /// No |x''| on the arc is larger (rad/s²).
     curvature: f64,
+    /// No |x'''| on the arc is larger (rad/s³).
+    jerk: f64,
 }
 
 /// One mode on an arc: its equilibrium, and the deviation in which the arc began.
@@ -82,6 +84,7 @@ impl Arc {
             centre: 0.0,
             reach: 0.0,
             curvature: 0.0,
+            jerk: 0.0,
         }
     }
 
@@ -93,6 +96,7 @@ impl Arc {
         self.centre = 0.0;
         self.reach = 0.0;
         self.curvature = self.moment.abs();
+        self.jerk = 0.0;
         for (swing, phase) in self.modes.iter_mut().zip(&from.modes) {
             let equilibrium = swing.flow.excitability * self.moment;
             let displacement = phase.displacement - equilibrium;
@@ -102,6 +106,7 @@ impl Arc {
             self.centre += equilibrium;
             self.reach += distance;
             self.curvature += swing.flow.stiffness * distance;
+            self.jerk += swing.flow.jerk * distance;
         }
     }
 
@@ -110,24 +115,24 @@ impl Arc {
     pub fn at(&self, h: f64, state: &mut State) -> Sight {
         state.rigid_angle = self.angle + h * (self.rate + 0.5 * self.moment * h);
         state.rigid_rate = self.rate + self.moment * h;
-        let mut sight = Sight { angle: state.rigid_angle, rate: state.rigid_rate };
+        let mut sight = Sight { angle: state.rigid_angle, rate: state.rigid_rate, acceleration: self.moment };
         for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
             let [xx, xy, yx, yy] = swing.flow.transition(h);
             let Phase { displacement: x, quadrature: y } = swing.from;
-            phase.displacement = swing.equilibrium + (xx * x + xy * y);
+            let deviation = xx * x + xy * y;
+            phase.displacement = swing.equilibrium + deviation;
             phase.quadrature = yx * x + yy * y;
-            sight.angle += phase.displacement;
-            sight.rate += swing.flow.frequency * phase.quadrature;
+            swing.flow.add_sight(swing.equilibrium, deviation, phase.quadrature, &mut sight);
         }
         sight
     }
 
     /// What a sensor sees at departure.
     pub fn origin(&self) -> Sight {
-        let mut sight = Sight { angle: self.angle, rate: self.rate };
+        let mut sight = Sight { angle: self.angle, rate: self.rate, acceleration: self.moment };
         for swing in &self.modes {
-            sight.angle += swing.equilibrium + swing.from.displacement;
-            sight.rate += swing.flow.frequency * swing.from.quadrature;
+            let Phase { displacement, quadrature } = swing.from;
+            swing.flow.add_sight(swing.equilibrium, displacement, quadrature, &mut sight);
         }
         sight
     }
@@ -140,29 +145,29 @@ impl Arc {
         if gap <= 0.0 {
             return 0.0;
         }
-        let (rate, moment) = (towards * self.rate, towards * self.moment);
-        let discriminant = rate * rate + 2.0 * moment * gap;
-        if discriminant < 0.0 || (rate <= 0.0 && moment <= 0.0) {
-            return f64::INFINITY;
-        }
-        let root = libm::sqrt(discriminant);
-        if rate > 0.0 { 2.0 * gap / (rate + root) } else { (root - rate) / moment }
+        first_root(gap, towards * self.rate, towards * self.moment)
     }
 
-    /// A time (s) for which the guard cannot trip, given what a sensor sees now: the first root of
-    /// gap - speed t - curvature t²/2.
+    /// A time (s) for which the guard cannot trip, given what a sensor sees now.
+    ///
+    /// With the bounds M of |x''| and J of |x'''| the gap left after t is at least gap - speed t - M t²/2, and at least
+    /// gap - speed t - a t²/2 - J t³/6 with the acceleration a now. Let q be the first root of gap - speed t - a t²/2.
+    /// Up to q, J t³/6 is at most (J q/3) t²/2, so that the first root with the acceleration a + J q/3, which is not
+    /// after q, is certain too. The lesser of the two accelerations gives the longer stride.
     #[inline]
     pub fn stride(&self, guard: Guard, now: Sight) -> f64 {
-        let gap = guard.gap(now.angle);
+        let towards = guard.side.sign();
+        let (gap, speed, acceleration) =
+            (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
+        let q = first_root(gap, speed, acceleration);
+        first_root(gap, speed, self.curvature.min(acceleration + self.jerk * q / 3.0))
+    }
+
+    /// Whether the guard cannot trip within a time (s), given what a sensor sees now.
+    #[inline]
+    pub fn is_clear(&self, guard: Guard, now: Sight, time: f64) -> bool {
         let speed = guard.side.sign() * now.rate;
-        let root = libm::sqrt(speed * speed + 2.0 * self.curvature * gap);
-        if speed > 0.0 {
-            2.0 * gap / (speed + root)
-        } else if self.curvature > 0.0 {
-            (root - speed) / self.curvature
-        } else {
-            f64::INFINITY
-        }
+        guard.gap(now.angle) > time * (speed + 0.5 * self.curvature * time)
     }
 
     /// Carries a small deviation of the state over `h` seconds. Its components are the rigid angle and rate, then
@@ -183,5 +188,22 @@ impl Arc {
             velocity.extend(swing.flow.velocity(from_rest, phase.quadrature));
         }
         DVector::from_vec(velocity)
+    }
+}
+
+/// The first root t >= 0 of gap - speed t - acceleration t²/2 for a gap >= 0, or infinity.
+#[inline]
+fn first_root(gap: f64, speed: f64, acceleration: f64) -> f64 {
+    let discriminant = speed * speed + 2.0 * acceleration * gap;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    let root = libm::sqrt(discriminant);
+    if speed > 0.0 {
+        2.0 * gap / (speed + root)
+    } else if acceleration > 0.0 {
+        (root - speed) / acceleration
+    } else {
+        f64::INFINITY
     }
 }

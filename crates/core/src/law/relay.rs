@@ -51,12 +51,11 @@ pub enum Sides {
 impl Control for Relay {
     fn decide(&mut self, now: Instant, cause: Cause, belief: &Belief) -> Hold {
         let phase = self.next(cause, belief);
-        let brake = Span::from_seconds(belief.gain * now.since(self.pushed_at).seconds());
         if matches!(phase, Phase::RightPush | Phase::LeftPush) {
             self.pushed_at = now;
         }
         self.phase = Some(phase);
-        self.hold(phase, now + brake)
+        self.hold(phase, now, belief.gain)
     }
 
     fn state(&self) -> Phase {
@@ -87,12 +86,16 @@ impl Relay {
         }
     }
 
-    /// What a state commands; `braked` is when a brake that begins now ends.
-    fn hold(&self, phase: Phase, braked: Instant) -> Hold {
+    /// What a state that begins now commands.
+    fn hold(&self, phase: Phase, now: Instant, k_t: f64) -> Hold {
         let back = self.dead_zone.get() - self.hysteresis.get();
         let (strong, weak) = (self.strong.get(), self.weak.get());
         let until_guards = |torque, guards| Hold { torque, until: None, guards };
-        let until_braked = |torque| Hold { torque, until: Some(braked), guards: Guards::NONE };
+        let until_braked = |torque| {
+            let push = now.since(self.pushed_at).seconds();
+            let until = Some(now + Span::from_seconds(k_t * push));
+            Hold { torque, until, guards: Guards::NONE }
+        };
         let boundaries = match self.sides {
             Sides::Two => Guards::two(self.right(), self.left()),
             Sides::One => Guards::one(self.right()),

@@ -1,0 +1,125 @@
+//! The engine beside a hand-written yardstick of the same mathematics, in one run.
+//!
+//! `python benches/table.py` runs this and its peers and prints the table of docs/benchmarks.md.
+
+mod reference;
+
+use std::hint::black_box;
+use std::io::Cursor;
+use std::time::Duration;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::record::{Detail, McapLog, Metrics, Record, RunEnd, Trace};
+use flexsc_core::{Scenario, Simulation};
+
+/// relay-quiet without its observer: switchings alone.
+const EVENTS: &str = r"
+duration = 20000.0
+[body.planar]
+angle = 4.5e-4
+rate = 2.2e-5
+modes = [
+    { frequency = 0.44, gain = 0.0213, displacement = 2.75e-6 },
+    { frequency = 0.755, gain = 0.0216 },
+]
+[law.relay]
+dead_zone = 5e-4
+hysteresis = 1e-4
+strong = 4e-5
+weak = 1e-6
+k_t = 0.3389
+";
+
+const WINDOWS: &str = "[estimator.envelope]\nwindow = 500.0\n";
+
+fn scenario(text: &str) -> Scenario {
+    Scenario::parse("bench.toml", text).expect("a valid scenario")
+}
+
+fn simulate(scenario: &Scenario, record: &mut impl Record) {
+    Simulation::new(scenario, 0).run(record).expect("a run");
+}
+
+/// A relay-quiet with the two modes and so many stiffer ones, which hardly move.
+fn with_modes(count: usize) -> Scenario {
+    let mut table = scenario(EVENTS).to_table();
+    let modes = table["body"]["planar"]["modes"].as_array_mut().expect("modes");
+    for index in modes.len()..count {
+        let mut mode = modes[1].clone();
+        let mode_table = mode.as_table_mut().expect("a mode");
+        mode_table["frequency"] = (1.0 + 0.05 * index as f64).into();
+        mode_table["gain"] = 1e-6.into();
+        modes.push(mode);
+    }
+    scenario(&toml::to_string(&table).expect("TOML"))
+}
+
+fn run(c: &mut Criterion) {
+    let mut group = c.benchmark_group("run of 20000 s");
+    let (events, windows) = (scenario(EVENTS), scenario(&format!("{EVENTS}{WINDOWS}")));
+    group.bench_function("yardstick", |b| b.iter(|| reference::exact(black_box(0.3389), 20_000.0)));
+    group.bench_function("events only", |b| b.iter(|| simulate(black_box(&events), &mut ())));
+    group.bench_function("events in memory", |b| {
+        b.iter(|| {
+            let mut trace = Trace::new(Detail::Events);
+            simulate(black_box(&events), &mut trace);
+            trace
+        });
+    });
+    group.bench_function("40 window means", |b| b.iter(|| simulate(black_box(&windows), &mut ())));
+    let run = Run { number: 0, scenario: windows.clone(), drawn: Vec::new() };
+    group.bench_function("windows and metrics", |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
+    group.bench_function("windows, metrics, log", |b| {
+        b.iter(|| {
+            let from = Campaign::provenance(&run);
+            let mut log = McapLog::new(Cursor::new(Vec::new()), &from, Detail::Events).expect("a log");
+            let metrics = Campaign::simulate(&run, &mut log).expect("a run");
+            log.finish(&metrics.to_row(), RunEnd::Complete).expect("a log")
+        });
+    });
+    group.finish();
+
+    let mut group = c.benchmark_group("fixed step, 200 s");
+    group.sample_size(10).measurement_time(Duration::from_secs(2));
+    group.bench_function("RK4 at 1e-4 s", |b| b.iter(|| reference::rk4(black_box(0.3389), 200.0, 1e-4)));
+    group.finish();
+}
+
+fn modes(c: &mut Criterion) {
+    let mut group = c.benchmark_group("modes");
+    group.sample_size(20);
+    for count in [2_usize, 20, 50, 100, 200] {
+        let scenario = with_modes(count);
+        group.throughput(Throughput::Elements(count as u64));
+        group.bench_with_input(BenchmarkId::from_parameter(count), &scenario, |b, scenario| {
+            b.iter(|| simulate(black_box(scenario), &mut ()));
+        });
+    }
+    group.finish();
+}
+
+fn log(c: &mut Criterion) {
+    let mut group = c.benchmark_group("log");
+    // 2000 s at 0.01 s: 200 000 instants with four messages each.
+    let text = format!("{EVENTS}{WINDOWS}[log]\nperiod = 0.01\n").replace("20000.0", "2000.0");
+    let full = scenario(&text);
+    let run = Run { number: 0, scenario: full.clone(), drawn: Vec::new() };
+    group.sample_size(10).throughput(Throughput::Elements(4 * 200_000));
+    group.bench_function("dense MCAP", |b| {
+        b.iter(|| {
+            let from = Campaign::provenance(&run);
+            let mut log = McapLog::new(Cursor::new(Vec::new()), &from, Detail::Full).expect("a log");
+            simulate(&full, &mut log);
+            log.finish(&Metrics { metrics: Vec::new() }, RunEnd::Complete).expect("a log")
+        });
+    });
+    group.finish();
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
+    targets = run, modes, log
+}
+criterion_main!(benches);
