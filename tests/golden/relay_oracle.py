@@ -1,7 +1,7 @@
 """Independent solution of the relay-controlled spacecraft: 40-digit arithmetic, decimal literals, Newton on x.
 
-Run as `python relay_oracle.py`; writes relay-switchings-<k_t>.csv beside itself, one switching a line. It shares no
-code with flexsc: crossings are bracketed by sampling every 0.02 s and refined by bisection and Newton steps.
+Run as `python relay_oracle.py`; writes relay-switchings-<k_t>.csv beside itself: the time of each switching and the
+state of the law that begins, and for the first 120 the state of the body (y is a mode's rate over its frequency). It shares no code with flexsc: crossings are bracketed by sampling every 0.02 s and refined by bisection and Newton steps.
 """
 
 import math
@@ -92,12 +92,18 @@ def run(kt, end):
             return
         state = flow(state, MOMENT[name], h)
         name = to
-        yield t, name
+        yield t, name, state
+
+
+def line(index, t, to, state):
+    digits = [t] if index >= 120 else [t, state[0], state[1], *(part for mode in state[2] for part in mode)]
+    cells = [mp.nstr(value, 20, strip_zeros=False) for value in digits]
+    return ",".join([cells[0], to, *cells[1:]])
 
 
 if __name__ == "__main__":
-    for kt in sys.argv[1:] or ["0.3389"]:
-        lines = [f"{mp.nstr(t, 22, strip_zeros=False)},{to}" for t, to in run(mpf(kt), mpf(20000))]
+    for kt in sys.argv[1:] or ["0.31", "0.3389"]:
+        lines = [line(index, *row) for index, row in enumerate(run(mpf(kt), mpf(20000)))]
         path = Path(__file__).with_name(f"relay-switchings-{kt}.csv")
-        path.write_text("time_s,state\n" + "\n".join(lines) + "\n")
+        path.write_text("time_s,state,xb,vb,x1,y1,x2,y2\n" + "\n".join(lines) + "\n")
         print(path, len(lines))

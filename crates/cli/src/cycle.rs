@@ -3,12 +3,15 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
+use flexsc_core::analysis::rigid_cycle::{Resonance, cycles, resonances};
 use flexsc_core::law::{Law, Sides};
 use serde_json::json;
 
 use crate::failure::Failure;
 use crate::{print, say, simulate};
+
+/// So many resonances of each mode are told to people.
+const NEAREST: usize = 3;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -55,9 +58,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         say!("    impulse        {:.6e} N m s per hour", cycle.impulse_per_hour_nm_s);
     }
     if !resonances.is_empty() {
-        say!("  resonances of the two-sided cycle:");
+        say!("  resonances of the two-sided cycle, the {NEAREST} nearest of each mode (all with --json):");
     }
-    for r in &resonances {
+    for r in nearest(&resonances, k_t) {
         say!(
             "    mode {}, harmonic {:>2}: period {:.4} s at k_t = {:.6}",
             r.mode,
@@ -67,4 +70,17 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         );
     }
     Ok(())
+}
+
+/// The resonances of each mode that are nearest to a gain, in the order of the gains.
+fn nearest(resonances: &[Resonance], k_t: f64) -> Vec<Resonance> {
+    let modes = resonances.iter().map(|r| r.mode + 1).max().unwrap_or(0);
+    let of_mode = |mode| {
+        let mut own: Vec<Resonance> = resonances.iter().filter(|r| r.mode == mode).copied().collect();
+        own.sort_by(|a, b| (a.k_t - k_t).abs().total_cmp(&(b.k_t - k_t).abs()));
+        own.truncate(NEAREST);
+        own.sort_by(|a, b| a.k_t.total_cmp(&b.k_t));
+        own
+    };
+    (0..modes).flat_map(of_mode).collect()
 }

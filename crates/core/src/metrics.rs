@@ -60,6 +60,11 @@ metrics! {
     GAIN_INITIAL = "gain_initial", "", "The law's tunable parameter at the start (k_t of the relay law)";
     GAIN_FINAL = "gain_final", "", "The law's tunable parameter at the end";
     GAIN_FROZEN_AT = "gain_frozen_at_s", "s", "When the adaptation froze the gain; null if it did not";
+    GAIN_FROZEN = "gain_frozen", "", "The frozen gain; null if the adaptation did not freeze it";
+    ENVELOPE_FROZEN = "envelope_frozen_rad", "rad",
+        "Mean of the total envelope over the whole windows after the freeze (the last one, if it came at the end); null without a freeze";
+    FROZEN_REDUCTION = "envelope_frozen_reduction", "",
+        "How many times smaller envelope_frozen_rad is than what envelope_reduction compares with; null without a freeze";
     CYCLE_KIND = "cycle_kind", "",
         "The limit cycle at the end of the run: two-sided, one-sided, mixed, or none if the run is not periodic";
     CYCLE_PERIOD = "cycle_period_s", "s", "Period of that cycle; null without one";
@@ -157,6 +162,7 @@ pub struct Gather {
     frozen_at: f64,
     cycle: CycleWatch,
     observed: bool,
+    adapted: bool,
 }
 
 impl Gather {
@@ -177,6 +183,7 @@ impl Gather {
             frozen_at: f64::NAN,
             cycle: CycleWatch::new(&scenario.body, smooth),
             observed: scenario.estimator.is_some(),
+            adapted: scenario.adaptation.is_some(),
         }
     }
 
@@ -197,6 +204,9 @@ impl Gather {
         metrics.push((&GAIN_INITIAL, Value::Number(self.gain.0)));
         metrics.push((&GAIN_FINAL, Value::Number(self.gain.1)));
         metrics.push((&GAIN_FROZEN_AT, Value::Number(self.frozen_at)));
+        if self.adapted {
+            metrics.extend(self.frozen());
+        }
         metrics.extend(cycle_metrics(self.cycle));
         Metrics(metrics)
     }
@@ -212,6 +222,21 @@ impl Gather {
             (&ENVELOPE_LATE, Value::Number(mean(late))),
             (&ENVELOPE_FINAL, Value::Number(last)),
             (&REDUCTION, Value::Number(self.reference.unwrap_or(first) / last)),
+        ]
+    }
+
+    fn frozen(&self) -> [(&'static Meaning, Value); 3] {
+        let first = self.means.first().copied().unwrap_or(f64::NAN);
+        let after = self.windows_from.iter().position(|from| *from >= self.frozen_at);
+        let (gain, level) = match (self.frozen_at.is_nan(), after) {
+            (true, _) => (f64::NAN, f64::NAN),
+            (false, Some(after)) => (self.gain.1, mean(&self.means[after..])),
+            (false, None) => (self.gain.1, self.means.last().copied().unwrap_or(f64::NAN)),
+        };
+        [
+            (&GAIN_FROZEN, Value::Number(gain)),
+            (&ENVELOPE_FROZEN, Value::Number(level)),
+            (&FROZEN_REDUCTION, Value::Number(self.reference.unwrap_or(first) / level)),
         ]
     }
 

@@ -45,7 +45,7 @@ pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
                 unit: meaning.unit,
                 runs: values.len(),
                 mean,
-                sd: libm::sqrt(squares / (n - 1.0)),
+                sd: if n > 1.0 { libm::sqrt(squares / (n - 1.0)) } else { f64::NAN },
                 quantiles: QUANTILES.map(|q| quantile(&values, q)),
             }
         })
