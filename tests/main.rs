@@ -1,3 +1,4 @@
 //! All integration tests of flexsc, one binary.
 
+mod events;
 mod relay;

@@ -1,0 +1,210 @@
+//! The rules of time: no crossing is missed, and nothing that watches a run changes it.
+
+use flexsc_core::belief::Belief;
+use flexsc_core::body::{Body, State};
+use flexsc_core::guard::{Guard, locate};
+use flexsc_core::law::{Cause, Control, Law};
+use flexsc_core::random::{Seed, Stream};
+use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::time::{Instant, Span};
+use flexsc_core::{Scenario, Simulation, SimulationError};
+
+const RELAY: &str =
+    "[law.relay]\ndead_zone = 5e-4\nhysteresis = 1e-4\nstrong = 4e-5\nweak = 1e-6\nk_t = 0.31\n";
+
+fn scenario(text: &str) -> Scenario {
+    Scenario::parse("test.toml", text).expect("a valid scenario")
+}
+
+/// A body with random modes, some damped, some beyond critical, in a random state.
+fn random_body(stream: &mut Stream) -> (Body, State) {
+    let mut text = String::from("duration = 1.0\n[body.planar]\n");
+    text += &format!("angle = {:e}\nrate = {:e}\n", 1e-4 * stream.normal(), 2e-5 * stream.normal());
+    for _ in 0..stream.index(6) {
+        let frequency = 0.05 * 400_f64.powf(stream.uniform());
+        let damping = [0.0, 0.004, 0.3, 1.0, 1.7][stream.index(5)];
+        let size = 3e-5 * stream.uniform();
+        text += &format!(
+            "[[body.planar.modes]]\nfrequency = {frequency}\ngain = {}\ndamping = {damping}\n\
+             displacement = {:e}\nrate = {:e}\n",
+            0.5 * stream.uniform(),
+            size * stream.normal(),
+            size * frequency * stream.normal(),
+        );
+    }
+    let scenario = scenario(&(text + RELAY));
+    let state = scenario.body.start();
+    (scenario.body, state)
+}
+
+#[test]
+fn no_crossing_is_missed() {
+    let mut stream = Seed { scenario: 11, run: 0 }.stream("arcs");
+    let (mut tripped, mut clear) = (0, 0);
+    for _ in 0..1500 {
+        let (body, state) = random_body(&mut stream);
+        let mut arc = body.arc();
+        arc.depart(&state, 3e-6 * stream.normal());
+        let start = state.angle();
+        let guards = [
+            Guard::at_least(start + 3e-4 * stream.uniform()),
+            Guard::at_most(start - 3e-4 * stream.uniform()),
+        ];
+        let horizon = Span::from_seconds(5.0);
+        let mut there = state.clone();
+        let trip = locate(&arc, &guards, horizon, &mut there);
+        let until = trip.map_or(5.0, |trip| trip.after.seconds());
+        // Nothing was crossed before, seen at 20 000 instants, within the rounding of the angle.
+        let mut probe = state.clone();
+        for index in 0..20_000 {
+            let sight = arc.at(until * f64::from(index) / 20_000.0, &mut probe);
+            for guard in guards {
+                assert!(guard.gap(sight.angle) > -1e-18, "crossed before {until} s: {body:?}");
+            }
+        }
+        match trip {
+            None => clear += 1,
+            Some(trip) => {
+                tripped += 1;
+                let guard = guards[trip.guard];
+                let sight = arc.at(trip.after.seconds(), &mut probe);
+                assert!(guard.holds(sight.angle));
+                assert_eq!(probe, there);
+                // It is the first tick: one before, the angle is short of the level, or at it to rounding.
+                let before = arc.at(trip.after.minus(Span::TICK).seconds(), &mut probe);
+                assert!(guard.gap(before.angle) > -1e-18);
+            }
+        }
+    }
+    assert!(tripped > 500 && clear > 100, "{tripped} tripped, {clear} clear");
+}
+
+#[test]
+fn a_tangent_touch_is_found() {
+    // The body turns round a ten-thousandth of the last bit of its angle beyond the level: 1e-4 + v²/2m.
+    let text = format!("duration = 1.0\n[body.planar]\nangle = 1e-4\nrate = 1e-5\n{RELAY}");
+    let scenario = scenario(&text);
+    let mut arc = scenario.body.arc();
+    let state = scenario.body.start();
+    arc.depart(&state, -1e-6);
+    let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
+    let mut there = state.clone();
+    let horizon = Span::from_seconds(100.0);
+    let below = locate(&arc, &[Guard::at_least(peak - 1e-18)], horizon, &mut there).expect("a touch");
+    assert!((below.after.seconds() - 10.0).abs() < 2e-6, "{}", below.after.seconds());
+    assert_eq!(locate(&arc, &[Guard::at_least(peak + 1e-18)], horizon, &mut there), None);
+}
+
+#[test]
+fn a_guard_that_holds_trips_at_once() {
+    let scenario = scenario(&format!("duration = 1.0\n[body.planar]\nangle = 1e-4\n{RELAY}"));
+    let mut arc = scenario.body.arc();
+    let state = scenario.body.start();
+    arc.depart(&state, 0.0);
+    let mut there = state.clone();
+    let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
+    let trip = locate(&arc, &guards, Span::from_seconds(1.0), &mut there).expect("a trip");
+    assert_eq!((trip.after, trip.guard), (Span::ZERO, 1));
+}
+
+#[test]
+fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
+    let text = format!("duration = 1.0\n[body.planar]\nrate = 1e-9\n{RELAY}");
+    let scenario = scenario(&text);
+    let mut arc = scenario.body.arc();
+    let state = scenario.body.start();
+    arc.depart(&state, 0.0);
+    let mut there = state.clone();
+    let guards = [Guard::at_least(5e-4)];
+    let trip = locate(&arc, &guards, Span::from_seconds(1e6), &mut there).expect("a trip");
+    assert!((trip.after.seconds() - 5e5).abs() < 1e-9);
+    assert_eq!(locate(&arc, &guards, Span::from_seconds(4.9e5), &mut there), None);
+}
+
+const FLEXIBLE: &str = "
+[body.planar]
+angle = 4.5e-4
+rate = 2.2e-5
+modes = [
+    { frequency = 0.44, gain = 0.0213, displacement = 2.75e-6 },
+    { frequency = 0.755, gain = 0.0216, damping = 0.002 },
+]
+";
+
+fn commands(trace: &Trace) -> Columns {
+    trace.topic("/command").expect("a topic").clone()
+}
+
+#[test]
+fn watching_a_run_does_not_change_it() {
+    let plain = scenario(&format!("duration = 3000\n{FLEXIBLE}{RELAY}"));
+    let mut events = Trace::new(Detail::Events);
+    Simulation::new(&plain, 0).run(&mut events).expect("a run");
+
+    // A dense record, an observer with its windows, and stops on the way.
+    let watched = scenario(&format!(
+        "duration = 3000\n{FLEXIBLE}{RELAY}[log]\nperiod = 0.37\n[estimator.envelope]\nwindow = 61.7\n"
+    ));
+    let mut full = Trace::new(Detail::Full);
+    let mut simulation = Simulation::new(&watched, 0);
+    for stop in 1..=30 {
+        let until = Instant::START + Span::from_seconds(100.0 * f64::from(stop));
+        simulation.run_until(until, &mut full).expect("a run");
+    }
+    assert_eq!(commands(&events), commands(&full));
+    assert!(full.topic("/attitude").expect("a topic").len() > 8000);
+}
+
+#[test]
+fn a_sampled_sensor_trips_guards_at_samples() {
+    let text = format!("duration = 500\n{FLEXIBLE}{RELAY}[sensor.sampled]\nperiod = 0.25\n");
+    let mut trace = Trace::new(Detail::Events);
+    Simulation::new(&scenario(&text), 0).run(&mut trace).expect("a run");
+    let commands = commands(&trace);
+    let (Some(Column::Labels(causes, labels)), Some(Column::Counts(parts))) =
+        (commands.get("cause"), commands.get("time_fs"))
+    else {
+        panic!("no columns")
+    };
+    let (mut guards, mut timeouts) = (0, 0);
+    for (cause, part) in causes.iter().zip(parts) {
+        if labels[usize::from(*cause)] == "guard" {
+            guards += 1;
+            assert_eq!(part % 250_000_000_000_000, 0, "a guard tripped between samples");
+        } else {
+            timeouts += 1;
+        }
+    }
+    assert!(guards > 30 && timeouts > 15, "{guards} {timeouts}");
+}
+
+#[test]
+fn chatter_is_an_error() {
+    // A weak torque of nothing and a brake shorter than a tick: the law switches for ever at one instant.
+    let text = "duration = 10\n[body.planar]\nangle = 5e-4\nrate = 0.0\n[law.relay]\ndead_zone = 5e-4\n\
+                hysteresis = 1e-300\nstrong = 4e-5\nweak = 1e-6\nk_t = 1e-3\n";
+    let error = Simulation::new(&scenario(text), 0).run(&mut ()).expect_err("chatter");
+    assert!(matches!(error, SimulationError::Chatter { .. }), "{error}");
+    assert!(error.to_string().contains("t = 0.000000000000000 s"), "{error}");
+}
+
+#[test]
+fn a_state_that_overflows_is_an_error() {
+    let text = format!("duration = 1e10\n[body.planar]\nangle = 1e-4\nrate = 1e300\n{RELAY}")
+        .replace("strong = 4e-5", "strong = 1e-300");
+    let error = Simulation::new(&scenario(&text), 0).run(&mut ()).expect_err("an overflow");
+    assert!(matches!(error, SimulationError::NonFinite { .. }), "{error}");
+}
+
+#[test]
+fn the_brake_keeps_the_gain_that_it_began_with() {
+    let Law::Relay(mut law) = scenario(&format!("duration = 1\n{FLEXIBLE}{RELAY}")).law;
+    let at = |seconds| Instant::START + Span::from_seconds(seconds);
+    let belief = |gain| Belief { angle: 6e-4, gain };
+    let push = law.decide(at(0.0), Cause::Start, &belief(0.31));
+    assert_eq!(push.torque, -4e-5);
+    let brake = law.decide(at(4.0), Cause::Guard(0), &belief(0.25));
+    assert_eq!((brake.torque, brake.until), (4e-5, Some(at(5.0))));
+    let coast = law.decide(at(5.0), Cause::Timeout, &belief(0.9));
+    assert_eq!((coast.torque, coast.until, coast.guards.len()), (1e-6, None, 2));
+}
