@@ -108,18 +108,17 @@ impl Document {
             return toml::from_str(text).map_err(|error| pointed(&self.origin, text, &error));
         }
         Value::Table(self.table.clone()).try_into().map_err(|error: toml::de::Error| {
-            let text = error.to_string();
-            let text = text.trim_end();
-            let (why, key) = text.rsplit_once("\nin `").unwrap_or((text, ""));
-            let key = key.trim_end_matches('`');
-            let found = get(&self.table, key).map(Value::type_str);
-            let place = match (key, self.changed.as_slice()) {
-                ("", []) => return ScenarioError::Invalid(format!("{}: {}", self.origin, explained(why, None))),
-                (_, []) => format!("`{key}`"),
-                ("", changed) => format!("with {} set", changed.join(", ")),
-                (_, changed) => format!("`{key}` (with {} set)", changed.join(", ")),
+            // As a text, it shows which value is meant.
+            let text = toml::to_string(&self.table).unwrap_or_default();
+            let message = match toml::from_str::<T>(&text) {
+                Err(error) => told(&text, &error).0,
+                Ok(_) => explained(error.message(), None),
             };
-            self.key_error(&place, explained(why, found))
+            let set = match self.changed.as_slice() {
+                [] => String::new(),
+                changed => format!(" (with {} set)", changed.join(", ")),
+            };
+            ScenarioError::Invalid(format!("{}: {message}{set}", self.origin))
         })
     }
 
@@ -138,7 +137,7 @@ impl Document {
                 return ScenarioError::Invalid(point(&self.origin, text, span, &format!("`{key}` {why}")));
             }
         }
-        self.key_error(&format!("`{key}`"), why.to_owned())
+        ScenarioError::Invalid(format!("{}: `{key}` {why}", self.origin))
     }
 
     fn key_error(&self, key: &str, why: String) -> ScenarioError {
@@ -146,32 +145,38 @@ impl Document {
     }
 }
 
-/// The parser's error, told by key and place.
+/// The parser's error, pointed at the place that it is about.
 fn pointed(origin: &str, text: &str, error: &toml::de::Error) -> ScenarioError {
-    let Some(span) = error.span() else {
-        return ScenarioError::Invalid(format!("{origin}: {}", explained(error.message(), None)));
-    };
+    let (message, span) = told(text, error);
+    ScenarioError::Invalid(match span {
+        Some(span) => point(origin, text, span, &message),
+        None => format!("{origin}: {message}"),
+    })
+}
+
+/// The parser's error with the key that it is about, and the place.
+fn told(text: &str, error: &toml::de::Error) -> (String, Option<Range<usize>>) {
+    let span = error.span();
     let table = DeTable::parse(text).ok();
-    let place = table.as_ref().and_then(|table| place_of(table.get_ref(), &span));
-    let message = match place {
-        None => explained(error.message(), None),
-        Some((key, value)) => {
-            let why = explained(error.message(), Some(value.type_str()));
-            let why = bracketed(&key, &text[span.start..], &why).unwrap_or(why);
-            match value {
-                DeValue::Table(kinds) if why.ends_with(MORE_THAN_ONE) => {
-                    let given: Vec<_> = kinds.keys().map(|kind| format!("`{}`", kind.get_ref())).collect();
-                    format!("`{key}`: {why}: {}", given.join(", "))
-                }
-                // A path without quotes is read as tables within tables.
-                _ if key.starts_with("uncertain.") && why.contains("is not known here") => {
-                    format!("`{key}`: {why}; the path of an uncertain key stands in quotes")
-                }
-                _ => format!("`{key}`: {why}"),
-            }
+    let place = table.as_ref().zip(span.as_ref()).and_then(|(table, span)| {
+        let (key, value) = place_of(table.get_ref(), span)?;
+        Some((shortened(&key), value, &text[span.start..]))
+    });
+    let Some((key, value, from)) = place else { return (explained(error.message(), None), span) };
+    let why = explained(error.message(), Some(value.type_str()));
+    let why = bracketed(&key, from, &why).unwrap_or(why);
+    let message = match value {
+        DeValue::Table(kinds) if why.ends_with(MORE_THAN_ONE) => {
+            let given: Vec<_> = kinds.keys().map(|kind| format!("`{}`", kind.get_ref())).collect();
+            format!("`{key}`: {why}: {}", given.join(", "))
         }
+        // A path without quotes is read as tables within tables.
+        _ if key.starts_with("uncertain.") && !key.contains('"') => {
+            format!("`{key}`: {why}; the path of an uncertain key stands in quotes")
+        }
+        _ => format!("`{key}`: {why}"),
     };
-    ScenarioError::Invalid(point(origin, text, span, &message))
+    (message, span)
 }
 
 const MORE_THAN_ONE: &str = "exactly one kind is accepted here, and more than one is given";
@@ -200,19 +205,21 @@ fn explained(message: &str, found: Option<&str>) -> String {
         return "found only the name of a kind that needs values of its own: a table".to_owned();
     }
     if message == "u64 value was too large" {
-        return format!("expected {}", expected("u64"));
+        return format!("found a number that is too large, expected {}", expected("u64"));
     }
     if let Some(found) = message.strip_suffix(" as i128, expected any valid TOML value") {
         let found = found.trim_start_matches("invalid type: ");
         return format!("found {found}, which is too large; a number so large is written with a point");
     }
-    for (words, start) in [("unknown field ", "unknown key "), ("missing field ", "missing key ")] {
-        if let Some(rest) = message.strip_prefix(words) {
-            return format!("{start}{rest}");
-        }
+    if let Some(missing) = message.strip_prefix("missing field ") {
+        return format!("missing key {missing}");
     }
-    if let Some((unknown, known)) = message.strip_prefix("unknown variant ").and_then(|m| m.split_once(", ")) {
-        return format!("{unknown} is not known here, {known}");
+    if let Some((unknown, known)) = message.strip_prefix("unknown field ").and_then(|m| m.split_once(", ")) {
+        return format!("unknown key {}, {known}", shortened(unknown));
+    }
+    if let Some((unknown, known)) = message.strip_prefix("unknown variant ").and_then(|m| m.split_once(", "))
+    {
+        return format!("{} is not known here, {known}", shortened(unknown));
     }
     for invalid in ["invalid type: ", "invalid value: ", "invalid length "] {
         let parts = message.strip_prefix(invalid).and_then(|rest| rest.rsplit_once(", expected "));
@@ -254,10 +261,9 @@ fn expected(wanted: &str) -> &str {
 
 /// Says which brackets a header needs, if it has the wrong ones.
 fn bracketed(key: &str, place: &str, why: &str) -> Option<String> {
-    let double = place.starts_with("[[");
-    let key = if double { key.rsplit_once('[')?.0 } else { key };
     match why {
-        "found a table, expected a number" if double => {
+        // An array can stand for a table: its first element is then read as the first key.
+        "found an array, expected a number" if place.starts_with("[[") => {
             Some(format!("there is only one: expected `[{key}]`, found `[[{key}]]`"))
         }
         "found a table, expected an array" if place.starts_with('[') => {
@@ -443,32 +449,28 @@ fn place_in<'a>(
     value: &'a Spanned<DeValue<'a>>,
     span: &Range<usize>,
 ) -> Option<(bool, String, &'a DeValue<'a>)> {
-    let exact = value.span() == *span;
-    // The span of a table is its header, or that of an inline one its braces: its keys may stand elsewhere.
-    let mut around = (!exact && value.span().contains(&span.start)).then_some(());
+    if value.span() == *span {
+        return Some((true, path, value.get_ref()));
+    }
+    let parts: Vec<(String, &Spanned<DeValue<'_>>)> = match value.get_ref() {
+        DeValue::Table(table) => {
+            let path_of = |key: &str| format!("{path}.{}", bare_or_quoted(key));
+            table.iter().map(|(key, value)| (path_of(key.get_ref()), value)).collect()
+        }
+        DeValue::Array(array) => {
+            array.iter().enumerate().map(|(index, value)| (format!("{path}[{index}]"), value)).collect()
+        }
+        _ => Vec::new(),
+    };
     let mut inner = None;
-    if !exact {
-        let parts: Box<dyn Iterator<Item = (String, &Spanned<DeValue<'_>>)>> = match value.get_ref() {
-            DeValue::Table(table) => {
-                let key = |key: &str| format!("{path}.{}", bare_or_quoted(key));
-                Box::new(table.iter().map(move |(k, v)| (key(k.get_ref()), v)))
-            }
-            DeValue::Array(array) => {
-                Box::new(array.iter().enumerate().map(|(index, v)| (format!("{path}[{index}]"), v)))
-            }
-            _ => Box::new(std::iter::empty()),
-        };
-        for (path, part) in parts {
-            match place_in(path, part, span) {
-                Some(found @ (true, ..)) => return Some(found),
-                found => inner = inner.or(found),
-            }
+    for (path, part) in parts {
+        match place_in(path, part, span) {
+            Some(found @ (true, ..)) => return Some(found),
+            found => inner = inner.or(found),
         }
     }
-    if inner.is_some() {
-        around = None;
-    }
-    inner.or_else(|| (exact || around.is_some()).then(|| (exact, path, value.get_ref())))
+    let around = value.span().contains(&span.start);
+    inner.or_else(|| around.then(|| (false, path, value.get_ref())))
 }
 
 #[cfg(test)]

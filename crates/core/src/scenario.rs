@@ -110,6 +110,9 @@ impl Scenario {
     /// Reads a scenario from a document.
     pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
         let mut scenario: Self = document.read()?;
+        if let Some(error) = document.unread(&scenario.to_table()) {
+            return Err(error);
+        }
         if scenario.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
@@ -150,12 +153,22 @@ impl Scenario {
     /// What single values cannot show to be wrong: the key, and what is wrong with it.
     fn inconsistency(&self) -> Option<(String, String)> {
         let at = |key: &str, why: String| Some((key.to_owned(), why));
-        if self.name.contains(['/', '\\', '\0']) {
-            return at("name", "names files: it can hold no slash".to_owned());
+        if self.name.contains(['/', '\\']) || self.name.contains(char::is_control) || self.name.len() > 200 {
+            let why = "names files: it has at most 200 bytes, no slash and no control character";
+            return at("name", why.to_owned());
         }
         if self.epoch.is_some_and(|epoch| nanoseconds_since_1970(&epoch).is_none()) {
             let example = "2026-03-20T14:46:00Z";
             return at("epoch", format!("must be a date and time from 1970 to 2500, such as {example}"));
+        }
+        // The first day of 2554 is the last whose nanoseconds fit 64 bits.
+        let longest = (u64::MAX - self.epoch_ns()) as f64 / 1e9;
+        if self.duration.seconds() >= longest {
+            let why = format!(
+                "must be below {longest:.4e} s, so that the log can count its nanoseconds from 1970, got {:e}",
+                self.duration.seconds()
+            );
+            return at("duration", why);
         }
         let Law::Relay(relay) = &self.law;
         let (eps, gamma) = (relay.dead_zone.get(), relay.hysteresis.get());
@@ -166,7 +179,8 @@ impl Scenario {
             );
         }
         self.estimator_inconsistency().or_else(|| self.adaptation_inconsistency()).or_else(|| {
-            let table = self.to_table();
+            let mut table = self.to_table();
+            table.remove("uncertain");
             self.uncertain.iter().find_map(|(key, distribution)| {
                 let why = distribution.problem(document::get(&table, key))?;
                 Some((format!("uncertain.\"{key}\""), why))

@@ -49,11 +49,18 @@ impl Distribution {
                 Some("needs at least one value to choose from".to_owned())
             }
             _ => match nominal {
+                Some(Value::Integer(0) | Value::Float(0.0)) if self.is_relative() => {
+                    Some("varies the key's own value by a factor, but that is 0".to_owned())
+                }
                 Some(Value::Integer(_) | Value::Float(_)) => None,
                 Some(other) => Some(format!("varies a number, but that key holds a {}", other.type_str())),
                 None => Some("names no key of this scenario".to_owned()),
             },
         }
+    }
+
+    fn is_relative(&self) -> bool {
+        matches!(self, Self::RelativeUniform(_) | Self::RelativeNormal(_))
     }
 
     /// Draws a value for a key that has this one in the scenario.
