@@ -56,11 +56,11 @@ pub fn run(
     let Telling { all, failed, .. } = telling;
     if let Err(failure) = done {
         if let Some(table) = table {
-            table.abandon(&failure);
+            table.abandon(study, &failure);
         }
         return Err(failure);
     }
-    let table = table.map(Table::finish).transpose()?;
+    let table = table.map(|table| table.finish(study)).transpose()?;
     let statistics = statistics(&all);
     if let Some(dir) = job.table {
         write_statistics(&dir.join(job.file("statistics")), &statistics)?;
@@ -210,25 +210,21 @@ impl Table {
         written.map_err(Failure::write(&self.path))
     }
 
-    fn finish(mut self) -> Result<PathBuf, Failure> {
-        // All runs failed: the rows are all there is.
-        let waiting = std::mem::take(&mut self.waiting);
-        for cells in waiting {
-            self.write(cells)?;
-        }
+    fn finish(mut self, study: &Campaign) -> Result<PathBuf, Failure> {
+        // All runs failed: there are rows without metrics only.
+        let whole = if self.metrics.is_none() { self.header(study, &Metrics::default()) } else { Ok(()) };
         let Self { path, partial, mut writer, .. } = self;
-        writer
-            .flush()
-            .and_then(|()| fs::rename(&partial, &path))
-            .inspect_err(|_| discard(&partial))
-            .map_err(Failure::write(&path))?;
+        whole
+            .and_then(|()| writer.flush().map_err(Failure::write(&path)))
+            .and_then(|()| fs::rename(&partial, &path).map_err(Failure::write(&path)))
+            .inspect_err(|_| discard(&partial))?;
         Ok(path)
     }
 
     /// A stopped campaign keeps the rows that it has; one that cannot be written keeps nothing.
-    fn abandon(self, why: &Failure) {
+    fn abandon(self, study: &Campaign, why: &Failure) {
         if matches!(why, Failure::Interrupted(_)) {
-            let _ = self.finish();
+            let _ = self.finish(study);
         } else {
             discard(&self.partial);
         }
@@ -251,8 +247,9 @@ fn cell(value: &Value) -> String {
 }
 
 fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failure> {
+    let partial = PathBuf::from(format!("{}.partial", path.display()));
     let write = || -> Result<(), csv::Error> {
-        let mut writer = csv::Writer::from_path(path)?;
+        let mut writer = csv::Writer::from_path(&partial)?;
         let mut header: Vec<String> = ["metric", "unit", "runs", "mean", "sd"].map(str::to_owned).into();
         header.extend(QUANTILES.map(|q| format!("q{:02.0}", 100.0 * q)));
         writer.write_record(header)?;
@@ -263,9 +260,9 @@ fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failur
             writer.write_record(cells)?;
         }
         writer.flush()?;
-        Ok(())
+        Ok(fs::rename(&partial, path)?)
     };
-    write().map_err(|error| Failure::write(path)(error.into()))
+    write().inspect_err(|_| discard(&partial)).map_err(|error| Failure::write(path)(error.into()))
 }
 
 fn tell_statistics(statistics: &[Statistics], runs: usize) {
@@ -274,7 +271,7 @@ fn tell_statistics(statistics: &[Statistics], runs: usize) {
     }
     let quantiles = QUANTILES.map(|q| format!("{:>11}", format!("{:.0} %", 100.0 * q))).concat();
     say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", "metric", "runs", "mean", "sd");
-    for s in statistics {
+    for s in statistics.iter().filter(|s| s.runs > 0) {
         let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
         say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
     }

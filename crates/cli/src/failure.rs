@@ -57,6 +57,7 @@ impl Failure {
         }
         say!("error: {self}");
         match self {
+            Self::Log(LogError::Unwritable { .. }) => 1,
             Self::Scenario(_) | Self::Arguments(_) | Self::Log(_) => 2,
             Self::Interrupted(_) => 130,
             _ => 1,

@@ -18,6 +18,9 @@ use crate::failure::Failure;
 use crate::stop::{self, Progress, Stop};
 use crate::{print, say};
 
+/// TOML knows no larger whole number.
+pub const LARGEST_SEED: u64 = i64::MAX as u64;
+
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario files
@@ -33,7 +36,7 @@ pub struct Args {
     #[arg(long, value_name = "N|LO:HI", value_parser = runs)]
     runs: Option<Runs>,
     /// Seed, instead of the scenario's
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=LARGEST_SEED))]
     seed: Option<u64>,
     /// Threads [default: one for each core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -125,6 +128,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 let detail = args.log.unwrap_or(default).detail();
                 let directory = args.out.as_deref().unwrap_or(Path::new(""));
                 campaign::run(&study, &job, |run| match detail {
+                    // No log for the runs that had not begun.
+                    _ if stop::asked() => Err(SimulationError::from(RecordError::Interrupted).into()),
                     None => Ok(Campaign::simulate(run, Stop)?),
                     Some(detail) => {
                         let path = directory.join(format!("{}-{}.mcap", run.scenario.name, run.number));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{BufWriter, Write};
+use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use mcap::records::Record as McapRecord;
@@ -18,9 +18,17 @@ use super::{Column, Columns};
 /// A log that cannot be used.
 #[derive(Debug, Error)]
 pub enum LogError {
-    /// The file cannot be read or written.
+    /// The file cannot be read.
     #[error("{}: {source}", path.display())]
     Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Unwritable {
         /// The file.
         path: PathBuf,
         /// Why.
@@ -153,7 +161,7 @@ impl Log {
             let Some((descriptor, columns)) = &mut found else { continue };
             let row = DynamicMessage::decode(descriptor.clone(), &*message.data);
             push(columns, descriptor, &row.map_err(|error| undecodable(error.to_string()))?);
-            times.push((message.log_time - self.epoch_ns) as f64 / 1e9);
+            times.push(message.log_time.saturating_sub(self.epoch_ns) as f64 / 1e9);
         }
         let (_, mut columns) = found.ok_or_else(no_topic)?;
         if columns.get("time_s").is_none() {
@@ -202,23 +210,29 @@ fn push(columns: &mut Columns, descriptor: &MessageDescriptor, row: &DynamicMess
 /// Copies what is whole in a torn log into a new one, and tells how many messages it saved.
 pub fn recover(torn: &Path, whole: &Path) -> Result<u64, LogError> {
     let bytes = fs::read(torn).map_err(|source| LogError::Io { path: torn.to_owned(), source })?;
-    let out = |source| LogError::Io { path: whole.to_owned(), source };
-    let failed = |source| LogError::Damaged { path: whole.to_owned(), source };
+    let damaged = |source| LogError::Damaged { path: torn.to_owned(), source };
     if !bytes.starts_with(mcap::MAGIC) {
-        let source = McapError::BadMagic;
-        return Err(LogError::Damaged { path: torn.to_owned(), source });
+        return Err(damaged(McapError::BadMagic));
     }
-    let file = BufWriter::new(fs::File::create(whole).map_err(out)?);
+    // In memory, where the torn log is too: what cannot be recovered leaves no file.
     let options =
         WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
-    let mut writer = Writer::with_options(file, options).map_err(failed)?;
-    let saved = copy_records(&bytes, &mut writer).map_err(failed)?;
-    writer.finish().map_err(failed)?;
-    writer.into_inner().flush().map_err(out)?;
+    let mut writer = Writer::with_options(Cursor::new(Vec::new()), options).map_err(damaged)?;
+    let saved = copy_records(&bytes, &mut writer).map_err(damaged)?;
+    writer.finish().map_err(damaged)?;
+    let unwritable = |source| LogError::Unwritable { path: whole.to_owned(), source };
+    let mut file = fs::File::create(whole).map_err(unwritable)?;
+    file.write_all(writer.into_inner().get_ref()).map_err(|source| {
+        // Half a log is of no use. A device stays.
+        if whole.is_file() {
+            let _ = fs::remove_file(whole);
+        }
+        unwritable(source)
+    })?;
     Ok(saved)
 }
 
-fn copy_records(bytes: &[u8], writer: &mut Writer<BufWriter<fs::File>>) -> Result<u64, McapError> {
+fn copy_records(bytes: &[u8], writer: &mut Writer<Cursor<Vec<u8>>>) -> Result<u64, McapError> {
     let mut schemas = BTreeMap::from([(0, 0)]);
     let mut channels = BTreeMap::new();
     let mut pending = BTreeMap::new();
