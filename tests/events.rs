@@ -76,7 +76,7 @@ fn no_crossing_is_missed() {
             }
         }
     }
-    assert!(tripped > 500 && clear > 100, "{tripped} tripped, {clear} clear");
+    assert!(tripped > 400 && clear > 400, "{tripped} tripped, {clear} clear");
 }
 
 #[test]

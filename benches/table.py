@@ -1,0 +1,134 @@
+"""Measures the engine beside its peers in one run, and writes the table of docs/benchmarks.md.
+
+    pip install scipy
+    python3 benches/table.py            # prints the table
+    python3 benches/table.py --write    # and puts it into docs/benchmarks.md
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+RUN = "run of 20000 s"
+W, K = (0.44, 0.755), (0.0213, 0.0216)
+EPS, GAM, STRONG, WEAK, K_T = 5e-4, 1e-4, 4e-5, 1e-6, 0.3389
+
+
+def criterion(group, name):
+    """Median time (s) of a benchmark, by criterion."""
+    path = ROOT / "target" / "criterion" / group.replace("/", "_") / name.replace("/", "_") / "new" / "estimates.json"
+    return json.loads(path.read_text())["median"]["point_estimate"] * 1e-9
+
+
+def dop853(end):
+    """CPU time (s) of SciPy's DOP853 with events, switching by switching, and how many switchings there were."""
+    from scipy.integrate import solve_ivp
+
+    def field(m):
+        return lambda t, s: [s[1], m, s[3], K[0] * m - W[0] ** 2 * s[2], s[5], K[1] * m - W[1] ** 2 * s[4]]
+
+    def level(value, direction):
+        def event(t, s):
+            return s[0] + s[2] + s[4] - value
+
+        event.terminal, event.direction = True, direction
+        return event
+
+    def advance(state, t, m, until, events):
+        return solve_ivp(
+            field(m), (t, until), state, method="DOP853", rtol=1e-9, atol=1e-14, events=events or None
+        )
+
+    began = time.process_time()
+    state, t, m, count = [4.5e-4, 2.2e-5, 2.75e-6, 0.0, 0.0, 0.0], 0.0, WEAK, 0
+    while True:
+        run = advance(state, t, m, end, [level(EPS, 1), level(-EPS, -1)])
+        if run.status != 1:
+            return time.process_time() - began, count
+        side = 1 if len(run.t_events[0]) else -1
+        state, t, pushed, count = run.y[:, -1], run.t[-1], run.t[-1], count + 1
+        run = advance(state, t, -side * STRONG, end, [level(side * (EPS - GAM), -side)])
+        if run.status != 1:
+            return time.process_time() - began, count
+        state, t, count = run.y[:, -1], run.t[-1], count + 1
+        until = t + K_T * (t - pushed)
+        if until > end:
+            return time.process_time() - began, count
+        run = advance(state, t, side * STRONG, until, None)
+        state, t, count, m = run.y[:, -1], run.t[-1], count + 1, side * WEAK
+
+
+def campaign(jobs):
+    """Wall time (s) of 4000 adaptive runs on so many threads."""
+    command = ["target/release/flexsc", "simulate", "scenarios/relay-adaptive.toml", "--runs", "4000"]
+    began = time.perf_counter()
+    subprocess.run([*command, "--jobs", str(jobs)], cwd=ROOT, check=True, stderr=subprocess.DEVNULL)
+    return time.perf_counter() - began
+
+
+def logs():
+    """Sizes (bytes) of the events log and of the full log at 0.1 s."""
+    sizes = []
+    for detail in ("events", "full"):
+        out = ROOT / "target" / "benchmark-logs"
+        command = ["target/release/flexsc", "simulate", "scenarios/relay-fixed.toml", "--log", detail, "-o", str(out)]
+        subprocess.run(command, cwd=ROOT, check=True, stderr=subprocess.DEVNULL)
+        sizes.append((out / "relay-fixed.mcap").stat().st_size)
+    return sizes
+
+
+def duration(seconds):
+    for unit, scale in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+        if seconds >= scale:
+            return f"{seconds / scale:.3g} {unit}"
+    return f"{seconds * 1e9:.3g} ns"
+
+
+def table():
+    subprocess.run(["cargo", "build", "--release"], cwd=ROOT, check=True)
+    subprocess.run(["cargo", "bench", "-p", "flexsc-core", "--bench", "engine"], cwd=ROOT, check=True)
+    events = criterion(RUN, "events only")
+    scipy_time, scipy_events = dop853(2000.0)
+    rows = [
+        ("hand-written yardstick, two modes, this law only", criterion(RUN, "yardstick")),
+        ("flexsc, events only", events),
+        ("flexsc, every switching kept in memory", criterion(RUN, "events in memory")),
+        ("flexsc, 40 window means of the envelope", criterion(RUN, "40 window means")),
+        ("flexsc, window means and all metrics", criterion(RUN, "windows and metrics")),
+        ("flexsc, window means, metrics and MCAP log", criterion(RUN, "windows, metrics, log")),
+        ("RK4 at 1e-4 s, Rust (measured over 200 s)", 100 * criterion("fixed step, 200 s", "RK4 at 1e-4 s")),
+        ("SciPy DOP853 with events, rtol 1e-9 (measured over 2000 s)", 10 * scipy_time),
+    ]
+    lines = ["| 20 000 s of relay-quiet: 2526 switchings | time | ratio to events only |", "|---|---|---|"]
+    lines += [f"| {name} | {duration(t)} | {t / events:.3g} |" for name, t in rows]
+    lines += ["", "| modes | time of a run | per mode, relative to 200 |", "|---|---|---|"]
+    per_mode = criterion("modes", "200") / 200
+    for count in (2, 20, 50, 100, 200):
+        t = criterion("modes", str(count))
+        lines.append(f"| {count} | {duration(t)} | {t / count / per_mode:.2f} |")
+    dense = criterion("log", "dense MCAP")
+    cores = os.cpu_count() or 1
+    one, all_cores = campaign(1), campaign(cores)
+    small, large = logs()
+    lines += [
+        "",
+        f"- One event costs {duration(events / 2526)}; SciPy found {scipy_events} switchings in 2000 s.",
+        f"- A dense log is written at {4 * 200_000 / dense / 1e6:.2f} million messages/s on one core, simulation included.",
+        f"- 4000 adaptive runs: {one:.2f} s on one thread, {all_cores:.2f} s on {cores}: {one / all_cores:.2f} times faster.",
+        f"- Log of relay-fixed: {small / 1e3:.0f} kB with all switchings, {large / 1e6:.1f} MB with the full state every 0.1 s.",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    text = table()
+    print(text)
+    if "--write" in sys.argv[1:]:
+        page = ROOT / "docs" / "benchmarks.md"
+        pattern = re.compile(r"(<!-- table -->\n).*?(<!-- end -->)", re.S)
+        page.write_text(pattern.sub(lambda m: m[1] + text + m[2], page.read_text()))

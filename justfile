@@ -1,0 +1,14 @@
+# Short names for what README and CI run.
+
+check:
+    cargo fmt --check
+    cargo clippy --release --workspace --all-targets -- -D warnings
+
+test:
+    python3 tests/all.py
+
+bench:
+    python3 benches/table.py
+
+wheel:
+    pip wheel --no-deps -w dist .
