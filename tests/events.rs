@@ -2,7 +2,8 @@
 
 use flexsc_core::belief::Belief;
 use flexsc_core::body::{Body, State};
-use flexsc_core::guard::{Guard, locate};
+use flexsc_core::crossing::locate;
+use flexsc_core::guard::Guard;
 use flexsc_core::law::{Cause, Control, Law};
 use flexsc_core::random::{Seed, Stream};
 use flexsc_core::record::{Column, Columns, Detail, Trace};

@@ -37,23 +37,23 @@ pub struct Campaign {
     grid: Option<Grid>,
 }
 
-/// One key varied evenly over a range: run i has value i.
+/// One key that takes these values: run i has value i.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// The key.
     pub key: String,
-    /// First value.
-    pub start: f64,
-    /// Last value.
-    pub end: f64,
-    /// How many values.
-    pub count: u64,
+    /// Its values.
+    pub values: Vec<f64>,
 }
 
 impl Grid {
-    fn value(&self, index: u64) -> f64 {
-        let part = if self.count > 1 { index as f64 / (self.count - 1) as f64 } else { 0.0 };
-        self.start * (1.0 - part) + self.end * part
+    /// So many values from the first to the last, evenly apart.
+    pub fn even(key: String, first: f64, last: f64, count: u32) -> Self {
+        let value = |index: u32| {
+            let part = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.0 };
+            first * (1.0 - part) + last * part
+        };
+        Self { key, values: (0..count).map(value).collect() }
     }
 }
 
@@ -87,9 +87,9 @@ impl Campaign {
         table.remove("uncertain");
         let campaign = Self { scenario, table, origin: origin.to_owned(), grid };
         if let Some(grid) = &campaign.grid {
-            // A key that does not exist, or a bound that is not accepted, fails all runs: say so at once.
-            for value in [grid.start, grid.end] {
-                campaign.scenario_with(&[(&grid.key, campaign.like(&grid.key, value))])?;
+            // A key that does not exist, or a range that is not accepted, fails all runs: say so at once.
+            for value in grid.values.first().into_iter().chain(grid.values.last()) {
+                campaign.scenario_with(&[(&grid.key, campaign.like(&grid.key, *value))])?;
             }
         }
         Ok(campaign)
@@ -167,7 +167,11 @@ impl Campaign {
     }
 
     fn draw(&self, number: u64) -> Vec<Value> {
-        let grid = self.grid.iter().map(|grid| self.like(&grid.key, grid.value(number)));
+        let grid = self.grid.iter().map(|grid| {
+            // A run beyond the grid has no value: it fails, as any value that is not accepted.
+            let value = usize::try_from(number).ok().and_then(|index| grid.values.get(index));
+            self.like(&grid.key, value.copied().unwrap_or(f64::NAN))
+        });
         let seed = Seed { scenario: self.scenario.seed, run: number };
         let drawn = self.scenario.uncertain.iter().map(|(key, distribution)| {
             let mut stream = seed.stream(&format!("uncertain {key}"));

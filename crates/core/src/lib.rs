@@ -36,6 +36,7 @@ pub mod analysis;
 pub mod belief;
 pub mod body;
 pub mod campaign;
+pub mod crossing;
 pub mod document;
 pub mod estimator;
 pub mod guard;

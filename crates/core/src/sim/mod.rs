@@ -1,0 +1,255 @@
+//! The event loop.
+//!
+//! At one instant, in this order: the body arrives, the sensor samples, the estimator closes its window, the
+//! adaptation learns, the law decides once, the record is told. Between events the input is constant and the
+//! body's flow exact. `docs/events.md` states the rules.
+
+mod plant;
+mod watch;
+
+use thiserror::Error;
+
+use crate::belief::Belief;
+use crate::body::{Sight, State};
+use crate::law::{Cause, Guards, Hold, Law};
+use crate::random::{Seed, Stream};
+use crate::record::{self, Command, Motion, Record, RecordError, Sample, Trigger};
+use crate::scenario::Scenario;
+use crate::sensor::Sensor;
+use crate::time::{Instant, Span};
+
+use plant::Plant;
+use watch::Watch;
+
+/// More decisions than this at one instant are chatter: no scenario's law needs more than a few.
+const MOST_DECISIONS: u32 = 32;
+
+/// A simulation that cannot go on.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// The state of the body is no longer a finite number.
+    #[error("the state is no longer finite at t = {at} s")]
+    NonFinite {
+        /// When.
+        at: Instant,
+    },
+    /// The law switches without end at one instant.
+    #[error("chatter: the law decided {count} times at t = {at} s")]
+    Chatter {
+        /// When.
+        at: Instant,
+        /// How often.
+        count: u32,
+    },
+    /// The record could not be kept.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}
+
+/// All that moves in a run.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    now: Instant,
+    end: Instant,
+    body: Plant,
+    sensor: Sensor,
+    noise: Stream,
+    watch: Option<Watch>,
+    law: Law,
+    /// What the law reads. The adaptation writes its gain.
+    pub belief: Belief,
+    hold: Hold,
+    /// The instant and index of the guard that trips next, as long as the hold lasts.
+    trip: Option<(Instant, usize)>,
+    next_sample: Option<Instant>,
+    log_period: Span,
+    next_dense: Option<Instant>,
+    next_law: Instant,
+    decisions: u32,
+    begun: bool,
+}
+
+impl Simulation {
+    /// A run of a scenario, before its start.
+    pub fn new(scenario: &Scenario, run: u64) -> Self {
+        let seed = Seed { scenario: scenario.seed, run };
+        Self {
+            now: Instant::START,
+            end: Instant::START + scenario.duration,
+            body: Plant::new(&scenario.body),
+            sensor: scenario.sensor.clone(),
+            noise: seed.stream("sensor"),
+            watch: Watch::new(scenario, seed),
+            law: scenario.law.clone(),
+            belief: Belief { angle: 0.0, gain: scenario.law.gain() },
+            hold: Hold { torque: 0.0, until: None, guards: Guards::NONE },
+            trip: None,
+            next_sample: scenario.sensor.period().map(|period| Instant::START + period),
+            log_period: scenario.log.period,
+            next_dense: None,
+            next_law: Instant::START,
+            decisions: 0,
+            begun: false,
+        }
+    }
+
+    /// Runs to the end of the scenario.
+    pub fn run(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        self.run_until(self.end, record)
+    }
+
+    /// Runs to an instant, everything that is due at it included.
+    pub fn run_until(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+        if !self.begun {
+            self.begin(record)?;
+        }
+        loop {
+            let next = self.next();
+            if next > until {
+                self.now = until;
+                return self.view().map(|_| ());
+            }
+            if next > self.now {
+                self.now = next;
+                self.decisions = 0;
+            }
+            self.serve(record)?;
+        }
+    }
+
+    /// The mean of the total envelope over the window that was closed last (rad).
+    pub fn window_mean(&self) -> Option<f64> {
+        self.watch.as_ref().map(|watch| watch.mean)
+    }
+
+    /// The state of the body now.
+    pub fn state(&self) -> &State {
+        self.body.state()
+    }
+
+    fn begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        self.begun = true;
+        let sight = self.view()?;
+        self.belief.angle = self.sensor.measure(sight.angle, &mut self.noise);
+        let hold = self.law.decide(self.now, Cause::Start, &self.belief);
+        self.take(hold);
+        record.record(self.now, Sample::Begin(&self.law_row()))?;
+        if record.dense() {
+            self.next_dense = Some(self.now);
+            self.next_law = self.now + Span::from_seconds(1.0);
+        }
+        Ok(())
+    }
+
+    /// The next instant at which anything is due.
+    fn next(&self) -> Instant {
+        let trip = self.trip.map(|(at, _)| at);
+        let closes = self.watch.as_ref().map(|watch| watch.closes);
+        let due = [trip, self.hold.until, self.next_sample, closes, self.next_dense];
+        due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
+    }
+
+    /// Does what is due now.
+    fn serve(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        let mut tripped = self.trip.filter(|(at, _)| *at == now).map(|(_, guard)| guard);
+        if self.next_sample == Some(now) {
+            let sight = self.view()?;
+            self.belief.angle = self.sensor.measure(sight.angle, &mut self.noise);
+            self.next_sample = self.sensor.period().map(|period| now + period);
+            tripped = self.hold.guards.iter().position(|guard| guard.holds(self.belief.angle));
+        }
+        if self.watch.as_ref().is_some_and(|watch| watch.closes == now) {
+            self.view()?;
+            if let Some(watch) = &mut self.watch {
+                watch.close(now, self.body.state(), &mut self.belief.gain, record)?;
+            }
+        }
+        let timeout = self.hold.until.filter(|until| *until == now).map(|_| Cause::Timeout);
+        if let Some(cause) = tripped.map(Cause::Guard).or(timeout) {
+            self.decide(cause, record)?;
+        }
+        if self.next_dense == Some(now) {
+            self.view()?;
+            record.record(now, Sample::Motion(&self.motion()))?;
+            self.next_dense = Some(now + self.log_period);
+            if now >= self.next_law {
+                record.record(now, Sample::Law(&self.law_row()))?;
+                self.next_law += Span::from_seconds(1.0);
+            }
+        }
+        Ok(())
+    }
+
+    fn decide(&mut self, cause: Cause, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        self.decisions += 1;
+        if self.decisions > MOST_DECISIONS {
+            return Err(SimulationError::Chatter { at: now, count: self.decisions });
+        }
+        let sight = self.view()?;
+        if self.next_sample.is_none() {
+            self.belief.angle = sight.angle;
+        }
+        let before = (self.law.state(), self.hold.torque);
+        let hold = self.law.decide(now, cause, &self.belief);
+        self.take(hold);
+        if before == (self.law.state(), self.hold.torque) {
+            return Ok(());
+        }
+        let (time_s, time_whole_s, time_fs) = Command::times(now);
+        let command = Command {
+            time_s,
+            time_whole_s,
+            time_fs,
+            state: self.law.state(),
+            cause: if cause == Cause::Timeout { Trigger::Timeout } else { Trigger::Guard },
+            torque_nm: self.hold.torque,
+            angle_rad: sight.angle,
+            rate_rad_s: sight.rate,
+            gain: self.belief.gain,
+        };
+        record.record(now, Sample::Switching(&command, self.body.state()))?;
+        if record.dense() {
+            record.record(now, Sample::Motion(&self.motion()))?;
+        }
+        Ok(())
+    }
+
+    /// Begins a hold: the body departs anew, and the next trip is found.
+    fn take(&mut self, hold: Hold) {
+        if let Some(watch) = &mut self.watch {
+            watch.command(self.now, self.body.state(), hold.torque);
+        }
+        self.hold = hold;
+        self.body.depart(hold.torque);
+        self.trip = None;
+        // A sampled sensor trips its guards at samples.
+        if self.next_sample.is_none() && !hold.guards.is_empty() {
+            let horizon = hold.until.map_or(self.end, |until| until.min(self.end)).since(self.now);
+            self.trip = self.body.trip(&hold.guards, horizon);
+        }
+    }
+
+    /// What a sensor would see now.
+    fn view(&mut self) -> Result<Sight, SimulationError> {
+        let sight = self.body.view(self.now);
+        if sight.angle.is_finite() && sight.rate.is_finite() {
+            Ok(sight)
+        } else {
+            Err(SimulationError::NonFinite { at: self.now })
+        }
+    }
+
+    fn law_row(&self) -> record::Law {
+        record::Law { state: self.law.state(), torque_nm: self.hold.torque, gain: self.belief.gain }
+    }
+
+    /// The motion now, for a dense record.
+    fn motion(&self) -> Motion {
+        let measured = self.next_sample.map(|_| self.belief.angle);
+        let (attitude, rate, modes) = self.body.motion(measured);
+        let envelope = self.watch.as_ref().map(|watch| watch.envelope(self.now));
+        Motion { attitude, rate, modes, envelope }
+    }
+}
