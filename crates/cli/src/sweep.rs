@@ -8,6 +8,9 @@ use crate::failure::Failure;
 use crate::stop::{self, Stop};
 use crate::{campaign, simulate};
 
+/// Values, and what their runs come to, are held in memory.
+const MOST_VALUES: u32 = 10_000_000;
+
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario file
@@ -37,8 +40,11 @@ fn grid(text: &str) -> Result<Grid, String> {
     let (key, range) = text.split_once('=').ok_or_else(form)?;
     let [start, end, count] = range.split(':').collect::<Vec<_>>()[..] else { return Err(form()) };
     let bound = |text: &str| text.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(form);
-    let count: u64 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
-    Ok(Grid { key: key.to_owned(), start: bound(start)?, end: bound(end)?, count })
+    let count: u32 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
+    if count > MOST_VALUES {
+        return Err(format!("a sweep has at most {MOST_VALUES} values, got {count}"));
+    }
+    Ok(Grid::even(key.to_owned(), bound(start)?, bound(end)?, count))
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -50,7 +56,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     stop::listen();
     let job = campaign::Job {
-        range: 0..args.vary.count,
+        range: 0..args.vary.values.len() as u64,
         part: false,
         table: args.out.as_deref(),
         prefix: None,
