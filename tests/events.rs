@@ -157,6 +157,17 @@ fn watching_a_run_does_not_change_it() {
 }
 
 #[test]
+fn a_run_ends_at_its_end() {
+    let scenario = scenario(&format!("duration = 100\n{FLEXIBLE}{RELAY}"));
+    let (mut whole, mut beyond) = (Trace::new(Detail::Full), Trace::new(Detail::Full));
+    Simulation::new(&scenario, 0).run(&mut whole).expect("a run");
+    let until = Instant::START + Span::from_seconds(150.0);
+    Simulation::new(&scenario, 0).run_until(until, &mut beyond).expect("a run");
+    assert_eq!(commands(&whole), commands(&beyond));
+    assert_eq!(whole.topic("/rate"), beyond.topic("/rate"));
+}
+
+#[test]
 fn a_sampled_sensor_trips_guards_at_samples() {
     let text = format!("duration = 500\n{FLEXIBLE}{RELAY}[sensor.sampled]\nperiod = 0.25\n");
     let mut trace = Trace::new(Detail::Events);

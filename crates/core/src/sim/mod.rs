@@ -98,8 +98,9 @@ impl Simulation {
         self.run_until(self.end, record)
     }
 
-    /// Runs to an instant, everything that is due at it included.
+    /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
     pub fn run_until(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+        let until = until.min(self.end);
         if !self.begun {
             self.begin(record)?;
         }
