@@ -1,4 +1,7 @@
 //! All integration tests of flexsc, one binary.
 
+mod bad_scenarios;
+mod cli;
 mod events;
 mod relay;
+mod util;

@@ -158,10 +158,12 @@ fn pointed(origin: &str, text: &str, error: &toml::de::Error) -> ScenarioError {
 fn told(text: &str, error: &toml::de::Error) -> (String, Option<Range<usize>>) {
     let span = error.span();
     let table = DeTable::parse(text).ok();
-    let place = table.as_ref().zip(span.as_ref()).and_then(|(table, span)| {
-        let (key, value) = place_of(table.get_ref(), span)?;
-        Some((shortened(&key), value, &text[span.start..]))
-    });
+    // What is missing from the whole document has no place.
+    let place =
+        table.as_ref().zip(span.as_ref().filter(|span| !span.is_empty())).and_then(|(table, span)| {
+            let (key, value) = place_of(table.get_ref(), span)?;
+            Some((shortened(&key), value, &text[span.start..]))
+        });
     let Some((key, value, from)) = place else { return (explained(error.message(), None), span) };
     let why = explained(error.message(), Some(value.type_str()));
     let why = bracketed(&key, from, &why).unwrap_or(why);
@@ -261,9 +263,11 @@ fn expected(wanted: &str) -> &str {
 
 /// Says which brackets a header needs, if it has the wrong ones.
 fn bracketed(key: &str, place: &str, why: &str) -> Option<String> {
+    let double = place.starts_with("[[");
+    let key = if double { key.rsplit_once('[')?.0 } else { key };
     match why {
         // An array can stand for a table: its first element is then read as the first key.
-        "found an array, expected a number" if place.starts_with("[[") => {
+        "found a table, expected a number" | "found an array, expected a table" if double => {
             Some(format!("there is only one: expected `[{key}]`, found `[[{key}]]`"))
         }
         "found a table, expected an array" if place.starts_with('[') => {
@@ -449,7 +453,9 @@ fn place_in<'a>(
     value: &'a Spanned<DeValue<'a>>,
     span: &Range<usize>,
 ) -> Option<(bool, String, &'a DeValue<'a>)> {
-    if value.span() == *span {
+    // The first table of an array of tables stands where the array does.
+    let first = value.get_ref().as_array().and_then(|array| array.first());
+    if value.span() == *span && first.is_none_or(|first| first.span() != *span) {
         return Some((true, path, value.get_ref()));
     }
     let parts: Vec<(String, &Spanned<DeValue<'_>>)> = match value.get_ref() {

@@ -1,0 +1,174 @@
+//! A tiny language for tests of the command: a directory of its own, the command run in it, what came out.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value as Json;
+use tempfile::TempDir;
+
+const FLEXSC: &str = env!("CARGO_BIN_EXE_flexsc");
+
+/// The scenarios that are shipped.
+pub const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
+
+/// A directory in which the command runs.
+pub struct Dir(TempDir);
+
+impl Dir {
+    /// An empty directory.
+    pub fn new() -> Self {
+        Self(TempDir::new().expect("a temporary directory"))
+    }
+
+    /// A directory with some of the shipped scenarios.
+    pub fn with(shipped: &[&str]) -> Self {
+        let dir = Self::new();
+        for name in shipped {
+            let name = format!("{name}.toml");
+            fs::copy(format!("{SCENARIOS}/{name}"), dir.path(&name)).expect("shipped");
+        }
+        dir
+    }
+
+    /// A directory with one file.
+    pub fn holding(name: &str, bytes: impl AsRef<[u8]>) -> Self {
+        let dir = Self::new();
+        dir.write(name, bytes);
+        dir
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        fs::write(self.path(name), bytes).expect("written");
+    }
+
+    pub fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    pub fn text(&self, name: &str) -> String {
+        String::from_utf8(self.read(name)).expect("UTF-8")
+    }
+
+    pub fn has(&self, name: &str) -> bool {
+        self.path(name).symlink_metadata().is_ok()
+    }
+
+    /// The names in a directory within, sorted; none if it is not there.
+    pub fn names(&self, within: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path(within)).into_iter().flatten().flatten();
+        let mut names: Vec<_> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// Runs the command; its arguments are parted by blanks.
+    pub fn run(&self, arguments: &str) -> Ran {
+        Ran::new(arguments, self.command(arguments).output().expect("the command starts"))
+    }
+
+    /// Starts the command.
+    pub fn start(&self, arguments: &str) -> Started {
+        let mut command = self.command(arguments);
+        let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+        Started { child: Some(child.expect("the command starts")), arguments: arguments.to_owned() }
+    }
+
+    /// Waits until a file has so many bytes.
+    pub fn wait_for(&self, name: &str, bytes: u64) {
+        let began = Instant::now();
+        while fs::metadata(self.path(name)).map_or(0, |m| m.len()) < bytes {
+            assert!(began.elapsed() < Duration::from_secs(30), "{name} does not grow to {bytes} bytes");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(FLEXSC);
+        command.args(arguments.split_whitespace()).current_dir(self.0.path());
+        command
+    }
+}
+
+/// The command at work. It does not outlive its test.
+pub struct Started {
+    child: Option<Child>,
+    arguments: String,
+}
+
+impl Started {
+    /// Sends a signal, such as `INT`, and waits for the end.
+    pub fn signal(mut self, signal: &str) -> Ran {
+        let child = self.child.take().expect("not yet waited for");
+        let sent = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status();
+        assert!(sent.expect("kill starts").success());
+        Ran::new(&self.arguments, child.wait_with_output().expect("waited for"))
+    }
+}
+
+impl Drop for Started {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.child {
+            // It may have ended by itself.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+/// The command after its end.
+pub struct Ran {
+    /// The exit code; none after a signal.
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+    arguments: String,
+}
+
+impl Ran {
+    fn new(arguments: &str, output: Output) -> Self {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
+        Self {
+            code: output.status.code(),
+            out: text(output.stdout),
+            err: text(output.stderr),
+            arguments: arguments.to_owned(),
+        }
+    }
+
+    /// The exit code must be this.
+    #[track_caller]
+    pub fn exits(self, code: i32) -> Self {
+        assert_eq!(self.code, Some(code), "flexsc {}\n{}", self.arguments, self.err);
+        self
+    }
+
+    /// Stderr must hold these words.
+    #[track_caller]
+    pub fn says(self, words: &[&str]) -> Self {
+        for words in words {
+            assert!(self.err.contains(words), "flexsc {}: no `{words}` in\n{}", self.arguments, self.err);
+        }
+        self
+    }
+
+    /// Stdout, which must hold these words.
+    #[track_caller]
+    pub fn prints(self, words: &[&str]) -> String {
+        for words in words {
+            assert!(self.out.contains(words), "flexsc {}: no `{words}` in\n{}", self.arguments, self.out);
+        }
+        self.out
+    }
+
+    /// Stdout as JSON.
+    #[track_caller]
+    pub fn json(self) -> Json {
+        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error} in\n{}", self.out))
+    }
+}
