@@ -19,19 +19,20 @@ fn scenario(text: &str) -> Scenario {
 
 /// A body with random modes, some damped, some beyond critical, in a random state.
 fn random_body(stream: &mut Stream) -> (Body, State) {
-    let mut text = String::from("duration = 1.0\n[body.planar]\n");
-    text += &format!("angle = {:e}\nrate = {:e}\n", 1e-4 * stream.normal(), 2e-5 * stream.normal());
+    let (angle, rate) = (1e-4 * stream.normal(), 2e-5 * stream.normal());
+    let mut text = format!("duration = 1.0\n[body.planar]\nangle = {angle:e}\nrate = {rate:e}\n");
     for _ in 0..stream.index(6) {
         let frequency = 0.05 * 400_f64.powf(stream.uniform());
         let damping = [0.0, 0.004, 0.3, 1.0, 1.7][stream.index(5)];
         let size = 3e-5 * stream.uniform();
-        text += &format!(
+        let mode = format!(
             "[[body.planar.modes]]\nfrequency = {frequency}\ngain = {}\ndamping = {damping}\n\
              displacement = {:e}\nrate = {:e}\n",
             0.5 * stream.uniform(),
             size * stream.normal(),
             size * frequency * stream.normal(),
         );
+        text += &mode;
     }
     let scenario = scenario(&(text + RELAY));
     let state = scenario.body.start();

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 use toml::{Table, Value};
 
-use crate::document::{self, Document, ScenarioError};
+use crate::document::{Document, ScenarioError, key};
 use crate::metrics::{Gather, Metrics};
 use crate::random::Seed;
 use crate::record::{Provenance, Record};
@@ -176,7 +176,7 @@ impl Campaign {
         let drawn = self.scenario.uncertain.iter().map(|(key, distribution)| {
             let mut stream = seed.stream(&format!("uncertain {key}"));
             // The scenario was checked: every uncertain key holds a number.
-            let nominal = document::get(&self.table, key).unwrap_or(&Value::Float(f64::NAN));
+            let nominal = key::get(&self.table, key).unwrap_or(&Value::Float(f64::NAN));
             distribution.draw(nominal, &mut stream)
         });
         grid.chain(drawn).collect()
@@ -184,7 +184,7 @@ impl Campaign {
 
     /// A number as the type that a key has in the scenario.
     fn like(&self, key: &str, value: f64) -> Value {
-        match document::get(&self.table, key) {
+        match key::get(&self.table, key) {
             Some(Value::Integer(_)) => Value::Integer(libm::round(value) as i64),
             _ => Value::Float(value),
         }

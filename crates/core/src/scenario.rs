@@ -10,7 +10,7 @@ use toml::value::Datetime;
 
 use crate::adaptation::Adaptation;
 use crate::body::Body;
-use crate::document::{self, Document, ScenarioError};
+use crate::document::{Document, ScenarioError, key};
 use crate::estimator::{Estimator, Form};
 use crate::law::Law;
 use crate::quantity::{Finite, Positive};
@@ -182,7 +182,7 @@ impl Scenario {
             let mut table = self.to_table();
             table.remove("uncertain");
             self.uncertain.iter().find_map(|(key, distribution)| {
-                let why = distribution.problem(document::get(&table, key))?;
+                let why = distribution.problem(key::get(&table, key))?;
                 Some((format!("uncertain.\"{key}\""), why))
             })
         })

@@ -57,8 +57,6 @@ rows! {
         rigid_rad: f64,
         /// Angle as the sensor gives it (rad).
         measured_rad: f64,
-        /// Angle, elastic part included (degrees).
-        angle_deg: f64,
     }
     /// Rates.
     Rate = "/rate" {

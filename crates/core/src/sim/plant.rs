@@ -83,7 +83,6 @@ impl Plant {
                 angle_rad: sight.angle,
                 rigid_rad: state.rigid_angle,
                 measured_rad: measured.unwrap_or(sight.angle),
-                angle_deg: sight.angle.to_degrees(),
             },
             Rate { rate_rad_s: sight.rate, rigid_rad_s: state.rigid_rate },
             Modes { elastic_rad: sight.angle - state.rigid_angle, modes: modes.collect() },

@@ -1,0 +1,177 @@
+//! Keys by their paths: `law.relay.k_t`, `body.planar.modes[0].gain`; in a table, and in a text.
+
+use std::ops::Range;
+
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Table, Value};
+
+/// One step of a path: a key, or a place in an array.
+#[derive(Clone, Debug, PartialEq)]
+enum Step<'a> {
+    Key(&'a str),
+    Index(usize),
+}
+
+/// The steps of a path. A key that holds a dot stands in quotes: `uncertain."law.relay.k_t"`.
+fn steps(path: &str) -> Option<Vec<Step<'_>>> {
+    let mut steps = Vec::new();
+    let mut rest = path;
+    loop {
+        if let Some(quoted) = rest.strip_prefix('"') {
+            let (key, after) = quoted.split_once('"')?;
+            steps.push(Step::Key(key));
+            rest = after;
+        } else {
+            let (key, after) = rest.split_at(rest.find(['.', '[']).unwrap_or(rest.len()));
+            if key.is_empty() {
+                return None;
+            }
+            steps.push(key.parse().map_or(Step::Key(key), Step::Index));
+            rest = after;
+        }
+        while let Some(indexed) = rest.strip_prefix('[') {
+            let (index, after) = indexed.split_once(']')?;
+            steps.push(Step::Index(index.parse().ok()?));
+            rest = after;
+        }
+        if rest.is_empty() {
+            return Some(steps);
+        }
+        rest = rest.strip_prefix('.')?;
+    }
+}
+
+/// A key as it stands in a path.
+pub fn bare_or_quoted(key: &str) -> String {
+    let bare = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+    if !key.is_empty() && key.chars().all(bare) { key.to_owned() } else { format!("\"{key}\"") }
+}
+
+/// The value at a path.
+pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
+    let mut steps = steps(path)?.into_iter();
+    let Some(Step::Key(first)) = steps.next() else { return None };
+    let first = table.get(first)?;
+    steps.try_fold(first, |value, step| match step {
+        Step::Key(key) => value.get(key),
+        Step::Index(index) => value.get(index),
+    })
+}
+
+/// Puts a value at a path. Tables on the way are made, places in arrays must be there.
+pub fn set(table: &mut Table, path: &str, value: Value) -> Result<(), String> {
+    let not_a_path = || "not the path of a key, such as `law.relay.k_t` or `body.planar.modes[0].gain`";
+    let steps = steps(path).ok_or_else(not_a_path)?;
+    let Some((Step::Key(first), rest)) = steps.split_first() else {
+        return Err(not_a_path().to_owned());
+    };
+    let mut place = table.entry(*first).or_insert_with(|| Value::Table(Table::new()));
+    for step in rest {
+        place = match (step, place) {
+            (Step::Key(key), Value::Table(inner)) => {
+                inner.entry(*key).or_insert_with(|| Value::Table(Table::new()))
+            }
+            (Step::Index(index), Value::Array(array)) => {
+                let length = array.len();
+                array
+                    .get_mut(*index)
+                    .ok_or_else(|| format!("there is no element {index}: the array has {length}"))?
+            }
+            (Step::Key(key), other) => {
+                return Err(format!("there is no `{key}` in a value of type {}", other.type_str()));
+            }
+            (Step::Index(index), other) => {
+                return Err(format!("there is no element {index} in a {}", other.type_str()));
+            }
+        };
+    }
+    *place = value;
+    Ok(())
+}
+
+/// Where the value at a path stands in the text; the nearest table above it if it is not written.
+pub fn span_of(table: &DeTable<'_>, path: &str) -> Option<Range<usize>> {
+    let mut steps = steps(path)?.into_iter();
+    let Some(Step::Key(first)) = steps.next() else { return None };
+    let mut value = table.get(first)?;
+    for step in steps {
+        let inner = match (step, value.get_ref()) {
+            (Step::Key(key), DeValue::Table(table)) => table.get(key),
+            (Step::Index(index), DeValue::Array(array)) => array.get(index),
+            _ => None,
+        };
+        match inner {
+            Some(inner) => value = inner,
+            None => break,
+        }
+    }
+    Some(value.span())
+}
+
+/// The path and the value of a place in the text: of the value that stands there exactly, or else of the innermost
+/// one around it.
+pub fn place_of<'a>(table: &'a DeTable<'a>, span: &Range<usize>) -> Option<(String, &'a DeValue<'a>)> {
+    let mut around = None;
+    for (key, value) in table {
+        let found = place_in(bare_or_quoted(key.get_ref()), value, span);
+        match found {
+            Some((true, path, value)) => return Some((path, value)),
+            Some((false, path, value)) => around = around.or(Some((path, value))),
+            None => {}
+        }
+    }
+    around
+}
+
+/// The same within one value, and whether the place is exact.
+fn place_in<'a>(
+    path: String,
+    value: &'a Spanned<DeValue<'a>>,
+    span: &Range<usize>,
+) -> Option<(bool, String, &'a DeValue<'a>)> {
+    // The first table of an array of tables stands where the array does.
+    let first = value.get_ref().as_array().and_then(|array| array.first());
+    if value.span() == *span && first.is_none_or(|first| first.span() != *span) {
+        return Some((true, path, value.get_ref()));
+    }
+    let parts: Vec<(String, &Spanned<DeValue<'_>>)> = match value.get_ref() {
+        DeValue::Table(table) => {
+            let path_of = |key: &str| format!("{path}.{}", bare_or_quoted(key));
+            table.iter().map(|(key, value)| (path_of(key.get_ref()), value)).collect()
+        }
+        DeValue::Array(array) => {
+            array.iter().enumerate().map(|(index, value)| (format!("{path}[{index}]"), value)).collect()
+        }
+        _ => Vec::new(),
+    };
+    let mut inner = None;
+    for (path, part) in parts {
+        match place_in(path, part, span) {
+            Some(found @ (true, ..)) => return Some(found),
+            found => inner = inner.or(found),
+        }
+    }
+    let around = value.span().contains(&span.start);
+    inner.or_else(|| around.then(|| (false, path, value.get_ref())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_reach_into_tables_and_arrays() {
+        let mut table: Table = "[a]\nb = [{c = 1}, {c = 2}]".parse().expect("valid");
+        assert_eq!(get(&table, "a.b[1].c"), Some(&Value::Integer(2)));
+        set(&mut table, "a.b[0].c", Value::Integer(7)).expect("there");
+        assert_eq!(get(&table, "a.b[0].c"), Some(&Value::Integer(7)));
+        set(&mut table, "x.y", Value::Boolean(true)).expect("made");
+        assert_eq!(get(&table, "x.y"), Some(&Value::Boolean(true)));
+        assert!(set(&mut table, "a.b[2].c", Value::Integer(7)).is_err());
+        assert!(set(&mut table, "a.b.c", Value::Integer(7)).is_err());
+        assert!(set(&mut table, "a..c", Value::Integer(7)).is_err());
+        set(&mut table, "x.\"y.z\"[0]", Value::Integer(7)).expect_err("no array");
+        set(&mut table, "x.\"y.z\"", Value::Integer(7)).expect("made");
+        assert_eq!(get(&table, "x").and_then(|x| x.get("y.z")), Some(&Value::Integer(7)));
+    }
+}

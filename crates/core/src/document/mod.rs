@@ -1,0 +1,170 @@
+//! A scenario's TOML text: keys addressed by their paths, and errors that point at the very value.
+
+pub mod key;
+mod words;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+use toml::de::DeTable;
+use toml::{Table, Value};
+
+use key::{bare_or_quoted, span_of};
+use words::{explained, point, pointed, told};
+
+/// No scenario is longer (bytes).
+const LONGEST: u64 = 4 << 20;
+
+/// A scenario that cannot be used. Its text names file, line, key, what was found and what is accepted.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// The file cannot be read.
+    #[error("{}: {why}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        why: String,
+    },
+    /// The document says something that is not accepted.
+    #[error("{0}")]
+    Invalid(String),
+    /// A key given beside the document is not accepted.
+    #[error("{origin}: {key}: {why}")]
+    Key {
+        /// Where the document comes from.
+        origin: String,
+        /// The key.
+        key: String,
+        /// What is wrong.
+        why: String,
+    },
+}
+
+/// A scenario as written: its text, and the keys that were set since.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// Where it comes from, for errors.
+    origin: String,
+    text: Option<String>,
+    table: Table,
+    changed: Vec<String>,
+}
+
+impl Document {
+    /// Reads a file.
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        let unreadable = |why: String| ScenarioError::Unreadable { path: path.to_owned(), why };
+        let metadata = fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
+        if !metadata.is_file() {
+            return Err(unreadable("not a file".to_owned()));
+        }
+        if metadata.len() > LONGEST {
+            return Err(unreadable(format!(
+                "a scenario has at most {LONGEST} bytes, this file has {}",
+                metadata.len()
+            )));
+        }
+        let bytes = fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            let line = 1 + valid.iter().filter(|byte| **byte == b'\n').count();
+            unreadable(format!("line {line} is not UTF-8 text"))
+        })?;
+        Self::parse(&path.display().to_string(), text)
+    }
+
+    /// Takes a text. `origin` is what errors call it.
+    pub fn parse(origin: &str, text: String) -> Result<Self, ScenarioError> {
+        let table = text.parse::<Table>().map_err(|error| pointed(origin, &text, &error))?;
+        Ok(Self { origin: origin.to_owned(), text: Some(text), table, changed: Vec::new() })
+    }
+
+    /// Takes a table that has no text, such as a Python dictionary.
+    pub fn from_table(origin: &str, table: Table) -> Self {
+        Self { origin: origin.to_owned(), text: None, table, changed: Vec::new() }
+    }
+
+    /// Where the document comes from.
+    pub fn origin(&self) -> &str {
+        &self.origin
+    }
+
+    /// Sets a key, given by its path: `law.relay.k_t`, `body.planar.modes[0].frequency`.
+    pub fn set(&mut self, key: &str, value: Value) -> Result<(), ScenarioError> {
+        key::set(&mut self.table, key, value).map_err(|why| self.key_error(key, why))?;
+        self.changed.push(key.to_owned());
+        Ok(())
+    }
+
+    /// Sets a key to a value written as in TOML, such as `0.34` or `"dynamic"`; a bare word is a string.
+    pub fn set_text(&mut self, key: &str, text: &str) -> Result<(), ScenarioError> {
+        let value = format!("value = {text}").parse::<Table>().ok().and_then(|t| t.get("value").cloned());
+        self.set(key, value.unwrap_or_else(|| Value::String(text.to_owned())))
+    }
+
+    /// The document as the type that it describes.
+    pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, ScenarioError> {
+        if let (Some(text), true) = (&self.text, self.changed.is_empty()) {
+            return toml::from_str(text).map_err(|error| pointed(&self.origin, text, &error));
+        }
+        Value::Table(self.table.clone()).try_into().map_err(|error: toml::de::Error| {
+            // As a text, it shows which value is meant.
+            let text = toml::to_string(&self.table).unwrap_or_default();
+            let message = match toml::from_str::<T>(&text) {
+                Err(error) => told(&text, &error).0,
+                Ok(_) => explained(error.message(), None),
+            };
+            let set = match self.changed.as_slice() {
+                [] => String::new(),
+                changed => format!(" (with {} set)", changed.join(", ")),
+            };
+            ScenarioError::Invalid(format!("{}: {message}{set}", self.origin))
+        })
+    }
+
+    /// An error at the first value of which a part was left unread: what was read of it is in `understood`.
+    pub fn unread(&self, understood: &Table) -> Option<ScenarioError> {
+        let mut pairs = self.table.iter().filter_map(|(key, value)| Some((key, value, understood.get(key)?)));
+        let (key, why) = pairs.find_map(|(key, given, read)| unread(&bare_or_quoted(key), given, read))?;
+        Some(self.inconsistent(&key, &why))
+    }
+
+    /// An error at a key, pointed at its value if the text has it.
+    pub fn inconsistent(&self, key: &str, why: &str) -> ScenarioError {
+        if let Some(text) = self.text.as_ref().filter(|_| !self.changed.iter().any(|k| k == key)) {
+            let table = DeTable::parse(text).ok();
+            if let Some(span) = table.and_then(|table| span_of(table.get_ref(), key)) {
+                return ScenarioError::Invalid(point(&self.origin, text, span, &format!("`{key}` {why}")));
+            }
+        }
+        ScenarioError::Invalid(format!("{}: `{key}` {why}", self.origin))
+    }
+
+    fn key_error(&self, key: &str, why: String) -> ScenarioError {
+        ScenarioError::Key { origin: self.origin.clone(), key: key.to_owned(), why }
+    }
+}
+
+/// The first part of a value that is not in what was read of it: the key, and why.
+fn unread(key: &str, given: &Value, read: &Value) -> Option<(String, String)> {
+    match (given, read) {
+        (Value::Table(given), Value::Table(read)) => given.iter().find_map(|(name, value)| {
+            unread(&format!("{key}.{}", bare_or_quoted(name)), value, read.get(name)?)
+        }),
+        (Value::Array(given), Value::Array(read)) if given.len() > read.len() => {
+            let why = format!("has {} values, expected {}", given.len(), read.len());
+            Some((key.to_owned(), why))
+        }
+        (Value::Array(given), Value::Array(read)) => given
+            .iter()
+            .zip(read)
+            .enumerate()
+            .find_map(|(index, (given, read))| unread(&format!("{key}[{index}]"), given, read)),
+        (Value::Array(_), Value::Table(_)) => {
+            Some((key.to_owned(), "is an array, expected a table".to_owned()))
+        }
+        _ => None,
+    }
+}
