@@ -3,5 +3,6 @@
 mod bad_scenarios;
 mod cli;
 mod events;
+mod plot;
 mod relay;
 mod util;

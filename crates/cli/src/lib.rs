@@ -5,8 +5,10 @@ mod check;
 mod cycle;
 mod export;
 mod failure;
+mod figure;
 mod log;
 mod modes;
+mod plot;
 mod schema;
 mod simulate;
 mod stop;
@@ -37,6 +39,8 @@ enum Verb {
     Modes(modes::Args),
     /// Tell the limit cycles of a scenario's relay law on a rigid body, and its resonances
     Cycle(cycle::Args),
+    /// Draw the figures of a log
+    Plot(plot::Args),
     /// Print a topic of a log as a table
     Export(export::Args),
     /// Look into logs, and save torn ones
@@ -68,6 +72,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Sweep(args) => sweep::run(&args),
         Verb::Modes(args) => modes::run(&args),
         Verb::Cycle(args) => cycle::run(&args),
+        Verb::Plot(args) => plot::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),
         Verb::Check(args) => check::run(&args),

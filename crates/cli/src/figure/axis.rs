@@ -1,0 +1,154 @@
+//! Axes: a range, its unit with a prefix that keeps numbers short, and ticks at 1-2-5 steps.
+
+use std::ops::Range;
+
+/// An axis.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// What is along it; empty for an axis that another panel names.
+    pub name: String,
+    /// Unit of its values; empty for a ratio.
+    pub unit: &'static str,
+    /// What it shows, in that unit.
+    pub range: Range<f64>,
+}
+
+/// The ticks of an axis.
+#[derive(Clone, Debug)]
+pub struct Ticks {
+    /// Where they are, in the axis' unit.
+    pub at: Vec<f64>,
+    /// The prefixed unit in the axis' own.
+    factor: f64,
+    decimals: usize,
+}
+
+/// Prefixes, from the smallest.
+const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
+
+impl Axis {
+    /// An axis that shows exactly this range.
+    pub fn exact(name: &str, unit: &'static str, range: Range<f64>) -> Self {
+        let size = range.start.abs().max(range.end.abs());
+        // An axis needs a width, which a range of a single value does not have, or of none.
+        let wide = size.is_finite() && range.end - range.start > 1e-9 * size;
+        let middle = if range.start.is_finite() { range.start } else { 0.0 };
+        let half = if middle == 0.0 { 1.0 } else { 0.05 * middle.abs() };
+        let range = if wide { range } else { middle - half..middle + half };
+        Self { name: name.to_owned(), unit, range }
+    }
+
+    /// An axis that shows all of these values, and a little more.
+    pub fn around(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        let finite = values.into_iter().filter(|value| value.is_finite());
+        let (low, high) =
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        let margin = 0.06 * (high - low);
+        Self::exact(name, unit, low - margin..high + margin)
+    }
+
+    /// An axis from zero to the largest of these values, and a little more.
+    pub fn from_zero(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        let highest = values.into_iter().filter(|value| value.is_finite()).fold(0.0, f64::max);
+        Self::exact(name, unit, 0.0..1.06 * highest)
+    }
+
+    /// The same axis, named by another panel.
+    pub fn unnamed(&self) -> Self {
+        Self { name: String::new(), ..self.clone() }
+    }
+
+    /// The name with the prefixed unit.
+    pub fn label(&self) -> String {
+        match (self.name.as_str(), self.unit) {
+            ("", _) | (_, "") => self.name.clone(),
+            (name, unit) => format!("{name}, {}{unit}", self.prefix().0),
+        }
+    }
+
+    /// At most about `most` ticks.
+    pub fn ticks(&self, most: u32) -> Ticks {
+        let factor = 10_f64.powi(self.prefix().1);
+        let (low, high) = (self.range.start / factor, self.range.end / factor);
+        let rough = (high - low) / f64::from(most.max(1));
+        let power = 10_f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|nice| nice * power).into_iter().find(|step| *step >= rough);
+        let step = step.unwrap_or(10.0 * power);
+        let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+        // A little tolerance: the logarithm of a power of ten may be rounded.
+        let decimals = (-1e-9 - step.log10()).ceil().clamp(0.0, 12.0) as usize;
+        Ticks { at: (first..=last).map(|i| i as f64 * step * factor).collect(), factor, decimals }
+    }
+
+    fn prefix(&self) -> (&'static str, i32) {
+        let half = (self.range.end - self.range.start) / 2.0;
+        let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(half / 10_f64.powi(*power)));
+        if self.unit.is_empty() {
+            return ("", 0);
+        }
+        PREFIXES.iter().find(fits).copied().unwrap_or(("", 0))
+    }
+}
+
+impl Ticks {
+    /// The text of a tick.
+    pub fn text(&self, at: f64) -> String {
+        let value = at / self.factor;
+        let plain = self.decimals <= 6 && value.abs() < 1e7;
+        let text = if plain { format!("{value:.*}", self.decimals) } else { format!("{value:.1e}") };
+        let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.' | 'e'));
+        if zero { "0".to_owned() } else { text.replace('-', "−") }
+    }
+}
+
+/// The number of 1, 2 or 5 times a power of ten that is nearest to a positive one.
+pub fn round_to_nice(value: f64) -> f64 {
+    let power = 10_f64.powf(value.log10().floor());
+    let nice = [1.0, 2.0, 5.0, 10.0].map(|nice| nice * power);
+    let distance = |nice: &f64| (nice / value).ln().abs();
+    nice.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(axis: &Axis, most: u32) -> Vec<String> {
+        let ticks = axis.ticks(most);
+        ticks.at.iter().map(|at| ticks.text(*at)).collect()
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let angle = Axis::exact("angle x", "rad", -6.2e-4..6.2e-4);
+        assert_eq!(angle.label(), "angle x, µrad");
+        assert_eq!(texts(&angle, 7), ["−600", "−400", "−200", "0", "200", "400", "600"]);
+        let time = Axis::exact("time", "s", 0.0..20_000.0);
+        assert_eq!(time.label(), "time, ks");
+        assert_eq!(texts(&time, 4), ["0", "5", "10", "15", "20"]);
+        let short = Axis::exact("time", "s", 0.0..3.0);
+        assert_eq!(texts(&short, 4), ["0", "1", "2", "3"]);
+        let late = Axis::exact("time", "s", 19_900.0..20_000.0);
+        assert_eq!(late.label(), "time, s");
+        assert_eq!(texts(&late, 2), ["19900", "19950", "20000"]);
+        let gain = Axis::exact("k_t", "", 0.305..0.325);
+        assert_eq!(gain.label(), "k_t");
+        assert_eq!(texts(&gain, 5), ["0.305", "0.310", "0.315", "0.320", "0.325"]);
+        let huge = Axis::exact("", "", -2e9..2e9);
+        assert_eq!(texts(&huge, 2), ["−2.0e9", "0", "2.0e9"]);
+    }
+
+    #[test]
+    fn any_values_make_an_axis() {
+        for values in [vec![], vec![f64::NAN], vec![0.0], vec![3.0, 3.0], vec![-1e300, 1e300]] {
+            let axis = Axis::around("x", "m", values.clone());
+            assert!(axis.range.start < axis.range.end, "{values:?}");
+            assert!(axis.ticks(5).at.len() <= 7, "{values:?}");
+        }
+    }
+
+    #[test]
+    fn nice_numbers_are_nearest() {
+        assert_eq!([3.1, 3.2, 99.96, 220.0, 0.07].map(round_to_nice), [2.0, 5.0, 100.0, 200.0, 0.05]);
+    }
+}

@@ -1,0 +1,89 @@
+//! Figures: panels of lines and marks over axes.
+
+mod axis;
+mod draw;
+mod image;
+mod line;
+
+use plotters::style::RGBColor;
+
+pub use axis::{Axis, round_to_nice};
+pub use image::Renderer;
+pub use line::{Point, steps};
+
+/// Colours that also the colour-blind tell apart (Okabe and Ito).
+pub mod colour {
+    use plotters::style::RGBColor;
+
+    /// For what is not data.
+    pub const GREY: RGBColor = RGBColor(120, 120, 120);
+    pub const BLACK: RGBColor = RGBColor(0, 0, 0);
+    pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+    pub const SKY: RGBColor = RGBColor(86, 180, 233);
+    pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+    pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+    pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+}
+
+/// A figure.
+pub struct Figure {
+    /// What it shows.
+    pub title: String,
+    /// Its panels, from top to bottom.
+    pub panels: Vec<Panel>,
+    /// Height of each panel in pixels.
+    pub panel_height: u32,
+}
+
+/// A panel.
+pub struct Panel {
+    /// Axis to the right.
+    pub x: Axis,
+    /// Axis upwards.
+    pub y: Axis,
+    /// What is drawn, the lowest first.
+    pub layers: Vec<Layer>,
+}
+
+/// What is drawn in one go.
+pub struct Layer {
+    /// Name in the legend; empty for none.
+    pub name: String,
+    /// Colour.
+    pub colour: RGBColor,
+    /// Shape.
+    pub shape: Shape,
+    /// Where; a point that is not finite is a gap.
+    pub points: Vec<Point>,
+}
+
+/// The shape of a layer.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A line of this width in pixels.
+    Line(f64),
+    /// A dashed line.
+    Dashes,
+    /// Discs at the points.
+    Disc,
+    /// Triangles at the points.
+    Triangle,
+    /// Squares at the points.
+    Square,
+    /// Diamonds at the points.
+    Diamond,
+}
+
+impl Figure {
+    /// The figure as SVG.
+    pub fn svg(&self) -> Result<String, String> {
+        draw::svg(self).map_err(|error| error.to_string())
+    }
+}
+
+impl Layer {
+    /// A layer.
+    pub fn new(name: &str, colour: RGBColor, shape: Shape, points: Vec<Point>) -> Self {
+        Self { name: name.to_owned(), colour, shape, points }
+    }
+}

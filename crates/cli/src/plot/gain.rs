@@ -1,0 +1,35 @@
+//! Figure `gain`: the gain and what the adaptation decided, and the window means that it learnt from.
+
+use super::envelope::means;
+use super::story::Story;
+use super::{time, title};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
+
+pub fn figure(story: &Story) -> Figure {
+    let x = time(0.0..story.end);
+    let gains = story.steps.iter().map(|step| (step.time, step.gain));
+    let line = steps([(0.0, story.start.1)].into_iter().chain(gains), story.end);
+    let decided = |decision: &str| -> Vec<Point> {
+        let of_kind = story.steps.iter().filter(|step| step.decision == decision);
+        of_kind.map(|step| (step.time, step.gain)).collect()
+    };
+    let kinds = [
+        ("begin", colour::GREY, Shape::Disc),
+        ("keep", colour::GREEN, Shape::Disc),
+        ("turn", colour::VERMILLION, Shape::Triangle),
+        ("ignore", colour::ORANGE, Shape::Square),
+        ("freeze", colour::BLUE, Shape::Diamond),
+    ];
+    let y = Axis::around("gain k_t", "", line.iter().map(|(_, gain)| *gain));
+    let mut layers = vec![Layer::new("k_t", colour::BLACK, Shape::Line(1.2), line)];
+    let marks = kinds.map(|(decision, colour, shape)| Layer::new(decision, colour, shape, decided(decision)));
+    layers.extend(marks.into_iter().filter(|layer| !layer.points.is_empty()));
+    let gain = Panel { x: x.unnamed(), y, layers };
+    let all = story.means.iter().map(|mean| mean.value);
+    let means = Panel {
+        x,
+        y: Axis::from_zero("mean envelope", "rad", all),
+        layers: vec![Layer::new("window means", colour::BLUE, Shape::Line(1.6), means(&story.means))],
+    };
+    Figure { title: title(story, "adaptation"), panels: vec![gain, means], panel_height: 220 }
+}

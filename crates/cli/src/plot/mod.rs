@@ -1,0 +1,170 @@
+//! `flexsc plot`: the figures of a log, as SVG and PNG.
+
+mod envelope;
+mod gain;
+mod modes;
+mod phase_plane;
+mod story;
+mod torque;
+
+use std::f64::consts::TAU;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use flexsc_core::record::Log;
+use rayon::prelude::*;
+
+use crate::failure::Failure;
+use crate::figure::{Axis, Figure, Renderer, round_to_nice};
+use crate::say;
+use story::{Motion, Story};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Log file
+    log: PathBuf,
+    /// Directory for the figures, made if it is not there [default: that of the log]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Figures to draw [default: all that the log has]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
+    what: Vec<What>,
+    /// Form of the figures
+    #[arg(long, value_enum, default_value = "both")]
+    format: Format,
+}
+
+/// A figure.
+#[derive(Copy, Clone, PartialEq, ValueEnum)]
+enum What {
+    /// Rate against angle, with the law's switching lines
+    PhasePlane,
+    /// Commanded torque at the end of the run
+    Torque,
+    /// Envelope of the elastic modes with its window means, and the elastic angle at the end of the run
+    Envelope,
+    /// What the adaptation decided, and the gain
+    Gain,
+    /// Each elastic mode at the end of the run
+    Modes,
+}
+
+#[derive(Copy, Clone, PartialEq, ValueEnum)]
+enum Format {
+    /// Vector graphics
+    Svg,
+    /// Pixels
+    Png,
+    /// One file of each
+    Both,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let log = Log::open(&args.log)?;
+    let story = Story::read(&log, &args.log)?;
+    let there: Vec<_> = What::value_variants().iter().copied().filter(|what| what.is_in(&story)).collect();
+    if let Some(missing) = args.what.iter().find(|what| !there.contains(what)) {
+        let names: Vec<_> = there.iter().map(|what| what.name()).collect();
+        return Err(Failure::Arguments(format!(
+            "{}: there is no figure `{}` of this log\n\nhint: it has {}",
+            args.log.display(),
+            missing.name(),
+            names.join(", ")
+        )));
+    }
+    let chosen = if args.what.is_empty() { &there } else { &args.what };
+    let moving = [What::PhasePlane, What::Envelope, What::Modes].iter().any(|what| chosen.contains(what));
+    let motion = if moving {
+        let late = phase_plane::late(&story).min(swings(&story).start);
+        story.motion(&log, &args.log, phase_plane::early(&story), late)?
+    } else {
+        Motion::default()
+    };
+
+    let beside = args.log.parent().unwrap_or(Path::new(""));
+    let directory = args.out.as_deref().unwrap_or(beside);
+    if args.out.is_some() {
+        std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
+    }
+    let name = args.log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let renderer = Renderer::new();
+    let path = |what: What, extension: &str| directory.join(format!("{name}-{}.{extension}", what.name()));
+    let draw = |what: &What| -> Result<(String, Vec<u8>), Failure> {
+        let undrawn = |why| Failure::Draw { path: path(*what, "svg"), why };
+        let svg = what.figure(&story, &motion).svg().map_err(undrawn)?;
+        let wanted = args.format != Format::Svg;
+        let png = if wanted { renderer.png(&svg).map_err(undrawn)? } else { Vec::new() };
+        Ok((svg, png))
+    };
+    let drawn = chosen.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?;
+    for (what, (svg, png)) in chosen.iter().zip(&drawn) {
+        if args.format != Format::Png {
+            write(&path(*what, "svg"), svg.as_bytes())?;
+        }
+        if args.format != Format::Svg {
+            write(&path(*what, "png"), png)?;
+        }
+    }
+    Ok(())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    std::fs::write(path, bytes).map_err(Failure::write(path))?;
+    say!("{} ({:.0} kB)", path.display(), bytes.len() as f64 / 1e3);
+    Ok(())
+}
+
+impl What {
+    /// Whether a log has what the figure shows.
+    fn is_in(self, story: &Story) -> bool {
+        match self {
+            Self::PhasePlane | Self::Torque => true,
+            Self::Envelope => story.scenario.estimator.is_some(),
+            Self::Gain => !story.steps.is_empty(),
+            Self::Modes => !story.scenario.body.modes().is_empty(),
+        }
+    }
+
+    fn figure(self, story: &Story, motion: &Motion) -> Figure {
+        match self {
+            Self::PhasePlane => phase_plane::figure(story, motion),
+            Self::Torque => torque::figure(story),
+            Self::Envelope => envelope::figure(story, motion),
+            Self::Gain => gain::figure(story),
+            Self::Modes => modes::figure(story, motion),
+        }
+    }
+
+    fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+}
+
+/// The title of a figure: what it shows, of which run.
+fn title(story: &Story, what: &str) -> String {
+    let scenario = &story.scenario;
+    let (first, seed) = (story.start.1, scenario.seed);
+    let last = story.steps.last().map_or(first, |step| step.gain);
+    let moved = if last == first { String::new() } else { format!(" → {}", short(last)) };
+    let run = if story.run == 0 { String::new() } else { format!(", run {}", story.run) };
+    format!("{}: {what} (k_t = {}{moved}, seed {seed}{run})", scenario.name, short(first))
+}
+
+/// A gain with at most four decimals.
+fn short(gain: f64) -> String {
+    format!("{gain:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The end of a run that shows about seven periods of its slowest mode.
+fn swings(story: &Story) -> std::ops::Range<f64> {
+    let frequencies = story.scenario.body.modes().iter().map(|mode| mode.frequency.get());
+    let slowest = frequencies.fold(f64::INFINITY, f64::min);
+    let span = if slowest.is_finite() { round_to_nice(7.0 * TAU / slowest) } else { 100.0 };
+    (story.end - span).max(0.0)..story.end
+}
+
+/// The axis of time.
+fn time(range: std::ops::Range<f64>) -> Axis {
+    Axis::exact("time", "s", range)
+}

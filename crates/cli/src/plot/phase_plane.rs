@@ -1,0 +1,62 @@
+//! Figure `phase-plane`: rate against angle, the law's switching lines, and where the law switched.
+
+use flexsc_core::law::{Law, Sides};
+
+use super::story::{Motion, Story, Switching};
+use super::title;
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+/// So many cycles are shown at the start of a run, and as many at its end.
+const CYCLES: usize = 10;
+
+/// When the last cycles begin (s).
+pub fn late(story: &Story) -> f64 {
+    story.last_cycles(CYCLES)
+}
+
+/// When the first cycles end (s).
+pub fn early(story: &Story) -> f64 {
+    story.first_cycles(CYCLES, late(story))
+}
+
+pub fn figure(story: &Story, motion: &Motion) -> Figure {
+    let (early, late) = (early(story), late(story));
+    let path = |shown: &dyn Fn(f64) -> bool| -> Vec<Point> {
+        let states = motion.angle.iter().copied().zip(motion.rate.iter().copied());
+        motion.time.iter().zip(states).filter(|(time, _)| shown(**time)).map(|(_, state)| state).collect()
+    };
+    let first = path(&|time| time <= early && late > 0.0);
+    // A log counts the motion in whole nanoseconds.
+    let last = path(&|time| time >= late - 1e-9);
+    let shown = |s: &&Switching| s.time >= late || s.time <= early;
+    let points = |timeout: bool| -> Vec<Point> {
+        let of_kind = story.switchings.iter().filter(shown).filter(|s| s.timeout == timeout);
+        of_kind.map(|s| (s.angle, s.rate)).collect()
+    };
+    let Law::Relay(relay) = &story.scenario.law;
+    let (dead_zone, back) = (relay.dead_zone.get(), relay.dead_zone.get() - relay.hysteresis.get());
+    let all = || first.iter().chain(&last).copied();
+    let x = Axis::around("angle x", "rad", all().map(|p| p.0).chain([-dead_zone, dead_zone]));
+    let y = Axis::around("rate dx/dt", "rad/s", all().map(|p| p.1));
+    let line = |name: &str, shape, at: f64| {
+        Layer::new(name, colour::GREY, shape, vec![(at, y.range.start), (at, y.range.end)])
+    };
+    let (boundary, brake) = (Shape::Line(1.0), Shape::Dashes);
+    let mut layers = match relay.sides {
+        Sides::Two => vec![
+            line("±ε", boundary, dead_zone),
+            line("", boundary, -dead_zone),
+            line("±(ε − γ)", brake, back),
+            line("", brake, -back),
+        ],
+        Sides::One => vec![line("ε", boundary, dead_zone), line("ε − γ", brake, back)],
+    };
+    let name = if first.is_empty() { "trajectory" } else { "end of the run" };
+    layers.extend([
+        Layer::new("start of the run", colour::SKY, Shape::Line(0.6), first),
+        Layer::new(name, colour::BLACK, Shape::Line(1.1), last),
+        Layer::new("switching by guard", colour::VERMILLION, Shape::Disc, points(false)),
+        Layer::new("by timeout", colour::BLUE, Shape::Diamond, points(true)),
+    ]);
+    Figure { title: title(story, "phase plane"), panels: vec![Panel { x, y, layers }], panel_height: 480 }
+}

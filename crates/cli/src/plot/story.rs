@@ -1,0 +1,253 @@
+//! The story of a run that figures tell: read from its log, and its motion, where the log has none, by running
+//! the scenario within the log again.
+
+use std::path::Path;
+
+use flexsc_core::record::{Column, Columns, Log, Record, RecordError, Sample};
+use flexsc_core::time::{Instant, Span};
+use flexsc_core::{Scenario, Simulation};
+use rayon::prelude::*;
+
+use crate::failure::Failure;
+
+/// A run as its log tells it.
+pub struct Story {
+    /// What was run.
+    pub scenario: Scenario,
+    /// Number of the run.
+    pub run: u64,
+    /// When the run ended (s).
+    pub end: f64,
+    /// Torque and gain at the start.
+    pub start: (f64, f64),
+    /// Every switching.
+    pub switchings: Vec<Switching>,
+    /// Every window mean of the envelope.
+    pub means: Vec<Mean>,
+    /// Every step of the adaptation.
+    pub steps: Vec<Step>,
+}
+
+/// A switching.
+pub struct Switching {
+    pub time: f64,
+    /// Label of the state that begins.
+    pub state: String,
+    /// Whether a timeout made the law decide, and no guard.
+    pub timeout: bool,
+    pub torque: f64,
+    pub angle: f64,
+    pub rate: f64,
+}
+
+/// The mean envelope over a window.
+pub struct Mean {
+    pub from: f64,
+    pub to: f64,
+    pub value: f64,
+}
+
+/// A step of the adaptation.
+pub struct Step {
+    pub time: f64,
+    /// Label of the decision.
+    pub decision: String,
+    pub gain: f64,
+}
+
+/// The motion of a run. All but the envelope may be left out where no figure shows it.
+#[derive(Default)]
+pub struct Motion {
+    pub time: Vec<f64>,
+    pub angle: Vec<f64>,
+    pub rate: Vec<f64>,
+    /// Sum of the modes' displacements.
+    pub elastic: Vec<f64>,
+    /// Displacements of each mode.
+    pub modes: Vec<Vec<f64>>,
+    /// Times and values of the total envelope; empty without an observer.
+    pub envelope: Vec<(f64, f64)>,
+}
+
+impl Story {
+    /// Reads the events of a log.
+    pub fn read(log: &Log, path: &Path) -> Result<Self, Failure> {
+        let Some(toml) = log.scenario() else {
+            return Err(unusable(path, "it holds no scenario".to_owned()));
+        };
+        let scenario = Scenario::parse(&format!("{}: scenario.toml", path.display()), toml)?;
+        let about = log.metadata();
+        let run = about.get("run").and_then(|run| run.parse().ok()).unwrap_or(0);
+        let [law, command, means, adaptation] =
+            topics(log, ["/law", "/command", "/envelope_mean", "/adaptation"])?;
+        let first = |name: &str| law.numbers(name).and_then(|column| column.first().copied());
+        let start = (first("torque_nm").unwrap_or(f64::NAN), first("gain").unwrap_or(scenario.law.gain()));
+        let switchings = switchings(&command);
+        let means = rows(&means, ["from_s", "to_s", "mean_rad"]);
+        let means: Vec<_> = means.map(|[from, to, value]| Mean { from, to, value }).collect();
+        let decisions = labels(&adaptation, "decision");
+        let steps = rows(&adaptation, ["time_s", "gain"]).zip(decisions);
+        let steps = steps.map(|([time, gain], decision)| Step { time, decision, gain }).collect();
+        let told = about.get("time_s").and_then(|time| time.parse().ok());
+        let last = switchings.last().map(|s| s.time).into_iter().chain(means.last().map(|mean| mean.to));
+        let end = match about.get("end").map(String::as_str) {
+            Some("complete") => scenario.duration.seconds(),
+            _ => last.chain(told).fold(0.0, f64::max),
+        };
+        Ok(Self { scenario, run, end, start, switchings, means, steps })
+    }
+
+    /// The motion as a full log has it, or else as the run repeated has it. The run repeated keeps the whole
+    /// motion up to `early` and from `late` on only, and the envelope always.
+    pub fn motion(&self, log: &Log, path: &Path, early: f64, late: f64) -> Result<Motion, Failure> {
+        if log.topics().iter().any(|topic| topic == "/attitude") {
+            return read_motion(log);
+        }
+        let mut repeat = Repeat { motion: Motion::default(), early, late, switchings: Vec::new() };
+        // The end of a log that was cut off is rounded, and a switching may lie on it.
+        let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
+        Simulation::new(&self.scenario, self.run)
+            .run_until(Instant::START + end, &mut repeat)
+            .map_err(|source| Failure::Run { name: self.scenario.name.clone(), source })?;
+        let same = |(a, b): (&f64, &Switching)| (a - b.time).abs() <= 1e-6;
+        if repeat.switchings.len() < self.switchings.len()
+            || !repeat.switchings.iter().zip(&self.switchings).all(same)
+        {
+            let version = log.metadata().get("version").map_or("another", String::as_str);
+            return Err(unusable(
+                path,
+                format!(
+                    "flexsc {} switches at other times than this log of version {version}\n\n\
+                     hint: a log made with `--log full` holds all that figures need",
+                    env!("CARGO_PKG_VERSION")
+                ),
+            ));
+        }
+        Ok(repeat.motion)
+    }
+
+    /// When the last `count` cycles begin: a cycle lasts from one entry into the law's last state to the next, or
+    /// for six switchings where that state is rare.
+    pub fn last_cycles(&self, count: usize) -> f64 {
+        let cycles = self.entries().rev().nth(count).unwrap_or(0.0);
+        let switchings = self.switchings.iter().rev().nth(6 * count).map_or(0.0, |s| s.time);
+        cycles.max(switchings)
+    }
+
+    /// When the first `count` cycles end, not after `before`.
+    pub fn first_cycles(&self, count: usize, before: f64) -> f64 {
+        let cycles = self.entries().nth(count).unwrap_or(before);
+        let switchings = self.switchings.get(6 * count).map_or(before, |s| s.time);
+        cycles.min(switchings).min(before)
+    }
+
+    /// When the law's last state was entered.
+    fn entries(&self) -> impl DoubleEndedIterator<Item = f64> {
+        let last = self.switchings.last().map(|s| &s.state);
+        self.switchings.iter().filter(move |s| Some(&s.state) == last).map(|s| s.time)
+    }
+}
+
+fn unusable(path: &Path, why: String) -> Failure {
+    Failure::Draw { path: path.to_owned(), why }
+}
+
+/// The rows of some topics, read at the same time; none of one that the log does not have.
+fn topics<const N: usize>(log: &Log, names: [&str; N]) -> Result<[Columns; N], Failure> {
+    let read = |(name, columns): (&str, &mut Columns)| -> Result<(), Failure> {
+        if log.topics().iter().any(|topic| topic == name) {
+            *columns = log.columns(name)?;
+        }
+        Ok(())
+    };
+    let mut columns = [const { Columns { columns: Vec::new() } }; N];
+    names.into_par_iter().zip(&mut columns[..]).try_for_each(read)?;
+    Ok(columns)
+}
+
+/// The doubles of some columns, row by row.
+fn rows<'a, const N: usize>(columns: &'a Columns, names: [&str; N]) -> impl Iterator<Item = [f64; N]> + 'a {
+    let columns = names.map(|name| columns.numbers(name).unwrap_or_default());
+    let shortest = columns.iter().map(|column| column.len()).min().unwrap_or(0);
+    (0..shortest).map(move |row| columns.map(|column| column[row]))
+}
+
+/// The labels of a column, row by row.
+fn labels(columns: &Columns, name: &str) -> Vec<String> {
+    let Some(Column::Labels(values, labels)) = columns.get(name) else { return Vec::new() };
+    values.iter().map(|value| labels.get(usize::from(*value)).cloned().unwrap_or_default()).collect()
+}
+
+fn switchings(columns: &Columns) -> Vec<Switching> {
+    let words = labels(columns, "state").into_iter().zip(labels(columns, "cause"));
+    let numbers = rows(columns, ["time_s", "torque_nm", "angle_rad", "rate_rad_s"]);
+    let switching = |([time, torque, angle, rate], (state, cause)): ([f64; 4], (String, String))| Switching {
+        time,
+        state,
+        timeout: cause == "timeout",
+        torque,
+        angle,
+        rate,
+    };
+    numbers.zip(words).map(switching).collect()
+}
+
+fn read_motion(log: &Log) -> Result<Motion, Failure> {
+    let [attitude, rate, modes, envelope] = topics(log, ["/attitude", "/rate", "/modes", "/envelope"])?;
+    let column = |columns: &Columns, name: &str| columns.numbers(name).unwrap_or_default().to_vec();
+    let displacements = match modes.get("modes") {
+        Some(Column::Rows(counts, inner)) => {
+            let count = counts.first().map_or(0, |count| *count as usize);
+            let values = inner.numbers("displacement_rad").unwrap_or_default();
+            (0..count).map(|mode| values.iter().skip(mode).step_by(count).copied().collect()).collect()
+        }
+        _ => Vec::new(),
+    };
+    Ok(Motion {
+        time: column(&attitude, "time_s"),
+        angle: column(&attitude, "angle_rad"),
+        rate: column(&rate, "rate_rad_s"),
+        elastic: column(&modes, "elastic_rad"),
+        modes: displacements,
+        envelope: rows(&envelope, ["time_s", "envelope_rad"]).map(|[time, value]| (time, value)).collect(),
+    })
+}
+
+/// Keeps the motion of a run that is repeated.
+struct Repeat {
+    motion: Motion,
+    early: f64,
+    late: f64,
+    /// Times of the switchings, to compare with the log's.
+    switchings: Vec<f64>,
+}
+
+impl Record for Repeat {
+    fn dense(&self) -> bool {
+        true
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        let time = now.seconds();
+        match sample {
+            Sample::Switching(command, _) => self.switchings.push(command.time_s),
+            Sample::Motion(motion) => {
+                let kept = &mut self.motion;
+                kept.envelope.extend(motion.envelope.as_ref().map(|envelope| (time, envelope.envelope_rad)));
+                if time > self.early && time < self.late {
+                    return Ok(());
+                }
+                kept.time.push(time);
+                kept.angle.push(motion.attitude.angle_rad);
+                kept.rate.push(motion.rate.rate_rad_s);
+                kept.elastic.push(motion.modes.elastic_rad);
+                kept.modes.resize(motion.modes.modes.len(), Vec::new());
+                for (column, mode) in kept.modes.iter_mut().zip(&motion.modes.modes) {
+                    column.push(mode.displacement_rad);
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,46 @@
+//! Figure `torque`: the commanded torque at the end of the run, strong and weak.
+
+use super::story::Story;
+use super::{time, title};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_nice, steps};
+
+/// So many switchings are shown, about: five cycles of a two-sided relay.
+const SWITCHINGS: usize = 30;
+
+pub fn figure(story: &Story) -> Figure {
+    let first = story.switchings.len().checked_sub(SWITCHINGS).map_or(0.0, |i| story.switchings[i].time);
+    let span = round_to_nice(story.end - first);
+    let from = if first > 0.0 { (story.end - span).max(0.0) } else { 0.0 };
+    let commands = story.switchings.iter().map(|s| (s.time, s.torque));
+    let line = steps([(0.0, story.start.0)].into_iter().chain(commands), story.end);
+    let x = time(from..story.end);
+
+    // One panel for the strong torque, and another where the weak one can be seen, if it is much weaker.
+    let levels = line.iter().map(|(_, torque)| torque.abs()).filter(|torque| *torque > 0.0);
+    let strong = levels.clone().fold(0.0, f64::max);
+    let weak = levels.filter(|level| *level < 0.2 * strong).fold(0.0, f64::max);
+    let unit = if story.scenario.body.inertia() == 1.0 { "rad/s²" } else { "N m" };
+    let panel = |x: Axis, name: &str, most: f64, named: bool| {
+        let most = if most > 0.0 { 1.3 * most } else { 1.0 };
+        let marks = |timeout: bool| -> Vec<Point> {
+            let of_kind = story.switchings.iter().filter(|s| s.timeout == timeout);
+            of_kind.map(|s| (s.time, s.torque)).collect()
+        };
+        let legend = |name: &'static str| if named { name } else { "" };
+        let zero = vec![(x.range.start, 0.0), (x.range.end, 0.0)];
+        let layers = vec![
+            Layer::new("", colour::GREY, Shape::Line(0.8), zero),
+            Layer::new(legend("torque"), colour::BLACK, Shape::Line(1.2), line.clone()),
+            Layer::new(legend("switching by guard"), colour::VERMILLION, Shape::Disc, marks(false)),
+            Layer::new(legend("by timeout"), colour::BLUE, Shape::Diamond, marks(true)),
+        ];
+        Panel { x, y: Axis::exact(name, unit, -most..most), layers }
+    };
+    let title = title(story, "torque");
+    if weak > 0.0 {
+        let panels = vec![panel(x.unnamed(), "torque", strong, true), panel(x, "weak torque", weak, false)];
+        Figure { title, panels, panel_height: 200 }
+    } else {
+        Figure { title, panels: vec![panel(x, "torque", strong, true)], panel_height: 300 }
+    }
+}
