@@ -6,7 +6,6 @@ use std::path::Path;
 use flexsc_core::record::{Column, Columns, Log, Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
-use rayon::prelude::*;
 
 use crate::failure::Failure;
 
@@ -152,17 +151,10 @@ fn unusable(path: &Path, why: String) -> Failure {
     Failure::Draw { path: path.to_owned(), why }
 }
 
-/// The rows of some topics, read at the same time; none of one that the log does not have.
+/// The rows of some topics; none of one that the log does not have.
 fn topics<const N: usize>(log: &Log, names: [&str; N]) -> Result<[Columns; N], Failure> {
-    let read = |(name, columns): (&str, &mut Columns)| -> Result<(), Failure> {
-        if log.topics().iter().any(|topic| topic == name) {
-            *columns = log.columns(name)?;
-        }
-        Ok(())
-    };
-    let mut columns = [const { Columns { columns: Vec::new() } }; N];
-    names.into_par_iter().zip(&mut columns[..]).try_for_each(read)?;
-    Ok(columns)
+    let mut tables = log.tables(&names)?.into_iter();
+    Ok(names.map(|_| tables.next().flatten().unwrap_or_default()))
 }
 
 /// The doubles of some columns, row by row.

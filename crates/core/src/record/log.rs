@@ -129,45 +129,63 @@ impl Log {
 
     /// The rows of a topic. The first column is `time_s`: the messages' own, or else their log time.
     pub fn columns(&self, topic: &str) -> Result<Columns, LogError> {
-        let no_topic = || LogError::NoTopic {
+        let columns = self.tables(&[topic])?.pop().flatten();
+        columns.ok_or_else(|| LogError::NoTopic {
             path: self.path.clone(),
             topic: topic.to_owned(),
             topics: self.topics.join(", "),
-        };
-        if !self.topics.iter().any(|t| t == topic) {
-            return Err(no_topic());
-        }
+        })
+    }
+
+    /// The rows of several topics in one pass through the log; nothing for a topic that it does not have.
+    pub fn tables(&self, topics: &[&str]) -> Result<Vec<Option<Columns>>, LogError> {
         let damaged = |source| LogError::Damaged { path: self.path.clone(), source };
-        let undecodable =
-            |why| LogError::Undecodable { path: self.path.clone(), topic: topic.to_owned(), why };
-        let mut found: Option<(MessageDescriptor, Columns)> = None;
-        let mut times = Vec::new();
+        let mut tables: Vec<Option<Table>> = topics.iter().map(|_| None).collect();
         for message in MessageStream::new(&self.bytes).map_err(damaged)? {
             let message = message.map_err(damaged)?;
-            if message.channel.topic != topic {
-                continue;
-            }
-            if found.is_none() {
-                let schema = message.channel.schema.as_ref();
-                let schema = schema.ok_or_else(|| undecodable("no schema".to_owned()))?;
-                let pool = DescriptorPool::decode(&*schema.data);
-                let pool = pool.map_err(|error| undecodable(error.to_string()))?;
-                let descriptor = pool.get_message_by_name(&schema.name);
-                let descriptor =
-                    descriptor.ok_or_else(|| undecodable("no message in its schema".to_owned()))?;
-                let columns = empty(&descriptor);
-                found = Some((descriptor, columns));
-            }
-            let Some((descriptor, columns)) = &mut found else { continue };
-            let row = DynamicMessage::decode(descriptor.clone(), &*message.data);
-            push(columns, descriptor, &row.map_err(|error| undecodable(error.to_string()))?);
-            times.push(message.log_time.saturating_sub(self.epoch_ns) as f64 / 1e9);
+            let topic = &message.channel.topic;
+            let Some(index) = topics.iter().position(|asked| asked == topic) else { continue };
+            let undecodable =
+                |why| LogError::Undecodable { path: self.path.clone(), topic: topic.clone(), why };
+            let table = match &mut tables[index] {
+                Some(table) => table,
+                none => none.insert(Table::of(message.channel.schema.as_deref()).map_err(undecodable)?),
+            };
+            table.times.push(message.log_time.saturating_sub(self.epoch_ns) as f64 / 1e9);
+            table.push(&message.data).map_err(undecodable)?;
         }
-        let (_, mut columns) = found.ok_or_else(no_topic)?;
+        Ok(tables.into_iter().map(|table| table.map(Table::into_columns)).collect())
+    }
+}
+
+/// The rows of one topic as they are read.
+struct Table {
+    descriptor: MessageDescriptor,
+    columns: Columns,
+    times: Vec<f64>,
+}
+
+impl Table {
+    /// An empty table for the messages of a schema.
+    fn of(schema: Option<&mcap::Schema<'_>>) -> Result<Self, String> {
+        let schema = schema.ok_or("no schema")?;
+        let pool = DescriptorPool::decode(&*schema.data).map_err(|error| error.to_string())?;
+        let descriptor = pool.get_message_by_name(&schema.name).ok_or("no message in its schema")?;
+        Ok(Self { columns: empty(&descriptor), descriptor, times: Vec::new() })
+    }
+
+    fn push(&mut self, message: &[u8]) -> Result<(), String> {
+        let row = DynamicMessage::decode(self.descriptor.clone(), message);
+        push(&mut self.columns, &self.descriptor, &row.map_err(|error| error.to_string())?);
+        Ok(())
+    }
+
+    fn into_columns(self) -> Columns {
+        let Self { mut columns, times, .. } = self;
         if columns.get("time_s").is_none() {
             columns.columns.insert(0, ("time_s".to_owned(), Column::Numbers(times)));
         }
-        Ok(columns)
+        columns
     }
 }
 

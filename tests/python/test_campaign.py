@@ -1,0 +1,138 @@
+"""Campaigns and sweeps: tables of runs, each the same alone and among others."""
+
+from pathlib import Path
+from typing import Any
+
+import flexsc
+import numpy as np
+import pytest
+from conftest import SCENARIOS, Command, json_lines
+from flexsc import Scenario, ScenarioError, Table
+
+
+@pytest.fixture(scope="module")
+def table(sampled: Scenario) -> Table:
+    return flexsc.campaign(sampled, runs=40)
+
+
+def test_a_table_has_a_row_for_each_run(sampled: Scenario, table: Table) -> None:
+    assert len(table) == 40
+    assert table["run"].tolist() == list(range(40))
+    assert table.keys == sorted(sampled.to_dict()["uncertain"])
+    assert all(len(column) == 40 for column in table.columns.values())
+    assert all(column.ndim == 1 for column in table.columns.values())
+    assert set(table) == set(table.columns)
+    assert table["switchings"].dtype == np.float64
+    assert table["cycle_kind"].dtype.kind == "U"
+    assert table["envelope_window_means_rad"].dtype == object
+    assert [means.shape for means in table["envelope_window_means_rad"]] == [(2,)] * 40
+    assert set(table["error"]) == {""}
+    angle = table["body.planar.angle"]
+    assert (np.abs(angle) <= 1.5e-3).all()
+    assert len(set(angle)) == 40
+    with pytest.raises(KeyError, match="no column 'mass'; there are run, "):
+        table["mass"]
+
+
+def test_runs_are_the_commands(table: Table, command: Command) -> None:
+    path = SCENARIOS / "relay-sampled.toml"
+    told = json_lines(command("simulate", path, "--set", "duration=1000.0", "--runs", "3:6", "--json"))
+    for line in told:
+        for key, drawn in line["drawn"].items():
+            assert table[key][line["run"]] == drawn
+        for name, value in line["metrics"].items():
+            mine: Any = table[name][line["run"]]
+            np.testing.assert_array_equal(mine, np.nan if value is None else value)
+
+
+def test_a_run_is_the_same_alone(sampled: Scenario, table: Table, tmp_path: Path, command: Command) -> None:
+    part = flexsc.campaign(sampled, runs=range(30, 33), jobs=1)
+    assert part["run"].tolist() == [30, 31, 32]
+    for name, column in part.columns.items():
+        if column.dtype == object:
+            for alone, among in zip(column, table[name][30:33], strict=True):
+                np.testing.assert_array_equal(alone, among)
+        else:
+            np.testing.assert_array_equal(column, table[name][30:33])
+    drawn = sampled.draw(31)
+    assert "uncertain" not in drawn.to_dict()
+    result = drawn.simulate(run=31)
+    for name, value in result.metrics.items():
+        np.testing.assert_array_equal(table[name][31], np.nan if value is None else value)
+    path = SCENARIOS / "relay-sampled.toml"
+    command("simulate", path, "--set", "duration=1000.0", "--runs", "31:32", "--log", "events", "-o", "out")
+    result.to_mcap(tmp_path / "python.mcap")
+    [log] = (tmp_path / "out").glob("*.mcap")
+    assert (tmp_path / "python.mcap").read_bytes() == log.read_bytes()
+
+
+def test_the_seed_draws_anew(sampled: Scenario, table: Table) -> None:
+    other = flexsc.campaign(sampled, runs=3, seed=8)
+    assert other.scenario.seed == 8
+    assert other["body.planar.angle"].tolist() != table["body.planar.angle"][:3].tolist()
+    assert flexsc.campaign(sampled, 3, seed=7)["switchings"].tolist() == table["switchings"][:3].tolist()
+
+
+def test_statistics_are_numpys(table: Table) -> None:
+    statistics = table.statistics()
+    assert "cycle_kind" not in statistics
+    for name, of in statistics.items():
+        values = table[name][np.isfinite(table[name])]
+        assert of["runs"] == len(values)
+        assert of["unit"] == flexsc.metrics()[name]["unit"]
+        assert list(of["quantiles"]) == [0.05, 0.25, 0.5, 0.75, 0.95]
+        if len(values) > 1:
+            assert of["mean"] == pytest.approx(values.mean(), rel=1e-12)
+            assert of["sd"] == pytest.approx(values.std(ddof=1), rel=1e-9, abs=1e-12 * abs(of["mean"]))
+            quantiles = np.quantile(values, list(of["quantiles"]))
+            np.testing.assert_allclose(list(of["quantiles"].values()), quantiles, rtol=1e-12)
+
+
+def test_a_sweep_takes_any_values(fixed: Scenario) -> None:
+    short = fixed.with_("duration", 1000.0)
+    values = [0.34, 0.31, 0.36]
+    table = flexsc.sweep(short, "law.relay.k_t", values)
+    assert table.keys == ["law.relay.k_t"]
+    assert table["law.relay.k_t"].tolist() == values
+    for value, mean in zip(values, table["envelope_mean_rad"], strict=True):
+        alone = short.with_("law.relay.k_t", value).simulate(log="none")
+        assert alone.metrics["envelope_mean_rad"] == mean
+    assert flexsc.sweep(short, "seed", np.arange(3))["seed"].dtype == np.int64
+
+
+def test_a_value_that_is_not_accepted_is_a_row(fixed: Scenario) -> None:
+    table = flexsc.sweep(fixed.with_("duration", 100.0), "law.relay.k_t", [0.31, 1.5, np.nan, 0.32])
+    assert [bool(error) for error in table["error"]] == [False, True, True, False]
+    assert "must be a number between 0 and 1, got 1.5" in table["error"][1]
+    assert np.isnan(table["switchings"]).tolist() == [False, True, True, False]
+    assert table["cycle_kind"].tolist()[1:3] == ["", ""]
+    assert [len(means) for means in table["cycle_multipliers"]][1:3] == [0, 0]
+    assert table.statistics()["switchings"]["runs"] == 2
+
+
+def test_runs_that_all_fail_make_a_table(fixed: Scenario) -> None:
+    hopeless = fixed.with_({"body.planar.rate": 1e308, "body.planar.angle": 1e308})
+    table = flexsc.campaign(hopeless, 2)
+    assert set(table) == {"run", "error"}
+    assert "no longer finite" in table["error"][0]
+    assert table.statistics() == {}
+
+
+def test_what_makes_no_campaign(fixed: Scenario) -> None:
+    for runs in (0, -1, range(3, 3), range(0, 9, 2)):
+        with pytest.raises(ValueError, match="runs must be"):
+            flexsc.campaign(fixed, runs)
+    with pytest.raises(ValueError, match="the number of a run must be from 0"):
+        flexsc.campaign(fixed, range(-2, 1))
+    for jobs in (-1, 1025):
+        with pytest.raises(ValueError, match="jobs must be from 1 to 1024"):
+            flexsc.campaign(fixed, 1, jobs=jobs)
+    with pytest.raises(ScenarioError, match="`seed`"):
+        flexsc.campaign(fixed, 1, seed=-1)
+    for values in ([], [[0.31]], 0.31):
+        with pytest.raises(ValueError, match="values must be of shape"):
+            flexsc.sweep(fixed, "law.relay.k_t", values)  # type: ignore[arg-type]
+    with pytest.raises(ScenarioError, match="unknown key `kt`"):
+        flexsc.sweep(fixed, "law.relay.kt", [0.31])
+    with pytest.raises(ScenarioError, match="must be a number between 0 and 1"):
+        flexsc.sweep(fixed, "law.relay.k_t", [np.nan])

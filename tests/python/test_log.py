@@ -1,0 +1,148 @@
+"""Logs: what the engine wrote, read by the foreign reader and by our own, number by number."""
+
+from pathlib import Path
+from typing import Any
+
+import flexsc
+import numpy as np
+import pytest
+from flexsc import LogError, Result, Scenario
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+
+
+@pytest.fixture(scope="module")
+def dense(adaptive: Scenario) -> Result:
+    """Every topic, in about 10 000 messages."""
+    return adaptive.with_({"duration": 200.0, "estimator.envelope.window": 20.0}).simulate(log="full")
+
+
+@pytest.fixture(scope="module")
+def path(dense: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("logs") / "dense.mcap"
+    dense.to_mcap(path)
+    return path
+
+
+def decoded(path: Path) -> dict[str, list[tuple[int, Any]]]:
+    """Log time and message of each topic, by the public readers of MCAP and protobuf."""
+    topics: dict[str, list[tuple[int, Any]]] = {}
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for _, channel, message, proto in reader.iter_decoded_messages():
+            topics.setdefault(channel.topic, []).append((message.log_time, proto))
+    return topics
+
+
+def labels(message: Any, field: str) -> str:
+    """An enumeration's value as the label that columns have: W_PLUS is W+."""
+    of = message.DESCRIPTOR.fields_by_name[field].enum_type
+    name: str = of.values_by_number[getattr(message, field)].name
+    return name.replace("_PLUS", "+").replace("_MINUS", "-")
+
+
+def test_the_foreign_reader_sees_the_same_numbers(dense: Result, path: Path) -> None:
+    topics = decoded(path)
+    assert {name.removeprefix("/") for name in topics} == {*dense, "metrics", "params"}
+    assert sum(map(len, topics.values())) < 20_000
+    for name in dense:
+        messages = topics[f"/{name}"]
+        for column, values in dense[name].items():
+            if column == "time_s" and name != "command":
+                told = [time / 1e9 for time, _ in messages]
+                np.testing.assert_allclose(told, values, rtol=0, atol=1.1e-9)
+                continue
+            outer, _, inner = column.partition(".")
+            if inner:
+                told = [[getattr(part, inner) for part in getattr(message, outer)] for _, message in messages]
+            elif values.dtype.kind == "U":
+                told = [labels(message, column) for _, message in messages]
+                values = np.char.upper(values)
+            else:
+                told = [getattr(message, column) for _, message in messages]
+            np.testing.assert_array_equal(np.array(told), values, err_msg=f"{name} {column}")
+
+
+def test_log_times_are_the_exact_times_in_nanoseconds(path: Path) -> None:
+    for time, message in decoded(path)["/command"]:
+        assert time == message.time_whole_s * 10**9 + message.time_fs // 10**6
+
+
+def test_metrics_and_parameters_in_a_log(dense: Result, path: Path) -> None:
+    topics = decoded(path)
+    [(_, params)] = topics["/params"]
+    assert Scenario.parse(params.toml) == dense.scenario
+    assert (params.seed, params.run) == (157, 0)
+    [(_, told)] = topics["/metrics"]
+    metrics: dict[str, list[float]] = {}
+    for metric in told.metrics:
+        metrics.setdefault(metric.name, []).append(metric.text or metric.value)
+    for name, value in dense.metrics.items():
+        expected = [np.nan if value is None else value] if np.ndim(value) == 0 else list(value)
+        if expected and isinstance(expected[0], str):
+            assert metrics[name] == expected
+        else:
+            np.testing.assert_array_equal(metrics.get(name, []), expected, err_msg=name)
+
+
+def test_our_reader_sees_the_same_columns(dense: Result, path: Path) -> None:
+    log = flexsc.read_log(path)
+    assert set(log) == {*dense, "metrics", "params"}
+    for name in dense:
+        for column, values in dense[name].items():
+            if column == "time_s" and name != "command":
+                np.testing.assert_allclose(log[name][column], values, rtol=0, atol=1.1e-9)
+            else:
+                np.testing.assert_array_equal(log[f"/{name}"][column], values)
+                assert log[name][column].dtype == values.dtype
+    assert log.scenario == dense.scenario
+    assert (log.metadata["scenario"], log.metadata["end"]) == ("relay-adaptive", "complete")
+    assert log["params"]["toml"].tolist() == [dense.scenario.to_toml()]
+    with pytest.raises(KeyError, match="no topic 'wheel'; there are adaptation, attitude"):
+        log["wheel"]
+
+
+def test_an_epoch_moves_the_log_and_not_the_columns(fixed: Scenario, tmp_path: Path) -> None:
+    from datetime import datetime, timezone
+
+    epoch = datetime(2026, 3, 20, 14, 46, tzinfo=timezone.utc)
+    result = fixed.with_({"duration": 50.0, "epoch": epoch}).simulate()
+    result.to_mcap(tmp_path / "x.mcap")
+    first = decoded(tmp_path / "x.mcap")["/params"][0][0]
+    assert first == int(epoch.timestamp()) * 10**9
+    log = flexsc.read_log(tmp_path / "x.mcap")
+    np.testing.assert_array_equal(log["command"]["time_s"], result["command"]["time_s"])
+    assert log["law"]["time_s"].tolist() == [0.0]
+
+
+def test_damaged_logs_are_errors_and_nothing_else(fixed: Scenario, tmp_path: Path) -> None:
+    good, bad = tmp_path / "good.mcap", tmp_path / "bad.mcap"
+    fixed.with_("duration", 100.0).simulate().to_mcap(good)
+    whole = good.read_bytes()
+    random = np.random.default_rng(1)
+    read = 0
+    for trial in range(400):
+        data = bytearray(whole)
+        if trial % 4 == 0:
+            data = data[: random.integers(len(data))]
+        else:
+            for place in random.integers(len(data), size=random.integers(1, 4)):
+                data[place] ^= 1 << random.integers(8)
+        bad.write_bytes(data)
+        try:
+            log = flexsc.read_log(bad)
+            for topic in log:
+                log[topic]
+            _ = log.scenario
+            read += 1
+        except (LogError, flexsc.ScenarioError):
+            pass
+    assert read < 400
+    bad.write_bytes(whole[:-100])
+    with pytest.raises(LogError, match="the log is torn"):
+        flexsc.read_log(bad)
+    with pytest.raises(LogError, match=r"nowhere\.mcap"):
+        flexsc.read_log(tmp_path / "nowhere.mcap")
+    bad.write_bytes(b"time,angle\n")
+    with pytest.raises(LogError, match="not a readable MCAP log"):
+        flexsc.read_log(bad)

@@ -1,0 +1,228 @@
+"""Scenarios: from files, texts and dictionaries, changed, compared, pickled, refused."""
+
+import copy
+import pickle
+from concurrent.futures import ProcessPoolExecutor
+from datetime import datetime, timedelta, timezone
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import flexsc
+import numpy as np
+import pytest
+from conftest import SCENARIOS, shipped
+from flexsc import Scenario, ScenarioError
+
+ALL = sorted(path.stem for path in SCENARIOS.glob("*.toml"))
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_scenario_survives_every_form(name: str) -> None:
+    scenario = shipped(name)
+    assert scenario.name == name
+    assert Scenario(scenario.to_dict()) == scenario
+    assert Scenario.parse(scenario.to_toml()) == scenario
+    assert Scenario.parse((SCENARIOS / f"{name}.toml").read_text(), name=name) == scenario
+    assert pickle.loads(pickle.dumps(scenario)) == scenario
+    assert copy.deepcopy(scenario) == scenario
+    assert scenario != scenario.with_("seed", scenario.seed + 1)
+    assert scenario != name
+
+
+def test_a_dictionary_is_as_good_as_a_file(fixed: Scenario) -> None:
+    built = Scenario(
+        {
+            "about": "Two-sided relay law at k_t = 0.31, two undamped modes, no adaptation",
+            "seed": np.int32(1),
+            "duration": np.float32(20000.0),
+            "body": {
+                "planar": {
+                    "angle": 4.5e-4,
+                    "rate": np.array(2.2e-5),
+                    "modes": (
+                        {"frequency": 0.44, "gain": 0.0213, "displacement": 2.75e-6},
+                        {"frequency": np.float64(0.755), "gain": 0.0216},
+                    ),
+                }
+            },
+            "law": {"relay": dict(dead_zone=5e-4, hysteresis=1e-4, strong=4e-5, weak=1e-6, k_t=0.31)},
+            "estimator": {"envelope": {"form": "dynamic", "window": 500}},
+        },
+        name="relay-fixed",
+    )
+    assert built == fixed
+
+
+def test_arrays_are_lists(adaptive: Scenario) -> None:
+    bounds = "adaptation.random_search.bounds"
+    changed = adaptive.with_(bounds, np.array([0.3, 0.35]))
+    assert changed.to_dict()["adaptation"]["random_search"]["bounds"] == [0.3, 0.35]
+
+
+def test_properties(adaptive: Scenario) -> None:
+    assert (adaptive.seed, adaptive.duration) == (157, 20000.0)
+    modes = adaptive.modes
+    assert modes["frequency"].tolist() == [0.44, 0.755]
+    assert modes["gain"].tolist() == [0.0213, 0.0216]
+    assert modes["damping"].tolist() == [0.0, 0.0]
+    np.testing.assert_allclose(modes["excitability"], modes["gain"] / modes["frequency"] ** 2, rtol=1e-15)
+    assert repr(adaptive) == "<flexsc.Scenario relay-adaptive: 20000 s, 2 modes, seed 157>"
+    rigid = adaptive.with_("body.planar.modes", [])
+    assert rigid.modes["frequency"].shape == (0,)
+
+
+def test_keys_are_set_in_a_copy(adaptive: Scenario) -> None:
+    changed = adaptive.with_({"law.relay.k_t": 0.34, "seed": 3, "body.planar.modes[1].gain": 0.02})
+    assert (adaptive.seed, changed.seed) == (157, 3)
+    values = changed.to_dict()
+    assert values["law"]["relay"]["k_t"] == 0.34
+    assert values["body"]["planar"]["modes"][1]["gain"] == 0.02
+    # Only what comes out has to be valid: neither of these is, without the other.
+    law = adaptive.with_({"law.relay.dead_zone": 1e-5, "law.relay.hysteresis": 1e-6}).to_dict()["law"]
+    assert (law["relay"]["dead_zone"], law["relay"]["hysteresis"]) == (1e-5, 1e-6)
+
+
+def test_the_name_is_kept_whole(fixed: Scenario) -> None:
+    values = {key: value for key, value in fixed.to_dict().items() if key != "name"}
+    assert Scenario(values).name == "scenario"
+    assert Scenario(values, name="a.b").name == "a.b"
+    text = fixed.to_toml().replace('name = "relay-fixed"\n', "")
+    assert Scenario.parse(text, name="a.b").name == "a.b"
+    assert Scenario.parse(fixed.to_toml(), name="a.b").name == "relay-fixed"
+    odd = fixed.with_("name", 'quotes " and \\ and \u00e9\U0001f6f0')
+    assert Scenario.parse(odd.to_toml()) == odd == pickle.loads(pickle.dumps(odd)) == Scenario(odd.to_dict())
+
+
+@pytest.mark.parametrize(
+    "epoch",
+    [
+        datetime(2026, 3, 20, 14, 46, tzinfo=timezone.utc),
+        datetime(2026, 3, 20, 14, 46, 5, 120000, tzinfo=timezone(timedelta(hours=-3, minutes=-30))),
+        datetime(2026, 3, 20, 14, 46, 5, 123456),
+    ],
+)
+def test_epochs_are_dates(fixed: Scenario, epoch: datetime) -> None:
+    scenario = fixed.with_("epoch", epoch)
+    assert scenario.to_dict()["epoch"] == epoch
+    assert Scenario(scenario.to_dict()) == scenario
+
+
+def test_scenarios_go_to_other_processes(fixed: Scenario) -> None:
+    short = fixed.with_("duration", 500.0)
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        results = list(pool.map(Scenario.simulate, [short, short.with_("law.relay.k_t", 0.34)], [0, 0]))
+    assert results[0].metrics["gain_final"] == 0.31
+    assert results[1].metrics["gain_final"] == 0.34
+    here = short.simulate()
+    assert results[0].scenario == here.scenario
+    np.testing.assert_array_equal(results[0]["command"]["time_s"], here["command"]["time_s"])
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("law.relay.k_t", 1.5, "`law.relay.k_t`: must be a number between 0 and 1, got 1.5"),
+        ("law.relay.k_t", float("nan"), "`law.relay.k_t`: must be a number between 0 and 1, got NaN"),
+        ("law.relay.k_t", np.float32("inf"), "`law.relay.k_t`: must be a number between 0 and 1, got inf"),
+        ("law.relay.k_t", "0.3", '`law.relay.k_t`: found string "0.3", expected a number'),
+        (
+            "law.relay.k_t",
+            None,
+            "`law.relay.k_t`: expected a number, a bool, a str, a list or a dict, found None",
+        ),
+        (
+            "law.relay.k_t",
+            {0.3},
+            "`law.relay.k_t`: expected a number, a bool, a str, a list or a dict, found set",
+        ),
+        ("law.relay.k_t", 1j, "found complex"),
+        ("law.relay.k_t", np.array([[0.3]]), "`law.relay.k_t`: found an array, expected a number"),
+        ("law.relay.k_t", 2**64, "`law.relay.k_t`: found no whole number that fits 64 bits"),
+        ("law.relay", {1: 0.3}, "`law.relay`: found a key of type int, expected a str"),
+        ("law.relay", {"k_t": b"0.3"}, "`law.relay.k_t`: expected a number"),
+        ("law.relay.kt", 0.3, "unknown key `kt`, expected one of `dead_zone`"),
+        ("body.planar.modes[7].gain", 0.1, "there is no element 7: the array has 2"),
+        ("law..k_t", 0.3, "not the path of a key"),
+        ("seed", -1, "`seed`: found integer `-1`, expected a whole number"),
+        ("name", "a/b", "`name` names files"),
+        ("name", "\ud800", "`name`: found a str that is not Unicode"),
+        ("epoch", "2026-03-20", "expected a date and time without quotes"),
+        ("adaptation.random_search.bounds", [0.32, 0.4], "must lie within the adaptation's bounds"),
+    ],
+)
+def test_what_is_not_accepted_says_so(adaptive: Scenario, key: str, value: object, words: str) -> None:
+    with pytest.raises(ScenarioError) as raised:
+        adaptive.with_(key, value)
+    assert words in str(raised.value)
+    assert "relay-adaptive" in str(raised.value)
+
+
+def test_errors_are_pointed_where_there_is_a_text(fixed: Scenario) -> None:
+    with pytest.raises(ScenarioError) as raised:
+        Scenario.parse(fixed.to_toml().replace("k_t = 0.31", "k_t = 3.1"), name="mine")
+    lines = str(raised.value).splitlines()
+    assert lines[0].startswith("mine:")
+    assert "`law.relay.k_t`: must be a number between 0 and 1, got 3.1" in lines[0]
+    assert lines[-1].strip(" |") == "^^^"
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({}, "missing key"),
+        ({"duration": 1.0, "wings": 2}, "unknown key `wings`"),
+        ({1: 2}, "found a key of type int, expected a str"),
+        ({"\udfff": 2}, "found a str that is not Unicode"),
+        ({"": 2, 'a"b': [1, {"c d": None}]}, '`"a"b"[1]."c d"`: expected a number'),
+    ],
+)
+def test_dictionaries_that_are_no_scenario(values: Any, words: str) -> None:
+    with pytest.raises(ScenarioError) as raised:
+        Scenario(values, name="mine")
+    assert words in str(raised.value)
+
+
+def test_a_dictionary_within_itself_ends() -> None:
+    values: dict[str, object] = {}
+    values["body"] = values
+    with pytest.raises(ScenarioError, match="nested too deep"):
+        Scenario(values)
+
+
+def test_wrong_types_are_type_errors(fixed: Scenario) -> None:
+    wrong: Any = str(SCENARIOS / "relay-fixed.toml")
+    with pytest.raises(TypeError, match=r"Scenario\.load reads a file"):
+        Scenario(wrong)
+    wrong = 3
+    with pytest.raises(TypeError):
+        Scenario.load(wrong)
+    with pytest.raises(TypeError):
+        fixed.with_({wrong: 2})
+    with pytest.raises(TypeError):
+        hash(fixed)
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match=r"nowhere\.toml: No such file"):
+        Scenario.load(tmp_path / "nowhere.toml")
+    with pytest.raises(ScenarioError, match="not a file"):
+        Scenario.load(tmp_path)
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe")
+    with pytest.raises(ScenarioError, match="line 1 is not UTF-8 text"):
+        Scenario.load(tmp_path / "bytes.toml")
+
+
+def test_schema_and_meanings(fixed: Scenario) -> None:
+    assert set(fixed.to_dict()) <= set(flexsc.schema()["properties"])
+    meanings = flexsc.metrics()
+    assert meanings["cycle_period_s"]["unit"] == "s"
+    assert set(fixed.simulate().metrics) <= set(meanings)
+
+
+def test_rigid_cycles(fixed: Scenario) -> None:
+    told = flexsc.rigid_cycles(fixed)
+    # Closed form at k_t = 0.31, 11 digits.
+    assert told["cycles"][0]["sides"] == "two"
+    assert told["cycles"][0]["period_s"] == pytest.approx(44.14235464, rel=1e-9)
+    assert any(abs(r["k_t"] - 0.297777) < 1e-6 and r["harmonic"] == 3 for r in told["resonances"])

@@ -1,0 +1,28 @@
+"""Types: the stub says what the engine has, and a user's code checks."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+USAGE = Path(__file__).with_name("usage.py")
+
+
+def run(*arguments: str | Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", *map(str, arguments)], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_stub_is_that_of_the_engine() -> None:
+    run("mypy.stubtest", "flexsc._native")
+
+
+def test_the_package_and_its_usage_are_typed() -> None:
+    run("mypy", "--strict", "--package", "flexsc")
+    run("mypy", "--strict", USAGE)
+
+
+def test_the_usage_runs() -> None:
+    done = subprocess.run([sys.executable, USAGE], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,37 @@
+"""What a user writes, for the type checker; it runs too."""
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import flexsc
+import numpy as np
+import numpy.typing as npt
+
+path = Path(__file__).parents[2] / "scenarios" / "relay-sampled.toml"
+scenario: flexsc.Scenario = flexsc.Scenario.load(path).with_("duration", 600.0)
+scenario = scenario.with_({"law.relay.k_t": 0.34, "seed": 3})
+duration: float = scenario.duration
+frequency: npt.NDArray[np.float64] = scenario.modes["frequency"]
+
+result: flexsc.Result = scenario.simulate(run=1, log="full")
+time: npt.NDArray[Any] = result["command"]["time_s"]
+switchings: int = result.metrics["switchings"]
+topics: list[str] = [topic for topic in result if topic in result]
+with tempfile.TemporaryDirectory() as directory:
+    size: int = result.to_mcap(Path(directory) / "run.mcap", log="events")
+    log: flexsc.Log = flexsc.read_log(Path(directory) / "run.mcap")
+end: str = log.metadata["end"]
+again: flexsc.Scenario | None = log.scenario
+
+table: flexsc.Table = flexsc.campaign(scenario, runs=range(4), jobs=2, seed=1)
+mean: float = table.statistics()["duty"]["mean"]
+duty: npt.NDArray[Any] = flexsc.sweep(scenario, "law.relay.k_t", np.linspace(0.3, 0.35, 3))["duty"]
+swept: flexsc.Table = flexsc.sweep(scenario, "law.relay.k_t", [0.3, 0.35])
+unit: str = flexsc.metrics()["duty"]["unit"]
+try:
+    flexsc.Scenario({"duration": 1.0})
+except flexsc.ScenarioError as error:
+    message: str = str(error)
+else:
+    raise AssertionError("a scenario needs a body")
