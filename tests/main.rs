@@ -3,6 +3,7 @@
 mod bad_scenarios;
 mod cli;
 mod events;
+mod layout;
 mod plot;
 mod relay;
 mod util;

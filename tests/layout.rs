@@ -1,0 +1,54 @@
+//! Viewer layouts: every path of every panel is a topic and a field of a log.
+
+use std::collections::BTreeSet;
+
+use flexsc_core::record::{Column, Columns, Log};
+use serde_json::Value;
+
+use crate::util::Dir;
+
+/// The paths that a layout's panels show.
+fn paths(value: &Value, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(object) => {
+            for (key, value) in object {
+                match value {
+                    Value::String(text) if key == "value" || key == "topicPath" => {
+                        found.insert(text.clone());
+                    }
+                    _ => paths(value, found),
+                }
+            }
+        }
+        Value::Array(array) => array.iter().for_each(|value| paths(value, found)),
+        _ => {}
+    }
+}
+
+/// Whether columns have a field such as `modes[0].displacement_rad`.
+fn has(columns: &Columns, field: &str) -> bool {
+    match field.split_once('[') {
+        None => columns.get(field).is_some(),
+        Some((rows, rest)) => {
+            let Some((_, inner)) = rest.split_once("].") else { return false };
+            matches!(columns.get(rows), Some(Column::Rows(_, columns)) if has(columns, inner))
+        }
+    }
+}
+
+#[test]
+fn every_path_is_a_field_of_a_log() {
+    let dir = Dir::with(&["relay-adaptive"]);
+    dir.run("simulate relay-adaptive.toml --log full --set duration=1200").exits(0);
+    let log = Log::open(&dir.path("relay-adaptive.mcap")).expect("a log");
+
+    let layout = include_str!("../scenarios/layouts/relay.json");
+    let mut found = BTreeSet::new();
+    paths(&serde_json::from_str(layout).expect("JSON"), &mut found);
+    assert!(found.len() > 10, "{found:?}");
+    for path in found {
+        let (topic, field) = path.split_once('.').unwrap_or((&path, ""));
+        let columns = log.columns(topic).unwrap_or_else(|error| panic!("{path}: {error}"));
+        assert!(field.is_empty() || has(&columns, field), "{path}: no such field");
+    }
+}
