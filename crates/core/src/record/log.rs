@@ -6,7 +6,8 @@ use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use mcap::records::Record as McapRecord;
-use mcap::{McapError, MessageStream, WriteOptions, Writer};
+use mcap::sans_io::{LinearReaderOptions, MessageReadEvent, MessageReader};
+use mcap::{McapError, Message, WriteOptions, Writer};
 use prost_reflect::{
     DescriptorPool, DynamicMessage, FieldDescriptor, Kind, MessageDescriptor, ReflectMessage,
 };
@@ -141,7 +142,7 @@ impl Log {
     pub fn tables(&self, topics: &[&str]) -> Result<Vec<Option<Columns>>, LogError> {
         let damaged = |source| LogError::Damaged { path: self.path.clone(), source };
         let mut tables: Vec<Option<Table>> = topics.iter().map(|_| None).collect();
-        for message in MessageStream::new(&self.bytes).map_err(damaged)? {
+        for message in Messages::of(&self.bytes) {
             let message = message.map_err(damaged)?;
             let topic = &message.channel.topic;
             let Some(index) = topics.iter().position(|asked| asked == topic) else { continue };
@@ -155,6 +156,44 @@ impl Log {
             table.push(&message.data).map_err(undecodable)?;
         }
         Ok(tables.into_iter().map(|table| table.map(Table::into_columns)).collect())
+    }
+}
+
+/// The messages of a log. Checksums come first and lengths have a bound, so that damage is an error, and neither a
+/// wrong number nor a demand for more memory than there is.
+struct Messages<'a> {
+    rest: &'a [u8],
+    reader: MessageReader,
+}
+
+impl<'a> Messages<'a> {
+    /// No chunk or record is larger (bytes); ours are of 1 MiB.
+    const LARGEST: usize = 256 << 20;
+
+    fn of(bytes: &'a [u8]) -> Self {
+        let options = LinearReaderOptions::default()
+            .with_record_length_limit(Self::LARGEST)
+            .with_prevalidate_chunk_crcs(true);
+        Self { rest: bytes, reader: MessageReader::new_with_options(options) }
+    }
+}
+
+impl Iterator for Messages<'_> {
+    type Item = Result<Message<'static>, McapError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            match self.reader.next_event()? {
+                Ok(MessageReadEvent::ReadRequest(wanted)) => {
+                    let (now, rest) = self.rest.split_at(wanted.min(self.rest.len()));
+                    self.reader.insert(now.len()).copy_from_slice(now);
+                    self.reader.notify_read(now.len());
+                    self.rest = rest;
+                }
+                Ok(MessageReadEvent::Message(message)) => return Some(Ok(message)),
+                Err(error) => return Some(Err(error)),
+            }
+        }
     }
 }
 
