@@ -2,6 +2,7 @@
 
 mod bad_scenarios;
 mod cli;
+mod determinism;
 mod events;
 mod layout;
 mod plot;

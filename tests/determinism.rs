@@ -1,0 +1,32 @@
+//! The same numbers on every machine: fingerprints of runs that use all of the engine's arithmetic.
+//!
+//! They say that a run repeats to the last bit, not that it is right; `relay.rs` and `events.rs` say that. A change of
+//! the engine's arithmetic, or of what a seed draws, changes them: put the new ones here, and say so in the changelog.
+
+use crate::util::Dir;
+
+/// FNV-1a.
+fn fingerprint(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+#[test]
+fn runs_repeat_to_the_last_bit() {
+    // (scenario, topic, fingerprint): undamped with adaptation; damped with noise, quadrature and drawn numbers.
+    let runs = [
+        ("relay-adaptive", "", "/command", 0xfed5_1b8d_2885_31dd),
+        ("relay-adaptive", "", "/adaptation", 0x6fc9_7027_b350_262f),
+        ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
+        ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
+    ];
+    for (name, runs, topic, expected) in runs {
+        let dir = Dir::with(&[name]);
+        dir.run(&format!("simulate {name}.toml --log events{runs}")).exits(0);
+        let log = if runs.is_empty() { format!("{name}.mcap") } else { format!("{name}-5.mcap") };
+        let table = dir.run(&format!("export {log} --topic {topic}")).exits(0).prints(&[]);
+        let found = fingerprint(&table);
+        assert_eq!(found, expected, "{name}{runs} {topic}: {found:#018x}");
+    }
+}
