@@ -1,20 +1,32 @@
 """The engine against independent calculations: another integrator, quadrature, the algorithm once more."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from flexsc import Scenario
 from scipy.integrate import solve_ivp, trapezoid
 
 
+def margin(sign: float, threshold: float) -> Any:
+    """A guard, as the integrator takes it."""
+
+    def of(_: float, y: Any) -> Any:
+        return sign * (y[0] + y[2] + y[4] - threshold)
+
+    of.terminal, of.direction = True, 1.0  # type: ignore[attr-defined]
+    return of
+
+
 def integrated_switchings(count: int) -> list[tuple[float, str]]:
     """Switchings of the relay law at k_t = 0.31 on two undamped modes, by a general integrator.
 
-    The law pushes back hard from a boundary of the dead zone until the angle is within it by the hysteresis, brakes
-    for k_t times as long as it pushed, then drifts under a weak torque that slows the return.
+    The law pushes back hard from a boundary of the dead zone until the angle is within it by the hysteresis,
+    brakes for k_t times as long as it pushed, then drifts under a weak torque that slows the return.
     """
     eps, gamma, strong, weak, k_t = 5e-4, 1e-4, 4e-5, 1e-6, 0.31
     frequencies, gains = np.array([0.44, 0.755]), np.array([0.0213, 0.0216])
-    # Of each state: its torque, and the guards (sign, threshold, next state) on sign * (angle - threshold) >= 0.
+    # Each state's torque, and its guards (sign, threshold, next state): sign * (angle - threshold) >= 0.
     right, left = (1.0, eps, "RACC"), (-1.0, -eps, "LACC")
     states: dict[str, tuple[float, list[tuple[float, float, str]]]] = {
         "W0": (weak, [right, left]),
@@ -31,16 +43,9 @@ def integrated_switchings(count: int) -> list[tuple[float, str]]:
     while len(switchings) < count:
         torque, guards = states[state]
 
-        def motion(_: float, y: np.ndarray, torque: float = torque) -> np.ndarray:
+        def motion(_: float, y: Any, torque: float = torque) -> Any:
             flexing = gains * torque - frequencies**2 * y[2::2]
             return np.array([y[1], torque, y[3], flexing[0], y[5], flexing[1]])
-
-        def margin(sign: float, threshold: float):  # type: ignore[no-untyped-def]
-            def of(_: float, y: np.ndarray) -> float:
-                return sign * (y[0] + y[2] + y[4] - threshold)
-
-            of.terminal, of.direction = True, 1.0  # type: ignore[attr-defined]
-            return of
 
         brake = k_t * (now - pushed_at)
         run = solve_ivp(

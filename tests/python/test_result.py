@@ -47,7 +47,7 @@ def test_log_files_hold_what_is_asked_for(fixed: Scenario, tmp_path: Path) -> No
         quiet.to_mcap(tmp_path / "none.mcap", log="none")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="log must be 'events', 'full' or 'none', got \"all\""):
         short.simulate(log="all")  # type: ignore[arg-type]
-    with pytest.raises(LogError, match="cannot write .*nowhere"):
+    with pytest.raises(LogError, match=r"cannot write .*nowhere"):
         quiet.to_mcap(tmp_path / "nowhere" / "x.mcap")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["default.mcap", "full.mcap"]
 
@@ -94,5 +94,5 @@ def test_runs_differ_by_their_noise_alone(sampled: Scenario) -> None:
 
 
 def test_a_run_that_cannot_go_on_says_when(fixed: Scenario) -> None:
-    with pytest.raises(SimulationError, match=r"^relay-fixed: the state is no longer finite at t = 0"):
+    with pytest.raises(SimulationError, match=r"^relay-fixed: the state is no longer finite at t = "):
         fixed.with_("body.planar.rate", 1e308).with_("body.planar.angle", 1e308).simulate()

@@ -46,7 +46,9 @@ def test_a_dictionary_is_as_good_as_a_file(fixed: Scenario) -> None:
                     ),
                 }
             },
-            "law": {"relay": dict(dead_zone=5e-4, hysteresis=1e-4, strong=4e-5, weak=1e-6, k_t=0.31)},
+            "law": {
+                "relay": {"dead_zone": 5e-4, "hysteresis": 1e-4, "strong": 4e-5, "weak": 1e-6, "k_t": 0.31}
+            },
             "estimator": {"envelope": {"form": "dynamic", "window": 500}},
         },
         name="relay-fixed",
@@ -90,7 +92,7 @@ def test_the_name_is_kept_whole(fixed: Scenario) -> None:
     text = fixed.to_toml().replace('name = "relay-fixed"\n', "")
     assert Scenario.parse(text, name="a.b").name == "a.b"
     assert Scenario.parse(fixed.to_toml(), name="a.b").name == "relay-fixed"
-    odd = fixed.with_("name", 'quotes " and \\ and \u00e9\U0001f6f0')
+    odd = fixed.with_({"name": 'quotes " and \u00e9\U0001f6f0', "about": "a \\ b\n\t\x7f\x00"})
     assert Scenario.parse(odd.to_toml()) == odd == pickle.loads(pickle.dumps(odd)) == Scenario(odd.to_dict())
 
 

@@ -62,7 +62,7 @@ def interrupted() -> Iterator[None]:
 
 
 def test_a_run_is_interrupted(fixed: Scenario, tmp_path: Path) -> None:
-    endless = fixed.with_("duration", 1e12)
+    endless = fixed.with_("duration", 1e10)
     with interrupted():
         endless.simulate(log="none")
     result = flexsc.Result(endless, 0, "events", {}, {})
@@ -71,7 +71,8 @@ def test_a_run_is_interrupted(fixed: Scenario, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(("duration", "runs"), [(1e12, 1000), (1000.0, 10**9)])
+@pytest.mark.parametrize(("duration", "runs"), [(1e10, 1000), (1000.0, 10**9)])
 def test_a_campaign_is_interrupted(fixed: Scenario, duration: float, runs: int) -> None:
+    scenario = fixed.with_("duration", duration)
     with interrupted():
-        flexsc.campaign(fixed.with_("duration", duration), runs)
+        flexsc.campaign(scenario, runs)

@@ -1,1 +1,275 @@
-//! x
+//! `flexsc._native`: arguments translated, the engine called once, errors mapped.
+
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "Python's arguments come, and errors are mapped, as values"
+)]
+
+mod aside;
+mod columns;
+mod error;
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
+use flexsc_core::campaign::{Campaign, Grid, Outcome, Run};
+use flexsc_core::law::Law;
+use flexsc_core::metrics::{self, Metrics};
+use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
+use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
+use flexsc_core::{Document, ScenarioError};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::json;
+
+use aside::aside;
+use columns::Told;
+use error::{log_error, scenario_error, simulation_error};
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::error::{LogError, ScenarioError, SimulationError};
+    #[pymodule_export]
+    use super::{
+        Log, Scenario, campaign, main, metrics_json, rigid_cycles_json, schema_json, simulate, to_mcap,
+    };
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}
+
+/// A valid scenario, and what errors call it.
+#[pyclass(frozen, eq, module = "flexsc._native")]
+#[derive(Clone)]
+struct Scenario {
+    inner: flexsc_core::Scenario,
+    origin: String,
+}
+
+impl PartialEq for Scenario {
+    fn eq(&self, other: &Self) -> bool {
+        self.inner == other.inner
+    }
+}
+
+impl Scenario {
+    fn new(origin: &str, inner: Result<flexsc_core::Scenario, ScenarioError>) -> PyResult<Self> {
+        Ok(Self { inner: inner.map_err(scenario_error)?, origin: origin.to_owned() })
+    }
+
+    fn read(document: &Document) -> PyResult<Self> {
+        Self::new(document.origin(), flexsc_core::Scenario::from_document(document))
+    }
+
+    /// The scenario as it is, as this run.
+    fn run(&self, number: u64) -> Run {
+        Run { number, scenario: self.inner.clone(), drawn: Vec::new() }
+    }
+
+    fn study(&self, grid: Option<Grid>) -> PyResult<Campaign> {
+        Campaign::new(self.inner.clone(), &self.origin, grid).map_err(scenario_error)
+    }
+}
+
+#[pymethods]
+impl Scenario {
+    #[staticmethod]
+    fn load(path: PathBuf) -> PyResult<Self> {
+        Self::read(&Document::load(&path).map_err(scenario_error)?)
+    }
+
+    #[staticmethod]
+    fn parse(text: &str, name: &str) -> PyResult<Self> {
+        let scenario = Self::new(name, flexsc_core::Scenario::parse(name, text))?;
+        if text.parse().is_ok_and(|written: toml::Table| written.contains_key("name")) {
+            return Ok(scenario);
+        }
+        // The engine would take a part of the name only, as if it were that of a file.
+        scenario.with_keys(vec![("name".to_owned(), toml::Value::from(name).to_string())])
+    }
+
+    /// From TOML that nobody wrote, so that no error need point into it.
+    #[staticmethod]
+    fn from_values(text: &str, name: &str) -> PyResult<Self> {
+        let document = Document::parse(name, text.to_owned()).map_err(scenario_error)?;
+        let table = document.read().map_err(scenario_error)?;
+        Self::read(&Document::from_table(name, table))
+    }
+
+    fn with_keys(&self, keys: Vec<(String, String)>) -> PyResult<Self> {
+        let mut document = Document::from_table(&self.origin, self.inner.to_table());
+        for (key, value) in keys {
+            document.set_text(&key, &value).map_err(scenario_error)?;
+        }
+        Self::read(&document)
+    }
+
+    fn draw(&self, run: u64) -> PyResult<Self> {
+        Self::new(&self.origin, self.study(None)?.run(run).map(|run| run.scenario))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.inner.name
+    }
+
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.inner.seed
+    }
+
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.inner.duration.seconds()
+    }
+
+    fn modes(&self) -> Vec<[f64; 4]> {
+        let modes = self.inner.body.modes().iter();
+        modes.map(|m| [m.frequency.get(), m.damping.get(), m.gain.get(), m.excitability()]).collect()
+    }
+
+    fn to_toml(&self) -> String {
+        self.inner.to_toml()
+    }
+
+    fn to_json(&self) -> String {
+        json!(self.inner.to_table()).to_string()
+    }
+}
+
+/// What a log of this name holds; nothing for `none`.
+fn detail(log: &str) -> PyResult<Option<Detail>> {
+    match log {
+        "none" => Ok(None),
+        "events" => Ok(Some(Detail::Events)),
+        "full" => Ok(Some(Detail::Full)),
+        _ => Err(PyValueError::new_err(format!("log must be 'events', 'full' or 'none', got {log:?}"))),
+    }
+}
+
+#[pyfunction]
+fn simulate<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    run: u64,
+    log: &str,
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+    let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
+    let metrics = aside(py, |stop| Campaign::simulate(&run, (&mut trace, stop)))?;
+    let metrics = metrics.map_err(|error| simulation_error(&run.scenario.name, error))?;
+    let topics = PyDict::new(py);
+    for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
+        topics.set_item(name, columns::of_rows(py, rows)?)?;
+    }
+    Ok((columns::of_metrics(py, &metrics)?, topics))
+}
+
+#[pyfunction]
+fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathBuf) -> PyResult<u64> {
+    let none = || PyValueError::new_err("log must be 'events' or 'full' for a file");
+    let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
+    let written = aside(py, |stop| {
+        let mut file = LogFile::create(&path, &Campaign::provenance(&run), detail)?;
+        match Campaign::simulate(&run, (&mut file, stop)) {
+            Ok(metrics) => Ok(file.finish(&metrics.to_row(), RunEnd::Complete)?),
+            Err(error) => {
+                file.discard();
+                Err(error)
+            }
+        }
+    })?;
+    written.map_err(|error| error::unwritten(&path, &run.scenario.name, error))
+}
+
+/// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
+type Summary = (&'static str, &'static str, usize, f64, f64, Vec<(f64, f64)>);
+
+#[pyfunction]
+fn campaign<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    runs: (u64, u64),
+    jobs: usize,
+    grid: Option<(String, Vec<f64>)>,
+) -> PyResult<(Vec<String>, Vec<Told<'py>>, Vec<Summary>)> {
+    let study = scenario.study(grid.map(|(key, values)| Grid { key, values }))?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
+    let pool = pool.map_err(|error| PyValueError::new_err(format!("jobs={jobs}: {error}")))?;
+    let outcomes = aside(py, |stop| {
+        let mut outcomes: Vec<Outcome> = Vec::new();
+        let work = |run: &Run| Ok(Campaign::simulate(run, stop)?);
+        // Asked to stop, `aside` raises what asked for it: the outcomes so far are not used.
+        let _ = pool.install(|| {
+            study.each(runs.0..runs.1, work, |outcome| {
+                outcomes.push(outcome);
+                if stop.asked() { Err(()) } else { Ok(()) }
+            })
+        });
+        outcomes
+    })?;
+    let told = outcomes.iter().map(|outcome| columns::of_outcome(py, outcome)).collect::<PyResult<_>>()?;
+    let metrics: Vec<Metrics> = outcomes.into_iter().filter_map(|outcome| outcome.metrics.ok()).collect();
+    let summary = |s: Statistics| {
+        let quantiles = QUANTILES.into_iter().zip(s.quantiles).collect();
+        (s.name, s.unit, s.runs, s.mean, s.sd, quantiles)
+    };
+    let keys = study.keys().map(str::to_owned).collect();
+    Ok((keys, told, statistics(&metrics).into_iter().map(summary).collect()))
+}
+
+#[pyfunction]
+fn rigid_cycles_json(scenario: &Scenario) -> String {
+    let (Law::Relay(law), body) = (&scenario.inner.law, &scenario.inner.body);
+    json!({"cycles": cycles(law, body, law.k_t.get()), "resonances": resonances(law, body)}).to_string()
+}
+
+/// A log in memory.
+#[pyclass(frozen, module = "flexsc._native")]
+struct Log(record::Log);
+
+#[pymethods]
+impl Log {
+    #[staticmethod]
+    fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        aside(py, |_| record::Log::open(&path))?.map(Self).map_err(log_error)
+    }
+
+    #[getter]
+    fn topics(&self) -> &[String] {
+        self.0.topics()
+    }
+
+    #[getter]
+    fn metadata(&self) -> &BTreeMap<String, String> {
+        self.0.metadata()
+    }
+
+    #[getter]
+    fn scenario(&self) -> Option<&str> {
+        self.0.scenario()
+    }
+
+    fn columns<'py>(&self, py: Python<'py>, topic: &str) -> PyResult<Bound<'py, PyDict>> {
+        columns::of_rows(py, aside(py, |_| self.0.columns(topic))?.map_err(log_error)?)
+    }
+}
+
+#[pyfunction]
+fn schema_json() -> String {
+    flexsc_core::Scenario::schema().to_string()
+}
+
+#[pyfunction]
+fn metrics_json() -> String {
+    let meaning = |m: &metrics::Meaning| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc}));
+    serde_json::Value::Object(metrics::ALL.iter().map(meaning).collect()).to_string()
+}
+
+#[pyfunction]
+fn main(py: Python<'_>, args: Vec<OsString>) -> u8 {
+    py.detach(|| flexsc_cli::main(args))
+}

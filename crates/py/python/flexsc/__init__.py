@@ -1,0 +1,74 @@
+"""Attitude control of flexible spacecraft, simulated exactly, fast and reproducibly.
+
+A scenario goes in, columns come out:
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.load("scenarios/relay-adaptive.toml")
+    >>> result = scenario.simulate()
+    >>> result.metrics["gain_final"]
+    >>> result["command"]["time_s"], result["command"]["state"]
+    >>> flexsc.sweep(scenario, "law.relay.k_t", numpy.linspace(0.28, 0.40, 25))["envelope_late_mean_rad"]
+
+All numbers are in SI units, which the names of columns and metrics end with. A run depends on its scenario,
+its seed and its number alone: its numbers are the same on every machine, on any number of threads.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any
+
+from flexsc import _native as engine
+from flexsc._campaign import Table, campaign, sweep
+from flexsc._native import LogError, ScenarioError, SimulationError, __version__
+from flexsc._scenario import Log, Result, Scenario
+
+__all__ = [
+    "Log",
+    "LogError",
+    "Result",
+    "Scenario",
+    "ScenarioError",
+    "SimulationError",
+    "Table",
+    "__version__",
+    "campaign",
+    "metrics",
+    "read_log",
+    "rigid_cycles",
+    "schema",
+    "sweep",
+]
+
+
+def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
+    """The limit cycles of the scenario's relay law on its body without modes, in closed form.
+
+    Returns:
+        `cycles`, those that exist at the law's gain, and `resonances`, the gains at which an odd harmonic of
+        the two-sided cycle meets a mode. Units are in the names.
+    """
+    told: dict[str, list[dict[str, Any]]] = json.loads(engine.rigid_cycles_json(scenario._native))
+    return told
+
+
+def read_log(path: str | os.PathLike[str]) -> Log:
+    """Read a log file.
+
+    Raises:
+        LogError: The file cannot be read, or is torn or damaged.
+    """
+    return Log(engine.Log.open(path))
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of scenarios."""
+    told: dict[str, Any] = json.loads(engine.schema_json())
+    return told
+
+
+def metrics() -> dict[str, dict[str, str]]:
+    """What the metrics mean: by name, the `unit` (empty for a count, a ratio or a word) and the `doc`."""
+    told: dict[str, dict[str, str]] = json.loads(engine.metrics_json())
+    return told

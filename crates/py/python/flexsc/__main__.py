@@ -1,0 +1,17 @@
+"""The command `flexsc`: the engine's own, called from Python."""
+
+import signal
+import sys
+
+from flexsc import _native
+
+
+def main() -> int:
+    """Run the command with the arguments of this process; its exit code is returned."""
+    # Python's own handler would keep Ctrl-C to itself until the engine returns.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _native.main(["flexsc", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

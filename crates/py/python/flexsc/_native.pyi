@@ -1,0 +1,94 @@
+"""The engine, as `flexsc` calls it. Not for users: what is here may change at any time."""
+
+import os
+from collections.abc import Sequence
+from typing import Any, Final, TypeAlias, final
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = [
+    "Log",
+    "LogError",
+    "Scenario",
+    "ScenarioError",
+    "SimulationError",
+    "__version__",
+    "campaign",
+    "main",
+    "metrics_json",
+    "rigid_cycles_json",
+    "schema_json",
+    "simulate",
+    "to_mcap",
+]
+
+__version__: Final[str]
+
+_Column: TypeAlias = (
+    npt.NDArray[np.float64]
+    | npt.NDArray[np.int64]
+    | list[str]
+    | tuple[npt.NDArray[np.uint8], list[str]]
+    | tuple[npt.NDArray[np.uint32], dict[str, _Column]]
+)
+
+class ScenarioError(ValueError):
+    """A scenario, or a key of it, that is not accepted."""
+
+class SimulationError(RuntimeError):
+    """A simulation that cannot go on."""
+
+class LogError(OSError):
+    """A log that cannot be read or written."""
+
+@final
+class Scenario:
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Scenario: ...
+    @staticmethod
+    def parse(text: str, name: str) -> Scenario: ...
+    @staticmethod
+    def from_values(text: str, name: str) -> Scenario: ...
+    def with_keys(self, keys: Sequence[tuple[str, str]]) -> Scenario: ...
+    def draw(self, run: int) -> Scenario: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def duration(self) -> float: ...
+    def modes(self) -> list[list[float]]: ...
+    def to_toml(self) -> str: ...
+    def to_json(self) -> str: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    __hash__ = None  # type: ignore[assignment]
+
+@final
+class Log:
+    @staticmethod
+    def open(path: str | os.PathLike[str]) -> Log: ...
+    @property
+    def topics(self) -> list[str]: ...
+    @property
+    def metadata(self) -> dict[str, str]: ...
+    @property
+    def scenario(self) -> str | None: ...
+    def columns(self, topic: str) -> dict[str, _Column]: ...
+
+def simulate(
+    scenario: Scenario, run: int, log: str
+) -> tuple[dict[str, Any], dict[str, dict[str, _Column]]]: ...
+def to_mcap(scenario: Scenario, run: int, log: str, path: str | os.PathLike[str]) -> int: ...
+def campaign(
+    scenario: Scenario, runs: tuple[int, int], jobs: int, grid: tuple[str, list[float]] | None
+) -> tuple[
+    list[str],
+    list[tuple[int, list[float], dict[str, Any] | None, str]],
+    list[tuple[str, str, int, float, float, list[tuple[float, float]]]],
+]: ...
+def rigid_cycles_json(scenario: Scenario) -> str: ...
+def schema_json() -> str: ...
+def metrics_json() -> str: ...
+def main(args: Sequence[str]) -> int: ...

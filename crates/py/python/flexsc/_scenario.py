@@ -1,0 +1,279 @@
+"""Scenarios, their results, and logs: topics as dictionaries of columns."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from operator import index
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+from flexsc import _native as engine
+from flexsc._values import arrays, document, plain, toml
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+
+class Scenario:
+    """What is simulated: everything that a scenario file says. It is valid and does not change.
+
+    Args:
+        values: The keys of a scenario file, as nested dictionaries. Numbers may be numpy's, lists its arrays;
+            the `epoch` is a `datetime`.
+        name: The scenario's name if `values` has none, and what errors call it.
+
+    Raises:
+        ScenarioError: A key is unknown, missing, or has a value that is not accepted.
+    """
+
+    __slots__ = ("_native",)
+    _native: engine.Scenario
+
+    def __init__(self, values: Mapping[str, object], name: str = "scenario") -> None:
+        if not isinstance(values, Mapping):
+            hint = "Scenario.load reads a file, Scenario.parse a text"
+            raise TypeError(f"a scenario is made of a dict, not of a {type(values).__name__}; {hint}")
+        self._native = engine.Scenario.from_values(document(name, {"name": name, **values}), name)
+
+    @classmethod
+    def _of(cls, native: engine.Scenario) -> Scenario:
+        scenario = cls.__new__(cls)
+        scenario._native = native
+        return scenario
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Scenario:
+        """Read a scenario file.
+
+        Raises:
+            ScenarioError: The file cannot be read, or is not accepted; the text names line, key and what is
+                accepted.
+        """
+        return cls._of(engine.Scenario.load(path))
+
+    @classmethod
+    def parse(cls, text: str, name: str = "scenario") -> Scenario:
+        """Read a scenario from TOML text. `name` is its name if it has none, and what errors call it.
+
+        Raises:
+            ScenarioError: The text is not accepted.
+        """
+        return cls._of(engine.Scenario.parse(text, name))
+
+    @property
+    def name(self) -> str:
+        """Name of the study."""
+        return self._native.name
+
+    @property
+    def seed(self) -> int:
+        """Seed of all randomness."""
+        return self._native.seed
+
+    @property
+    def duration(self) -> float:
+        """Simulated time (s)."""
+        return self._native.duration
+
+    @property
+    def modes(self) -> dict[str, npt.NDArray[np.float64]]:
+        """The elastic modes, as arrays of shape (modes,).
+
+        `frequency` (rad/s), `damping` (ratio), `gain` (angle's response per unit of reduced torque), and
+        `excitability`, the gain over the squared frequency (s²).
+        """
+        import numpy as np
+
+        table = np.array(self._native.modes(), dtype=np.float64).reshape(-1, 4)
+        names = ("frequency", "damping", "gain", "excitability")
+        return {name: table[:, column].copy() for column, name in enumerate(names)}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The scenario with all its defaults, as `Scenario(...)` takes it."""
+        values: dict[str, Any] = plain(self._native.to_json())
+        return values
+
+    def to_toml(self) -> str:
+        """The scenario with all its defaults, as TOML."""
+        return self._native.to_toml()
+
+    @overload
+    def with_(self, key: str, value: object, /) -> Scenario: ...
+    @overload
+    def with_(self, keys: Mapping[str, object], /) -> Scenario: ...
+    def with_(self, key: str | Mapping[str, object], value: object = None, /) -> Scenario:
+        """A scenario with one key set, or several: `with_("law.relay.k_t", 0.34)`, `with_({"seed": 3, ...})`.
+
+        Keys are paths into the file, such as `body.planar.modes[0].frequency`. Several are set together: only
+        the scenario that comes out has to be valid.
+
+        Raises:
+            ScenarioError: A key or a value is not accepted.
+        """
+        keys = {key: value} if isinstance(key, str) else key
+        return self._of(self._native.with_keys([(k, toml(self.name, k, v)) for k, v in keys.items()]))
+
+    def draw(self, run: int) -> Scenario:
+        """The scenario of one run of a campaign: its `[uncertain]` keys drawn and set.
+
+        `scenario.draw(57).simulate(run=57)` is run 57 of `campaign(scenario)`.
+
+        Raises:
+            ScenarioError: What is drawn makes no valid scenario.
+        """
+        return self._of(self._native.draw(run_number(run)))
+
+    def simulate(self, run: int = 0, log: Literal["events", "full", "none"] = "events") -> Result:
+        """Simulate the scenario as it stands. Other Python threads go on meanwhile.
+
+        Args:
+            run: Number of the run: another number, other noise.
+            log: `events` keeps all that changes (switchings, window means, adaptation), `full` also the
+                motion at each period of the scenario's log and at every switching, `none` the metrics only.
+
+        Raises:
+            SimulationError: The state is no longer finite, or the law switches without end.
+        """
+        run = run_number(run)
+        metrics, topics = engine.simulate(self._native, run, log)
+        return Result(self, run, log, metrics, {name: arrays(columns) for name, columns in topics.items()})
+
+    def __eq__(self, other: object) -> bool:
+        return self._native == other._native if isinstance(other, Scenario) else NotImplemented
+
+    # Two scenarios are equal with zeros of either sign, but differ as texts: there is no cheap hash.
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        modes = len(self._native.modes())
+        return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes} modes, seed {self.seed}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scenario.parse, (self.to_toml(), self.name)
+
+
+class _Topics:
+    """Topics by name, each as a dictionary of columns."""
+
+    @property
+    def topics(self) -> list[str]:
+        """Names of the topics, without the slash that they have in a log file."""
+        raise NotImplementedError
+
+    def _columns(self, topic: str) -> dict[str, npt.NDArray[Any]]:
+        raise NotImplementedError
+
+    def __contains__(self, topic: object) -> bool:
+        return isinstance(topic, str) and topic.removeprefix("/") in self.topics
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.topics)
+
+    def __getitem__(self, topic: str) -> dict[str, npt.NDArray[Any]]:
+        """The columns of a topic, such as `command`.
+
+        Every column has shape (rows,): numbers as float64, counts as int64, labels such as `state` as str.
+        The parts of each row, such as its modes, are columns of shape (rows, modes), such as
+        `modes.displacement_rad`; if the rows have different numbers of parts, arrays of arrays.
+
+        Raises:
+            KeyError: There is no such topic.
+        """
+        if topic not in self:
+            raise KeyError(f"no topic {topic!r}; there are {', '.join(self.topics) or 'none'}")
+        return self._columns(topic.removeprefix("/"))
+
+
+class Result(_Topics):
+    """What a run came to: its metrics, and its topics as columns."""
+
+    scenario: Scenario
+    """What was simulated."""
+    run: int
+    """The number of the run."""
+    metrics: dict[str, Any]
+    """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is none."""
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        run: int,
+        log: str,
+        metrics: dict[str, Any],
+        topics: dict[str, dict[str, npt.NDArray[Any]]],
+    ) -> None:
+        self.scenario = scenario
+        self.run = run
+        self.metrics = metrics
+        self._log = log
+        self._topics = topics
+
+    @property
+    def topics(self) -> list[str]:
+        """Names of the topics."""
+        return list(self._topics)
+
+    def _columns(self, topic: str) -> dict[str, npt.NDArray[Any]]:
+        return self._topics[topic]
+
+    def to_mcap(self, path: str | os.PathLike[str], log: Literal["events", "full"] | None = None) -> int:
+        """Write the run's log, the same bytes as the command's, and return their number.
+
+        The run is simulated again. `log` is what the log holds; left out, what the result holds, and at least
+        `events`.
+
+        Raises:
+            LogError: The file cannot be written.
+        """
+        detail = log or ("events" if self._log == "none" else self._log)
+        return engine.to_mcap(self.scenario._native, self.run, detail, path)
+
+    def __repr__(self) -> str:
+        topics = ", ".join(self.topics) or "metrics only"
+        return f"<flexsc.Result of {self.scenario.name}, run {self.run}: {topics}>"
+
+
+class Log(_Topics):
+    """A log file in memory."""
+
+    def __init__(self, native: engine.Log) -> None:
+        self._native = native
+        self._names = {name.removeprefix("/"): name for name in native.topics}
+        self._read: dict[str, dict[str, npt.NDArray[Any]]] = {}
+
+    @property
+    def topics(self) -> list[str]:
+        """Names of the topics, without their slash."""
+        return list(self._names)
+
+    @property
+    def metadata(self) -> dict[str, str]:
+        """What the log says about its run: `scenario`, `seed`, `run`, `version`, `end`, ..."""
+        return self._native.metadata
+
+    @cached_property
+    def scenario(self) -> Scenario | None:
+        """The scenario that was simulated, if the log has it.
+
+        Raises:
+            ScenarioError: This version does not accept it.
+        """
+        text = self._native.scenario
+        return None if text is None else Scenario.parse(text, self.metadata.get("scenario", "scenario"))
+
+    def _columns(self, topic: str) -> dict[str, npt.NDArray[Any]]:
+        if topic not in self._read:
+            self._read[topic] = arrays(self._native.columns(self._names[topic]))
+        return self._read[topic]
+
+    def __repr__(self) -> str:
+        return f"<flexsc.Log: {', '.join(self.topics)}>"
+
+
+def run_number(number: int) -> int:
+    """Check the number of a run."""
+    if not 0 <= index(number) < 2**63:
+        raise ValueError(f"the number of a run must be from 0 to 2**63 - 1, got {number}")
+    return index(number)

@@ -1,0 +1,136 @@
+"""Values between Python and the engine: TOML that nobody wrote, dates, arrays of columns."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from datetime import date, datetime, time
+from typing import TYPE_CHECKING, Any
+
+from flexsc._native import ScenarioError
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from flexsc._native import _Column
+
+# No scenario is nested deeper; a dictionary may hold itself.
+_DEEPEST = 16
+_DATE = "$__toml_private_datetime"
+
+
+def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
+    """Write a value as TOML; what TOML cannot express is an error at its key."""
+
+    def refused(why: str) -> ScenarioError:
+        return ScenarioError(f"{origin}: `{key}`: {why}")
+
+    if depth > _DEEPEST:
+        raise refused("nested too deep")
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        if not -(2**63) <= value < 2**63:
+            raise refused("found no whole number that fits 64 bits")
+        return str(int(value))
+    if isinstance(value, float):
+        return repr(float(value))
+    if isinstance(value, str):
+        return _quoted(value, refused)
+    if isinstance(value, (date, time)):
+        return value.isoformat()
+    if isinstance(value, Mapping):
+        pairs = []
+        for name, inner in value.items():
+            if not isinstance(name, str):
+                raise refused(f"found a key of type {type(name).__name__}, expected a str")
+            pairs.append(f"{_quoted(name, refused)} = {toml(origin, _path(key, name), inner, depth + 1)}")
+        return f"{{{', '.join(pairs)}}}"
+    if isinstance(value, (list, tuple)):
+        items = (toml(origin, f"{key}[{index}]", inner, depth + 1) for index, inner in enumerate(value))
+        return f"[{', '.join(items)}]"
+    if hasattr(value, "tolist"):  # an array or a scalar of numpy
+        return toml(origin, key, value.tolist(), depth + 1)
+    found = "None; a key without a value is left out" if value is None else type(value).__name__
+    raise refused(f"expected a number, a bool, a str, a list or a dict, found {found}")
+
+
+def document(name: str, values: Mapping[str, object]) -> str:
+    """Write a dictionary as a TOML document."""
+    lines = []
+    for key, value in values.items():
+        if not isinstance(key, str):
+            raise ScenarioError(f"{name}: found a key of type {type(key).__name__}, expected a str")
+        lines.append(f"{_quoted(key)} = {toml(name, _path('', key), value)}\n")
+    return "".join(lines)
+
+
+def _path(above: str, key: str) -> str:
+    step = key if re.fullmatch(r"[\w-]+", key) else f'"{key}"'
+    return f"{above}.{step}" if above else step
+
+
+def _quoted(text: str, refused: Any = ScenarioError) -> str:
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise refused("found a str that is not Unicode") from None
+    # As JSON, whose only character that TOML wants escaped is this one.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def plain(text: str) -> Any:
+    """Read the engine's JSON, in which dates are marked."""
+    return json.loads(text, object_hook=lambda table: _date(table[_DATE]) if _DATE in table else table)
+
+
+def _date(text: str) -> datetime | str:
+    parts = re.fullmatch(r"(\S{10})T(\d\d:\d\d)(:\d\d)?(?:\.(\d+))?(Z|[+-]\d\d:\d\d)?", text)
+    if parts is None:
+        return text
+    day, minute, second, fraction, zone = parts.groups("")
+    zone = "+00:00" if zone == "Z" else zone
+    try:
+        return datetime.fromisoformat(f"{day}T{minute}{second or ':00'}.{fraction[:6]:0<6}{zone}")
+    except ValueError:  # a leap second
+        return text
+
+
+def arrays(columns: Mapping[str, _Column]) -> dict[str, npt.NDArray[Any]]:
+    """Give columns their final form: labels and texts as str, rows within rows by their path."""
+    import numpy as np
+
+    final: dict[str, npt.NDArray[Any]] = {}
+    for name, column in columns.items():
+        if isinstance(column, np.ndarray):
+            final[name] = column
+        elif isinstance(column, list):
+            final[name] = np.array(column, dtype=np.str_)
+        elif isinstance(column[1], list):
+            indices, labels = column
+            # A value that the labels do not know, of a log by another version, is an empty text.
+            final[name] = np.array([*labels, ""], dtype=np.str_).take(indices, mode="clip")
+        else:
+            counts = column[0]
+            for field, values in arrays(column[1]).items():
+                final[f"{name}.{field}"] = _by_row(values, counts)
+    return final
+
+
+def _by_row(values: npt.NDArray[Any], counts: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    import numpy as np
+
+    if values.ndim == 1 and (counts == counts[0]).all():
+        return values.reshape(len(counts), int(counts[0]))
+    return objects(np.split(values, np.cumsum(counts)[:-1]))
+
+
+def objects(items: list[Any]) -> npt.NDArray[Any]:
+    """Put arrays into an array, as they are."""
+    import numpy as np
+
+    array = np.empty(len(items), dtype=object)
+    for index, item in enumerate(items):
+        array[index] = item
+    return array

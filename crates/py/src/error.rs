@@ -1,0 +1,38 @@
+//! The engine's errors as Python exceptions, in the words of the command.
+
+use std::path::Path;
+
+use flexsc_core::record::RecordError;
+use pyo3::PyErr;
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+
+pyo3::create_exception!(
+    flexsc,
+    ScenarioError,
+    PyValueError,
+    "A scenario, or a key of it, that is not accepted."
+);
+pyo3::create_exception!(flexsc, SimulationError, PyRuntimeError, "A simulation that cannot go on.");
+pyo3::create_exception!(flexsc, LogError, PyOSError, "A log that cannot be read or written.");
+
+pub fn scenario_error(error: flexsc_core::ScenarioError) -> PyErr {
+    ScenarioError::new_err(error.to_string())
+}
+
+pub fn simulation_error(name: &str, error: flexsc_core::SimulationError) -> PyErr {
+    SimulationError::new_err(format!("{name}: {error}"))
+}
+
+pub fn log_error(error: flexsc_core::record::LogError) -> PyErr {
+    LogError::new_err(error.to_string())
+}
+
+/// Why there is no log at a path.
+pub fn unwritten(path: &Path, name: &str, error: flexsc_core::SimulationError) -> PyErr {
+    match error {
+        flexsc_core::SimulationError::Record(RecordError::Io(source)) => {
+            LogError::new_err(format!("cannot write {}: {source}", path.display()))
+        }
+        error => simulation_error(name, error),
+    }
+}
