@@ -1,7 +1,8 @@
 //! A tiny language for tests of the command: a directory of its own, the command run in it, what came out.
 
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -9,6 +10,34 @@ use serde_json::Value as Json;
 use tempfile::TempDir;
 
 const FLEXSC: &str = env!("CARGO_BIN_EXE_flexsc");
+
+/// A short scenario with an uncertain gain and rate.
+pub const UNCERTAIN: &str = r#"seed = 7
+duration = 800.0
+
+[body.planar]
+angle = 4.5e-4
+rate = 2.2e-5
+
+[[body.planar.modes]]
+frequency = 0.44
+gain = 0.0213
+displacement = 2.75e-6
+
+[law.relay]
+dead_zone = 5e-4
+hysteresis = 1e-4
+strong = 4e-5
+weak = 1e-6
+k_t = 0.31
+
+[estimator.envelope]
+window = 100.0
+
+[uncertain]
+"law.relay.k_t" = { uniform = [0.3, 0.32] }
+"body.planar.rate" = { relative_normal = 0.1 }
+"#;
 
 /// The scenarios that are shipped.
 pub const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
@@ -171,4 +200,23 @@ impl Ran {
     pub fn json(self) -> Json {
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error} in\n{}", self.out))
     }
+}
+
+/// What the file's summary says of how the run ended.
+pub fn end(dir: &Dir, log: &str) -> BTreeMap<String, String> {
+    let bytes = dir.read(log);
+    let summary = mcap::Summary::read(&bytes).expect("whole").expect("a summary");
+    let index = summary.metadata_indexes.iter().find(|m| m.name == "flexsc.end").expect("an end");
+    mcap::read::metadata(&bytes, index).expect("whole").metadata
+}
+
+/// The rows of a table, each by the names of its columns.
+pub fn table(dir: &Dir, name: &str) -> Vec<BTreeMap<String, String>> {
+    let bytes = dir.read(name);
+    csv::Reader::from_reader(&*bytes).deserialize().map(|row| row.expect("a whole row")).collect()
+}
+
+/// Whether a file's name ends so.
+pub fn has_extension(name: &str, extension: &str) -> bool {
+    Path::new(name).extension().is_some_and(|e| e == extension)
 }

@@ -1,0 +1,110 @@
+//! Campaigns and sweeps: tables, logs, parts, failures, and threads that change nothing.
+
+use crate::util::{Dir, UNCERTAIN, table};
+
+#[test]
+fn a_campaign_writes_tables_and_logs() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 6 -o out --log events").exits(0).says(&["6 runs", "runs.csv"]);
+    let logs = (0..6).map(|run| format!("u-{run}.mcap"));
+    let all: Vec<_> = ["runs.csv".to_owned(), "statistics.csv".to_owned()].into_iter().chain(logs).collect();
+    assert_eq!(dir.names("out"), all);
+    let rows = table(&dir, "out/runs.csv");
+    assert_eq!(rows.len(), 6);
+    for (number, row) in rows.iter().enumerate() {
+        assert_eq!((&*row["run"], &*row["seed"], &*row["error"]), (&*number.to_string(), "7", ""));
+        let k_t: f64 = row["law.relay.k_t"].parse().expect("a number");
+        assert!((0.3..0.32).contains(&k_t));
+        assert_eq!(row["gain_initial"].parse(), Ok(k_t));
+    }
+    assert_ne!(rows[0]["body.planar.rate"], rows[1]["body.planar.rate"]);
+    let statistics = table(&dir, "out/statistics.csv");
+    let gain = statistics.iter().find(|row| row["metric"] == "gain_initial").expect("a row");
+    assert_eq!(gain["runs"], "6");
+    let mean: f64 =
+        rows.iter().map(|row| row["gain_initial"].parse::<f64>().expect("a number")).sum::<f64>() / 6.0;
+    assert!((gain["mean"].parse::<f64>().expect("a number") - mean).abs() < 1e-12);
+}
+
+#[test]
+fn a_run_alone_is_the_run_of_the_campaign() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 6 -o out").exits(0);
+    let before = (dir.read("out/runs.csv"), dir.read("out/statistics.csv"));
+    dir.run("simulate u.toml --runs 3:4 -o out --log full").exits(0);
+    assert_eq!((dir.read("out/runs.csv"), dir.read("out/statistics.csv")), before);
+    let names = ["runs-3-4.csv", "runs.csv", "statistics-3-4.csv", "statistics.csv", "u-3.mcap"];
+    assert_eq!(dir.names("out"), names);
+    assert_eq!(table(&dir, "out/runs-3-4.csv"), table(&dir, "out/runs.csv")[3..4]);
+    // The log's own scenario, with what was drawn, makes the same run.
+    let toml = dir.run("log scenario out/u-3.mcap").exits(0).out;
+    dir.write("three.toml", &toml);
+    let row = &table(&dir, "out/runs.csv")[3];
+    let duty = format!("\"duty\":{},", row["duty"].parse::<f64>().expect("a number"));
+    let switchings = format!("\"switchings\":{},", row["switchings"]);
+    dir.run("simulate three.toml --json --log none").exits(0).prints(&[&duty, &switchings]);
+}
+
+#[test]
+fn threads_change_nothing() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 12 -o one --log full --jobs 1").exits(0);
+    dir.run("simulate u.toml --runs 12 -o eight --log full --jobs 8").exits(0);
+    let names = dir.names("one");
+    assert_eq!((names.len(), &names), (14, &dir.names("eight")));
+    for name in names {
+        let same = dir.read(&format!("one/{name}")) == dir.read(&format!("eight/{name}"));
+        assert!(same, "{name} differs");
+    }
+    let lines = dir.run("simulate u.toml --runs 12 --json --jobs 1").exits(0).out;
+    assert_eq!(lines.lines().count(), 12);
+    assert_eq!(lines, dir.run("simulate u.toml --runs 12 --json --jobs 8").exits(0).out);
+}
+
+#[test]
+fn invalid_draws_fail_alone() {
+    let wide = UNCERTAIN.replace("{ uniform = [0.3, 0.32] }", "{ normal = { mean = 0.31, sd = 0.3 } }");
+    let dir = Dir::holding("u.toml", wide);
+    let ran = dir.run("simulate u.toml --runs 20 -o out --log events").exits(1);
+    let rows = table(&dir, "out/runs.csv");
+    let (failed, done): (Vec<_>, Vec<_>) = rows.iter().partition(|row| !row["error"].is_empty());
+    assert!(rows.len() == 20 && failed.len() > 1 && done.len() > 1, "{} of {}", failed.len(), rows.len());
+    let first = format!("{} of 20 runs failed; the first: run {}:", failed.len(), failed[0]["run"]);
+    ran.says(&[&first, "`law.relay.k_t`", "between 0 and 1"]);
+    for row in &failed {
+        assert!(row["error"].contains("`law.relay.k_t`: must be a number between 0 and 1, got "), "{row:?}");
+        assert!(row["switchings"].is_empty() && !row["law.relay.k_t"].is_empty());
+        assert!(!dir.has(&format!("out/u-{}.mcap", row["run"])));
+    }
+    for row in &done {
+        assert!(!row["switchings"].is_empty() && dir.has(&format!("out/u-{}.mcap", row["run"])));
+    }
+    let statistics = table(&dir, "out/statistics.csv");
+    assert_eq!(statistics[0]["runs"], done.len().to_string());
+}
+
+/// Rows without any metrics have a header all the same.
+#[test]
+fn a_campaign_of_failures_has_a_table() {
+    let dir = Dir::holding("u.toml", UNCERTAIN.replace("[0.3, 0.32]", "[2.0, 3.0]"));
+    dir.run("simulate u.toml --runs 3 -o out").exits(1).says(&["3 of 3 runs failed"]);
+    let rows = table(&dir, "out/runs.csv");
+    assert_eq!(rows.len(), 3);
+    assert!(rows.iter().all(|row| row["error"].contains("law.relay.k_t") && row["seed"] == "7"));
+}
+
+#[test]
+fn a_sweep_varies_one_key() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let vary = "sweep relay-fixed.toml --set duration=1000 -o out --vary law.relay.k_t";
+    dir.run(&format!("{vary}=0.3:0.4:5")).exits(0);
+    let rows = table(&dir, "out/runs.csv");
+    assert_eq!(rows.len(), 5);
+    for (row, gain) in rows.iter().zip([0.3, 0.325, 0.35, 0.375, 0.4]) {
+        let k_t: f64 = row["law.relay.k_t"].parse().expect("a number");
+        assert!((k_t - gain).abs() < 1e-15, "{k_t}");
+        assert_eq!(row["gain_initial"].parse(), Ok(k_t));
+    }
+    dir.run(&format!("{vary}=0.3:1.4:5")).exits(2).says(&["`law.relay.k_t`", "between 0 and 1, got 1.4"]);
+    dir.run(&format!("{vary}t=0.3:0.4:5")).exits(2).says(&["unknown key `k_tt`"]);
+}
