@@ -1,8 +1,8 @@
 """Measures the engine beside its peers in one run, and writes the table of docs/benchmarks.md.
 
-    pip install scipy
-    python3 benches/table.py            # prints the table
-    python3 benches/table.py --write    # and puts it into docs/benchmarks.md
+pip install scipy
+python3 benches/table.py            # prints the table
+python3 benches/table.py --write    # and puts it into docs/benchmarks.md
 """
 
 import json
@@ -21,12 +21,20 @@ EPS, GAM, STRONG, WEAK, K_T = 5e-4, 1e-4, 4e-5, 1e-6, 0.3389
 
 def criterion(group, name):
     """Median time (s) of a benchmark, by criterion."""
-    path = ROOT / "target" / "criterion" / group.replace("/", "_") / name.replace("/", "_") / "new" / "estimates.json"
+    path = (
+        ROOT
+        / "target"
+        / "criterion"
+        / group.replace("/", "_")
+        / name.replace("/", "_")
+        / "new"
+        / "estimates.json"
+    )
     return json.loads(path.read_text())["median"]["point_estimate"] * 1e-9
 
 
 def dop853(end):
-    """CPU time (s) of SciPy's DOP853 with events, switching by switching, and how many switchings there were."""
+    """CPU time (s) of SciPy's DOP853 with events, switching by switching, and the number of switchings."""
     from scipy.integrate import solve_ivp
 
     def field(m):
@@ -76,7 +84,15 @@ def logs():
     sizes = []
     for detail in ("events", "full"):
         out = ROOT / "target" / "benchmark-logs"
-        command = ["target/release/flexsc", "simulate", "scenarios/relay-fixed.toml", "--log", detail, "-o", str(out)]
+        command = [
+            "target/release/flexsc",
+            "simulate",
+            "scenarios/relay-fixed.toml",
+            "--log",
+            detail,
+            "-o",
+            str(out),
+        ]
         subprocess.run(command, cwd=ROOT, check=True, stderr=subprocess.DEVNULL)
         sizes.append((out / "relay-fixed.mcap").stat().st_size)
     return sizes
@@ -118,9 +134,12 @@ def table():
     lines += [
         "",
         f"- One event costs {duration(events / 2526)}; SciPy found {scipy_events} switchings in 2000 s.",
-        f"- A dense log is written at {4 * 200_000 / dense / 1e6:.2f} million messages/s on one core, simulation included.",
-        f"- 4000 adaptive runs: {one:.2f} s on one thread, {all_cores:.2f} s on {cores}: {one / all_cores:.2f} times faster.",
-        f"- Log of relay-fixed: {small / 1e3:.0f} kB with all switchings, {large / 1e6:.1f} MB with the full state every 0.1 s.",
+        f"- A dense log is written at {4 * 200_000 / dense / 1e6:.2f} million messages/s on one core,"
+        " simulation included.",
+        f"- 4000 adaptive runs: {one:.2f} s on one thread, {all_cores:.2f} s on {cores}:"
+        f" {one / all_cores:.2f} times faster.",
+        f"- Log of relay-fixed: {small / 1e3:.0f} kB with all switchings, {large / 1e6:.1f} MB with the full"
+        " state every 0.1 s.",
     ]
     return "\n".join(lines) + "\n"
 

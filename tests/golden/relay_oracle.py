@@ -1,7 +1,8 @@
-"""Independent solution of the relay-controlled spacecraft: 40-digit arithmetic, decimal literals, Newton on x.
+"""Independent solution of the relay-controlled spacecraft: 40-digit arithmetic, decimal literals.
 
-Run as `python relay_oracle.py`; writes relay-switchings-<k_t>.csv beside itself: the time of each switching and the
-state of the law that begins, and for the first 120 the state of the body (y is a mode's rate over its frequency). It shares no code with flexsc: crossings are bracketed by sampling every 0.02 s and refined by bisection and Newton steps.
+Run as `python relay_oracle.py`; writes relay-switchings-<k_t>.csv beside itself: the time of each switching
+and the state of the law that begins, and for the first 120 the state of the body (y is a mode's rate over its
+frequency). It shares no code with flexsc: crossings are found by sampling every 0.02 s and Newton steps.
 """
 
 import math
@@ -17,13 +18,21 @@ K = [mpf("0.0213"), mpf("0.0216")]
 EPS, GAM = mpf("5e-4"), mpf("1e-4")
 STRONG, WEAK = mpf("4e-5"), mpf("1e-6")
 NEXT = {"RACC": "RBRK", "RBRK": "W+", "LACC": "LBRK", "LBRK": "W-"}
-MOMENT = {"W0": WEAK, "RACC": -STRONG, "RBRK": STRONG, "W+": WEAK, "LACC": STRONG, "LBRK": -STRONG, "W-": -WEAK}
+MOMENT = {
+    "W0": WEAK,
+    "RACC": -STRONG,
+    "RBRK": STRONG,
+    "W+": WEAK,
+    "LACC": STRONG,
+    "LBRK": -STRONG,
+    "W-": -WEAK,
+}
 
 
 def flow(state, m, h):
     xb, vb, modes = state
     new = []
-    for (x, y), w, k in zip(modes, W, K):
+    for (x, y), w, k in zip(modes, W, K, strict=False):
         c = k * m / w**2
         cos, sin = mp.cos(w * h), mp.sin(w * h)
         new.append((c + (x - c) * cos + y * sin, y * cos - (x - c) * sin))
@@ -35,17 +44,22 @@ def angle(state):
 
 
 def rate(state):
-    return state[1] + sum(w * y for w, (_, y) in zip(W, state[2]))
+    return state[1] + sum(w * y for w, (_, y) in zip(W, state[2], strict=False))
 
 
 def fast_angle(state, m):
     """The angle as a function of h, in doubles: enough to bracket a crossing."""
     xb, vb, m = float(state[0]), float(state[1]), float(m)
-    parts = [(float(k) * m / float(w) ** 2, float(x), float(y), float(w)) for (x, y), w, k in zip(state[2], W, K)]
+    parts = [
+        (float(k) * m / float(w) ** 2, float(x), float(y), float(w))
+        for (x, y), w, k in zip(state[2], W, K, strict=False)
+    ]
 
     def x(h):
-        return xb + h * (vb + m * h / 2) + sum(
-            c + (p - c) * math.cos(w * h) + y * math.sin(w * h) for c, p, y, w in parts
+        return (
+            xb
+            + h * (vb + m * h / 2)
+            + sum(c + (p - c) * math.cos(w * h) + y * math.sin(w * h) for c, p, y, w in parts)
         )
 
     return x

@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use mcap::records::Record as McapRecord;
 use mcap::sans_io::{LinearReaderOptions, MessageReadEvent, MessageReader};
-use mcap::{McapError, Message, WriteOptions, Writer};
+use mcap::{McapError, Message};
 use prost_reflect::{
     DescriptorPool, DynamicMessage, FieldDescriptor, Kind, MessageDescriptor, ReflectMessage,
 };
@@ -15,6 +13,9 @@ use thiserror::Error;
 
 use super::topics::label_of;
 use super::{Column, Columns};
+
+/// No chunk or record of a log is larger (bytes); ours are of 1 MiB.
+pub const LARGEST: usize = 256 << 20;
 
 /// A log that cannot be used.
 #[derive(Debug, Error)]
@@ -167,12 +168,9 @@ struct Messages<'a> {
 }
 
 impl<'a> Messages<'a> {
-    /// No chunk or record is larger (bytes); ours are of 1 MiB.
-    const LARGEST: usize = 256 << 20;
-
     fn of(bytes: &'a [u8]) -> Self {
         let options = LinearReaderOptions::default()
-            .with_record_length_limit(Self::LARGEST)
+            .with_record_length_limit(LARGEST)
             .with_prevalidate_chunk_crcs(true);
         Self { rest: bytes, reader: MessageReader::new_with_options(options) }
     }
@@ -262,72 +260,4 @@ fn push(columns: &mut Columns, descriptor: &MessageDescriptor, row: &DynamicMess
             }
         }
     }
-}
-
-/// Copies what is whole in a torn log into a new one, and tells how many messages it saved.
-pub fn recover(torn: &Path, whole: &Path) -> Result<u64, LogError> {
-    let bytes = fs::read(torn).map_err(|source| LogError::Io { path: torn.to_owned(), source })?;
-    let damaged = |source| LogError::Damaged { path: torn.to_owned(), source };
-    if !bytes.starts_with(mcap::MAGIC) {
-        return Err(damaged(McapError::BadMagic));
-    }
-    // In memory, where the torn log is too: what cannot be recovered leaves no file.
-    let options =
-        WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
-    let mut writer = Writer::with_options(Cursor::new(Vec::new()), options).map_err(damaged)?;
-    let saved = copy_records(&bytes, &mut writer).map_err(damaged)?;
-    writer.finish().map_err(damaged)?;
-    let unwritable = |source| LogError::Unwritable { path: whole.to_owned(), source };
-    let mut file = fs::File::create(whole).map_err(unwritable)?;
-    file.write_all(writer.into_inner().get_ref()).map_err(|source| {
-        // Half a log is of no use. A device stays.
-        if whole.is_file() {
-            let _ = fs::remove_file(whole);
-        }
-        unwritable(source)
-    })?;
-    Ok(saved)
-}
-
-fn copy_records(bytes: &[u8], writer: &mut Writer<Cursor<Vec<u8>>>) -> Result<u64, McapError> {
-    let mut schemas = BTreeMap::from([(0, 0)]);
-    let mut channels = BTreeMap::new();
-    let mut pending = BTreeMap::new();
-    let mut saved = 0;
-    let options = mcap::read::Options::IgnoreEndMagic | mcap::read::Options::ValidateChunkCrcs;
-    let records = mcap::read::ChunkFlattener::new_with_options(bytes, options)?;
-    // The first record that cannot be read is where the log was torn.
-    for record in records.map_while(Result::ok) {
-        match record {
-            McapRecord::Schema { header, data } => {
-                let id = writer.add_schema(&header.name, &header.encoding, &data)?;
-                schemas.insert(header.id, id);
-            }
-            // Held back until its first message, so that no chunk is without one.
-            McapRecord::Channel(channel) => {
-                pending.insert(channel.id, channel);
-            }
-            McapRecord::Message { mut header, data } => {
-                if let Some(c) = pending.remove(&header.channel_id) {
-                    let schema = schemas.get(&c.schema_id).copied().unwrap_or(0);
-                    let id = writer.add_channel(schema, &c.topic, &c.message_encoding, &c.metadata)?;
-                    channels.insert(c.id, id);
-                }
-                header.channel_id = channels.get(&header.channel_id).copied().unwrap_or(0);
-                writer.write_to_known_channel(&header, &data)?;
-                saved += 1;
-            }
-            McapRecord::Attachment { header, data, .. } => writer.attach(&mcap::Attachment {
-                log_time: header.log_time,
-                create_time: header.create_time,
-                name: header.name,
-                media_type: header.media_type,
-                data,
-            })?,
-            McapRecord::Metadata(metadata) => writer.write_metadata(&metadata)?,
-            McapRecord::DataEnd(_) => break,
-            _ => {}
-        }
-    }
-    Ok(saved)
 }

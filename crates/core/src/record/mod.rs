@@ -4,6 +4,7 @@ mod columns;
 mod log;
 mod mcap;
 mod proto;
+mod recover;
 pub mod row;
 mod topics;
 mod trace;
@@ -16,8 +17,9 @@ use crate::body::State;
 use crate::time::Instant;
 
 pub use columns::{Column, Columns};
-pub use log::{Log, LogError, recover};
+pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
+pub use recover::recover;
 pub use topics::{
     Adaptation, Attitude, Command, Envelope, Law, Metric, Metrics, ModeEnvelope, ModeMotion, Modes, Params,
     Rate, TOPICS, Trigger, WindowMean,
