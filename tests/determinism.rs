@@ -1,6 +1,6 @@
 //! The same numbers on every machine: fingerprints of runs that use all of the engine's arithmetic.
 //!
-//! They say that a run repeats to the last bit, not that it is right; `relay.rs` and `events.rs` say that. A change of
+//! They say that a run repeats to the last bit, not that it is right; `relay.rs`, `cycles.rs` and `events.rs` say that. A change of
 //! the engine's arithmetic, or of what a seed draws, changes them: put the new ones here, and say so in the changelog.
 
 use crate::util::Dir;

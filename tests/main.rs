@@ -1,8 +1,10 @@
 //! All integration tests of flexsc, one binary.
 
+mod adaptation;
 mod bad_scenarios;
 mod campaigns;
 mod cli;
+mod cycles;
 mod determinism;
 mod events;
 mod layout;
@@ -10,4 +12,5 @@ mod logs;
 mod plot;
 mod relay;
 mod stops;
+mod study;
 mod util;

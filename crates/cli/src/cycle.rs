@@ -1,32 +1,20 @@
 //! `flexsc cycle`: limit cycles on a rigid body in closed form, and their resonances with the modes.
 
 use std::io::Write;
-use std::path::PathBuf;
 
 use flexsc_core::analysis::rigid_cycle::{Resonance, cycles, resonances};
 use flexsc_core::law::{Law, Sides};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::{print, say, simulate};
+use crate::scenario::Args;
+use crate::{print, say};
 
 /// So many resonances of each mode are told to people.
 const NEAREST: usize = 3;
 
-#[derive(clap::Args)]
-pub struct Args {
-    /// Scenario file
-    scenario: PathBuf,
-    /// Set a key of the scenario, such as law.relay.k_t=0.34
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
-    /// Print one JSON object on stdout
-    #[arg(long)]
-    json: bool,
-}
-
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let scenario = simulate::load(&args.scenario, &args.set, None)?;
+    let scenario = args.load()?;
     let Law::Relay(law) = &scenario.law;
     let k_t = law.k_t.get();
     let cycles = cycles(law, &scenario.body, k_t);

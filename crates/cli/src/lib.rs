@@ -9,6 +9,7 @@ mod figure;
 mod log;
 mod modes;
 mod plot;
+mod scenario;
 mod schema;
 mod simulate;
 mod stop;
@@ -36,9 +37,9 @@ enum Verb {
     /// Simulate a scenario once for each value of a key
     Sweep(sweep::Args),
     /// Tell the elastic modes of a scenario's body
-    Modes(modes::Args),
+    Modes(scenario::Args),
     /// Tell the limit cycles of a scenario's relay law on a rigid body, and its resonances
-    Cycle(cycle::Args),
+    Cycle(scenario::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
     /// Print a topic of a log as a table

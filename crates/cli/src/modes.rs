@@ -1,27 +1,15 @@
 //! `flexsc modes`: frequencies, damping and excitability of a body's elastic modes.
 
 use std::io::Write;
-use std::path::PathBuf;
 
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::{print, say, simulate};
-
-#[derive(clap::Args)]
-pub struct Args {
-    /// Scenario file
-    scenario: PathBuf,
-    /// Set a key of the scenario, such as body.planar.modes[0].gain=0.02
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
-    /// Print one JSON object on stdout
-    #[arg(long)]
-    json: bool,
-}
+use crate::scenario::Args;
+use crate::{print, say};
 
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let scenario = simulate::load(&args.scenario, &args.set, None)?;
+    let scenario = args.load()?;
     let modes = scenario.body.modes();
     let strongest = modes.iter().map(|mode| mode.excitability().abs()).fold(0.0, f64::max);
     if args.json {

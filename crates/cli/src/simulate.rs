@@ -10,16 +10,13 @@ use clap::ValueEnum;
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd};
-use flexsc_core::{Document, Scenario, SimulationError};
+use flexsc_core::{Scenario, SimulationError};
 use serde_json::json;
 
 use crate::campaign;
 use crate::failure::Failure;
 use crate::stop::{self, Progress, Stop};
-use crate::{print, say};
-
-/// TOML knows no larger whole number.
-pub const LARGEST_SEED: u64 = i64::MAX as u64;
+use crate::{print, say, scenario};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -36,7 +33,7 @@ pub struct Args {
     #[arg(long, value_name = "N|LO:HI", value_parser = runs)]
     runs: Option<Runs>,
     /// Seed, instead of the scenario's
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=LARGEST_SEED))]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
     seed: Option<u64>,
     /// Threads [default: one for each core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -93,7 +90,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let scenarios = args
         .scenarios
         .iter()
-        .map(|path| Ok((load(path, &args.set, args.seed)?, path.display().to_string())))
+        .map(|path| Ok((scenario::load(path, &args.set, args.seed)?, path.display().to_string())))
         .collect::<Result<Vec<_>, Failure>>()?;
     let mut names = BTreeSet::new();
     for (scenario, origin) in &scenarios {
@@ -141,22 +138,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Reads a scenario file with some keys set.
-pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
-    let mut document = Document::load(path)?;
-    for text in set {
-        let Some((key, value)) = text.split_once('=') else {
-            return Err(Failure::Arguments(format!(
-                "--set {text}: not a KEY=VALUE, such as law.relay.k_t=0.34"
-            )));
-        };
-        document.set_text(key.trim(), value.trim())?;
-    }
-    let mut scenario = Scenario::from_document(&document)?;
-    scenario.seed = seed.unwrap_or(scenario.seed);
-    Ok(scenario)
 }
 
 /// Runs a scenario once, with its log.

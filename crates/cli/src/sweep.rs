@@ -6,7 +6,7 @@ use flexsc_core::campaign::{Campaign, Grid};
 
 use crate::failure::Failure;
 use crate::stop::{self, Stop};
-use crate::{campaign, simulate};
+use crate::{campaign, scenario};
 
 /// Values, and what their runs come to, are held in memory.
 const MOST_VALUES: u32 = 10_000_000;
@@ -25,7 +25,7 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Seed, instead of the scenario's
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=simulate::LARGEST_SEED))]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
     seed: Option<u64>,
     /// Threads [default: one for each core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -48,7 +48,7 @@ fn grid(text: &str) -> Result<Grid, String> {
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let scenario = simulate::load(&args.scenario, &args.set, args.seed)?;
+    let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
     let origin = args.scenario.display().to_string();
     let study = Campaign::new(scenario, &origin, Some(args.vary.clone()))?;
     if let Some(out) = &args.out {

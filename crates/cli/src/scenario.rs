@@ -1,0 +1,46 @@
+//! Which scenario is meant, with which keys set.
+
+use std::path::{Path, PathBuf};
+
+use flexsc_core::{Document, Scenario};
+
+use crate::failure::Failure;
+
+/// TOML knows no larger whole number.
+pub const LARGEST_SEED: u64 = i64::MAX as u64;
+
+/// One scenario to tell of.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scenario file
+    scenario: PathBuf,
+    /// Set a key of the scenario, such as law.relay.k_t=0.34
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Args {
+    /// The scenario.
+    pub fn load(&self) -> Result<Scenario, Failure> {
+        load(&self.scenario, &self.set, None)
+    }
+}
+
+/// Reads a scenario file with some keys set.
+pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
+    let mut document = Document::load(path)?;
+    for text in set {
+        let Some((key, value)) = text.split_once('=') else {
+            return Err(Failure::Arguments(format!(
+                "--set {text}: not a KEY=VALUE, such as law.relay.k_t=0.34"
+            )));
+        };
+        document.set_text(key.trim(), value.trim())?;
+    }
+    let mut scenario = Scenario::from_document(&document)?;
+    scenario.seed = seed.unwrap_or(scenario.seed);
+    Ok(scenario)
+}

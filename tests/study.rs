@@ -1,0 +1,35 @@
+//! Shipped scenarios run by the engine itself, and their metrics.
+
+use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::{Document, Scenario};
+
+/// A shipped scenario with some keys set.
+pub fn scenario(name: &str, set: &[(&str, &str)]) -> Scenario {
+    let path = format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut document = Document::load(path.as_ref()).expect("a scenario");
+    for (key, value) in set {
+        document.set_text(key, value).expect("a key");
+    }
+    Scenario::from_document(&document).expect("a valid scenario")
+}
+
+/// The metrics of a run.
+pub fn metrics(scenario: Scenario) -> Metrics {
+    Campaign::simulate(&Run { number: 0, scenario, drawn: Vec::new() }, ()).expect("a run")
+}
+
+/// A metric that is a list.
+pub fn numbers(metrics: &Metrics, name: &str) -> Vec<f64> {
+    match metrics.get(name) {
+        Some(Value::Numbers(numbers)) => numbers.clone(),
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// A value must agree with an exact one, relative to it.
+#[track_caller]
+pub fn close(value: f64, exact: f64, relative: f64) {
+    let error = (value / exact - 1.0).abs();
+    assert!(error <= relative, "{value:e} is off {exact:e} by {error:e} of it");
+}
