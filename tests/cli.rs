@@ -223,6 +223,17 @@ fn keys_and_seeds_are_set() {
     assert_eq!(dir.names(""), ["relay-adaptive.toml"]);
 }
 
+#[test]
+fn a_run_that_fails_does_not_stop_the_others() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let short =
+        UNCERTAIN.replace("k_t = 0.31", "k_t = 1e-3").replace("hysteresis = 1e-4", "hysteresis = 1e-300");
+    dir.write("chatter.toml", short);
+    let failed = dir.run("simulate chatter.toml relay-fixed.toml").exits(1);
+    failed.says(&["chatter: the law decided", "relay-fixed   20000 s"]);
+    assert!(dir.has("relay-fixed.mcap"));
+}
+
 /// Data goes to stdout, text to stderr.
 #[test]
 fn stdout_holds_data_only() {

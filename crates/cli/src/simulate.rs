@@ -106,38 +106,49 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         std::fs::create_dir_all(out).map_err(Failure::write(out))?;
     }
     stop::listen();
-    let several = scenarios.len() > 1;
+    let prefixed = scenarios.len() > 1;
+    let mut failures = Vec::new();
     for (scenario, origin) in scenarios {
-        let name = scenario.name.clone();
         let study = Campaign::new(scenario, &origin, None)?;
-        match &args.runs {
-            None => single(&study, args)?,
-            Some(runs) => {
-                let default = LogDetail::None;
-                let job = campaign::Job {
-                    range: runs.range.clone(),
-                    part: runs.part,
-                    table: args.out.as_deref(),
-                    prefix: several.then_some(name.as_str()),
-                    jobs: args.jobs,
-                    json: args.json,
-                };
-                let detail = args.log.unwrap_or(default).detail();
-                let directory = args.out.as_deref().unwrap_or(Path::new(""));
-                campaign::run(&study, &job, |run| match detail {
-                    // No log for the runs that had not begun.
-                    _ if stop::asked() => Err(SimulationError::from(RecordError::Interrupted).into()),
-                    None => Ok(Campaign::simulate(run, Stop)?),
-                    Some(detail) => {
-                        let path = directory.join(format!("{}-{}.mcap", run.scenario.name, run.number));
-                        let (metrics, _) = logged(run, &path, detail, Stop)?;
-                        Ok(metrics)
-                    }
-                })?;
-            }
+        let done = match &args.runs {
+            None => single(&study, args),
+            Some(runs) => several(&study, args, runs, prefixed),
+        };
+        match done {
+            // The other scenarios are run all the same.
+            Err(failure @ (Failure::Run { .. } | Failure::Runs { .. })) => failures.push(failure),
+            done => done?,
         }
     }
-    Ok(())
+    let last = failures.pop();
+    for failure in failures {
+        failure.tell();
+    }
+    last.map_or(Ok(()), Err)
+}
+
+/// Runs a campaign over a scenario; its tables are named after it where several share a directory.
+fn several(study: &Campaign, args: &Args, runs: &Runs, prefixed: bool) -> Result<(), Failure> {
+    let job = campaign::Job {
+        range: runs.range.clone(),
+        part: runs.part,
+        table: args.out.as_deref(),
+        prefix: prefixed.then_some(study.scenario().name.as_str()),
+        jobs: args.jobs,
+        json: args.json,
+    };
+    let detail = args.log.unwrap_or(LogDetail::None).detail();
+    let directory = args.out.as_deref().unwrap_or(Path::new(""));
+    campaign::run(study, &job, |run| match detail {
+        // No log for the runs that had not begun.
+        _ if stop::asked() => Err(SimulationError::from(RecordError::Interrupted).into()),
+        None => Ok(Campaign::simulate(run, Stop)?),
+        Some(detail) => {
+            let path = directory.join(format!("{}-{}.mcap", run.scenario.name, run.number));
+            let (metrics, _) = logged(run, &path, detail, Stop)?;
+            Ok(metrics)
+        }
+    })
 }
 
 /// Runs a scenario once, with its log.
