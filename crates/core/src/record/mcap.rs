@@ -128,10 +128,6 @@ impl<W: Write + Seek> McapLog<W> {
 }
 
 impl<W: Write + Seek> TakeRow for McapLog<W> {
-    fn detail(&self) -> Detail {
-        self.detail
-    }
-
     fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
         let index = const { index_of(R::TOPIC.name) };
         let (channel_id, sequence) = self.channel(index)?;

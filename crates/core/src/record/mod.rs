@@ -130,7 +130,6 @@ pub enum Detail {
 
 /// A thing that takes rows of any topic: a log file, or columns in memory.
 trait TakeRow {
-    fn detail(&self) -> Detail;
     fn take<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
 
     /// Takes the rows that a sample consists of.

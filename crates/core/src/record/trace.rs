@@ -40,10 +40,6 @@ impl Trace {
 }
 
 impl TakeRow for Trace {
-    fn detail(&self) -> Detail {
-        self.detail
-    }
-
     fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
         let index = const { index_of(R::TOPIC.name) };
         let (times, columns) = &mut self.topics[index];
@@ -55,7 +51,7 @@ impl TakeRow for Trace {
 
 impl Record for Trace {
     fn dense(&self) -> bool {
-        self.detail() == Detail::Full
+        self.detail == Detail::Full
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
