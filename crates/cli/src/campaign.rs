@@ -14,7 +14,7 @@ use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::{print, say, stop};
+use crate::{print, say, simulate, stop};
 
 /// What of a campaign is run, and what is made of it.
 pub struct Job<'a> {
@@ -66,9 +66,13 @@ pub fn run(
         write_statistics(&dir.join(job.file("statistics")), &statistics)?;
     }
     if !job.json {
-        let name = &study.scenario().name;
-        say!("{name}   {runs} runs, {:.2} s", began.elapsed().as_secs_f64());
-        tell_statistics(&statistics, all.len());
+        let (name, took) = (&study.scenario().name, began.elapsed().as_secs_f64());
+        if let [only] = &all[..] {
+            simulate::summary(study.scenario(), only, took);
+        } else {
+            say!("{name}   {runs} runs, {took:.2} s");
+            tell_statistics(&statistics, all.len());
+        }
         if let Some(path) = table {
             say!("  table          {}", path.display());
         }

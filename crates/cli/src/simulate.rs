@@ -139,16 +139,22 @@ fn several(study: &Campaign, args: &Args, runs: &Runs, prefixed: bool) -> Result
     };
     let detail = args.log.unwrap_or(LogDetail::None).detail();
     let directory = args.out.as_deref().unwrap_or(Path::new(""));
+    let log = |number| directory.join(format!("{}-{number}.mcap", study.scenario().name));
     campaign::run(study, &job, |run| match detail {
         // No log for the runs that had not begun.
         _ if stop::asked() => Err(SimulationError::from(RecordError::Interrupted).into()),
         None => Ok(Campaign::simulate(run, Stop)?),
-        Some(detail) => {
-            let path = directory.join(format!("{}-{}.mcap", run.scenario.name, run.number));
-            let (metrics, _) = logged(run, &path, detail, Stop)?;
-            Ok(metrics)
+        Some(detail) => Ok(logged(run, &log(run.number), detail, Stop)?.0),
+    })?;
+    if detail.is_some() && !args.json {
+        let (first, last) = (log(runs.range.start), log(runs.range.end - 1));
+        if first == last {
+            say!("  log            {}", first.display());
+        } else {
+            say!("  logs           {} to {}", first.display(), last.display());
         }
-    })
+    }
+    Ok(())
 }
 
 /// Runs a scenario once, with its log.
@@ -231,7 +237,7 @@ pub fn line(run: &Run, metrics: &Metrics) -> Vec<u8> {
 }
 
 /// The summary of a run for people.
-fn summary(scenario: &Scenario, metrics: &Metrics, took: f64) {
+pub fn summary(scenario: &Scenario, metrics: &Metrics, took: f64) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     say!(
         "{}   {} s, {} modes, {} switchings, {:.1} ms",
