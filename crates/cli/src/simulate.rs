@@ -265,7 +265,7 @@ pub fn summary(scenario: &Scenario, metrics: &Metrics, took: f64) {
                 if largest.is_finite() { format!(", multiplier {largest:.3}") } else { String::new() };
             say!("  cycle          {kind}, period {period:.6} s{multiplier}");
         } else {
-            say!("  cycle          {kind}");
+            say!("  cycle          {kind}: the run is not periodic at its end");
         }
     }
 }
