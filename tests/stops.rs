@@ -214,3 +214,18 @@ fn what_is_no_log_is_not_recovered() {
         .exits(1)
         .says(&["cannot write missing/saved.mcap"]);
 }
+
+/// A device in the place of a file fails as a full disk does, and stays.
+#[test]
+fn tables_and_figures_on_a_full_disk_fail() {
+    let dir = Dir::with(&["relay-fixed"]);
+    dir.run("simulate relay-fixed.toml").exits(0);
+    dir.run("export relay-fixed.mcap --topic /command -o /dev/full")
+        .exits(1)
+        .says(&["/dev/full", "No space left"]);
+    assert!(std::path::Path::new("/dev/full").exists());
+    std::fs::create_dir(dir.path("figures")).expect("made");
+    std::os::unix::fs::symlink("/dev/full", dir.path("figures/relay-fixed-torque.svg")).expect("linked");
+    let plot = "plot relay-fixed.mcap -o figures --what torque --format svg";
+    dir.run(plot).exits(1).says(&["relay-fixed-torque.svg", "No space left"]);
+}

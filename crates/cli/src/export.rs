@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use flexsc_core::record::{Column, Columns, Log};
+use flexsc_core::whole;
 use serde_json::{Map, Value as Json, json};
 
 use crate::failure::Failure;
@@ -45,7 +46,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     match &args.out {
-        Some(path) => std::fs::write(path, text).map_err(Failure::write(path)),
+        Some(path) => whole::write(path, &text).map_err(Failure::write(path)),
         None => print(&text),
     }
 }

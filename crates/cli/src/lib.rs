@@ -9,11 +9,13 @@ mod figure;
 mod log;
 mod modes;
 mod plot;
+mod progress;
 mod scenario;
 mod schema;
 mod simulate;
 mod stop;
 mod sweep;
+mod table;
 
 use std::ffi::OsString;
 use std::io::Write;

@@ -15,7 +15,8 @@ use serde_json::json;
 
 use crate::campaign;
 use crate::failure::Failure;
-use crate::stop::{self, Progress, Stop};
+use crate::progress::Progress;
+use crate::stop::{self, Stop};
 use crate::{print, say, scenario};
 
 #[derive(clap::Args)]

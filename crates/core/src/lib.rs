@@ -54,6 +54,7 @@ mod sim;
 pub mod statistics;
 pub mod time;
 pub mod uncertain;
+pub mod whole;
 
 pub use document::{Document, ScenarioError};
 pub use scenario::Scenario;

@@ -251,11 +251,9 @@ impl Gather {
     }
 
     fn enter(&mut self, now: Instant, phase: Phase, torque: f64) {
-        use Phase::{LeftBrake, LeftPush, RightBrake, RightPush};
-        let strong = matches!(phase, RightPush | RightBrake | LeftPush | LeftBrake);
-        self.pushes.0 += u64::from(phase == RightPush);
-        self.pushes.1 += u64::from(phase == LeftPush);
-        self.switch(now, torque, strong);
+        self.pushes.0 += u64::from(phase == Phase::RightPush);
+        self.pushes.1 += u64::from(phase == Phase::LeftPush);
+        self.switch(now, torque, phase.is_strong());
     }
 }
 

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use flexsc_core::record::Log;
+use flexsc_core::whole;
 use rayon::prelude::*;
 
 use crate::failure::Failure;
@@ -110,7 +111,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    std::fs::write(path, bytes).map_err(Failure::write(path))?;
+    whole::write(path, bytes).map_err(Failure::write(path))?;
     say!("{} ({:.0} kB)", path.display(), bytes.len() as f64 / 1e3);
     Ok(())
 }

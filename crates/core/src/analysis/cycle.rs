@@ -115,16 +115,13 @@ impl CycleWatch {
             (right, left) if right == left => Kind::TwoSided,
             _ => Kind::Mixed,
         };
-        let strong = |s: &Switching| {
-            matches!(s.phase, Phase::RightPush | Phase::RightBrake | Phase::LeftPush | Phase::LeftBrake)
-        };
         let pairs = || one.windows(2);
         Some(Cycle {
             kind,
             period,
             order,
             symmetric: symmetric(one),
-            duty: pairs().filter(|pair| strong(&pair[0])).map(span).sum::<f64>() / period,
+            duty: pairs().filter(|pair| pair[0].phase.is_strong()).map(span).sum::<f64>() / period,
             impulse: pairs().map(|pair| pair[0].torque.abs() * span(pair)).sum(),
             multipliers: if self.smooth && self.excitations <= MOST_MODES {
                 multipliers(&mut self.arc, one)

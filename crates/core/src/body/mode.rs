@@ -74,15 +74,13 @@ impl Flow {
             let root = libm::sqrt((zeta - 1.0) * (zeta + 1.0));
             Regime::Over(zeta * w, w / (zeta + root), w * root)
         };
+        let square = 4.0 * zeta * zeta;
         Self {
             frequency: w,
             excitability: mode.excitability(),
             // x'' = -w² (x + 2 zeta y) and x''' = -w³ (y - 2 zeta x - 4 zeta² y) in (x, y) of length 1.
-            stiffness: w * w * libm::sqrt(1.0 + 4.0 * zeta * zeta),
-            jerk: w
-                * w
-                * w
-                * libm::sqrt(4.0 * zeta * zeta + (1.0 - 4.0 * zeta * zeta) * (1.0 - 4.0 * zeta * zeta)),
+            stiffness: w * w * libm::sqrt(1.0 + square),
+            jerk: w * w * w * libm::sqrt(square + (1.0 - square) * (1.0 - square)),
             drag: 2.0 * zeta * w,
             regime,
         }

@@ -160,6 +160,7 @@ impl Arc {
         let (gap, speed, acceleration) =
             (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
         let q = first_root(gap, speed, acceleration);
+        // Without modes an endless q makes J q no number, and the minimum takes M.
         first_root(gap, speed, self.curvature.min(acceleration + self.jerk * q / 3.0))
     }
 

@@ -50,6 +50,13 @@ labels! {
     }
 }
 
+impl Phase {
+    /// Whether the strong torque is on.
+    pub const fn is_strong(self) -> bool {
+        matches!(self, Self::RightPush | Self::RightBrake | Self::LeftPush | Self::LeftBrake)
+    }
+}
+
 /// Why a law is asked.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Cause {

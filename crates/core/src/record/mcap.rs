@@ -13,6 +13,7 @@ use super::row::TopicRow;
 use super::topics::index_of;
 use super::{Detail, Metrics, Params, Record, RecordError, Sample, TOPICS, TakeRow};
 use crate::time::Instant;
+use crate::whole::discard;
 
 /// A chunk is closed after so many messages: what a killed run loses at most.
 const MESSAGES_PER_FLUSH: u64 = 2000;
@@ -203,11 +204,6 @@ impl Record for LogFile {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         self.log.record(now, sample)
     }
-}
-
-/// Removes a file that is of no use. That it cannot be removed is no news beside why it is of no use.
-fn discard(path: &Path) {
-    let _ = fs::remove_file(path);
 }
 
 fn attach<W: Write + Seek>(

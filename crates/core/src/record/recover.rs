@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 use std::path::Path;
 
 use mcap::records::Record as McapRecord;
@@ -11,9 +11,10 @@ use mcap::{McapError, WriteOptions, Writer};
 
 use super::LogError;
 use super::log::LARGEST;
+use crate::whole;
 
 /// Copies what is whole in a torn log into a new one, and tells how many messages it saved.
-pub fn recover(torn: &Path, whole: &Path) -> Result<u64, LogError> {
+pub fn recover(torn: &Path, path: &Path) -> Result<u64, LogError> {
     let bytes = fs::read(torn).map_err(|source| LogError::Io { path: torn.to_owned(), source })?;
     let damaged = |source| LogError::Damaged { path: torn.to_owned(), source };
     if !bytes.starts_with(mcap::MAGIC) {
@@ -25,15 +26,8 @@ pub fn recover(torn: &Path, whole: &Path) -> Result<u64, LogError> {
     let mut writer = Writer::with_options(Cursor::new(Vec::new()), options).map_err(damaged)?;
     let saved = copy_records(&bytes, &mut writer).map_err(damaged)?;
     writer.finish().map_err(damaged)?;
-    let unwritable = |source| LogError::Unwritable { path: whole.to_owned(), source };
-    let mut file = fs::File::create(whole).map_err(unwritable)?;
-    file.write_all(writer.into_inner().get_ref()).map_err(|source| {
-        // Half a log is of no use. A device stays.
-        if whole.is_file() {
-            let _ = fs::remove_file(whole);
-        }
-        unwritable(source)
-    })?;
+    let unwritable = |source| LogError::Unwritable { path: path.to_owned(), source };
+    whole::write(path, writer.into_inner().get_ref()).map_err(unwritable)?;
     Ok(saved)
 }
 

@@ -1,0 +1,52 @@
+//! How far a long run or a campaign has come.
+
+use std::time::{Duration, Instant as WallInstant};
+
+use flexsc_core::record::{Record, RecordError, Sample};
+use flexsc_core::time::{Instant, Span};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A bar on the terminal over so many steps; invisible elsewhere.
+pub fn bar(steps: u64, unit: &str) -> ProgressBar {
+    let template = format!("{{bar:30}} {{human_pos}}/{{human_len}} {unit}, {{per_sec}}, {{eta}} left");
+    let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(steps).with_style(style)
+}
+
+/// A record that shows how far a single run has come, once it takes longer than half a second.
+pub struct Progress {
+    began: WallInstant,
+    length: Span,
+    samples: u32,
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// Progress towards the end of a run of this length.
+    pub fn new(length: Span) -> Self {
+        Self { began: WallInstant::now(), length, samples: 0, bar: None }
+    }
+
+    /// Clears the bar.
+    pub fn finish(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Record for Progress {
+    fn record(&mut self, now: Instant, _: Sample<'_>) -> Result<(), RecordError> {
+        self.samples = self.samples.wrapping_add(1);
+        // The wall clock is asked rarely: it costs as much as a sample.
+        if self.samples.is_multiple_of(4096) {
+            if self.bar.is_none() && self.began.elapsed() > Duration::from_millis(500) {
+                self.bar = Some(bar(self.length.seconds() as u64, "simulated seconds"));
+            }
+            if let Some(bar) = &self.bar {
+                bar.set_position(now.seconds() as u64);
+            }
+        }
+        Ok(())
+    }
+}
