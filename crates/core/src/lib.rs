@@ -42,6 +42,7 @@ pub mod estimator;
 pub mod guard;
 mod label;
 pub mod law;
+pub mod manoeuvre;
 pub mod metrics;
 mod one_of;
 pub mod phasor;

@@ -1,13 +1,15 @@
 //! What is controlled: a state, and its exact flow under a constant input.
 
 mod mode;
+mod output;
 mod planar;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use mode::Mode;
-pub use planar::{Arc, Planar};
+pub use output::Output;
+pub use planar::{Arc, Drive, Planar};
 
 /// The kinds of body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

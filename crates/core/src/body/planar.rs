@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::mode::Flow;
-use super::{Mode, Phase, Sight, State};
+use super::{Mode, Output, Phase, Sight, State};
 use crate::guard::Guard;
 use crate::quantity::{Finite, Positive};
 
@@ -26,9 +26,27 @@ pub struct Planar {
     /// Rigid rate at the start (rad/s).
     #[serde(default)]
     pub rate: Finite,
+    /// What is commanded.
+    #[serde(default)]
+    pub drive: Drive,
     /// Elastic modes.
     #[serde(default)]
     pub modes: Vec<Mode>,
+    /// Coordinates that are observed beside the hub's angle.
+    #[serde(default)]
+    pub outputs: Vec<Output>,
+}
+
+/// What is commanded.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Drive {
+    /// A torque (N m): the modes are those of the free body, and show in the hub's angle.
+    #[default]
+    Torque,
+    /// The hub's own motion, as an acceleration (rad/s²): the modes are those of the body clamped at the hub, and do
+    /// not show in the hub's angle (seed paper 2, equations (17) and (18)).
+    Motion,
 }
 
 fn unit() -> Positive {
@@ -36,6 +54,14 @@ fn unit() -> Positive {
 }
 
 impl Planar {
+    /// What a unit of the command accelerates (kg m²): 1 where the motion itself is commanded.
+    pub fn commanded_inertia(&self) -> f64 {
+        match self.drive {
+            Drive::Torque => self.inertia.get(),
+            Drive::Motion => 1.0,
+        }
+    }
+
     /// The state at the start of a run.
     pub fn start(&self) -> State {
         State {

@@ -1,0 +1,35 @@
+//! Observed coordinates: what the modes do at a place of the structure.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::State;
+use crate::quantity::Finite;
+
+/// A coordinate that is observed beside the hub's angle: y = rigid x_r + sum modes\[i\] x_i.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Output {
+    /// Name, such as `tip`.
+    pub name: String,
+    /// Unit.
+    #[serde(default = "radians")]
+    pub unit: String,
+    /// Weight of the rigid angle.
+    #[serde(default)]
+    pub rigid: Finite,
+    /// Weight of each mode's displacement, in the order of the modes.
+    pub modes: Vec<Finite>,
+}
+
+fn radians() -> String {
+    "rad".to_owned()
+}
+
+impl Output {
+    /// The coordinate in a state.
+    pub fn of(&self, state: &State) -> f64 {
+        let modes = self.modes.iter().zip(&state.modes);
+        modes.fold(self.rigid.get() * state.rigid_angle, |sum, (w, mode)| sum + w.get() * mode.displacement)
+    }
+}
