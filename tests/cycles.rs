@@ -61,7 +61,7 @@ fn rigid_cycles_in_closed_form_and_simulated() {
     ];
     for (k_t, entry, push, brake, coast, period, multiplier) in exact {
         let scenario = rigid(k_t);
-        let Law::Relay(law) = &scenario.law;
+        let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
         let cycle = cycles(law, &scenario.body, k_t)[0];
         assert_eq!(cycle.sides, Sides::Two);
         for (ours, exact) in [
@@ -86,7 +86,7 @@ fn rigid_cycles_in_closed_form_and_simulated() {
 fn rigid_cycles_exist_and_are_stable_where_they_should_be() {
     let of = |k_t: f64| {
         let scenario = rigid(k_t);
-        let Law::Relay(law) = &scenario.law;
+        let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
         cycles(law, &scenario.body, k_t)
     };
     let kinds = |k_t: f64| of(k_t).iter().map(|c| (c.sides, c.stable)).collect::<Vec<_>>();
@@ -109,7 +109,7 @@ fn rigid_cycles_exist_and_are_stable_where_they_should_be() {
 #[test]
 fn resonances_with_the_modes() {
     let scenario = scenario("relay-fixed", &[]);
-    let Law::Relay(law) = &scenario.law;
+    let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
     let found = resonances(law, &scenario.body);
     let exact = [
         (0, 3, 42.8399, 0.297_777),
@@ -129,7 +129,7 @@ fn one_sided_law_ends_in_its_cycle() {
     // Without the left boundary the one-sided cycle exists at 0.31 too: period 120.343 s.
     let set = [("body.planar.modes", "[]"), ("duration", "50000")];
     let scenario = scenario("relay-one-sided", &set);
-    let Law::Relay(law) = &scenario.law;
+    let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
     let closed = cycles(law, &scenario.body, 0.31)[0];
     close(closed.period_s, 120.343, 1e-5);
     close(closed.angle_min_rad, -1.25e-3, 0.05);

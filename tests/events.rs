@@ -1,10 +1,10 @@
 //! The rules of time: no crossing is missed, and nothing that watches a run changes it.
 
 use flexsc_core::belief::Belief;
-use flexsc_core::body::{Body, State};
+use flexsc_core::body::{Body, Input, State};
 use flexsc_core::crossing::locate;
 use flexsc_core::guard::Guard;
-use flexsc_core::law::{Cause, Control, Law};
+use flexsc_core::law::{Cause, Control, Goal, Law};
 use flexsc_core::random::{Seed, Stream};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::time::{Instant, Span};
@@ -46,7 +46,7 @@ fn no_crossing_is_missed() {
     for trial in 0..1500 {
         let (body, state) = random_body(&mut stream);
         let mut arc = body.arc();
-        arc.depart(&state, 3e-6 * stream.normal());
+        arc.depart(&state, &Input::constant(3e-6 * stream.normal()));
         let start = state.angle();
         let mut away = || 3e-4 * stream.uniform();
         let mut guards = [Guard::at_least(start + away()), Guard::at_most(start - away())];
@@ -90,7 +90,7 @@ fn a_tangent_touch_is_found() {
     let scenario = scenario(&text);
     let mut arc = scenario.body.arc();
     let state = scenario.body.start();
-    arc.depart(&state, -1e-6);
+    arc.depart(&state, &Input::constant(-1e-6));
     let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
     let mut there = state.clone();
     let horizon = Span::from_seconds(100.0);
@@ -104,7 +104,7 @@ fn a_guard_that_holds_trips_at_once() {
     let scenario = scenario(&format!("duration = 1.0\n[body.planar]\nangle = 1e-4\n{RELAY}"));
     let mut arc = scenario.body.arc();
     let state = scenario.body.start();
-    arc.depart(&state, 0.0);
+    arc.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
     let trip = locate(&arc, &guards, Span::from_seconds(1.0), &mut there).expect("a trip");
@@ -117,7 +117,7 @@ fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     let scenario = scenario(&text);
     let mut arc = scenario.body.arc();
     let state = scenario.body.start();
-    arc.depart(&state, 0.0);
+    arc.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];
     let trip = locate(&arc, &guards, Span::from_seconds(1e6), &mut there).expect("a trip");
@@ -213,13 +213,15 @@ fn a_state_that_overflows_is_an_error() {
 
 #[test]
 fn the_brake_keeps_the_gain_that_it_began_with() {
-    let Law::Relay(mut law) = scenario(&format!("duration = 1\n{FLEXIBLE}{RELAY}")).law;
+    let Law::Relay(mut law) = scenario(&format!("duration = 1\n{FLEXIBLE}{RELAY}")).law else {
+        panic!("a relay law")
+    };
     let at = |seconds| Instant::START + Span::from_seconds(seconds);
-    let belief = |gain| Belief { angle: 6e-4, gain };
-    let push = law.decide(at(0.0), Cause::Start, &belief(0.31));
+    let belief = |gain| Belief { angle: 6e-4, rate: 0.0, gain };
+    let push = law.decide(at(0.0), Cause::Start, &Goal::default(), &belief(0.31));
     assert_eq!(push.torque, -4e-5);
-    let brake = law.decide(at(4.0), Cause::Guard(0), &belief(0.25));
+    let brake = law.decide(at(4.0), Cause::Guard(0), &Goal::default(), &belief(0.25));
     assert_eq!((brake.torque, brake.until), (4e-5, Some(at(5.0))));
-    let coast = law.decide(at(5.0), Cause::Timeout, &belief(0.9));
+    let coast = law.decide(at(5.0), Cause::Timeout, &Goal::default(), &belief(0.9));
     assert_eq!((coast.torque, coast.until, coast.guards.len()), (1e-6, None, 2));
 }

@@ -16,7 +16,7 @@ use serde_json::json;
 
 use crate::failure::Failure;
 use crate::table::Table;
-use crate::{print, progress, say, simulate};
+use crate::{print, progress, say, summary};
 
 /// What of a campaign is run, and what is made of it.
 pub struct Job<'a> {
@@ -70,7 +70,7 @@ pub fn run(
     if !job.json {
         let (name, took) = (&study.scenario().name, began.elapsed().as_secs_f64());
         if let [only] = &all[..] {
-            simulate::summary(study.scenario(), only, took);
+            summary::tell(study.scenario(), only, took);
         } else {
             say!("{name}   {runs} runs, {took:.2} s");
             tell_statistics(&statistics, all.len());

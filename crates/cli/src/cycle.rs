@@ -15,7 +15,12 @@ const NEAREST: usize = 3;
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.load()?;
-    let Law::Relay(law) = &scenario.law;
+    let Law::Relay(law) = &scenario.law else {
+        return Err(Failure::Arguments(format!(
+            "{}: limit cycles are those of a law `relay`",
+            scenario.name
+        )));
+    };
     let k_t = law.k_t.get();
     let cycles = cycles(law, &scenario.body, k_t);
     let resonances = resonances(law, &scenario.body);

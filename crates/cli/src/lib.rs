@@ -14,6 +14,7 @@ mod scenario;
 mod schema;
 mod simulate;
 mod stop;
+mod summary;
 mod sweep;
 mod table;
 

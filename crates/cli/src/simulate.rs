@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant as WallInstant;
 
 use clap::ValueEnum;
+use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, Run};
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd};
-use flexsc_core::{Scenario, SimulationError};
 use serde_json::json;
 
 use crate::campaign;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::stop::{self, Stop};
-use crate::{print, say, scenario};
+use crate::{print, say, scenario, summary};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -183,7 +183,7 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
     if args.json {
         print(&line(&run, &metrics))?;
     } else {
-        summary(&run.scenario, &metrics, took);
+        summary::tell(&run.scenario, &metrics, took);
         if let Some(bytes) = bytes {
             say!("  log            {} ({:.0} kB)", path.display(), bytes as f64 / 1e3);
         }
@@ -235,40 +235,6 @@ pub fn line(run: &Run, metrics: &Metrics) -> Vec<u8> {
         "metrics": metrics.to_json(),
     });
     format!("{object}\n").into_bytes()
-}
-
-/// The summary of a run for people.
-pub fn summary(scenario: &Scenario, metrics: &Metrics, took: f64) {
-    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
-    say!(
-        "{}   {} s, {} modes, {} switchings, {:.1} ms",
-        scenario.name,
-        scenario.duration.seconds(),
-        scenario.body.modes().len(),
-        number("switchings"),
-        took * 1e3
-    );
-    if let Some(Value::Numbers(means)) = metrics.get("envelope_window_means_rad")
-        && let (Some(first), Some(last)) = (means.first(), means.last())
-    {
-        let change = 100.0 * (last / first - 1.0);
-        say!("  envelope       {first:.3e} -> {last:.3e} rad  (window means, {change:+.0} %)");
-    }
-    if scenario.adaptation.is_some() {
-        let frozen = number("gain_frozen_at_s");
-        let end = if frozen.is_finite() { format!("frozen at {frozen} s") } else { "not frozen".to_owned() };
-        say!("  k_t            {:.4} -> {:.4}, {end}", number("gain_initial"), number("gain_final"));
-    }
-    if let Some(Value::Word(kind)) = metrics.get("cycle_kind") {
-        let (period, largest) = (number("cycle_period_s"), number("cycle_multiplier_max"));
-        if period.is_finite() {
-            let multiplier =
-                if largest.is_finite() { format!(", multiplier {largest:.3}") } else { String::new() };
-            say!("  cycle          {kind}, period {period:.6} s{multiplier}");
-        } else {
-            say!("  cycle          {kind}: the run is not periodic at its end");
-        }
-    }
 }
 
 impl From<SimulationError> for Failure {

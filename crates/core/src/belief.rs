@@ -5,6 +5,8 @@
 pub struct Belief {
     /// Measured angle (rad).
     pub angle: f64,
+    /// Measured rate (rad/s): of a sampled sensor, the difference of its last two samples over the period.
+    pub rate: f64,
     /// The law's tunable parameter as adapted so far; for the relay law the braking gain `k_t`.
     pub gain: f64,
 }

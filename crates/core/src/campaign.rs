@@ -10,7 +10,7 @@ use toml::{Table, Value};
 use crate::document::{Document, ScenarioError, key};
 use crate::metrics::{Gather, Metrics};
 use crate::random::Seed;
-use crate::record::{Provenance, Record};
+use crate::record::{OutputName, Provenance, Record};
 use crate::scenario::Scenario;
 use crate::sim::{Simulation, SimulationError};
 
@@ -162,6 +162,13 @@ impl Campaign {
             seed: run.scenario.seed,
             run: run.number,
             epoch_ns: run.scenario.epoch_ns(),
+            outputs: run
+                .scenario
+                .model
+                .outputs
+                .iter()
+                .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
+                .collect(),
             layout: run.scenario.layout(),
         }
     }

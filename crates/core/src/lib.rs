@@ -31,15 +31,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod actuator;
 pub mod adaptation;
 pub mod analysis;
 pub mod belief;
 pub mod body;
 pub mod campaign;
 pub mod crossing;
+pub mod disturbance;
 pub mod document;
 pub mod estimator;
 pub mod guard;
+mod integrate;
 mod label;
 pub mod law;
 pub mod manoeuvre;

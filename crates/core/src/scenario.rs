@@ -8,14 +8,17 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 use toml::value::Datetime;
 
+use crate::actuator::Actuator;
 use crate::adaptation::Adaptation;
-use crate::body::Body;
+use crate::body::{Body, Chain, Drive, Planar};
+use crate::disturbance::Disturbance;
 use crate::document::{Document, ScenarioError, key};
 use crate::estimator::{Estimator, Form};
-use crate::law::Law;
-use crate::quantity::{Finite, Positive};
+use crate::law::{Goal, Law};
+use crate::manoeuvre::Plan;
+use crate::quantity::{Finite, NonNegative, Positive};
 use crate::sensor::Sensor;
-use crate::time::Span;
+use crate::time::{Instant, Span};
 use crate::uncertain::Distribution;
 
 /// A scenario.
@@ -48,8 +51,15 @@ pub struct Scenario {
     /// What is adapted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adaptation: Option<Adaptation>,
-    /// What commands the torque.
+    /// What commands the torque. Only a scenario with a manoeuvre can do without.
+    #[serde(default)]
     pub law: Law,
+    /// How the commanded torque is executed.
+    #[serde(default)]
+    pub actuator: Actuator,
+    /// Disturbance torques.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub disturbance: Vec<Disturbance>,
     /// What a full log holds.
     #[serde(default)]
     pub log: Log,
@@ -59,6 +69,15 @@ pub struct Scenario {
     /// Distributions of keys that a campaign draws anew for each run.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertain: BTreeMap<String, Distribution>,
+    /// The body solved: its modes and outputs.
+    #[serde(skip)]
+    pub model: Planar,
+    /// The manoeuvre as planned on the model.
+    #[serde(skip)]
+    pub plan: Option<Plan>,
+    /// The exact chain, where the scenario asks for it.
+    #[serde(skip)]
+    pub chain: Option<Chain>,
 }
 
 /// What a full log holds.
@@ -110,12 +129,17 @@ impl Scenario {
     /// Reads a scenario from a document.
     pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
         let mut scenario: Self = document.read()?;
+        let Body::Planar(planar) = &scenario.body;
+        scenario.model = planar.clone();
         if let Some(error) = document.unread(&scenario.to_table()) {
             return Err(error);
         }
         if scenario.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
+        }
+        if matches!(scenario.law, Law::Open(_)) && !document.has("law") && scenario.plan.is_none() {
+            return Err(document.missing("law"));
         }
         match scenario.inconsistency() {
             None => Ok(scenario),
@@ -134,6 +158,15 @@ impl Scenario {
         toml::to_string(self).unwrap_or_default()
     }
 
+    /// Where the law shall bring the body: the end of the manoeuvre, or angle 0 from the start on.
+    pub fn goal(&self) -> Goal {
+        self.plan.as_ref().map_or_else(Goal::default, |plan| Goal {
+            from: Instant::START + Span::from_seconds(plan.time),
+            angle: self.model.angle.get() + plan.angle,
+            rate: plan.end_rate,
+        })
+    }
+
     /// The date of the start in nanoseconds since 1970 UTC; 0 without one.
     pub fn epoch_ns(&self) -> u64 {
         self.epoch.as_ref().and_then(nanoseconds_since_1970).unwrap_or(0)
@@ -146,8 +179,10 @@ impl Scenario {
 
     /// A viewer layout for logs of this kind of scenario.
     pub fn layout(&self) -> Option<&'static str> {
-        let Law::Relay(_) = &self.law;
-        Some(include_str!("../../../scenarios/layouts/relay.json"))
+        Some(match &self.law {
+            Law::Relay(_) => include_str!("../../../scenarios/layouts/relay.json"),
+            Law::Pd(_) | Law::Open(_) => include_str!("../../../scenarios/layouts/rotation.json"),
+        })
     }
 
     /// What single values cannot show to be wrong: the key, and what is wrong with it.
@@ -170,22 +205,82 @@ impl Scenario {
             );
             return at("duration", why);
         }
-        let Law::Relay(relay) = &self.law;
+        self.law_inconsistency()
+            .or_else(|| self.drive_inconsistency())
+            .or_else(|| self.estimator_inconsistency())
+            .or_else(|| self.adaptation_inconsistency())
+            .or_else(|| {
+                let mut table = self.to_table();
+                table.remove("uncertain");
+                self.uncertain.iter().find_map(|(key, distribution)| {
+                    let why = distribution.problem(key::get(&table, key))?;
+                    Some((format!("uncertain.\"{key}\""), why))
+                })
+            })
+    }
+
+    fn law_inconsistency(&self) -> Option<(String, String)> {
+        let Law::Relay(relay) = &self.law else { return None };
         let (eps, gamma) = (relay.dead_zone.get(), relay.hysteresis.get());
+        let at = |key: &str, why: String| Some((key.to_owned(), why));
         if gamma >= 2.0 * eps {
+            let width = 2.0 * eps;
+            let why = format!("must be less than the dead zone's width of {width}, got {gamma}");
+            return at("law.relay.hysteresis", why);
+        }
+        if self.plan.is_some() {
+            let why = "holds the angle at 0: with a `[manoeuvre]` the law is `pd` or left out";
+            return at("law.relay", why.to_owned());
+        }
+        None
+    }
+
+    fn drive_inconsistency(&self) -> Option<(String, String)> {
+        let at = |key: &str, why: String| Some((key.to_owned(), why));
+        let estimates = self.estimator.is_some();
+        if self.plan.is_some() && estimates {
+            let why = "follows torques that are constant between switchings, not a `[manoeuvre]`";
+            return at("estimator.envelope", why.to_owned());
+        }
+        let ordered = |d: &Disturbance| d.to.is_none_or(|to| d.from < to);
+        if let Some(index) = self.disturbance.iter().position(|d| !ordered(d)) {
+            let Disturbance { from, to, .. } = &self.disturbance[index];
+            let (from, to) = (from.get(), to.map_or(f64::NAN, NonNegative::get));
             return at(
-                "law.relay.hysteresis",
-                format!("must be less than the dead zone's width of {}, got {gamma}", 2.0 * eps),
+                &format!("disturbance[{index}].to"),
+                format!("must be later than `from`, {from} s, got {to}"),
             );
         }
-        self.estimator_inconsistency().or_else(|| self.adaptation_inconsistency()).or_else(|| {
-            let mut table = self.to_table();
-            table.remove("uncertain");
-            self.uncertain.iter().find_map(|(key, distribution)| {
-                let why = distribution.problem(key::get(&table, key))?;
-                Some((format!("uncertain.\"{key}\""), why))
-            })
-        })
+        if let Actuator::Thrusters(thrusters) = &self.actuator {
+            let (period, minimum) = (thrusters.period.seconds(), thrusters.minimum_on.get());
+            if minimum > period {
+                let why = format!("must be at most the period of {period} s, got {minimum}");
+                return at("actuator.thrusters.minimum_on", why);
+            }
+            if thrusters.quantum.get() > period {
+                let why =
+                    format!("must be at most the period of {period} s, got {}", thrusters.quantum.get());
+                return at("actuator.thrusters.quantum", why);
+            }
+        }
+        if estimates && self.actuator != Actuator::Ideal {
+            let why = "must be `ideal` with an `[estimator.envelope]`, which knows the commanded torque only";
+            return at("actuator", why.to_owned());
+        }
+        if self.model.drive == Drive::Motion {
+            let moves =
+                "moves the hub by force, but the body's hub follows a given motion (`drive = \"motion\"`)";
+            if !self.disturbance.is_empty() {
+                return at("disturbance[0]", moves.to_owned());
+            }
+            if matches!(self.actuator, Actuator::Thrusters(_)) {
+                return at("actuator.thrusters", moves.to_owned());
+            }
+            if !matches!(self.law, Law::Open(_)) {
+                return at("law", moves.to_owned());
+            }
+        }
+        None
     }
 
     fn estimator_inconsistency(&self) -> Option<(String, String)> {

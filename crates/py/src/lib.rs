@@ -222,9 +222,13 @@ fn campaign<'py>(
 }
 
 #[pyfunction]
-fn rigid_cycles_json(scenario: &Scenario) -> String {
-    let (Law::Relay(law), body) = (&scenario.inner.law, &scenario.inner.body);
-    json!({"cycles": cycles(law, body, law.k_t.get()), "resonances": resonances(law, body)}).to_string()
+fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
+    let (Law::Relay(law), body) = (&scenario.inner.law, &scenario.inner.body) else {
+        let why = format!("{}: limit cycles are those of a law `relay`", scenario.inner.name);
+        return Err(PyValueError::new_err(why));
+    };
+    let (cycles, resonances) = (cycles(law, body, law.k_t.get()), resonances(law, body));
+    Ok(json!({"cycles": cycles, "resonances": resonances}).to_string())
 }
 
 /// A log in memory.

@@ -1,6 +1,6 @@
 //! Figure `phase-plane`: rate against angle, the law's switching lines, and where the law switched.
 
-use flexsc_core::law::{Law, Sides};
+use flexsc_core::law::{Law, Relay, Sides};
 
 use super::story::{Motion, Story, Switching};
 use super::title;
@@ -33,24 +33,31 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         let of_kind = story.switchings.iter().filter(shown).filter(|s| s.timeout == timeout);
         of_kind.map(|s| (s.angle, s.rate)).collect()
     };
-    let Law::Relay(relay) = &story.scenario.law;
-    let (dead_zone, back) = (relay.dead_zone.get(), relay.dead_zone.get() - relay.hysteresis.get());
+    let relay = match &story.scenario.law {
+        Law::Relay(relay) => Some(relay),
+        Law::Pd(_) | Law::Open(_) => None,
+    };
+    let zone = relay.into_iter().flat_map(|relay| [-relay.dead_zone.get(), relay.dead_zone.get()]);
     let all = || first.iter().chain(&last).copied();
-    let x = Axis::around("angle x", "rad", all().map(|p| p.0).chain([-dead_zone, dead_zone]));
+    let x = Axis::around("angle x", "rad", all().map(|p| p.0).chain(zone));
     let y = Axis::around("rate dx/dt", "rad/s", all().map(|p| p.1));
     let line = |name: &str, shape, at: f64| {
         Layer::new(name, colour::GREY, shape, vec![(at, y.range.start), (at, y.range.end)])
     };
     let (boundary, brake) = (Shape::Line(1.0), Shape::Dashes);
-    let mut layers = match relay.sides {
-        Sides::Two => vec![
-            line("±ε", boundary, dead_zone),
-            line("", boundary, -dead_zone),
-            line("±(ε − γ)", brake, back),
-            line("", brake, -back),
-        ],
-        Sides::One => vec![line("ε", boundary, dead_zone), line("ε − γ", brake, back)],
+    let lines = |relay: &Relay| {
+        let (dead_zone, back) = (relay.dead_zone.get(), relay.dead_zone.get() - relay.hysteresis.get());
+        match relay.sides {
+            Sides::Two => vec![
+                line("±ε", boundary, dead_zone),
+                line("", boundary, -dead_zone),
+                line("±(ε − γ)", brake, back),
+                line("", brake, -back),
+            ],
+            Sides::One => vec![line("ε", boundary, dead_zone), line("ε − γ", brake, back)],
+        }
     };
+    let mut layers = relay.map_or_else(Vec::new, lines);
     let name = if first.is_empty() { "trajectory" } else { "end of the run" };
     layers.extend([
         Layer::new("start of the run", colour::SKY, Shape::Line(0.6), first),

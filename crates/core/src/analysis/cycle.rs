@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, RowDVector, Schur};
 
-use crate::body::{Arc, Body, State};
+use crate::body::{Arc, Body, Input, State};
 use crate::law::Phase;
 use crate::record::{Command, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
@@ -197,7 +197,7 @@ fn multipliers(arc: &mut Arc, one: &[Switching]) -> Vec<(f64, f64)> {
     for pair in one.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
         let h = to.at.since(from.at).seconds();
-        arc.depart(&from.state, from.torque);
+        arc.depart(&from.state, &Input::constant(from.torque));
         let sight = arc.at(h, &mut end);
         for mut column in fundamental.column_iter_mut() {
             arc.carry(h, column.as_mut_slice());

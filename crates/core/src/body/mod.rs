@@ -1,5 +1,7 @@
 //! What is controlled: a state, and its exact flow under a constant input.
 
+mod chain;
+mod forced;
 mod mode;
 mod output;
 mod planar;
@@ -7,6 +9,8 @@ mod planar;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use chain::{Chain, Flight};
+pub use forced::{Forced, Input};
 pub use mode::Mode;
 pub use output::Output;
 pub use planar::{Arc, Drive, Planar};

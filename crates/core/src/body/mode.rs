@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Phase, Sight};
+use crate::phasor::Phasor;
 use crate::quantity::{Finite, Frequency, NonNegative};
 
 /// An elastic mode as a scenario describes it (seed paper 1, equation (1), with damping added).
@@ -31,6 +32,23 @@ impl Mode {
         self.gain.get() / (self.frequency.get() * self.frequency.get())
     }
 
+    /// The amplitude (rad) of the vibration that a phase begins: without damping the largest displacement to come, else
+    /// the absolute value of the phasor x + i (x' + zeta w x)/w_d. NaN at critical damping and above.
+    pub fn amplitude(&self, phase: Phase) -> f64 {
+        let zeta = self.damping.get();
+        let Phase { displacement: x, quadrature: y } = phase;
+        let imaginary = (y + zeta * x) / libm::sqrt((1.0 - zeta) * (1.0 + zeta));
+        libm::sqrt(x * x + imaginary * imaginary)
+    }
+
+    /// Energy of motion and deformation (J) on a body of this inertia (kg m²). A mode without gain, which no torque
+    /// of the hub moves, has none that could be told.
+    pub fn energy(&self, phase: Phase, inertia: f64) -> f64 {
+        let (w, gain) = (self.frequency.get(), self.gain.get().abs());
+        let Phase { displacement: x, quadrature: y } = phase;
+        if gain > 0.0 { 0.5 * inertia / gain * w * w * (x * x + y * y) } else { 0.0 }
+    }
+
     /// The phase at the start of a run.
     pub fn start(&self) -> Phase {
         Phase { displacement: self.displacement.get(), quadrature: self.rate.get() / self.frequency.get() }
@@ -42,6 +60,8 @@ impl Mode {
 pub struct Flow {
     /// Natural frequency (rad/s).
     pub frequency: f64,
+    /// Modal gain.
+    pub gain: f64,
     /// Static displacement for each unit of reduced moment (s²).
     pub excitability: f64,
     /// Bound of |x''| for a unit distance from equilibrium (1/s²).
@@ -77,12 +97,22 @@ impl Flow {
         let square = 4.0 * zeta * zeta;
         Self {
             frequency: w,
+            gain: mode.gain.get(),
             excitability: mode.excitability(),
             // x'' = -w² (x + 2 zeta y) and x''' = -w³ (y - 2 zeta x - 4 zeta² y) in (x, y) of length 1.
             stiffness: w * w * libm::sqrt(1.0 + square),
             jerk: w * w * w * libm::sqrt(square + (1.0 - square) * (1.0 - square)),
             drag: 2.0 * zeta * w,
             regime,
+        }
+    }
+
+    /// The pole with a positive imaginary part, -zeta w + i w_d (1/s); none at critical damping and above.
+    pub fn pole(&self) -> Option<Phasor> {
+        match self.regime {
+            Regime::Undamped => Some(Phasor { re: 0.0, im: self.frequency }),
+            Regime::Under(decay, damped) => Some(Phasor { re: -decay, im: damped }),
+            Regime::Over(..) => None,
         }
     }
 

@@ -32,4 +32,12 @@ impl Output {
         let modes = self.modes.iter().zip(&state.modes);
         modes.fold(self.rigid.get() * state.rigid_angle, |sum, (w, mode)| sum + w.get() * mode.displacement)
     }
+
+    /// Its rate, where the modes have these frequencies (rad/s).
+    pub fn rate_of(&self, state: &State, frequencies: &[f64]) -> f64 {
+        let modes = self.modes.iter().zip(&state.modes).zip(frequencies);
+        modes.fold(self.rigid.get() * state.rigid_rate, |sum, ((weight, mode), w)| {
+            sum + weight.get() * w * mode.quadrature
+        })
+    }
 }

@@ -8,6 +8,7 @@ use nalgebra::DVector;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::forced::{Forced, Input, Push};
 use super::mode::Flow;
 use super::{Mode, Output, Phase, Sight, State};
 use crate::guard::Guard;
@@ -53,6 +54,20 @@ fn unit() -> Positive {
     Positive::ONE
 }
 
+impl Default for Planar {
+    /// A rigid body of unit inertia at rest.
+    fn default() -> Self {
+        Self {
+            inertia: unit(),
+            angle: Finite::default(),
+            rate: Finite::default(),
+            drive: Drive::default(),
+            modes: Vec::new(),
+            outputs: Vec::new(),
+        }
+    }
+}
+
 impl Planar {
     /// What a unit of the command accelerates (kg m²): 1 where the motion itself is commanded.
     pub fn commanded_inertia(&self) -> f64 {
@@ -72,10 +87,13 @@ impl Planar {
     }
 }
 
-/// The motion under one constant torque, from the state in which it began.
+/// The motion under one input, from the state in which it began.
 #[derive(Clone, Debug)]
 pub struct Arc {
     mobility: f64,
+    /// Whether the modes show in the hub's angle.
+    visible: bool,
+    forced: Option<Forced>,
     moment: f64,
     angle: f64,
     rate: f64,
@@ -102,7 +120,9 @@ impl Arc {
     pub fn new(body: &Planar) -> Self {
         let swing = |mode| Swing { flow: Flow::new(mode), equilibrium: 0.0, from: Phase::default() };
         Self {
-            mobility: 1.0 / body.inertia.get(),
+            mobility: 1.0 / body.commanded_inertia(),
+            visible: body.drive == Drive::Torque,
+            forced: None,
             moment: 0.0,
             angle: 0.0,
             rate: 0.0,
@@ -114,9 +134,10 @@ impl Arc {
         }
     }
 
-    /// Begins the arc anew: from this state, under this torque (N m).
-    pub fn depart(&mut self, from: &State, torque: f64) {
-        self.moment = torque * self.mobility;
+    /// Begins the arc anew: from this state, under this input. Its bounds, and so guards, know the constant only.
+    pub fn depart(&mut self, from: &State, input: &Input) {
+        self.moment = input.constant * self.mobility;
+        self.forced.clone_from(&input.waveform);
         self.angle = from.rigid_angle;
         self.rate = from.rigid_rate;
         self.centre = 0.0;
@@ -129,6 +150,9 @@ impl Arc {
             swing.equilibrium = equilibrium;
             swing.from = Phase { displacement, quadrature: phase.quadrature };
             let distance = libm::sqrt(displacement * displacement + phase.quadrature * phase.quadrature);
+            if !self.visible {
+                continue;
+            }
             self.centre += equilibrium;
             self.reach += distance;
             self.curvature += swing.flow.stiffness * distance;
@@ -148,17 +172,46 @@ impl Arc {
             let deviation = xx * x + xy * y;
             phase.displacement = swing.equilibrium + deviation;
             phase.quadrature = yx * x + yy * y;
-            swing.flow.add_sight(swing.equilibrium, deviation, phase.quadrature, &mut sight);
+            if self.visible {
+                swing.flow.add_sight(swing.equilibrium, deviation, phase.quadrature, &mut sight);
+            }
+        }
+        if let Some(forced) = &self.forced {
+            self.add_forced(forced, h, state, &mut sight);
         }
         sight
+    }
+
+    /// Adds what the waveform does within `h` seconds of departure.
+    fn add_forced(&self, forced: &Forced, h: f64, state: &mut State, sight: &mut Sight) {
+        let mut show = |push: Push| {
+            sight.angle += push.angle;
+            sight.rate += push.rate;
+            sight.acceleration += push.acceleration;
+        };
+        let rigid = forced.rigid(h).times(self.mobility);
+        state.rigid_angle += rigid.angle;
+        state.rigid_rate += rigid.rate;
+        show(rigid);
+        for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
+            let push = forced.mode(&swing.flow, h).times(self.mobility);
+            phase.displacement += push.angle;
+            phase.quadrature += push.rate / swing.flow.frequency;
+            if self.visible {
+                show(push);
+            }
+        }
     }
 
     /// What a sensor sees at departure.
     pub fn origin(&self) -> Sight {
         let mut sight = Sight { angle: self.angle, rate: self.rate, acceleration: self.moment };
-        for swing in &self.modes {
+        let forced = self.forced.as_ref().map_or(0.0, |forced| forced.at(0.0) * self.mobility);
+        sight.acceleration += forced;
+        for swing in self.modes.iter().filter(|_| self.visible) {
             let Phase { displacement, quadrature } = swing.from;
             swing.flow.add_sight(swing.equilibrium, displacement, quadrature, &mut sight);
+            sight.acceleration += swing.flow.gain * forced;
         }
         sight
     }

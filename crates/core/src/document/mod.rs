@@ -91,6 +91,20 @@ impl Document {
         &self.origin
     }
 
+    /// Whether it has a key at the top.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// An error for a key at the top that is missing.
+    pub fn missing(&self, key: &str) -> ScenarioError {
+        let message = format!("missing key `{key}`");
+        ScenarioError::Invalid(match &self.text {
+            Some(text) => point(&self.origin, text, 0..0, &message),
+            None => format!("{}: {message}", self.origin),
+        })
+    }
+
     /// Sets a key, given by its path: `law.relay.k_t`, `body.planar.modes[0].frequency`.
     pub fn set(&mut self, key: &str, value: Value) -> Result<(), ScenarioError> {
         key::set(&mut self.table, key, value).map_err(|why| self.key_error(key, why))?;

@@ -1,5 +1,7 @@
 //! Control laws: state machines that answer every event with a hold.
 
+mod open;
+mod pd;
 mod relay;
 
 use crate::belief::Belief;
@@ -8,6 +10,8 @@ use crate::label::labels;
 use crate::one_of::one_of;
 use crate::time::Instant;
 
+pub use open::Open;
+pub use pd::Pd;
 pub use relay::{Relay, Sides};
 
 one_of! {
@@ -15,24 +19,58 @@ one_of! {
     Law: Control {
         /// Relay with dead zone, hysteresis and a timed brake.
         Relay(Relay),
+        /// Sampled proportional and derivative feedback of the angle.
+        Pd(Pd),
+        /// None: what a scenario with a manoeuvre has by default.
+        Open(Open),
     }
 }
 
 /// What every law does.
 pub trait Control {
     /// Answers an event.
-    fn decide(&mut self, now: Instant, cause: Cause, belief: &Belief) -> Hold;
+    fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold;
 
     /// The state that the law is in.
     fn state(&self) -> Phase;
 
-    /// The value that the law's tunable parameter starts with.
-    fn gain(&self) -> f64;
+    /// The value that the law's tunable parameter starts with; NaN if it has none.
+    fn gain(&self) -> f64 {
+        f64::NAN
+    }
+}
+
+impl Default for Law {
+    fn default() -> Self {
+        Self::Open(Open::default())
+    }
+}
+
+/// Where the body shall be: from an instant on at this angle, which from there moves at this rate.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Goal {
+    /// When it begins: at the start, or at the end of the manoeuvre.
+    pub from: Instant,
+    /// Angle there (rad).
+    pub angle: f64,
+    /// Rate from there on (rad/s).
+    pub rate: f64,
+}
+
+impl Goal {
+    /// Angle and rate at an instant.
+    pub fn at(&self, now: Instant) -> (f64, f64) {
+        (self.angle + self.rate * now.since(self.from).seconds(), self.rate)
+    }
 }
 
 labels! {
     /// The states of all laws, by the names under which they are logged.
     Phase {
+        /// Open loop: no feedback acts.
+        Open = "OPEN",
+        /// PD: the sampled feedback acts.
+        Feedback = "PD",
         /// Relay: weak push before the first boundary is reached.
         Start = "W0",
         /// Relay: strong push to the left, from beyond the right boundary.

@@ -8,7 +8,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cause, Control, Guards, Hold, Phase};
+use super::{Cause, Control, Goal, Guards, Hold, Phase};
 use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::quantity::{Fraction, NonNegative, Positive};
@@ -49,7 +49,7 @@ pub enum Sides {
 }
 
 impl Control for Relay {
-    fn decide(&mut self, now: Instant, cause: Cause, belief: &Belief) -> Hold {
+    fn decide(&mut self, now: Instant, cause: Cause, _: &Goal, belief: &Belief) -> Hold {
         let phase = self.next(cause, belief);
         if matches!(phase, Phase::RightPush | Phase::LeftPush) {
             self.pushed_at = now;
@@ -101,12 +101,13 @@ impl Relay {
             Sides::One => Guards::one(self.right()),
         };
         match phase {
-            Phase::Start | Phase::WeakRight => until_guards(weak, boundaries),
             Phase::WeakLeft => until_guards(-weak, boundaries),
             Phase::RightPush => until_guards(-strong, Guards::one(Guard::at_most(back))),
             Phase::LeftPush => until_guards(strong, Guards::one(Guard::at_least(-back))),
             Phase::RightBrake => until_braked(strong),
             Phase::LeftBrake => until_braked(-strong),
+            // At the start, and after the right brake.
+            _ => until_guards(weak, boundaries),
         }
     }
 

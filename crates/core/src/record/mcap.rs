@@ -11,7 +11,7 @@ use mcap::{Attachment, McapError, WriteOptions, Writer};
 use super::proto::{Encoder, descriptor_set, full_name};
 use super::row::TopicRow;
 use super::topics::index_of;
-use super::{Detail, Metrics, Params, Record, RecordError, Sample, TOPICS, TakeRow};
+use super::{Detail, Metrics, OutputName, Params, Record, RecordError, Sample, TOPICS, TakeRow};
 use crate::time::Instant;
 use crate::whole::discard;
 
@@ -31,6 +31,8 @@ pub struct Provenance {
     pub run: u64,
     /// Date of the run's start in nanoseconds since 1970 UTC; 0 if the scenario has none.
     pub epoch_ns: u64,
+    /// The observed coordinates, in the order in which they are logged.
+    pub outputs: Vec<OutputName>,
     /// A viewer layout for this kind of run.
     pub layout: Option<&'static str>,
 }
@@ -93,6 +95,7 @@ impl<W: Write + Seek> McapLog<W> {
             seed: from.seed,
             run: from.run,
             toml: from.toml.clone(),
+            outputs: from.outputs.clone(),
         };
         log.take(Instant::START, &params)?;
         Ok(log)
@@ -155,7 +158,8 @@ impl<W: Write + Seek> Record for McapLog<W> {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        self.take_sample(now, sample)
+        // Another record may want more.
+        if sample.is_dense() && !self.dense() { Ok(()) } else { self.take_sample(now, sample) }
     }
 }
 

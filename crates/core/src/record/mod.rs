@@ -21,8 +21,9 @@ pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
 pub use recover::recover;
 pub use topics::{
-    Adaptation, Attitude, Command, Envelope, Law, Metric, Metrics, ModeEnvelope, ModeMotion, Modes, Params,
-    Rate, TOPICS, Trigger, WindowMean,
+    Adaptation, Arrival, Attitude, Command, Envelope, GoalMotion, Law, Metric, Metrics, ModeEnvelope,
+    ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Rate, Residual, TOPICS, Torque, Trigger,
+    WindowMean,
 };
 pub use trace::Trace;
 
@@ -41,6 +42,15 @@ pub enum Sample<'a> {
     Window(&'a WindowMean),
     /// The adaptation took a step.
     Adaptation(&'a Adaptation),
+    /// The manoeuvre ended.
+    Arrival(&'a Arrival),
+}
+
+impl Sample<'_> {
+    /// Whether only a dense record wants it.
+    pub fn is_dense(self) -> bool {
+        matches!(self, Self::Motion(_) | Self::Law(_))
+    }
 }
 
 /// The motion at one instant.
@@ -52,6 +62,10 @@ pub struct Motion {
     pub rate: Rate,
     /// Modes.
     pub modes: Modes,
+    /// Observed coordinates, if the body has any.
+    pub outputs: Option<Outputs>,
+    /// Goal and torques, of a scenario with more than a law.
+    pub drive: Option<(GoalMotion, Torque)>,
     /// Envelope, if the scenario has an observer.
     pub envelope: Option<Envelope>,
 }
@@ -139,10 +153,18 @@ trait TakeRow {
             Sample::Switching(command, _) => self.take(now, command),
             Sample::Window(mean) => self.take(now, mean),
             Sample::Adaptation(step) => self.take(now, step),
+            Sample::Arrival(arrival) => self.take(now, arrival),
             Sample::Motion(motion) => {
                 self.take(now, &motion.attitude)?;
                 self.take(now, &motion.rate)?;
                 self.take(now, &motion.modes)?;
+                if let Some(outputs) = &motion.outputs {
+                    self.take(now, outputs)?;
+                }
+                if let Some((goal, torque)) = &motion.drive {
+                    self.take(now, goal)?;
+                    self.take(now, torque)?;
+                }
                 motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))
             }
         }

@@ -79,6 +79,54 @@ rows! {
         /// Each mode.
         modes: Vec<ModeMotion>,
     }
+    /// One observed coordinate.
+    OutputMotion {
+        /// Value, in the unit that `/params` names.
+        value: f64,
+        /// Its derivative with time.
+        rate: f64,
+    }
+    /// The observed coordinates, in the order of `/params`.
+    Outputs = "/outputs" {
+        /// Each coordinate.
+        outputs: Vec<OutputMotion>,
+    }
+    /// The torques on the body; rad/s² where the hub's motion is commanded.
+    Torque = "/torque" {
+        /// What the manoeuvre commands (N m).
+        feedforward_nm: f64,
+        /// What the law commands (N m).
+        feedback_nm: f64,
+        /// What the actuator makes of both (N m).
+        applied_nm: f64,
+        /// Disturbances (N m).
+        disturbance_nm: f64,
+    }
+    /// Where the body shall be: on the manoeuvre, where it would be if it were rigid.
+    GoalMotion = "/goal" {
+        /// Angle (rad).
+        angle_rad: f64,
+        /// Rate (rad/s).
+        rate_rad_s: f64,
+    }
+    /// The vibration that is left of one observed coordinate.
+    Residual {
+        /// Sum of the modes' amplitudes (the coordinate's unit).
+        amplitude: f64,
+    }
+    /// How the manoeuvre ended, once at its end.
+    Arrival = "/arrival" {
+        /// Angle beyond the goal (rad).
+        angle_error_rad: f64,
+        /// Rate beyond the goal (rad/s).
+        rate_error_rad_s: f64,
+        /// Vibration that is left of the hub's angle: the sum of the modes' amplitudes (rad).
+        angle_residual_rad: f64,
+        /// Elastic energy that is left, of motion and deformation (J).
+        elastic_energy_j: f64,
+        /// Vibration that is left of each observed coordinate.
+        outputs: Vec<Residual>,
+    }
     /// The envelope of one elastic mode.
     ModeEnvelope {
         /// Envelope (rad).
@@ -137,6 +185,13 @@ rows! {
         /// Each metric.
         metrics: Vec<Metric>,
     }
+    /// The name of an observed coordinate.
+    OutputName {
+        /// Name.
+        name: String,
+        /// Unit.
+        unit: String,
+    }
     /// What was simulated, once at the start.
     Params = "/params" {
         /// Name of the scenario.
@@ -147,6 +202,8 @@ rows! {
         run: u64,
         /// The scenario with all defaults, as TOML.
         toml: String,
+        /// The observed coordinates, in the order of `/outputs`.
+        outputs: Vec<OutputName>,
     }
 }
 

@@ -55,6 +55,7 @@ impl Record for Trace {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        self.take_sample(now, sample)
+        // Another record may want more.
+        if sample.is_dense() && !self.dense() { Ok(()) } else { self.take_sample(now, sample) }
     }
 }

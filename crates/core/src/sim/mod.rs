@@ -4,6 +4,8 @@
 //! adaptation learns, the law decides once, the record is told. Between events the input is constant and the
 //! body's flow exact. `docs/events.md` states the rules.
 
+mod arrival;
+mod drive;
 mod plant;
 mod watch;
 
@@ -11,13 +13,15 @@ use thiserror::Error;
 
 use crate::belief::Belief;
 use crate::body::{Sight, State};
-use crate::law::{Cause, Guards, Hold, Law};
+use crate::law::{Cause, Goal, Guards, Hold, Law};
 use crate::random::{Seed, Stream};
-use crate::record::{self, Command, Motion, Record, RecordError, Sample, Trigger};
+use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
 
+use arrival::Arrival;
+use drive::Drive;
 use plant::Plant;
 use watch::Watch;
 
@@ -56,6 +60,10 @@ pub struct Simulation {
     noise: Stream,
     watch: Option<Watch>,
     law: Law,
+    drive: Drive,
+    /// The end of the manoeuvre that lies ahead, if any.
+    arrival: Option<Arrival>,
+    goal: Goal,
     /// What the law reads. The adaptation writes its gain.
     pub belief: Belief,
     hold: Hold,
@@ -76,12 +84,15 @@ impl Simulation {
         Self {
             now: Instant::START,
             end: Instant::START + scenario.duration,
-            body: Plant::new(&scenario.body),
+            body: Plant::new(scenario),
             sensor: scenario.sensor.clone(),
             noise: seed.stream("sensor"),
             watch: Watch::new(scenario, seed),
             law: scenario.law.clone(),
-            belief: Belief { angle: 0.0, gain: scenario.law.gain() },
+            drive: Drive::new(scenario),
+            arrival: Arrival::new(scenario),
+            goal: scenario.goal(),
+            belief: Belief { angle: 0.0, rate: 0.0, gain: scenario.law.gain() },
             hold: Hold { torque: 0.0, until: None, guards: Guards::NONE },
             trip: None,
             next_sample: scenario.sensor.period().map(|period| Instant::START + period),
@@ -132,8 +143,11 @@ impl Simulation {
         self.begun = true;
         let sight = self.view()?;
         self.belief.angle = self.sensor.measure(sight.angle, &mut self.noise);
-        let hold = self.law.decide(self.now, Cause::Start, &self.belief);
-        self.take(hold);
+        self.belief.rate = sight.rate;
+        self.hold = self.law.decide(self.now, Cause::Start, &self.goal, &self.belief);
+        self.drive.command(self.hold.torque);
+        self.drive.serve(self.now);
+        self.depart();
         record.record(self.now, Sample::Begin(&self.law_row()))?;
         if record.dense() {
             self.next_dense = Some(self.now);
@@ -146,7 +160,9 @@ impl Simulation {
     fn next(&self) -> Instant {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.watch.as_ref().map(|watch| watch.closes);
-        let due = [trip, self.hold.until, self.next_sample, closes, self.next_dense];
+        let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
+        let due =
+            [trip, self.hold.until, self.drive.due(), self.next_sample, closes, arrives, self.next_dense];
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
@@ -155,9 +171,7 @@ impl Simulation {
         let now = self.now;
         let mut tripped = self.trip.filter(|(at, _)| *at == now).map(|(_, guard)| guard);
         if self.next_sample == Some(now) {
-            let sight = self.view()?;
-            self.belief.angle = self.sensor.measure(sight.angle, &mut self.noise);
-            self.next_sample = self.sensor.period().map(|period| now + period);
+            self.sample()?;
             tripped = self.hold.guards.iter().position(|guard| guard.holds(self.belief.angle));
         }
         if self.watch.as_ref().is_some_and(|watch| watch.closes == now) {
@@ -166,9 +180,18 @@ impl Simulation {
                 watch.close(now, self.body.state(), &mut self.belief.gain, record)?;
             }
         }
+        if let Some(arrival) = self.arrival.take_if(|arrival| arrival.at == now) {
+            let sight = self.view()?;
+            record.record(now, Sample::Arrival(&arrival.row(sight, self.body.state())))?;
+        }
         let timeout = self.hold.until.filter(|until| *until == now).map(|_| Cause::Timeout);
         if let Some(cause) = tripped.map(Cause::Guard).or(timeout) {
             self.decide(cause, record)?;
+        }
+        if self.drive.due() == Some(now) {
+            self.view()?;
+            self.drive.serve(now);
+            self.depart();
         }
         if self.next_dense == Some(now) {
             self.view()?;
@@ -182,6 +205,17 @@ impl Simulation {
         Ok(())
     }
 
+    /// Takes the sample of a sampled sensor.
+    fn sample(&mut self) -> Result<(), SimulationError> {
+        let Some(period) = self.sensor.period() else { return Ok(()) };
+        let sight = self.view()?;
+        let angle = self.sensor.measure(sight.angle, &mut self.noise);
+        self.belief.rate = (angle - self.belief.angle) / period.seconds();
+        self.belief.angle = angle;
+        self.next_sample = Some(self.now + period);
+        Ok(())
+    }
+
     fn decide(&mut self, cause: Cause, record: &mut impl Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.decisions += 1;
@@ -190,12 +224,13 @@ impl Simulation {
         }
         let sight = self.view()?;
         if self.next_sample.is_none() {
-            self.belief.angle = sight.angle;
+            (self.belief.angle, self.belief.rate) = (sight.angle, sight.rate);
         }
-        let before = (self.law.state(), self.hold.torque);
-        let hold = self.law.decide(now, cause, &self.belief);
-        self.take(hold);
-        if before == (self.law.state(), self.hold.torque) {
+        let before = self.law.state();
+        self.hold = self.law.decide(now, cause, &self.goal, &self.belief);
+        self.drive.command(self.hold.torque);
+        self.depart();
+        if before == self.law.state() {
             return Ok(());
         }
         let (time_s, time_whole_s, time_fs) = Command::times(now);
@@ -217,18 +252,17 @@ impl Simulation {
         Ok(())
     }
 
-    /// Begins a hold: the body departs anew, and the next trip is found.
-    fn take(&mut self, hold: Hold) {
+    /// Begins a motion under what drives the body from now on, and finds the next trip.
+    fn depart(&mut self) {
         if let Some(watch) = &mut self.watch {
-            watch.command(self.now, self.body.state(), hold.torque);
+            watch.command(self.now, self.body.state(), self.hold.torque);
         }
-        self.hold = hold;
-        self.body.depart(hold.torque);
+        self.body.depart(&self.drive.input(self.now));
         self.trip = None;
         // A sampled sensor trips its guards at samples.
-        if self.next_sample.is_none() && !hold.guards.is_empty() {
-            let horizon = hold.until.map_or(self.end, |until| until.min(self.end)).since(self.now);
-            self.trip = self.body.trip(&hold.guards, horizon);
+        if self.next_sample.is_none() && !self.hold.guards.is_empty() {
+            let ends = [self.hold.until, self.drive.due()].into_iter().flatten().fold(self.end, Instant::min);
+            self.trip = self.body.trip(&self.hold.guards, ends.since(self.now));
         }
     }
 
@@ -251,6 +285,10 @@ impl Simulation {
         let measured = self.next_sample.map(|_| self.belief.angle);
         let (attitude, rate, modes) = self.body.motion(measured);
         let envelope = self.watch.as_ref().map(|watch| watch.envelope(self.now));
-        Motion { attitude, rate, modes, envelope }
+        let drive = self.drive.is_worth_telling().then(|| {
+            let (angle_rad, rate_rad_s) = self.drive.rigid_goal(&self.goal, self.now);
+            (GoalMotion { angle_rad, rate_rad_s }, self.drive.torque(self.now))
+        });
+        Motion { attitude, rate, modes, outputs: self.body.outputs(), drive, envelope }
     }
 }

@@ -1,15 +1,16 @@
-//! The body on its way: its arc, and what is seen of it now.
+//! The body on its way: its motion since the last event, and what is seen of it now.
 
-use crate::body::{Arc, Body, Sight, State};
+use crate::body::{Arc, Flight, Input, Output, Sight, State};
 use crate::crossing::locate;
 use crate::guard::Guard;
-use crate::record::{Attitude, ModeMotion, Modes, Rate};
+use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate};
+use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
-/// The body, the arc that it is on, and the trip that lies ahead.
+/// The body, the motion that it is in, and the trip that lies ahead.
 #[derive(Clone, Debug)]
 pub struct Plant {
-    arc: Arc,
+    motion: Motion,
     departed: Instant,
     /// State and sight at `seen`.
     state: State,
@@ -18,20 +19,34 @@ pub struct Plant {
     /// State, sight and instant of the next trip, found ahead of time.
     ahead: (State, Sight, Instant),
     frequencies: Vec<f64>,
+    outputs: Vec<Output>,
+}
+
+/// A motion under one input.
+#[derive(Clone, Debug)]
+enum Motion {
+    /// In closed form.
+    Planar(Arc),
+    /// Integrated.
+    Chain(Box<Flight>),
 }
 
 impl Plant {
-    /// A body at the start, under no torque.
-    pub fn new(body: &Body) -> Self {
-        let (mut arc, state) = (body.arc(), body.start());
-        arc.depart(&state, 0.0);
+    /// The body of a scenario at the start, under no input.
+    pub fn new(scenario: &Scenario) -> Self {
+        let (model, state) = (&scenario.model, scenario.model.start());
+        let mut arc = Arc::new(model);
+        arc.depart(&state, &Input::default());
+        let sight = arc.origin();
+        let flight = scenario.chain.as_ref().map(|chain| Flight::new(chain, sight.angle, sight.rate));
         Self {
+            motion: flight.map_or(Motion::Planar(arc), |flight| Motion::Chain(Box::new(flight))),
             departed: Instant::START,
-            sight: arc.origin(),
+            sight,
             seen: Instant::START,
             ahead: (state.clone(), Sight::default(), Instant::START),
-            frequencies: body.modes().iter().map(|mode| mode.frequency.get()).collect(),
-            arc,
+            frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
+            outputs: model.outputs.clone(),
             state,
         }
     }
@@ -51,21 +66,29 @@ impl Plant {
                 self.sight = *sight;
             } else {
                 let h = now.since(self.departed).seconds();
-                self.sight = self.arc.at(h, &mut self.state);
+                self.sight = match &mut self.motion {
+                    Motion::Planar(arc) => arc.at(h, &mut self.state),
+                    Motion::Chain(flight) => flight.at(h, &mut self.state),
+                };
             }
         }
         self.sight
     }
 
-    /// Begins a new arc at the instant seen last.
-    pub fn depart(&mut self, torque: f64) {
-        self.arc.depart(&self.state, torque);
+    /// Begins a new motion at the instant seen last.
+    pub fn depart(&mut self, input: &Input) {
+        match &mut self.motion {
+            Motion::Planar(arc) => arc.depart(&self.state, input),
+            Motion::Chain(flight) => flight.depart(input),
+        }
         self.departed = self.seen;
     }
 
-    /// The instant and index of the guard that trips first on this arc, within a span.
+    /// The instant and index of the guard that trips first on this motion, within a span.
     pub fn trip(&mut self, guards: &[Guard], horizon: Span) -> Option<(Instant, usize)> {
-        let trip = locate(&self.arc, guards, horizon, &mut self.ahead.0)?;
+        // No law with guards acts on a body without a closed form.
+        let Motion::Planar(arc) = &self.motion else { return None };
+        let trip = locate(arc, guards, horizon, &mut self.ahead.0)?;
         let at = self.departed + trip.after;
         (self.ahead.1, self.ahead.2) = (trip.sight, at);
         Some((at, trip.guard))
@@ -74,10 +97,15 @@ impl Plant {
     /// The motion at the instant seen last, as logged; `measured` is the held measurement of a sampled sensor.
     pub fn motion(&self, measured: Option<f64>) -> (Attitude, Rate, Modes) {
         let Self { state, sight, frequencies, .. } = self;
-        let modes = state.modes.iter().zip(frequencies).map(|(phase, w)| ModeMotion {
-            displacement_rad: phase.displacement,
-            rate_rad_s: w * phase.quadrature,
-        });
+        let modes: Vec<_> = state
+            .modes
+            .iter()
+            .zip(frequencies)
+            .map(|(phase, w)| ModeMotion {
+                displacement_rad: phase.displacement,
+                rate_rad_s: w * phase.quadrature,
+            })
+            .collect();
         (
             Attitude {
                 angle_rad: sight.angle,
@@ -85,7 +113,22 @@ impl Plant {
                 measured_rad: measured.unwrap_or(sight.angle),
             },
             Rate { rate_rad_s: sight.rate, rigid_rad_s: state.rigid_rate },
-            Modes { elastic_rad: sight.angle - state.rigid_angle, modes: modes.collect() },
+            Modes { elastic_rad: modes.iter().map(|mode| mode.displacement_rad).sum(), modes },
         )
+    }
+
+    /// The observed coordinates at the instant seen last, as logged; none if the body has none.
+    pub fn outputs(&self) -> Option<Outputs> {
+        let motion = |(value, rate)| OutputMotion { value, rate };
+        let outputs: Vec<_> = match &self.motion {
+            Motion::Planar(_) => {
+                let of = |output: &Output| {
+                    (output.of(&self.state), output.rate_of(&self.state, &self.frequencies))
+                };
+                self.outputs.iter().map(of).map(motion).collect()
+            }
+            Motion::Chain(flight) => flight.outputs().map(motion).collect(),
+        };
+        (!outputs.is_empty()).then_some(Outputs { outputs })
     }
 }

@@ -1,0 +1,89 @@
+//! The summary of a run for people.
+
+use std::io::Write;
+
+use flexsc_core::Scenario;
+use flexsc_core::law::Law;
+use flexsc_core::metrics::{Metrics, Value};
+
+use crate::say;
+
+/// Tells what a run came to; it took so many seconds of the wall's clock.
+pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
+    let (duration, modes) = (scenario.duration.seconds(), scenario.body.modes().len());
+    let head = format!("{}   {duration} s, {modes} modes", scenario.name);
+    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    match scenario.law {
+        Law::Relay(_) => {
+            say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
+            switchings(scenario, metrics);
+        }
+        Law::Pd(_) | Law::Open(_) => {
+            say!("{head}, {:.1} ms", took * 1e3);
+            rotation(scenario, metrics);
+        }
+    }
+}
+
+/// Envelope, adaptation and limit cycle of a relay law.
+fn switchings(scenario: &Scenario, metrics: &Metrics) {
+    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    if let Some(Value::Numbers(means)) = metrics.get("envelope_window_means_rad")
+        && let (Some(first), Some(last)) = (means.first(), means.last())
+    {
+        let change = 100.0 * (last / first - 1.0);
+        say!("  envelope       {first:.3e} -> {last:.3e} rad  (window means, {change:+.0} %)");
+    }
+    if scenario.adaptation.is_some() {
+        let frozen = number("gain_frozen_at_s");
+        let end = if frozen.is_finite() { format!("frozen at {frozen} s") } else { "not frozen".to_owned() };
+        say!("  k_t            {:.4} -> {:.4}, {end}", number("gain_initial"), number("gain_final"));
+    }
+    if let Some(Value::Word(kind)) = metrics.get("cycle_kind") {
+        let (period, largest) = (number("cycle_period_s"), number("cycle_multiplier_max"));
+        if period.is_finite() {
+            let multiplier =
+                if largest.is_finite() { format!(", multiplier {largest:.3}") } else { String::new() };
+            say!("  cycle          {kind}, period {period:.6} s{multiplier}");
+        } else {
+            say!("  cycle          {kind}: the run is not periodic at its end");
+        }
+    }
+}
+
+/// The manoeuvre's end, torques and observed coordinates.
+fn rotation(scenario: &Scenario, metrics: &Metrics) {
+    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    if let Some(plan) = &scenario.plan {
+        say!("  manoeuvre      {} rad in {} s", plan.angle, plan.time);
+        say!(
+            "  at its end     {:+.3e} rad, {:+.3e} rad/s from the goal; {:.3e} rad of vibration, {:.3e} J",
+            number("arrival_angle_error_rad"),
+            number("arrival_rate_error_rad_s"),
+            number("angle_residual_rad"),
+            number("residual_energy_j"),
+        );
+    }
+    let feedback = number("peak_feedback_torque_nm");
+    let of_it = if feedback > 0.0 { format!(", of the law {feedback:.3} N m") } else { String::new() };
+    say!("  torque         at most {:.3} N m{of_it}", number("peak_torque_nm"));
+    say!(
+        "  angle          at most {:.3e} rad from the goal after it, {:.3e} rad over the last 5 s",
+        number("angle_error_peak_rad"),
+        number("angle_error_late_rad"),
+    );
+    let of = |name: &str, index: usize| match metrics.get(name) {
+        Some(Value::Numbers(numbers)) => numbers.get(index).copied().unwrap_or(f64::NAN),
+        _ => f64::NAN,
+    };
+    for (index, output) in scenario.model.outputs.iter().enumerate() {
+        say!(
+            "  {:<14} at most {:.4e} {}; swings by {:.3e} after it, by {:.3e} over the last 5 s",
+            output.name,
+            of("output_peaks", index),
+            output.unit,
+            of("output_swings", index),
+            of("output_swings_late", index),
+        );
+    }
+}

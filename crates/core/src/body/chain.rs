@@ -1,0 +1,224 @@
+//! The exact planar chain: the hub and the sections of its panels as rigid bodies at any angles.
+//!
+//! In the absolute angles psi (hub first) the linear model's inertia A and stiffness K become
+//!
+//! ```text
+//! sum_j A_ij cos(psi_i - psi_j) psi_j'' + A_ij sin(psi_i - psi_j) psi_j'² + K_ij psi_j + C_ij psi_j' = Q_i
+//! ```
+//!
+//! with the hub torque Q_0. There is no closed form: the motion is integrated to a tolerance. The steps depend on the
+//! events of the run alone, not on who looks in between.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::forced::Input;
+use super::{Mode, Planar, Sight, State};
+use crate::integrate::{Extrapolation, Field};
+
+/// The equations of a chain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// A, K and C above.
+    inertia: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    damping: DMatrix<f64>,
+    /// Rows that give the rigid angle and the displacement of each linear mode for small angles.
+    modal: DMatrix<f64>,
+    frequencies: Vec<f64>,
+    tolerance: f64,
+}
+
+impl Chain {
+    /// A chain with sections of these lengths (m) whose linear model has this mass and stiffness in the coordinates
+    /// \[hub angle, displacement of each node in the hub's frame\], and these modes.
+    pub fn new(
+        lengths: &[f64],
+        mass: &DMatrix<f64>,
+        stiffness: &DMatrix<f64>,
+        model: &Planar,
+        tolerance: f64,
+    ) -> Self {
+        let n = lengths.len() + 1;
+        // v_k = sum over j <= k of l_j (psi_j - psi_0).
+        let to_nodes = DMatrix::from_fn(n, n, |k, j| match (k, j) {
+            (0, 0) => 1.0,
+            (0, _) => 0.0,
+            (k, 0) => -lengths[..k].iter().sum::<f64>(),
+            (k, j) if j <= k => lengths[j - 1],
+            _ => 0.0,
+        });
+        let modal = modal(lengths, mass, model) * &to_nodes;
+        let mut damping = DMatrix::zeros(n, n);
+        for (mode, row) in model.modes.iter().zip(modal.row_iter().skip(1)) {
+            // Of a mode's force, J/k 2 zeta w x', each coordinate has its share.
+            let strength = 2.0 * mode.damping.get() * mode.frequency.get() * model.inertia.get();
+            if mode.gain.get() > 0.0 {
+                damping += row.transpose() * row * (strength / mode.gain.get());
+            }
+        }
+        Self {
+            inertia: to_nodes.transpose() * mass * &to_nodes,
+            stiffness: to_nodes.transpose() * stiffness * &to_nodes,
+            damping,
+            modal,
+            frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
+            tolerance,
+        }
+    }
+
+    /// Angles, then rates, of a chain that is not bent.
+    fn start(&self, angle: f64, rate: f64) -> Vec<f64> {
+        let n = self.inertia.nrows();
+        [vec![angle; n], vec![rate; n]].concat()
+    }
+}
+
+/// Rows that give the rigid angle and the displacement of each mode from hub angle and node displacements:
+/// x_n = k_n/J r_n^T M q, where r_n is the shape of a mode whose hub angle is 1.
+fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &Planar) -> DMatrix<f64> {
+    let (n, inertia) = (lengths.len() + 1, model.inertia.get());
+    let shape = |mode: usize| {
+        let mut displacement = 0.0;
+        DVector::from_fn(n, |k, _| {
+            if k == 0 {
+                return 1.0;
+            }
+            displacement += lengths[k - 1] * model.outputs[k - 1].modes[mode].get();
+            displacement
+        })
+    };
+    let rigid = mass.row(0) / inertia;
+    let of = |(index, mode): (usize, &Mode)| (shape(index).transpose() * mass) * (mode.gain.get() / inertia);
+    let rows: Vec<_> =
+        std::iter::once(rigid.into_owned()).chain(model.modes.iter().enumerate().map(of)).collect();
+    DMatrix::from_rows(&rows)
+}
+
+/// The equations under one input.
+struct Driven<'a> {
+    chain: &'a Chain,
+    input: &'a Input,
+}
+
+impl Driven<'_> {
+    /// The accelerations of all angles, `t` seconds after the input began.
+    fn acceleration(&self, t: f64, y: &[f64]) -> DVector<f64> {
+        let Chain { inertia, stiffness, damping, .. } = self.chain;
+        let n = inertia.nrows();
+        let (angle, rate) = (DVector::from_column_slice(&y[..n]), DVector::from_column_slice(&y[n..]));
+        let mut force = -(stiffness * &angle) - damping * &rate;
+        let waveform = self.input.waveform.as_ref().map_or(0.0, |forced| forced.at(t));
+        force[0] += self.input.constant + waveform;
+        let mut coupling = inertia.clone();
+        for i in 0..n {
+            for j in 0..i {
+                let (sin, cos) = libm::sincos(angle[i] - angle[j]);
+                let centrifugal = inertia[(i, j)] * sin;
+                force[i] -= centrifugal * rate[j] * rate[j];
+                force[j] += centrifugal * rate[i] * rate[i];
+                coupling[(i, j)] *= cos;
+                coupling[(j, i)] *= cos;
+            }
+        }
+        // The kinetic energy is positive at all angles; what is not a number stays so.
+        coupling.cholesky().map_or_else(|| DVector::repeat(n, f64::NAN), |factor| factor.solve(&force))
+    }
+}
+
+impl Field for Driven<'_> {
+    fn rate(&self, t: f64, y: &[f64], rate: &mut [f64]) {
+        let n = y.len() / 2;
+        rate[..n].copy_from_slice(&y[n..]);
+        rate[n..].copy_from_slice(self.acceleration(t, y).as_slice());
+    }
+}
+
+/// The motion of a chain under one input.
+#[derive(Clone, Debug)]
+pub struct Flight {
+    chain: Chain,
+    input: Input,
+    integrator: Extrapolation,
+    /// The steps around now: time since departure (s), angles and rates.
+    node: (f64, Vec<f64>),
+    next: (f64, Vec<f64>),
+    /// Length of the step after `next` (s).
+    step: f64,
+    here: Vec<f64>,
+}
+
+impl Flight {
+    /// A chain at rest at an angle, or turning at a rate, under no input.
+    pub fn new(chain: &Chain, angle: f64, rate: f64) -> Self {
+        let here = chain.start(angle, rate);
+        Self {
+            integrator: Extrapolation::new(chain.tolerance, here.len()),
+            chain: chain.clone(),
+            input: Input::default(),
+            node: (0.0, here.clone()),
+            next: (0.0, here.clone()),
+            step: 0.05 / chain.frequencies.iter().copied().fold(1e-3, f64::max),
+            here,
+        }
+    }
+
+    /// Begins a motion under another input, from where the chain was seen last.
+    pub fn depart(&mut self, input: &Input) {
+        self.input = input.clone();
+        self.node = (0.0, self.here.clone());
+        self.next = self.node.clone();
+    }
+
+    /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor at the hub sees.
+    pub fn at(&mut self, h: f64, state: &mut State) -> Sight {
+        let Self { chain, input, integrator, node, next, step, here } = self;
+        let driven = Driven { chain, input };
+        while next.0 < h {
+            node.clone_from(next);
+            let (took, then) = integrator.step(&driven, next.0, &mut next.1, *step);
+            next.0 += took;
+            *step = then;
+        }
+        // A look between two steps changes neither.
+        here.clone_from(&node.1);
+        let mut t = node.0;
+        while t < h {
+            t += integrator.step(&driven, t, here, h - t).0;
+        }
+        self.see(h, state)
+    }
+
+    fn see(&self, h: f64, state: &mut State) -> Sight {
+        let n = self.chain.inertia.nrows();
+        let (angle, rate) = self.here.split_at(n);
+        let modal = &self.chain.modal * DVector::from_column_slice(angle);
+        let modal_rate = &self.chain.modal * DVector::from_column_slice(rate);
+        (state.rigid_angle, state.rigid_rate) = (modal[0], modal_rate[0]);
+        for (index, (phase, w)) in state.modes.iter_mut().zip(&self.chain.frequencies).enumerate() {
+            (phase.displacement, phase.quadrature) = (modal[index + 1], modal_rate[index + 1] / w);
+        }
+        let driven = Driven { chain: &self.chain, input: &self.input };
+        Sight { angle: angle[0], rate: rate[0], acceleration: driven.acceleration(h, &self.here)[0] }
+    }
+
+    /// Value and rate of each output: the angle of each section relative to the hub.
+    pub fn outputs(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let n = self.chain.inertia.nrows();
+        (1..n).map(move |k| (self.here[k] - self.here[0], self.here[n + k] - self.here[n]))
+    }
+
+    /// Energy of motion and deformation (J).
+    pub fn energy(&self) -> f64 {
+        let Chain { inertia, stiffness, .. } = &self.chain;
+        let n = inertia.nrows();
+        let (angle, rate) = self.here.split_at(n);
+        let angles = DVector::from_column_slice(angle);
+        let mut twice = (stiffness * &angles).dot(&angles);
+        for i in 0..n {
+            for j in 0..n {
+                twice += inertia[(i, j)] * libm::cos(angle[i] - angle[j]) * rate[i] * rate[j];
+            }
+        }
+        0.5 * twice
+    }
+}

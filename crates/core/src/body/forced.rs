@@ -1,0 +1,79 @@
+//! What a waveform adds to the motion of the planar body, in closed form.
+
+use std::sync::Arc as Shared;
+
+use super::mode::Flow;
+use crate::manoeuvre::Waveform;
+use crate::phasor::Phasor;
+
+/// What drives a body from an instant on.
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    /// A constant (N m; rad/s² where the hub's motion is commanded).
+    pub constant: f64,
+    /// A waveform, and the time on it at that instant (s).
+    pub waveform: Option<Forced>,
+}
+
+impl Input {
+    /// A constant alone (N m).
+    pub fn constant(constant: f64) -> Self {
+        Self { constant, waveform: None }
+    }
+}
+
+/// A waveform under way.
+#[derive(Clone, Debug)]
+pub struct Forced {
+    waveform: Shared<Waveform>,
+    since: f64,
+}
+
+/// The forced part of a motion: angle (rad), rate (rad/s), acceleration (rad/s²).
+#[derive(Copy, Clone, Debug)]
+pub struct Push {
+    pub angle: f64,
+    pub rate: f64,
+    pub acceleration: f64,
+}
+
+impl Push {
+    /// The same for so many times the command.
+    pub fn times(self, factor: f64) -> Self {
+        let Self { angle, rate, acceleration } = self;
+        Self { angle: angle * factor, rate: rate * factor, acceleration: acceleration * factor }
+    }
+}
+
+impl Forced {
+    /// A waveform from this time on it (s).
+    pub fn new(waveform: Shared<Waveform>, since: f64) -> Self {
+        Self { waveform, since }
+    }
+
+    /// The command `h` seconds later.
+    pub fn at(&self, h: f64) -> f64 {
+        self.waveform.at(self.since + h)
+    }
+
+    /// What it adds to the rigid motion of a body of unit inertia within `h` seconds.
+    pub fn rigid(&self, h: f64) -> Push {
+        let to = self.since + h;
+        Push {
+            angle: self.waveform.travel(self.since, to),
+            rate: self.waveform.impulse(self.since, to),
+            acceleration: self.waveform.at(to),
+        }
+    }
+
+    /// What it adds to a mode of a body of unit inertia within `h` seconds.
+    pub fn mode(&self, flow: &Flow, h: f64) -> Push {
+        // A scenario with a manoeuvre has no mode without a pole.
+        let Some(pole) = flow.pole() else { return Push { angle: 0.0, rate: 0.0, acceleration: 0.0 } };
+        let to = self.since + h;
+        let driven: Phasor = self.waveform.response(pole, self.since, to) * (flow.gain / pole.im);
+        let (angle, rate) = (driven.im, (pole * driven).im);
+        let [_, back] = flow.velocity(angle, rate / flow.frequency);
+        Push { angle, rate, acceleration: flow.gain * self.waveform.at(to) + flow.frequency * back }
+    }
+}

@@ -1,0 +1,153 @@
+//! Integration of y' = f(t, y) to a tolerance, by extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer).
+//!
+//! The error of the midpoint rule is a series in h², so that each further number of substeps removes two orders; a step
+//! ends with the first column whose two best values agree to the tolerance.
+
+/// Substeps of each column.
+const SUBSTEPS: [u32; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
+
+/// The right-hand side of an equation.
+pub trait Field {
+    /// Puts y' at (t, y) into the last argument.
+    fn rate(&self, t: f64, y: &[f64], rate: &mut [f64]);
+}
+
+/// An integrator for fields of one dimension: its tolerance and its memory.
+#[derive(Clone, Debug)]
+pub struct Extrapolation {
+    tolerance: f64,
+    /// Row i holds the extrapolation of the columns from i to the newest: the first row is the best value.
+    table: Vec<Vec<f64>>,
+    before: Vec<f64>,
+    here: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+impl Extrapolation {
+    /// An integrator whose steps err by at most this, relative to the largest component of y or to 1.
+    pub fn new(tolerance: f64, dimension: usize) -> Self {
+        let zero = vec![0.0; dimension];
+        Self {
+            tolerance,
+            table: vec![zero.clone(); SUBSTEPS.len()],
+            before: zero.clone(),
+            here: zero.clone(),
+            rate: zero,
+        }
+    }
+
+    /// One step of at most `h` seconds from (t, y), which is carried along. Returns its length, and a length for the
+    /// next one.
+    pub fn step(&mut self, field: &impl Field, t: f64, y: &mut [f64], mut h: f64) -> (f64, f64) {
+        loop {
+            if let Some(column) = self.converge(field, t, y, h) {
+                y.copy_from_slice(&self.table[0]);
+                let growth = match column {
+                    0..=4 => 2.0,
+                    5..=6 => 1.3,
+                    _ => 1.0,
+                };
+                return (h, h * growth);
+            }
+            h *= 0.5;
+        }
+    }
+
+    /// The column with which a step of `h` seconds met the tolerance, if one did.
+    fn converge(&mut self, field: &impl Field, t: f64, y: &[f64], h: f64) -> Option<usize> {
+        let size = y.iter().fold(1.0_f64, |size, y| size.max(y.abs()));
+        // Shorter steps gain nothing but rounding; what is not a number is for the caller to find.
+        let last_resort = h < 1e-9;
+        for (column, substeps) in SUBSTEPS.into_iter().enumerate() {
+            self.midpoint(field, t, y, h, column);
+            // Neville's scheme in h², from the new column back to the first.
+            let mut error = f64::INFINITY;
+            for back in (0..column).rev() {
+                let ratio = f64::from(substeps) / f64::from(SUBSTEPS[back]);
+                let factor = 1.0 / (ratio * ratio - 1.0);
+                let (older, newer) = self.table.split_at_mut(back + 1);
+                error = 0.0;
+                for (old, new) in older[back].iter_mut().zip(&newer[0]) {
+                    let change = (new - *old) * factor;
+                    *old = new + change;
+                    error = error.max(change.abs());
+                }
+            }
+            let unusable = self.table[0].iter().any(|y| !y.is_finite());
+            if column >= 2 && (error <= self.tolerance * size || last_resort) || unusable && last_resort {
+                return Some(column);
+            }
+        }
+        None
+    }
+
+    /// The modified midpoint rule with the substeps of a column, into its row.
+    fn midpoint(&mut self, field: &impl Field, t: f64, y: &[f64], h: f64, column: usize) {
+        let Self { table, before, here, rate, .. } = self;
+        let small = h / f64::from(SUBSTEPS[column]);
+        before.copy_from_slice(y);
+        field.rate(t, y, rate);
+        for ((here, y), rate) in here.iter_mut().zip(y).zip(rate.iter()) {
+            *here = y + small * rate;
+        }
+        for k in 1..SUBSTEPS[column] {
+            field.rate(t + f64::from(k) * small, here, rate);
+            for ((before, here), rate) in before.iter_mut().zip(here.iter_mut()).zip(rate.iter()) {
+                let next = *before + 2.0 * small * rate;
+                *before = *here;
+                *here = next;
+            }
+        }
+        field.rate(t + h, here, rate);
+        let smooth = table[column].iter_mut().zip(before.iter()).zip(here.iter().zip(rate.iter()));
+        for ((value, before), (here, rate)) in smooth {
+            *value = 0.5 * (before + here + small * rate);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pendulum of unit frequency, and its energy as a check.
+    struct Pendulum;
+
+    impl Field for Pendulum {
+        fn rate(&self, _: f64, y: &[f64], rate: &mut [f64]) {
+            rate[0] = y[1];
+            rate[1] = -libm::sin(y[0]);
+        }
+    }
+
+    #[test]
+    fn a_pendulum_comes_back_after_its_period() {
+        // 4 K(sin(1)) for the amplitude 2 rad, by mpmath.
+        let period = 8.349_752_926_918_495;
+        let mut y = [2.0, 0.0];
+        let (mut t, mut h, mut steps) = (0.0, 0.1, 0);
+        let mut integrator = Extrapolation::new(1e-13, 2);
+        while t < period {
+            let (took, next) = integrator.step(&Pendulum, t, &mut y, f64::min(h, period - t));
+            (t, h, steps) = (t + took, next, steps + 1);
+        }
+        assert!((y[0] - 2.0).abs() < 2e-12 && y[1].abs() < 2e-12, "{y:?}");
+        assert!(steps < 40, "{steps} steps");
+    }
+
+    #[test]
+    fn what_blows_up_ends() {
+        struct Explosion;
+        impl Field for Explosion {
+            fn rate(&self, _: f64, y: &[f64], rate: &mut [f64]) {
+                rate[0] = y[0] * y[0];
+            }
+        }
+        let (mut y, mut t, mut h) = ([1.0], 0.0, 0.5);
+        for _ in 0..10_000 {
+            let (took, next) = Extrapolation::new(1e-10, 1).step(&Explosion, t, &mut y, h);
+            (t, h) = (t + took, next);
+        }
+        assert!((t - 1.0).abs() < 1e-3 || !y[0].is_finite());
+    }
+}

@@ -1,0 +1,132 @@
+//! What a rotation comes to: where the manoeuvre ends, what vibration it leaves, how large torques and deflections are.
+
+use super::{
+    ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, OUTPUT_RESIDUALS,
+    OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_FEEDBACK, PEAK_OUTPUTS, PEAK_TORQUE, RESIDUAL_ENERGY, Told,
+    Value,
+};
+use crate::law::Goal;
+use crate::record::{Arrival, Motion, Record, RecordError, Sample};
+use crate::scenario::Scenario;
+use crate::time::Instant;
+
+/// What is late in a run (s).
+const LATE: f64 = 5.0;
+
+/// Gathers the motion of a rotation.
+#[derive(Clone, Debug)]
+pub struct Rotation {
+    goal: Goal,
+    planned: bool,
+    /// From when on a motion is late (s).
+    late: f64,
+    arrival: Option<Arrival>,
+    /// Largest torques: the actuator's, the law's (N m).
+    torque: (f64, f64),
+    /// Largest distances from the goal: after the manoeuvre, and late (rad).
+    error: (f64, f64),
+    /// Of each output, the largest absolute value, and the ranges after the manoeuvre and late.
+    outputs: Vec<(f64, Range, Range)>,
+}
+
+/// The smallest and the largest of some values.
+#[derive(Copy, Clone, Debug)]
+struct Range(f64, f64);
+
+impl Range {
+    const EMPTY: Self = Self(f64::INFINITY, f64::NEG_INFINITY);
+
+    fn widen(&mut self, value: f64) {
+        *self = Self(self.0.min(value), self.1.max(value));
+    }
+
+    /// Half the width; NaN of nothing.
+    fn swing(self) -> f64 {
+        if self.0 <= self.1 { 0.5 * (self.1 - self.0) } else { f64::NAN }
+    }
+}
+
+impl Rotation {
+    /// An empty gathering for runs of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            goal: scenario.goal(),
+            planned: scenario.plan.is_some(),
+            late: scenario.duration.seconds() - LATE,
+            arrival: None,
+            torque: (0.0, 0.0),
+            error: (f64::NAN, f64::NAN),
+            outputs: vec![(0.0, Range::EMPTY, Range::EMPTY); scenario.model.outputs.len()],
+        }
+    }
+
+    /// The metrics of the run that has ended.
+    pub fn finish(self) -> Vec<Told> {
+        let mut metrics = Vec::new();
+        if self.planned {
+            let of =
+                |value: fn(&Arrival) -> f64| Value::Number(self.arrival.as_ref().map_or(f64::NAN, value));
+            let residuals = self.arrival.iter().flat_map(|arrival| &arrival.outputs);
+            metrics.extend([
+                (&ARRIVAL_ANGLE, of(|arrival| arrival.angle_error_rad)),
+                (&ARRIVAL_RATE, of(|arrival| arrival.rate_error_rad_s)),
+                (&ANGLE_RESIDUAL, of(|arrival| arrival.angle_residual_rad)),
+                (&OUTPUT_RESIDUALS, Value::Numbers(residuals.map(|output| output.amplitude).collect())),
+                (&RESIDUAL_ENERGY, of(|arrival| arrival.elastic_energy_j)),
+            ]);
+        }
+        let outputs =
+            |value: fn(&(f64, Range, Range)) -> f64| Value::Numbers(self.outputs.iter().map(value).collect());
+        metrics.extend([
+            (&PEAK_TORQUE, Value::Number(self.torque.0)),
+            (&PEAK_FEEDBACK, Value::Number(self.torque.1)),
+            (&PEAK_OUTPUTS, outputs(|output| output.0)),
+            (&ANGLE_ERROR_PEAK, Value::Number(self.error.0)),
+            (&ANGLE_ERROR_LATE, Value::Number(self.error.1)),
+            (&OUTPUT_SWINGS, outputs(|output| output.1.swing())),
+            (&OUTPUT_SWINGS_LATE, outputs(|output| output.2.swing())),
+        ]);
+        metrics
+    }
+
+    fn see(&mut self, now: Instant, motion: &Motion) {
+        let (after, late) = (now >= self.goal.from, now.seconds() >= self.late);
+        if let Some((_, torque)) = &motion.drive {
+            self.torque.0 = self.torque.0.max(torque.applied_nm.abs());
+            self.torque.1 = self.torque.1.max(torque.feedback_nm.abs());
+        }
+        if after {
+            let error = (motion.attitude.angle_rad - self.goal.at(now).0).abs();
+            // The larger one, whichever is a number.
+            self.error.0 = self.error.0.max(error);
+            if late {
+                self.error.1 = self.error.1.max(error);
+            }
+        }
+        let seen = motion.outputs.iter().flat_map(|outputs| &outputs.outputs);
+        for ((peak, range, late_range), output) in self.outputs.iter_mut().zip(seen) {
+            *peak = peak.max(output.value.abs());
+            if after {
+                range.widen(output.value);
+            }
+            if after && late {
+                late_range.widen(output.value);
+            }
+        }
+    }
+}
+
+impl Record for Rotation {
+    fn dense(&self) -> bool {
+        true
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        match sample {
+            Sample::Arrival(arrival) => self.arrival = Some(arrival.clone()),
+            Sample::Motion(motion) => self.see(now, motion),
+            _ => {}
+        }
+        Ok(())
+    }
+}

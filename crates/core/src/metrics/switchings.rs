@@ -1,0 +1,177 @@
+//! What the switchings of a relay law come to: pushes, impulse, envelope, adaptation, limit cycle.
+
+use super::{
+    CYCLE_DUTY, CYCLE_IMPULSE, CYCLE_KIND, CYCLE_MULTIPLIER_ARGUMENTS, CYCLE_MULTIPLIER_MAX,
+    CYCLE_MULTIPLIERS, CYCLE_ORDER, CYCLE_PERIOD, CYCLE_SYMMETRIC, DUTY, ENVELOPE_FINAL, ENVELOPE_FROZEN,
+    ENVELOPE_LATE, ENVELOPE_MEAN, FROZEN_REDUCTION, GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL,
+    IMPULSE, PUSHES_LEFT, PUSHES_RIGHT, REDUCTION, SWITCHINGS, Told, Value, WINDOW_MEANS,
+};
+use crate::analysis::cycle::CycleWatch;
+use crate::law::Phase;
+use crate::record::{Record, RecordError, Sample};
+use crate::scenario::Scenario;
+use crate::time::{Instant, Span};
+
+/// Gathers the switchings of a relay law, window means and the adaptation's steps.
+#[derive(Clone, Debug)]
+pub struct Switchings {
+    duration: f64,
+    reference: Option<f64>,
+    count: u64,
+    pushes: (u64, u64),
+    strong: Span,
+    impulse: f64,
+    /// When the torque was switched last, to what, and whether it is strong.
+    since: (Instant, f64, bool),
+    means: Vec<f64>,
+    windows_from: Vec<f64>,
+    gain: (f64, f64),
+    frozen_at: f64,
+    cycle: CycleWatch,
+    observed: bool,
+    adapted: bool,
+}
+
+impl Switchings {
+    /// An empty gathering for runs of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let smooth = scenario.sensor.period().is_none();
+        Self {
+            duration: scenario.duration.seconds(),
+            reference: scenario.reference.envelope.map(crate::quantity::Positive::get),
+            count: 0,
+            pushes: (0, 0),
+            strong: Span::ZERO,
+            impulse: 0.0,
+            since: (Instant::START, 0.0, false),
+            means: Vec::new(),
+            windows_from: Vec::new(),
+            gain: (f64::NAN, f64::NAN),
+            frozen_at: f64::NAN,
+            cycle: CycleWatch::new(&scenario.body, smooth),
+            observed: scenario.estimator.is_some(),
+            adapted: scenario.adaptation.is_some(),
+        }
+    }
+
+    /// The metrics of the run that has ended.
+    pub fn finish(mut self, scenario: &Scenario) -> Vec<Told> {
+        self.switch(Instant::START + scenario.duration, 0.0, false);
+        let hours = self.duration / 3600.0;
+        let mut metrics = vec![
+            (&SWITCHINGS, Value::Count(self.count)),
+            (&PUSHES_RIGHT, Value::Count(self.pushes.0)),
+            (&PUSHES_LEFT, Value::Count(self.pushes.1)),
+            (&DUTY, Value::Number(self.strong.seconds() / self.duration)),
+            (&IMPULSE, Value::Number(self.impulse / hours)),
+        ];
+        if self.observed {
+            metrics.extend(self.envelope());
+        }
+        metrics.push((&GAIN_INITIAL, Value::Number(self.gain.0)));
+        metrics.push((&GAIN_FINAL, Value::Number(self.gain.1)));
+        metrics.push((&GAIN_FROZEN_AT, Value::Number(self.frozen_at)));
+        if self.adapted {
+            metrics.extend(self.frozen());
+        }
+        metrics.extend(cycle_metrics(self.cycle));
+        metrics
+    }
+
+    fn envelope(&self) -> Vec<Told> {
+        let late = self.windows_from.iter().position(|from| *from >= 0.5 * self.duration);
+        let late = late.map_or(&[][..], |first| &self.means[first..]);
+        let first = self.means.first().copied().unwrap_or(f64::NAN);
+        let last = self.means.last().copied().unwrap_or(f64::NAN);
+        vec![
+            (&WINDOW_MEANS, Value::Numbers(self.means.clone())),
+            (&ENVELOPE_MEAN, Value::Number(mean(&self.means))),
+            (&ENVELOPE_LATE, Value::Number(mean(late))),
+            (&ENVELOPE_FINAL, Value::Number(last)),
+            (&REDUCTION, Value::Number(self.reference.unwrap_or(first) / last)),
+        ]
+    }
+
+    fn frozen(&self) -> [Told; 3] {
+        let first = self.means.first().copied().unwrap_or(f64::NAN);
+        let after = self.windows_from.iter().position(|from| *from >= self.frozen_at);
+        let (gain, level) = match (self.frozen_at.is_nan(), after) {
+            (true, _) => (f64::NAN, f64::NAN),
+            (false, Some(after)) => (self.gain.1, mean(&self.means[after..])),
+            (false, None) => (self.gain.1, self.means.last().copied().unwrap_or(f64::NAN)),
+        };
+        [
+            (&GAIN_FROZEN, Value::Number(gain)),
+            (&ENVELOPE_FROZEN, Value::Number(level)),
+            (&FROZEN_REDUCTION, Value::Number(self.reference.unwrap_or(first) / level)),
+        ]
+    }
+
+    fn switch(&mut self, now: Instant, torque: f64, strong: bool) {
+        let (from, before, was_strong) = self.since;
+        let span = now.since(from);
+        self.impulse += before.abs() * span.seconds();
+        if was_strong {
+            self.strong = self.strong + span;
+        }
+        self.since = (now, torque, strong);
+    }
+
+    fn enter(&mut self, now: Instant, phase: Phase, torque: f64) {
+        self.pushes.0 += u64::from(phase == Phase::RightPush);
+        self.pushes.1 += u64::from(phase == Phase::LeftPush);
+        self.switch(now, torque, phase.is_strong());
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    // 0 / 0 where there are none: a mean of nothing is not a number.
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn cycle_metrics(watch: CycleWatch) -> Vec<Told> {
+    let cycle = watch.cycle();
+    let cycle = cycle.as_ref();
+    let number = |value: Option<f64>| Value::Number(value.unwrap_or(f64::NAN));
+    let multipliers = cycle.map_or(&[][..], |c| &c.multipliers);
+    let impulse = cycle.map(|c| c.impulse / c.period * 3600.0);
+    vec![
+        (&CYCLE_KIND, Value::Word(cycle.map_or("none", |c| c.kind.word()))),
+        (&CYCLE_PERIOD, number(cycle.map(|c| c.period))),
+        (&CYCLE_ORDER, number(cycle.map(|c| c.order as f64))),
+        (&CYCLE_SYMMETRIC, number(cycle.map(|c| f64::from(u8::from(c.symmetric))))),
+        (&CYCLE_DUTY, number(cycle.map(|c| c.duty))),
+        (&CYCLE_IMPULSE, number(impulse)),
+        (&CYCLE_MULTIPLIERS, Value::Numbers(multipliers.iter().map(|m| m.0).collect())),
+        (&CYCLE_MULTIPLIER_ARGUMENTS, Value::Numbers(multipliers.iter().map(|m| m.1).collect())),
+        (&CYCLE_MULTIPLIER_MAX, number(multipliers.first().map(|m| m.0))),
+    ]
+}
+
+impl Record for Switchings {
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        match sample {
+            Sample::Begin(law) => {
+                self.gain = (law.gain, law.gain);
+                self.enter(now, law.state, law.torque_nm);
+            }
+            Sample::Switching(command, _) => {
+                self.count += 1;
+                self.enter(now, command.state, command.torque_nm);
+                self.cycle.record(now, sample)?;
+            }
+            Sample::Window(window) => {
+                self.means.push(window.mean_rad);
+                self.windows_from.push(window.from_s);
+            }
+            Sample::Adaptation(step) => {
+                self.gain.1 = step.gain;
+                if step.decision == crate::adaptation::Decision::Freeze {
+                    self.frozen_at = now.seconds();
+                }
+            }
+            Sample::Arrival(_) | Sample::Motion(_) | Sample::Law(_) => {}
+        }
+        Ok(())
+    }
+}

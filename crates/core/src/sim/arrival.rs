@@ -1,0 +1,44 @@
+//! The end of the manoeuvre: how far from the goal, and what vibration is left.
+
+use crate::body::{Drive, Planar, Sight, State};
+use crate::law::Goal;
+use crate::record::{self, Residual};
+use crate::scenario::Scenario;
+use crate::time::Instant;
+
+/// The end of a manoeuvre that lies ahead.
+#[derive(Clone, Debug)]
+pub struct Arrival {
+    /// When.
+    pub at: Instant,
+    goal: Goal,
+    model: Planar,
+}
+
+impl Arrival {
+    /// The end of a scenario's manoeuvre, if it has one.
+    pub fn new(scenario: &Scenario) -> Option<Self> {
+        let goal = scenario.goal();
+        scenario.plan.as_ref().map(|_| Self { at: goal.from, goal, model: scenario.model.clone() })
+    }
+
+    /// What is logged, for a body in this state.
+    pub fn row(&self, sight: Sight, state: &State) -> record::Arrival {
+        let modes = || self.model.modes.iter().zip(&state.modes);
+        let amplitudes: Vec<f64> = modes().map(|(mode, phase)| mode.amplitude(*phase)).collect();
+        let visible = if self.model.drive == Drive::Torque { 1.0 } else { 0.0 };
+        let outputs = self.model.outputs.iter().map(|output| {
+            let parts = output.modes.iter().zip(&amplitudes);
+            Residual { amplitude: parts.map(|(weight, amplitude)| weight.get().abs() * amplitude).sum() }
+        });
+        record::Arrival {
+            angle_error_rad: sight.angle - self.goal.angle,
+            rate_error_rad_s: sight.rate - self.goal.rate,
+            angle_residual_rad: visible * amplitudes.iter().sum::<f64>(),
+            elastic_energy_j: modes()
+                .map(|(mode, phase)| mode.energy(*phase, self.model.inertia.get()))
+                .sum(),
+            outputs: outputs.collect(),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! What drives the body: the manoeuvre's waveform and the law's torque, through the actuator, and the disturbances.
+
+use std::sync::Arc as Shared;
+
+use crate::actuator::{Actuator, Pulse};
+use crate::body::{Forced, Input};
+use crate::disturbance::Disturbance;
+use crate::law::{Goal, Law};
+use crate::manoeuvre::Waveform;
+use crate::record;
+use crate::scenario::Scenario;
+use crate::time::{Instant, Span};
+
+/// All torques on the body.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    /// The manoeuvre's command, and where it breaks.
+    waveform: Option<Shared<Waveform>>,
+    /// Angle (rad) and rate (rad/s) at which the manoeuvre begins, and what a unit of its command accelerates (kg m²).
+    from: (f64, f64),
+    inertia: f64,
+    /// Whether the law is one that switches.
+    switching: bool,
+    disturbances: Vec<Disturbance>,
+    /// The instants, latest first, at which the waveform breaks or a disturbance changes.
+    edges: Vec<Instant>,
+    actuator: Actuator,
+    next_period: Option<Instant>,
+    pulse: Option<Pulse>,
+    /// Impulse that the thrusters owe (N m s).
+    owed: f64,
+    /// Torque that the law holds (N m).
+    feedback: f64,
+    /// Torque of a hold or a pulse (N m).
+    held: f64,
+}
+
+impl Drive {
+    /// The drive of a scenario, before its start.
+    pub fn new(scenario: &Scenario) -> Self {
+        let waveform = scenario.plan.as_ref().map(|plan| Shared::new(plan.waveform.clone()));
+        let breaks = waveform.iter().flat_map(|w| w.breaks()).map(|t| Instant::START + Span::from_seconds(t));
+        let mut edges: Vec<Instant> =
+            breaks.chain(scenario.disturbance.iter().flat_map(Disturbance::edges)).collect();
+        edges.sort_by(|a, b| b.cmp(a));
+        edges.dedup();
+        Self {
+            waveform,
+            from: (scenario.model.angle.get(), scenario.model.rate.get()),
+            inertia: scenario.model.commanded_inertia(),
+            switching: matches!(scenario.law, Law::Relay(_)),
+            disturbances: scenario.disturbance.clone(),
+            edges,
+            next_period: scenario.actuator.period().map(|_| Instant::START),
+            actuator: scenario.actuator.clone(),
+            pulse: None,
+            owed: 0.0,
+            feedback: 0.0,
+            held: 0.0,
+        }
+    }
+
+    /// The next instant at which the input changes by itself.
+    pub fn due(&self) -> Option<Instant> {
+        let pulse = self.pulse.map(|pulse| if self.held == 0.0 { pulse.from } else { pulse.to });
+        [self.edges.last().copied(), self.next_period, pulse].into_iter().flatten().min()
+    }
+
+    /// Takes over the torque that the law holds (N m).
+    pub fn command(&mut self, feedback: f64) {
+        self.feedback = feedback;
+    }
+
+    /// Does what is due now, after the law has decided.
+    pub fn serve(&mut self, now: Instant) {
+        while self.edges.last().is_some_and(|edge| *edge <= now) {
+            self.edges.pop();
+        }
+        if self.next_period == Some(now) {
+            self.begin_period(now);
+        }
+        if let Some(pulse) = self.pulse {
+            let on = pulse.from <= now && now < pulse.to;
+            self.held = if on { pulse.torque } else { 0.0 };
+            self.pulse = self.pulse.filter(|_| now < pulse.to);
+        }
+    }
+
+    fn begin_period(&mut self, now: Instant) {
+        let Some(period) = self.actuator.period() else { return };
+        self.next_period = Some(now + period);
+        let (from, h) = (now.seconds(), period.seconds());
+        let planned = self.waveform.as_ref().map_or(0.0, |waveform| waveform.impulse(from, from + h));
+        match &self.actuator {
+            Actuator::Ideal => {}
+            Actuator::Hold(_) => self.held = self.feedback + planned / h,
+            Actuator::Thrusters(thrusters) => {
+                self.held = 0.0;
+                let (pulse, owed) = thrusters.pulse(now, self.owed + planned + self.feedback * h);
+                self.owed = owed;
+                self.pulse = (pulse.from < pulse.to).then_some(pulse);
+            }
+        }
+    }
+
+    /// What drives the body from now on.
+    pub fn input(&self, now: Instant) -> Input {
+        let disturbance = self.disturbance(now);
+        match (&self.actuator, &self.waveform) {
+            (Actuator::Ideal, waveform) => Input {
+                constant: self.feedback + disturbance,
+                waveform: waveform
+                    .as_ref()
+                    .filter(|waveform| now.seconds() < waveform.end())
+                    .map(|waveform| Forced::new(Shared::clone(waveform), now.seconds())),
+            },
+            _ => Input { constant: self.held + disturbance, waveform: None },
+        }
+    }
+
+    /// Whether the torque has more to it than the switchings of a law tell.
+    pub fn is_worth_telling(&self) -> bool {
+        !self.switching || !self.disturbances.is_empty() || self.next_period.is_some()
+    }
+
+    /// Angle (rad) and rate (rad/s) where the body shall be: on the manoeuvre, where it would be if it were rigid.
+    pub fn rigid_goal(&self, goal: &Goal, now: Instant) -> (f64, f64) {
+        match &self.waveform {
+            Some(waveform) if now < goal.from => {
+                let ((angle, rate), t) = (self.from, now.seconds());
+                let (travel, impulse) = (waveform.travel(0.0, t), waveform.impulse(0.0, t));
+                (angle + rate * t + travel / self.inertia, rate + impulse / self.inertia)
+            }
+            _ => goal.at(now),
+        }
+    }
+
+    /// The torques now, as logged.
+    pub fn torque(&self, now: Instant) -> record::Torque {
+        let feedforward_nm = self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds()));
+        let command = feedforward_nm + self.feedback;
+        record::Torque {
+            feedforward_nm,
+            feedback_nm: self.feedback,
+            applied_nm: if self.actuator == Actuator::Ideal { command } else { self.held },
+            disturbance_nm: self.disturbance(now),
+        }
+    }
+
+    fn disturbance(&self, now: Instant) -> f64 {
+        self.disturbances.iter().map(|disturbance| disturbance.torque(now)).sum()
+    }
+}
