@@ -1,8 +1,11 @@
 //! `flexsc plot`: the figures of a log, as SVG and PNG.
 
+mod angle;
+mod drive;
 mod envelope;
 mod gain;
 mod modes;
+mod outputs;
 mod phase_plane;
 mod story;
 mod torque;
@@ -17,7 +20,7 @@ use flexsc_core::whole;
 use rayon::prelude::*;
 
 use crate::failure::Failure;
-use crate::figure::{Axis, Figure, Renderer, round_to_nice};
+use crate::figure::{Axis, Figure, Layer, Renderer, Shape, colour, round_to_nice};
 use crate::say;
 use story::{Motion, Story};
 
@@ -41,13 +44,17 @@ pub struct Args {
 enum What {
     /// Rate against angle, with the law's switching lines
     PhasePlane,
-    /// Commanded torque at the end of the run
+    /// Torque: of a law that switches at the end of the run, else over all of it
     Torque,
+    /// Angle of the hub with its goal, and the distance between them
+    Angle,
+    /// Each observed coordinate
+    Outputs,
     /// Envelope of the elastic modes with its window means, and the elastic angle at the end of the run
     Envelope,
     /// What the adaptation decided, and the gain
     Gain,
-    /// Each elastic mode at the end of the run
+    /// Each elastic mode: under a law that switches at the end of the run, else over all of it
     Modes,
 }
 
@@ -76,7 +83,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let chosen = if args.what.is_empty() { &there } else { &args.what };
     let moving = [What::PhasePlane, What::Envelope, What::Modes].iter().any(|what| chosen.contains(what));
-    let motion = if moving {
+    let motion = if !story.switches() {
+        story.motion(&log, &args.log, 0.0, 0.0)?
+    } else if moving {
         let late = phase_plane::late(&story).min(swings(&story).start);
         story.motion(&log, &args.log, phase_plane::early(&story), late)?
     } else {
@@ -120,7 +129,10 @@ impl What {
     /// Whether a log has what the figure shows.
     fn is_in(self, story: &Story) -> bool {
         match self {
-            Self::PhasePlane | Self::Torque => true,
+            Self::PhasePlane => story.switches(),
+            Self::Torque => true,
+            Self::Angle => !story.switches(),
+            Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
             Self::Envelope => story.scenario.estimator.is_some(),
             Self::Gain => !story.steps.is_empty(),
             Self::Modes => !story.scenario.body.modes().is_empty(),
@@ -130,7 +142,10 @@ impl What {
     fn figure(self, story: &Story, motion: &Motion) -> Figure {
         match self {
             Self::PhasePlane => phase_plane::figure(story, motion),
-            Self::Torque => torque::figure(story),
+            Self::Torque if story.switches() => torque::figure(story),
+            Self::Torque => drive::figure(story, motion),
+            Self::Angle => angle::figure(story, motion),
+            Self::Outputs => outputs::figure(story, motion),
             Self::Envelope => envelope::figure(story, motion),
             Self::Gain => gain::figure(story),
             Self::Modes => modes::figure(story, motion),
@@ -145,6 +160,10 @@ impl What {
 /// The title of a figure: what it shows, of which run.
 fn title(story: &Story, what: &str) -> String {
     let scenario = &story.scenario;
+    if !story.switches() {
+        let run = if story.run == 0 { String::new() } else { format!(" (run {})", story.run) };
+        return format!("{}: {what}{run}", scenario.name);
+    }
     let (first, seed) = (story.start.1, scenario.seed);
     let last = story.steps.last().map_or(first, |step| step.gain);
     let moved = if last == first { String::new() } else { format!(" → {}", short(last)) };
@@ -157,8 +176,24 @@ fn short(gain: f64) -> String {
     format!("{gain:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The end of a run that shows about seven periods of its slowest mode.
+/// The unit of what drives the body.
+fn unit_of_torque(story: &Story) -> &'static str {
+    if story.scenario.model.commanded_inertia() == 1.0 { "rad/s²" } else { "N m" }
+}
+
+/// A line where the manoeuvre ends, if there is one.
+fn arrival(story: &Story, y: &Axis) -> Option<Layer> {
+    let plan = story.scenario.plan.as_ref()?;
+    let ends = vec![(plan.time, y.range.start), (plan.time, y.range.end)];
+    Some(Layer::new("", colour::GREY, Shape::Dashes, ends))
+}
+
+/// What figures of the modes show: the whole run, or of a law that switches about seven periods of the slowest mode at
+/// its end.
 fn swings(story: &Story) -> std::ops::Range<f64> {
+    if !story.switches() {
+        return 0.0..story.end;
+    }
     let frequencies = story.scenario.body.modes().iter().map(|mode| mode.frequency.get());
     let slowest = frequencies.fold(f64::INFINITY, f64::min);
     let span = if slowest.is_finite() { round_to_nice(7.0 * TAU / slowest) } else { 100.0 };

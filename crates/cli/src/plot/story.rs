@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use flexsc_core::law::Law;
 use flexsc_core::record::{Column, Columns, Log, Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
@@ -64,6 +65,12 @@ pub struct Motion {
     pub elastic: Vec<f64>,
     /// Displacements of each mode.
     pub modes: Vec<Vec<f64>>,
+    /// Where the hub shall be; empty without a manoeuvre or a PD law.
+    pub goal: Vec<f64>,
+    /// Torques: planned, of the law, of the actuator, disturbing; each empty without a manoeuvre or a PD law.
+    pub torques: [Vec<f64>; 4],
+    /// Values of each observed coordinate.
+    pub outputs: Vec<Vec<f64>>,
     /// Times and values of the total envelope; empty without an observer.
     pub envelope: Vec<(f64, f64)>,
 }
@@ -123,6 +130,11 @@ impl Story {
             ));
         }
         Ok(repeat.motion)
+    }
+
+    /// Whether the law is one that switches.
+    pub fn switches(&self) -> bool {
+        matches!(self.scenario.law, Law::Relay(_))
     }
 
     /// When the last `count` cycles begin: a cycle lasts from one entry into the law's last state to the next, or
@@ -186,23 +198,28 @@ fn switchings(columns: &Columns) -> Vec<Switching> {
 
 fn read_motion(log: &Log) -> Result<Motion, Failure> {
     let [attitude, rate, modes, envelope] = topics(log, ["/attitude", "/rate", "/modes", "/envelope"])?;
+    let [goal, torque, outputs] = topics(log, ["/goal", "/torque", "/outputs"])?;
     let column = |columns: &Columns, name: &str| columns.numbers(name).unwrap_or_default().to_vec();
-    let displacements = match modes.get("modes") {
-        Some(Column::Rows(counts, inner)) => {
-            let count = counts.first().map_or(0, |count| *count as usize);
-            let values = inner.numbers("displacement_rad").unwrap_or_default();
-            (0..count).map(|mode| values.iter().skip(mode).step_by(count).copied().collect()).collect()
-        }
-        _ => Vec::new(),
-    };
     Ok(Motion {
         time: column(&attitude, "time_s"),
         angle: column(&attitude, "angle_rad"),
         rate: column(&rate, "rate_rad_s"),
         elastic: column(&modes, "elastic_rad"),
-        modes: displacements,
+        modes: inner(&modes, "modes", "displacement_rad"),
+        goal: column(&goal, "angle_rad"),
+        torques: ["feedforward_nm", "feedback_nm", "applied_nm", "disturbance_nm"]
+            .map(|name| column(&torque, name)),
+        outputs: inner(&outputs, "outputs", "value"),
         envelope: rows(&envelope, ["time_s", "envelope_rad"]).map(|[time, value]| (time, value)).collect(),
     })
+}
+
+/// A column of the rows within each row, one vector for each place in a row.
+fn inner(columns: &Columns, rows: &str, name: &str) -> Vec<Vec<f64>> {
+    let Some(Column::Rows(counts, inner)) = columns.get(rows) else { return Vec::new() };
+    let count = counts.first().map_or(0, |count| *count as usize);
+    let values = inner.numbers(name).unwrap_or_default();
+    (0..count).map(|place| values.iter().skip(place).step_by(count).copied().collect()).collect()
 }
 
 /// Keeps the motion of a run that is repeated.
@@ -233,13 +250,28 @@ impl Record for Repeat {
                 kept.angle.push(motion.attitude.angle_rad);
                 kept.rate.push(motion.rate.rate_rad_s);
                 kept.elastic.push(motion.modes.elastic_rad);
-                kept.modes.resize(motion.modes.modes.len(), Vec::new());
-                for (column, mode) in kept.modes.iter_mut().zip(&motion.modes.modes) {
-                    column.push(mode.displacement_rad);
+                extend(&mut kept.modes, motion.modes.modes.iter().map(|mode| mode.displacement_rad));
+                let outputs = motion.outputs.iter().flat_map(|outputs| &outputs.outputs);
+                extend(&mut kept.outputs, outputs.map(|output| output.value));
+                if let Some((goal, torque)) = &motion.drive {
+                    kept.goal.push(goal.angle_rad);
+                    let now =
+                        [torque.feedforward_nm, torque.feedback_nm, torque.applied_nm, torque.disturbance_nm];
+                    kept.torques.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
                 }
             }
             _ => {}
         }
         Ok(())
+    }
+}
+
+/// Appends a row to columns, which are made with the first row.
+fn extend(columns: &mut Vec<Vec<f64>>, row: impl Iterator<Item = f64>) {
+    for (index, value) in row.enumerate() {
+        if index == columns.len() {
+            columns.push(Vec::new());
+        }
+        columns[index].push(value);
     }
 }

@@ -1,0 +1,43 @@
+//! Figure `torque` of a rotation: what was planned, what the actuator made of it, the law's part and disturbances.
+
+use super::story::{Motion, Story};
+use super::{arrival, time, title};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+pub fn figure(story: &Story, motion: &Motion) -> Figure {
+    let [planned, feedback, applied, disturbance] = &motion.torques;
+    let over_time =
+        |values: &[f64]| -> Vec<Point> { motion.time.iter().copied().zip(values.iter().copied()).collect() };
+    let acts = |values: &[f64]| values.iter().any(|value| *value != 0.0);
+    let unit = super::unit_of_torque(story);
+    let x = time(0.0..story.end);
+    let executed = applied.iter().zip(planned.iter().zip(feedback)).any(|(a, (p, f))| *a != p + f);
+    let name = if unit == "rad/s²" { "acceleration" } else { "torque" };
+    let panel = |x: Axis, name: &str, series: &[(&str, plotters::style::RGBColor, &[f64])]| {
+        let all = series.iter().flat_map(|(.., values)| values.iter().copied());
+        let y = Axis::around(name, unit, all);
+        let lines = series
+            .iter()
+            .map(|(name, colour, values)| Layer::new(name, *colour, Shape::Line(1.2), over_time(values)));
+        Panel { x, layers: arrival(story, &y).into_iter().chain(lines).collect(), y }
+    };
+    let mut main: Vec<(&str, _, &[f64])> = Vec::new();
+    if executed {
+        main.push(("executed", colour::SKY, applied));
+    }
+    main.push(("planned", colour::BLACK, planned));
+    let mut rest: Vec<(&str, _, &[f64])> = Vec::new();
+    if acts(disturbance) {
+        rest.push(("disturbance", colour::VERMILLION, disturbance));
+    }
+    if acts(feedback) {
+        rest.push(("feedback", colour::BLUE, feedback));
+    }
+    let panels = match (rest.is_empty(), executed || acts(planned)) {
+        (true, _) => vec![panel(x, name, &main)],
+        (false, false) => vec![panel(x, name, &rest)],
+        (false, true) => vec![panel(x.unnamed(), name, &main), panel(x, name, &rest)],
+    };
+    let height = if panels.len() == 1 { 300 } else { 200 };
+    Figure { title: title(story, name), panels, panel_height: height }
+}

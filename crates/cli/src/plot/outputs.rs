@@ -1,0 +1,37 @@
+//! Figure `outputs`: each observed coordinate over the run.
+
+use super::story::{Motion, Story};
+use super::{arrival, time, title};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+/// So many coordinates have a panel, at most: the last ones, the outermost of a panel.
+const PANELS: usize = 6;
+
+pub fn figure(story: &Story, motion: &Motion) -> Figure {
+    let outputs = &story.scenario.model.outputs;
+    let skipped = motion.outputs.len().saturating_sub(PANELS);
+    let panel = |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::body::Output))| {
+        let x = time(0.0..story.end);
+        // Prefixes are those of SI units; another unit stands beside the name.
+        let (name, unit) = if output.unit == "rad" {
+            (output.name.clone(), "rad")
+        } else {
+            (format!("{}, {}", output.name, output.unit), "")
+        };
+        let y = Axis::around(&name, unit, values.iter().copied());
+        let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
+        let line = Layer::new("", colour::BLUE, Shape::Line(1.2), line);
+        Panel {
+            x: if index + 1 == motion.outputs.len() { x } else { x.unnamed() },
+            layers: arrival(story, &y).into_iter().chain([line]).collect(),
+            y,
+        }
+    };
+    let panels = motion.outputs.iter().zip(outputs).enumerate().skip(skipped).map(panel).collect();
+    let what = if skipped > 0 {
+        format!("observed coordinates, the first {skipped} left out")
+    } else {
+        "observed coordinates".to_owned()
+    };
+    Figure { title: title(story, &what), panels, panel_height: 130 }
+}
