@@ -108,7 +108,7 @@ const TYPES: &[Case] = &[
 const KEYS: &[Case] = &[
     ("unknown key at the top", Line(1, "duration = 1\ndurration = 2"), 2, "durration", &["unknown key `durration`", "expected one of", "`duration`"]),
     ("unknown table at the top", Line(11, "[lew.relay]"), 11, "lew", &["unknown key `lew`", "expected one of", "`law`"]),
-    ("unknown key of the body", Line(4, "angel = 1"), 4, "angel", &["unknown key `angel`", "`inertia`, `angle`, `rate`, `modes`"]),
+    ("unknown key of the body", Line(4, "angel = 1"), 4, "angel", &["unknown key `angel`", "`inertia`, `angle`, `rate`, `drive`, `modes`, `outputs`"]),
     ("unknown key of a mode", Line(7, "frequncy = 1"), 7, "frequncy", &["unknown key `frequncy`", "`frequency`"]),
     ("unknown key of the law", Line(16, "k_T = 0.3"), 16, "k_T", &["unknown key `k_T`", "`k_t`"]),
     ("unknown key of the sensor", Line(26, "period = 0.1\nrate = 1"), 27, "rate", &["unknown key `rate`", "`period`, `noise`, `bias`, `resolution`"]),
@@ -119,7 +119,7 @@ const KEYS: &[Case] = &[
     ("unknown key of a distribution", Line(35, r#""law.relay.k_t" = { normal = { mean = 0.3, sd = 0.1, x = 1 } }"#), 35, "x", &["unknown key `x`", "expected `mean` or `sd`"]),
     ("unknown distribution", Line(35, r#""law.relay.k_t" = { unifrm = [0.3, 0.32] }"#), 35, "unifrm", &[r#"`uncertain."law.relay.k_t"`"#, "`unifrm` is not known here", "`uniform`"]),
     ("unknown kind of law", Line(11, "[law.rely]"), 11, "rely", &["`rely` is not known here", "expected `relay`"]),
-    ("unknown kind of body", Lines(&[(3, "[body.planer]"), (6, "[[body.planer.modes]]")]), 3, "planer", &["`planer` is not known here", "expected `planar`"]),
+    ("unknown kind of body", Lines(&[(3, "[body.planer]"), (6, "[[body.planer.modes]]")]), 3, "planer", &["`planer` is not known here", "expected one of `planar`"]),
     ("unknown kind of sensor", Line(25, "[sensor.sampld]"), 25, "sampld", &["`sampld` is not known here", "`continuous` or `sampled`"]),
     ("unknown kind of sensor, as a word", Cut(25, 26, "sensor = \"continous\"\nduration = 1"), 1, "\"continous\"", &["`sensor`", "`continous` is not known here", "`continuous` or `sampled`"]),
     ("unknown kind of estimator", Line(18, "[estimator.envelop]"), 18, "envelop", &["`envelop` is not known here", "expected `envelope`"]),

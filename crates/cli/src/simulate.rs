@@ -244,7 +244,7 @@ pub fn summary(scenario: &Scenario, metrics: &Metrics, took: f64) {
         "{}   {} s, {} modes, {} switchings, {:.1} ms",
         scenario.name,
         scenario.duration.seconds(),
-        scenario.body.modes().len(),
+        scenario.model.modes.len(),
         number("switchings"),
         took * 1e3
     );

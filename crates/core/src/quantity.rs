@@ -85,6 +85,11 @@ macro_rules! zero_by_default {
 
 zero_by_default!(Finite, NonNegative);
 
+impl Frequency {
+    /// The highest (rad/s).
+    pub const LARGEST: f64 = 1e3;
+}
+
 impl Positive {
     /// Exactly one.
     pub const ONE: Self = Self(1.0);

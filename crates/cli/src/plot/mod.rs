@@ -123,7 +123,7 @@ impl What {
             Self::PhasePlane | Self::Torque => true,
             Self::Envelope => story.scenario.estimator.is_some(),
             Self::Gain => !story.steps.is_empty(),
-            Self::Modes => !story.scenario.body.modes().is_empty(),
+            Self::Modes => !story.scenario.model.modes.is_empty(),
         }
     }
 
@@ -159,7 +159,7 @@ fn short(gain: f64) -> String {
 
 /// The end of a run that shows about seven periods of its slowest mode.
 fn swings(story: &Story) -> std::ops::Range<f64> {
-    let frequencies = story.scenario.body.modes().iter().map(|mode| mode.frequency.get());
+    let frequencies = story.scenario.model.modes.iter().map(|mode| mode.frequency.get());
     let slowest = frequencies.fold(f64::INFINITY, f64::min);
     let span = if slowest.is_finite() { round_to_nice(7.0 * TAU / slowest) } else { 100.0 };
     (story.end - span).max(0.0)..story.end

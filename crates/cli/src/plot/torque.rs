@@ -19,7 +19,7 @@ pub fn figure(story: &Story) -> Figure {
     let levels = line.iter().map(|(_, torque)| torque.abs()).filter(|torque| *torque > 0.0);
     let strong = levels.clone().fold(0.0, f64::max);
     let weak = levels.filter(|level| *level < 0.2 * strong).fold(0.0, f64::max);
-    let unit = if story.scenario.body.inertia() == 1.0 { "rad/s²" } else { "N m" };
+    let unit = if story.scenario.model.inertia.get() == 1.0 { "rad/s²" } else { "N m" };
     let panel = |x: Axis, name: &str, most: f64, named: bool| {
         let most = if most > 0.0 { 1.3 * most } else { 1.0 };
         let marks = |timeout: bool| -> Vec<Point> {

@@ -76,7 +76,7 @@ impl Simulation {
         Self {
             now: Instant::START,
             end: Instant::START + scenario.duration,
-            body: Plant::new(&scenario.body),
+            body: Plant::new(&scenario.model),
             sensor: scenario.sensor.clone(),
             noise: seed.stream("sensor"),
             watch: Watch::new(scenario, seed),

@@ -1,6 +1,6 @@
 //! The body on its way: its arc, and what is seen of it now.
 
-use crate::body::{Arc, Body, Sight, State};
+use crate::body::{Arc, Planar, Sight, State};
 use crate::crossing::locate;
 use crate::guard::Guard;
 use crate::record::{Attitude, ModeMotion, Modes, Rate};
@@ -22,15 +22,15 @@ pub struct Plant {
 
 impl Plant {
     /// A body at the start, under no torque.
-    pub fn new(body: &Body) -> Self {
-        let (mut arc, state) = (body.arc(), body.start());
+    pub fn new(body: &Planar) -> Self {
+        let (mut arc, state) = (Arc::new(body), body.start());
         arc.depart(&state, 0.0);
         Self {
             departed: Instant::START,
             sight: arc.origin(),
             seen: Instant::START,
             ahead: (state.clone(), Sight::default(), Instant::START),
-            frequencies: body.modes().iter().map(|mode| mode.frequency.get()).collect(),
+            frequencies: body.modes.iter().map(|mode| mode.frequency.get()).collect(),
             arc,
             state,
         }
