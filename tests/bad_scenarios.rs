@@ -119,7 +119,7 @@ const KEYS: &[Case] = &[
     ("unknown key of a distribution", Line(35, r#""law.relay.k_t" = { normal = { mean = 0.3, sd = 0.1, x = 1 } }"#), 35, "x", &["unknown key `x`", "expected `mean` or `sd`"]),
     ("unknown distribution", Line(35, r#""law.relay.k_t" = { unifrm = [0.3, 0.32] }"#), 35, "unifrm", &[r#"`uncertain."law.relay.k_t"`"#, "`unifrm` is not known here", "`uniform`"]),
     ("unknown kind of law", Line(11, "[law.rely]"), 11, "rely", &["`rely` is not known here", "expected one of `relay`, `pd`, `open`"]),
-    ("unknown kind of body", Lines(&[(3, "[body.planer]"), (6, "[[body.planer.modes]]")]), 3, "planer", &["`planer` is not known here", "expected `planar`"]),
+    ("unknown kind of body", Lines(&[(3, "[body.planer]"), (6, "[[body.planer.modes]]")]), 3, "planer", &["`planer` is not known here", "expected one of `planar`"]),
     ("unknown kind of sensor", Line(25, "[sensor.sampld]"), 25, "sampld", &["`sampld` is not known here", "`continuous` or `sampled`"]),
     ("unknown kind of sensor, as a word", Cut(25, 26, "sensor = \"continous\"\nduration = 1"), 1, "\"continous\"", &["`sensor`", "`continous` is not known here", "`continuous` or `sampled`"]),
     ("unknown kind of estimator", Line(18, "[estimator.envelop]"), 18, "envelop", &["`envelop` is not known here", "expected `envelope`"]),

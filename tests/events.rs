@@ -1,7 +1,7 @@
 //! The rules of time: no crossing is missed, and nothing that watches a run changes it.
 
 use flexsc_core::belief::Belief;
-use flexsc_core::body::{Body, Input, State};
+use flexsc_core::body::{Arc, Input, Planar, State};
 use flexsc_core::crossing::locate;
 use flexsc_core::guard::Guard;
 use flexsc_core::law::{Cause, Control, Goal, Law};
@@ -18,7 +18,7 @@ fn scenario(text: &str) -> Scenario {
 }
 
 /// A body with random modes, some damped, some beyond critical, in a random state.
-fn random_body(stream: &mut Stream) -> (Body, State) {
+fn random_body(stream: &mut Stream) -> (Planar, State) {
     let (angle, rate) = (1e-4 * stream.normal(), 2e-5 * stream.normal());
     let mut text = format!("duration = 1.0\n[body.planar]\nangle = {angle:e}\nrate = {rate:e}\n");
     for _ in 0..stream.index(6) {
@@ -35,8 +35,8 @@ fn random_body(stream: &mut Stream) -> (Body, State) {
         text += &mode;
     }
     let scenario = scenario(&(text + RELAY));
-    let state = scenario.body.start();
-    (scenario.body, state)
+    let state = scenario.model.start();
+    (scenario.model, state)
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn no_crossing_is_missed() {
     let (mut tripped, mut clear) = (0, 0);
     for trial in 0..1500 {
         let (body, state) = random_body(&mut stream);
-        let mut arc = body.arc();
+        let mut arc = Arc::new(&body);
         arc.depart(&state, &Input::constant(3e-6 * stream.normal()));
         let start = state.angle();
         let mut away = || 3e-4 * stream.uniform();
@@ -88,8 +88,8 @@ fn a_tangent_touch_is_found() {
     // The body turns round a ten-thousandth of the last bit of its angle beyond the level: 1e-4 + v²/2m.
     let text = format!("duration = 1.0\n[body.planar]\nangle = 1e-4\nrate = 1e-5\n{RELAY}");
     let scenario = scenario(&text);
-    let mut arc = scenario.body.arc();
-    let state = scenario.body.start();
+    let mut arc = Arc::new(&scenario.model);
+    let state = scenario.model.start();
     arc.depart(&state, &Input::constant(-1e-6));
     let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
     let mut there = state.clone();
@@ -102,8 +102,8 @@ fn a_tangent_touch_is_found() {
 #[test]
 fn a_guard_that_holds_trips_at_once() {
     let scenario = scenario(&format!("duration = 1.0\n[body.planar]\nangle = 1e-4\n{RELAY}"));
-    let mut arc = scenario.body.arc();
-    let state = scenario.body.start();
+    let mut arc = Arc::new(&scenario.model);
+    let state = scenario.model.start();
     arc.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
@@ -115,8 +115,8 @@ fn a_guard_that_holds_trips_at_once() {
 fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     let text = format!("duration = 1.0\n[body.planar]\nrate = 1e-9\n{RELAY}");
     let scenario = scenario(&text);
-    let mut arc = scenario.body.arc();
-    let state = scenario.body.start();
+    let mut arc = Arc::new(&scenario.model);
+    let state = scenario.model.start();
     arc.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];

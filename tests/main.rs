@@ -12,5 +12,6 @@ mod logs;
 mod plot;
 mod relay;
 mod stops;
+mod structure;
 mod study;
 mod util;

@@ -18,7 +18,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Failure> {
     for path in &args.scenarios {
         let scenario = Scenario::load(path)?;
-        let modes = scenario.body.modes().len();
+        let modes = scenario.model.modes.len();
         say!("{}: accepted: {} s, {modes} modes", path.display(), scenario.duration.seconds());
     }
     Ok(())

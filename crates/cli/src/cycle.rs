@@ -22,8 +22,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         )));
     };
     let k_t = law.k_t.get();
-    let cycles = cycles(law, &scenario.body, k_t);
-    let resonances = resonances(law, &scenario.body);
+    let cycles = cycles(law, &scenario.model, k_t);
+    let resonances = resonances(law, &scenario.model);
     if args.json {
         let object = json!({
             "scenario": scenario.name,

@@ -10,7 +10,7 @@ use crate::{print, say};
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.load()?;
-    let modes = scenario.body.modes();
+    let modes = &scenario.model.modes;
     let strongest = modes.iter().map(|mode| mode.excitability().abs()).fold(0.0, f64::max);
     if args.json {
         let column = |value: &dyn Fn(&flexsc_core::body::Mode) -> f64| -> Vec<f64> {
@@ -18,7 +18,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         };
         let object = json!({
             "scenario": scenario.name,
-            "inertia_kg_m2": scenario.body.inertia(),
+            "inertia_kg_m2": scenario.model.inertia.get(),
             "frequencies_rad_s": column(&|mode| mode.frequency.get()),
             "periods_s": column(&|mode| std::f64::consts::TAU / mode.frequency.get()),
             "dampings": column(&|mode| mode.damping.get()),

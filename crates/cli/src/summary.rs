@@ -10,7 +10,7 @@ use crate::say;
 
 /// Tells what a run came to; it took so many seconds of the wall's clock.
 pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
-    let (duration, modes) = (scenario.duration.seconds(), scenario.body.modes().len());
+    let (duration, modes) = (scenario.duration.seconds(), scenario.model.modes.len());
     let head = format!("{}   {duration} s, {modes} modes", scenario.name);
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     match scenario.law {

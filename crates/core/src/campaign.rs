@@ -158,7 +158,7 @@ impl Campaign {
     pub fn provenance(run: &Run) -> Provenance {
         Provenance {
             scenario: run.scenario.name.clone(),
-            toml: run.scenario.to_toml(),
+            toml: run.scenario.self_contained().to_toml(),
             seed: run.scenario.seed,
             run: run.number,
             epoch_ns: run.scenario.epoch_ns(),
@@ -202,6 +202,6 @@ impl Campaign {
         for (key, value) in keys {
             document.set(key, value.clone())?;
         }
-        Scenario::from_document(&document)
+        Scenario::from_document_like(&document, &self.scenario)
     }
 }

@@ -56,6 +56,7 @@ pub mod scenario;
 pub mod sensor;
 mod sim;
 pub mod statistics;
+pub mod structure;
 pub mod time;
 pub mod uncertain;
 pub mod whole;

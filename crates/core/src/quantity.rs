@@ -72,6 +72,17 @@ quantity!(
     {"type": "number", "minimum": 1e-4, "maximum": 1e3}
 );
 
+quantity!(
+    /// The error that an integration may make in each step, relative to 1 or to the largest angle.
+    Tolerance, |v| (1e-14..=1e-3).contains(&v), "a tolerance of 1e-14 to 1e-3",
+    {"type": "number", "minimum": 1e-14, "maximum": 1e-3}
+);
+
+impl Tolerance {
+    /// Little more than what rounding makes.
+    pub const TIGHT: Self = Self(1e-12);
+}
+
 /// The zero that a key left out stands for.
 macro_rules! zero_by_default {
     ($($name:ident),*) => {
@@ -84,6 +95,11 @@ macro_rules! zero_by_default {
 }
 
 zero_by_default!(Finite, NonNegative);
+
+impl Frequency {
+    /// The highest (rad/s).
+    pub const LARGEST: f64 = 1e3;
+}
 
 impl Positive {
     /// Exactly one.

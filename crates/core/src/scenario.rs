@@ -42,6 +42,9 @@ pub struct Scenario {
     pub epoch: Option<Datetime>,
     /// What is controlled.
     pub body: Body,
+    /// The body with its modes, as it moves: solved from `body`.
+    #[serde(skip)]
+    pub model: Planar,
     /// How the angle is measured.
     #[serde(default)]
     pub sensor: Sensor,
@@ -69,9 +72,6 @@ pub struct Scenario {
     /// Distributions of keys that a campaign draws anew for each run.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertain: BTreeMap<String, Distribution>,
-    /// The body solved: its modes and outputs.
-    #[serde(skip)]
-    pub model: Planar,
     /// The manoeuvre as planned on the model.
     #[serde(skip)]
     pub plan: Option<Plan>,
@@ -128,9 +128,17 @@ impl Scenario {
 
     /// Reads a scenario from a document.
     pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
+        Self::solved(document, None)
+    }
+
+    /// Reads a scenario from a document that differs from another scenario in some keys. If the body is not among them,
+    /// its modes are taken over.
+    pub fn from_document_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
+        Self::solved(document, Some(parent))
+    }
+
+    fn solved(document: &Document, parent: Option<&Self>) -> Result<Self, ScenarioError> {
         let mut scenario: Self = document.read()?;
-        let Body::Planar(planar) = &scenario.body;
-        scenario.model = planar.clone();
         if let Some(error) = document.unread(&scenario.to_table()) {
             return Err(error);
         }
@@ -138,6 +146,14 @@ impl Scenario {
             let stem = Path::new(document.origin()).file_stem();
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
         }
+        scenario.body.locate(Path::new(document.origin()).parent().unwrap_or(Path::new("")));
+        scenario.model = match parent.filter(|parent| parent.body == scenario.body) {
+            Some(parent) => parent.model.clone(),
+            None => scenario.body.solve().map_err(|(key, why)| {
+                document.inconsistent(&format!("body.{}.{key}", scenario.body.kind()), &why)
+            })?,
+        };
+        scenario.chain = scenario.body.chain(&scenario.model);
         if matches!(scenario.law, Law::Open(_)) && !document.has("law") && scenario.plan.is_none() {
             return Err(document.missing("law"));
         }
@@ -165,6 +181,16 @@ impl Scenario {
             angle: self.model.angle.get() + plan.angle,
             rate: plan.end_rate,
         })
+    }
+
+    /// The scenario without need of any file: the matrices of a structure give way to the modes that they came to.
+    pub fn self_contained(&self) -> Self {
+        let mut scenario = self.clone();
+        if matches!(self.body, Body::Matrices(_)) {
+            scenario.body = Body::Planar(self.model.clone());
+            scenario.uncertain.retain(|key, _| !key.starts_with("body.matrices"));
+        }
+        scenario
     }
 
     /// The date of the start in nanoseconds since 1970 UTC; 0 without one.
@@ -290,10 +316,15 @@ impl Scenario {
             return Some(("estimator.envelope.modes".to_owned(), why));
         }
         let own = envelope.modes.as_ref().map(|modes| ("estimator.envelope", modes.as_slice()));
-        let (place, modes) = own.unwrap_or(("body.planar", self.body.modes()));
+        let (place, modes) = own.unwrap_or(("body.planar", &self.model.modes));
         modes.iter().enumerate().find(|(_, mode)| mode.damping.get() >= 1.0).map(|(index, mode)| {
             let why = format!("must be below 1 for a mode to have an envelope, got {}", mode.damping.get());
-            (format!("{place}.modes[{index}].damping"), why)
+            match (&self.body, own) {
+                (Body::Matrices(_) | Body::Panels(_), None) => {
+                    (format!("body.{}.damping", self.body.kind()), why)
+                }
+                _ => (format!("{place}.modes[{index}].damping"), why),
+            }
         })
     }
 

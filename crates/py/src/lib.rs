@@ -105,7 +105,7 @@ impl Scenario {
         for (key, value) in keys {
             document.set_text(&key, &value).map_err(scenario_error)?;
         }
-        Self::read(&document)
+        Self::new(&self.origin, flexsc_core::Scenario::from_document_like(&document, &self.inner))
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {
@@ -128,7 +128,7 @@ impl Scenario {
     }
 
     fn modes(&self) -> Vec<[f64; 4]> {
-        let modes = self.inner.body.modes().iter();
+        let modes = self.inner.model.modes.iter();
         modes.map(|m| [m.frequency.get(), m.damping.get(), m.gain.get(), m.excitability()]).collect()
     }
 
@@ -223,7 +223,7 @@ fn campaign<'py>(
 
 #[pyfunction]
 fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
-    let (Law::Relay(law), body) = (&scenario.inner.law, &scenario.inner.body) else {
+    let (Law::Relay(law), body) = (&scenario.inner.law, &scenario.inner.model) else {
         let why = format!("{}: limit cycles are those of a law `relay`", scenario.inner.name);
         return Err(PyValueError::new_err(why));
     };

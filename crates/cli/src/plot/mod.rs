@@ -135,7 +135,7 @@ impl What {
             Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
             Self::Envelope => story.scenario.estimator.is_some(),
             Self::Gain => !story.steps.is_empty(),
-            Self::Modes => !story.scenario.body.modes().is_empty(),
+            Self::Modes => !story.scenario.model.modes.is_empty(),
         }
     }
 
@@ -194,7 +194,7 @@ fn swings(story: &Story) -> std::ops::Range<f64> {
     if !story.switches() {
         return 0.0..story.end;
     }
-    let frequencies = story.scenario.body.modes().iter().map(|mode| mode.frequency.get());
+    let frequencies = story.scenario.model.modes.iter().map(|mode| mode.frequency.get());
     let slowest = frequencies.fold(f64::INFINITY, f64::min);
     let span = if slowest.is_finite() { round_to_nice(7.0 * TAU / slowest) } else { 100.0 };
     (story.end - span).max(0.0)..story.end

@@ -9,7 +9,7 @@ const PANELS: usize = 6;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let shown = swings(story);
-    let frequencies = story.scenario.body.modes().iter().map(|mode| mode.frequency.get());
+    let frequencies = story.scenario.model.modes.iter().map(|mode| mode.frequency.get());
     let last = motion.modes.len().min(PANELS).saturating_sub(1);
     let panel = |(index, (values, frequency)): (usize, (&Vec<f64>, f64))| {
         let line = motion.time.iter().copied().zip(values.iter().copied());

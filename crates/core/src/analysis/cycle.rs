@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, RowDVector, Schur};
 
-use crate::body::{Arc, Body, Input, State};
+use crate::body::{Arc, Input, Planar, State};
 use crate::law::Phase;
 use crate::record::{Command, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
@@ -86,9 +86,9 @@ struct Switching {
 
 impl CycleWatch {
     /// A watch over a body whose angle is measured continuously (`smooth`) or not.
-    pub fn new(body: &Body, smooth: bool) -> Self {
-        let excitations = body.modes().len();
-        Self { arc: body.arc(), excitations, smooth, switchings: VecDeque::with_capacity(KEPT + 1) }
+    pub fn new(body: &Planar, smooth: bool) -> Self {
+        let excitations = body.modes.len();
+        Self { arc: Arc::new(body), excitations, smooth, switchings: VecDeque::with_capacity(KEPT + 1) }
     }
 
     /// The cycle that the run ended in, if it did.

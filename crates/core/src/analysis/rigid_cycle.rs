@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::body::{Body, Mode};
+use crate::body::{Mode, Planar};
 use crate::law::{Relay, Sides};
 
 /// A limit cycle of the relay law on a rigid body.
@@ -130,8 +130,8 @@ impl Rigid {
 
 /// The limit cycles of a relay law on a body with its modes left out: those that exist at this gain, two-sided
 /// first. A law with one side has the one-sided cycle only, which then needs no left boundary to stay clear of.
-pub fn cycles(law: &Relay, body: &Body, k_t: f64) -> Vec<RigidCycle> {
-    let rigid = Rigid::new(law, body.inertia());
+pub fn cycles(law: &Relay, body: &Planar, k_t: f64) -> Vec<RigidCycle> {
+    let rigid = Rigid::new(law, body.inertia.get());
     let candidates: &[Sides] = match law.sides {
         Sides::Two => &[Sides::Two, Sides::One],
         Sides::One => &[Sides::One],
@@ -141,13 +141,13 @@ pub fn cycles(law: &Relay, body: &Body, k_t: f64) -> Vec<RigidCycle> {
 
 /// The gains from 0.02 to 1 at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The even
 /// harmonics vanish by symmetry.
-pub fn resonances(law: &Relay, body: &Body) -> Vec<Resonance> {
+pub fn resonances(law: &Relay, body: &Planar) -> Vec<Resonance> {
     /// Between neighbours on this grid of gains the period is monotonic.
     const GRID: u32 = 4096;
-    let rigid = Rigid::new(law, body.inertia());
+    let rigid = Rigid::new(law, body.inertia.get());
     let period = |k_t: f64| rigid.cycle(Sides::Two, k_t).map(|cycle| cycle.period_s);
     let mut found = Vec::new();
-    for (mode, w) in body.modes().iter().map(|mode: &Mode| mode.frequency.get()).enumerate() {
+    for (mode, w) in body.modes.iter().map(|mode: &Mode| mode.frequency.get()).enumerate() {
         let turns = |period: f64| w * period / (2.0 * std::f64::consts::PI);
         for cell in 0..GRID {
             let gain = |edge: u32| 0.02 + 0.98 * f64::from(edge) / f64::from(GRID);

@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use super::forced::Input;
 use super::{Mode, Planar, Sight, State};
 use crate::integrate::{Extrapolation, Field};
+use crate::structure::Structure;
 
 /// The equations of a chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,15 +30,10 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// A chain with sections of these lengths (m) whose linear model has this mass and stiffness in the coordinates
+    /// A chain with sections of these lengths (m) whose linear model is this structure, in the coordinates
     /// \[hub angle, displacement of each node in the hub's frame\], and these modes.
-    pub fn new(
-        lengths: &[f64],
-        mass: &DMatrix<f64>,
-        stiffness: &DMatrix<f64>,
-        model: &Planar,
-        tolerance: f64,
-    ) -> Self {
+    pub fn new(lengths: &[f64], structure: &Structure, model: &Planar, tolerance: f64) -> Self {
+        let (mass, stiffness) = (structure.mass(), structure.stiffness());
         let n = lengths.len() + 1;
         // v_k = sum over j <= k of l_j (psi_j - psi_0).
         let to_nodes = DMatrix::from_fn(n, n, |k, j| match (k, j) {

@@ -1,19 +1,33 @@
 //! What is controlled: a state, and its exact flow under a constant input.
 
 mod chain;
+mod damping;
 mod forced;
+mod hub;
+mod matrices;
 mod mode;
 mod output;
+mod panels;
 mod planar;
+mod reduction;
+mod weights;
+
+use std::path::Path;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::structure::Fault;
+
 pub use chain::{Chain, Flight};
+pub use damping::Damping;
 pub use forced::{Forced, Input};
+pub use matrices::{Matrices, Sum};
 pub use mode::Mode;
 pub use output::Output;
+pub use panels::{Kinematics, Panels, Section};
 pub use planar::{Arc, Drive, Planar};
+pub use weights::Weights;
 
 /// The kinds of body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -21,34 +35,48 @@ pub use planar::{Arc, Drive, Planar};
 pub enum Body {
     /// One angle and any number of elastic modes.
     Planar(Planar),
+    /// The matrices of a structure.
+    Matrices(Matrices),
+    /// A hub with panels of hinged sections.
+    Panels(Panels),
 }
 
 impl Body {
-    /// The state at the start of a run.
-    pub fn start(&self) -> State {
+    /// The kind, as a scenario names it.
+    pub fn kind(&self) -> &'static str {
         match self {
-            Self::Planar(planar) => planar.start(),
+            Self::Planar(_) => "planar",
+            Self::Matrices(_) => "matrices",
+            Self::Panels(_) => "panels",
         }
     }
 
-    /// The motion between two events, not yet departed.
-    pub fn arc(&self) -> Arc {
-        match self {
-            Self::Planar(planar) => Arc::new(planar),
+    /// Makes the paths of files absolute: relative ones begin at a directory.
+    pub fn locate(&mut self, directory: &Path) {
+        if let Self::Matrices(matrices) = self {
+            matrices.mass.locate(directory);
+            matrices.stiffness.locate(directory);
         }
     }
 
-    /// The elastic modes, in the order of the scenario.
-    pub fn modes(&self) -> &[Mode] {
-        match self {
-            Self::Planar(planar) => &planar.modes,
-        }
+    /// The planar body that moves.
+    ///
+    /// # Errors
+    /// What is wrong with the body: a key within it, and why.
+    pub fn solve(&self) -> Result<Planar, Fault> {
+        let model = match self {
+            Self::Planar(planar) => planar.clone(),
+            Self::Matrices(matrices) => matrices.solve()?,
+            Self::Panels(panels) => panels.solve()?,
+        };
+        model.inconsistency().map_or(Ok(model), Err)
     }
 
-    /// Moment of inertia (kg m²).
-    pub fn inertia(&self) -> f64 {
+    /// The exact chain behind the planar body, where the scenario asks for it.
+    pub fn chain(&self, model: &Planar) -> Option<Chain> {
         match self {
-            Self::Planar(planar) => planar.inertia.get(),
+            Self::Panels(panels) => panels.chain(model),
+            Self::Planar(_) | Self::Matrices(_) => None,
         }
     }
 }

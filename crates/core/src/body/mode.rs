@@ -27,6 +27,11 @@ pub struct Mode {
 }
 
 impl Mode {
+    /// A mode that starts at rest.
+    pub fn at_rest(frequency: Frequency, gain: Finite, damping: NonNegative) -> Self {
+        Self { frequency, gain, damping, displacement: Finite::default(), rate: Finite::default() }
+    }
+
     /// Excitability k/w²: the static displacement for each unit of reduced moment (s²).
     pub fn excitability(&self) -> f64 {
         self.gain.get() / (self.frequency.get() * self.frequency.get())

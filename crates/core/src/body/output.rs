@@ -22,7 +22,7 @@ pub struct Output {
     pub modes: Vec<Finite>,
 }
 
-fn radians() -> String {
+pub(super) fn radians() -> String {
     "rad".to_owned()
 }
 

@@ -69,6 +69,23 @@ impl Default for Planar {
 }
 
 impl Planar {
+    /// What single values cannot show to be wrong: the key, and what is wrong with it.
+    pub fn inconsistency(&self) -> Option<(String, String)> {
+        let modes = self.modes.len();
+        self.outputs.iter().enumerate().find_map(|(index, output)| {
+            let at = |key: &str, why: String| Some((format!("outputs[{index}].{key}"), why));
+            if output.modes.len() != modes {
+                let found = output.modes.len();
+                return at("modes", format!("must have one number for each of {modes} modes, got {found}"));
+            }
+            let before = self.outputs[..index].iter();
+            if before.map(|other| &other.name).any(|name| *name == output.name) {
+                return at("name", format!("must differ from the other names, got `{}` again", output.name));
+            }
+            None
+        })
+    }
+
     /// What a unit of the command accelerates (kg m²): 1 where the motion itself is commanded.
     pub fn commanded_inertia(&self) -> f64 {
         match self.drive {

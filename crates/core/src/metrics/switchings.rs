@@ -48,7 +48,7 @@ impl Switchings {
             windows_from: Vec::new(),
             gain: (f64::NAN, f64::NAN),
             frozen_at: f64::NAN,
-            cycle: CycleWatch::new(&scenario.body, smooth),
+            cycle: CycleWatch::new(&scenario.model, smooth),
             observed: scenario.estimator.is_some(),
             adapted: scenario.adaptation.is_some(),
         }

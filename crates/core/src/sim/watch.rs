@@ -30,7 +30,7 @@ impl Watch {
             (Search::new(constants, scenario.law.gain()), seed.stream("adaptation"))
         });
         Some(Self {
-            observer: Observer::new(spec, scenario.body.modes(), scenario.body.inertia()),
+            observer: Observer::new(spec, &scenario.model.modes, scenario.model.inertia.get()),
             window: spec.window,
             opened: Instant::START,
             closes: Instant::START + spec.window,

@@ -1,0 +1,48 @@
+//! A body's natural frequencies with the hub free and with the hub held, whichever of the two its modes belong to.
+
+use nalgebra::DMatrix;
+
+use super::{Drive, Planar};
+use crate::structure::eigenvalues;
+
+impl Planar {
+    /// Natural frequencies (rad/s) of the body that turns freely. With a commanded torque they are those of the modes;
+    /// with a commanded motion, increasing, and none if the gains add up to 1 or more, for which there is no such body.
+    pub fn free_frequencies(&self) -> Option<Vec<f64>> {
+        match self.drive {
+            Drive::Torque => Some(self.frequencies()),
+            Drive::Motion => self.other_frequencies(-1.0),
+        }
+    }
+
+    /// Natural frequencies (rad/s) of the body whose hub is held. With a commanded motion they are those of the modes;
+    /// with a commanded torque, increasing, and none if a gain is negative, for which there is no such body.
+    pub fn clamped_frequencies(&self) -> Option<Vec<f64>> {
+        match self.drive {
+            Drive::Torque => self.other_frequencies(1.0),
+            Drive::Motion => Some(self.frequencies()),
+        }
+    }
+
+    fn frequencies(&self) -> Vec<f64> {
+        self.modes.iter().map(|mode| mode.frequency.get()).collect()
+    }
+
+    /// Holding the hub, m = -sum x_i''; leaving it, the torque J (m - sum x_i'') vanishes. In z_i = x_i/sqrt(k_i) the modes
+    /// are then those of (1 + sign s s') z'' + W² z = 0 with s_i = sqrt(k_i), whose inverse squares are the eigenvalues of
+    /// W⁻¹ (1 + sign s s') W⁻¹.
+    fn other_frequencies(&self, sign: f64) -> Option<Vec<f64>> {
+        let gains = self.modes.iter().map(|mode| mode.gain.get());
+        if gains.clone().any(|gain| gain < 0.0) || (sign < 0.0 && gains.clone().sum::<f64>() >= 1.0) {
+            return None;
+        }
+        let inverse: Vec<f64> = self.modes.iter().map(|mode| 1.0 / mode.frequency.get()).collect();
+        let swing: Vec<f64> = gains.zip(&inverse).map(|(gain, inverse)| libm::sqrt(gain) * inverse).collect();
+        let matrix = DMatrix::from_fn(swing.len(), swing.len(), |i, j| {
+            let own = if i == j { inverse[i] * inverse[i] } else { 0.0 };
+            own + sign * swing[i] * swing[j]
+        });
+        let squares = eigenvalues(matrix);
+        squares.iter().rev().map(|square| (*square > 0.0).then(|| 1.0 / libm::sqrt(*square))).collect()
+    }
+}

@@ -1,0 +1,105 @@
+//! A body given by the mass and the stiffness matrix of its structure.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::output::radians;
+use super::reduction::{Observed, Reduction};
+use super::{Damping, Drive, Planar, Weights};
+use crate::quantity::Finite;
+use crate::structure::{Fault, Matrix, Structure};
+
+/// A body by its matrices: M q'' + K q = Q, where one coordinate is the hub's angle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Matrices {
+    /// Mass matrix, symmetric and positive definite (kg m² for angles, kg for displacements).
+    pub mass: Matrix,
+    /// Stiffness matrix, symmetric, without strain in the rotation only (N m/rad for angles, N/m for displacements).
+    pub stiffness: Matrix,
+    /// Names of the coordinates; left out, `q0`, `q1` and so on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub coordinates: Vec<String>,
+    /// Index of the coordinate that is the hub's angle, counted from 0.
+    #[serde(default)]
+    pub hub: u32,
+    /// Displacement of each coordinate under a unit rigid rotation; left out, only the hub's angle turns, and all other
+    /// coordinates are relative to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<Vec<Finite>>,
+    /// What is commanded.
+    #[serde(default)]
+    pub drive: Drive,
+    /// Damping ratio of all modes, or one for each that is kept.
+    #[serde(default)]
+    pub damping: Damping,
+    /// How many of the lowest modes are kept; left out, all up to 1e3 rad/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep: Option<u32>,
+    /// Rigid angle at the start (rad).
+    #[serde(default)]
+    pub angle: Finite,
+    /// Rigid rate at the start (rad/s).
+    #[serde(default)]
+    pub rate: Finite,
+    /// Sums of coordinates that are observed beside the hub's angle.
+    #[serde(default)]
+    pub outputs: Vec<Sum>,
+}
+
+/// A sum of coordinates that is observed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sum {
+    /// Name, such as `tip`.
+    pub name: String,
+    /// Unit.
+    #[serde(default = "radians")]
+    pub unit: String,
+    /// Weight of each coordinate.
+    pub weights: Weights,
+}
+
+impl Matrices {
+    /// The structure, its matrices read.
+    pub fn structure(&self) -> Result<Structure, Fault> {
+        let read =
+            |key: &str, matrix: &Matrix| matrix.read().map_err(|(at, why)| (format!("{key}{at}"), why));
+        let rotation: Option<Vec<f64>> =
+            self.rotation.as_ref().map(|rotation| rotation.iter().map(|r| r.get()).collect());
+        let (mass, stiffness) = (read("mass", &self.mass)?, read("stiffness", &self.stiffness)?);
+        Structure::new(mass, stiffness, self.hub as usize, rotation.as_deref())
+    }
+
+    /// The planar body with the modes of the structure.
+    pub fn solve(&self) -> Result<Planar, Fault> {
+        let structure = self.structure()?;
+        let names = self.names(structure.mass().nrows())?;
+        let observed = |(index, sum): (usize, &Sum)| {
+            let weights = sum.weights.of(&names);
+            let weights = weights.map_err(|why| (format!("outputs[{index}].weights"), why))?;
+            Ok(Observed { name: sum.name.clone(), unit: sum.unit.clone(), weights })
+        };
+        let Self { drive, damping, keep, angle, rate, .. } = self;
+        let outputs = self.outputs.iter().enumerate().map(observed).collect::<Result<_, Fault>>()?;
+        Reduction { drive: *drive, damping, keep: *keep, angle: *angle, rate: *rate, outputs }
+            .planar(&structure)
+    }
+
+    fn names(&self, order: usize) -> Result<Vec<String>, Fault> {
+        if self.coordinates.is_empty() {
+            return Ok((0..order).map(|index| format!("q{index}")).collect());
+        }
+        let found = self.coordinates.len();
+        if found != order {
+            let why = format!("must have one name for each of {order} coordinates, got {found}");
+            return Err(("coordinates".to_owned(), why));
+        }
+        let again = (1..order).find(|i| self.coordinates[..*i].contains(&self.coordinates[*i]));
+        if let Some(index) = again {
+            let why = format!("must differ from the other names, got `{}` again", self.coordinates[index]);
+            return Err((format!("coordinates[{index}]"), why));
+        }
+        Ok(self.coordinates.clone())
+    }
+}

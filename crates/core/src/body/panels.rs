@@ -1,0 +1,181 @@
+//! A body of a hub and equal solar panels, each a chain of rigid sections in elastic hinges (seed paper 2, the example).
+//!
+//! The panels swing alike: antisymmetrically, where there are two. The coordinates are the hub's angle theta and the
+//! displacement v_k of each section's outer end from where the hub's rotation carries it, with x_k its distance from the
+//! axis. Each panel has the kinetic energy
+//!
+//! 1/2 sum mu_k u_k² + (m_k l_k/3) (u_(k-1)² + u_(k-1) u_k + u_k²), u_k = x_k theta' + v_k',
+//!
+//! and the potential energy 1/2 sum c_k (phi_(k+1) - phi_k)² with the sections' angles phi_k = (v_k - v_(k-1))/l_k.
+
+use nalgebra::DMatrix;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::output::radians;
+use super::reduction::{Observed, Reduction};
+use super::{Chain, Damping, Drive, Planar};
+use crate::quantity::{Finite, NonNegative, Positive, Tolerance};
+use crate::structure::{Fault, Structure};
+
+/// No panel has more sections.
+const MOST_SECTIONS: usize = 99;
+
+/// A hub with panels.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Panels {
+    /// Moment of inertia of the hub alone (kg m²).
+    pub hub_inertia: Positive,
+    /// Distance of the first hinge from the axis (m).
+    pub root: NonNegative,
+    /// Number of equal panels.
+    #[serde(default = "two")]
+    pub count: u32,
+    /// Sections of each panel, from the hub outwards.
+    pub sections: Vec<Section>,
+    /// How the sections turn.
+    #[serde(default)]
+    pub kinematics: Kinematics,
+    /// Error of each step of the exact kinematics (rad).
+    #[serde(default = "tight")]
+    pub tolerance: Tolerance,
+    /// What is commanded.
+    #[serde(default)]
+    pub drive: Drive,
+    /// Damping ratio of all modes, or one for each that is kept.
+    #[serde(default)]
+    pub damping: Damping,
+    /// How many of the lowest modes are kept; left out, all up to 1e3 rad/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep: Option<u32>,
+    /// Rigid angle at the start (rad).
+    #[serde(default)]
+    pub angle: Finite,
+    /// Rigid rate at the start (rad/s).
+    #[serde(default)]
+    pub rate: Finite,
+}
+
+/// A section of a panel.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Section {
+    /// Length l (m).
+    pub length: Positive,
+    /// Mass for each unit of length m (kg/m).
+    pub mass_per_length: Positive,
+    /// Mass mu lumped at the outer end (kg).
+    #[serde(default)]
+    pub tip_mass: NonNegative,
+    /// Stiffness c of the hinge at the inner end (N m/rad).
+    pub hinge_stiffness: Positive,
+}
+
+/// How the sections turn.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kinematics {
+    /// By small angles relative to the hub: the motion has modes and a closed form.
+    #[default]
+    Linear,
+    /// By any angles: the motion is integrated. The modes are those of small angles.
+    Exact,
+}
+
+fn two() -> u32 {
+    2
+}
+
+fn tight() -> Tolerance {
+    Tolerance::TIGHT
+}
+
+impl Panels {
+    /// The structure: coordinates theta (rad), v_1, v_2, ... (m).
+    ///
+    /// # Errors
+    /// No panels, no sections, or more than 99 of them.
+    pub fn structure(&self) -> Result<Structure, Fault> {
+        let s = self.sections.len();
+        if !(1..=MOST_SECTIONS).contains(&s) {
+            return Err(("sections".to_owned(), format!("must be 1 to {MOST_SECTIONS}, got {s}")));
+        }
+        if self.count == 0 {
+            return Err(("count".to_owned(), "must be 1 or more, got 0".to_owned()));
+        }
+        let count = f64::from(self.count);
+        let mut mass = DMatrix::zeros(s + 1, s + 1);
+        mass[(0, 0)] = self.hub_inertia.get();
+        let mut stiffness = DMatrix::zeros(s + 1, s + 1);
+        let mut inner = self.root.get();
+        for (k, section) in (1..).zip(&self.sections) {
+            let (l, tip) = (section.length.get(), section.tip_mass.get());
+            let third = section.mass_per_length.get() * l / 3.0;
+            let outer = inner + l;
+            // u_k is a sum over these coordinates; the hinge at the root has no displacement.
+            let ends = [(inner, (k > 1).then(|| k - 1)), (outer, Some(k))];
+            for (a, (xa, va)) in ends.into_iter().enumerate() {
+                for (b, (xb, vb)) in ends.into_iter().enumerate() {
+                    let lumped = if a == 1 && b == 1 { tip } else { 0.0 };
+                    let weight = count * (lumped + if a == b { third } else { 0.5 * third });
+                    for (i, xi) in [(Some(0), xa), (va, 1.0)] {
+                        for (j, xj) in [(Some(0), xb), (vb, 1.0)] {
+                            if let (Some(i), Some(j)) = (i, j) {
+                                mass[(i, j)] += weight * (xi * xj);
+                            }
+                        }
+                    }
+                }
+            }
+            // phi_k - phi_(k-1) is a sum over these displacements.
+            let c = count * section.hinge_stiffness.get();
+            let own = [(k, 1.0, l), (k.wrapping_sub(1), -1.0, l)];
+            let before = self.sections.get(k.wrapping_sub(2)).map(|before| before.length.get());
+            let before = before.map(|l| [(k - 1, -1.0, l), (k.wrapping_sub(2), 1.0, l)]);
+            let parts: Vec<(usize, f64, f64)> =
+                own.into_iter().chain(before.into_iter().flatten()).filter(|(v, ..)| *v > 0).collect();
+            for &(i, sign_i, length_i) in &parts {
+                for &(j, sign_j, length_j) in &parts {
+                    stiffness[(i, j)] += sign_i * sign_j * (c / (length_i * length_j));
+                }
+            }
+            inner = outer;
+        }
+        Structure::new(mass, stiffness, 0, None).map_err(|(_, why)| too_far_apart(&why))
+    }
+
+    /// The exact chain, if the sections turn by any angles.
+    pub fn chain(&self, model: &Planar) -> Option<Chain> {
+        let structure = self.structure().ok().filter(|_| self.kinematics == Kinematics::Exact)?;
+        let lengths: Vec<f64> = self.sections.iter().map(|section| section.length.get()).collect();
+        Some(Chain::new(&lengths, &structure, model, self.tolerance.get()))
+    }
+
+    /// The planar body with the modes of the structure. Its outputs are the angles phi_k of the sections relative to the
+    /// hub (rad): `section_1`, `section_2` and so on.
+    pub fn solve(&self) -> Result<Planar, Fault> {
+        let structure = self.structure()?;
+        let observed = |(index, section): (usize, &Section)| {
+            let mut weights = vec![0.0; self.sections.len() + 1];
+            weights[index + 1] = 1.0 / section.length.get();
+            if index > 0 {
+                weights[index] = -1.0 / section.length.get();
+            }
+            Observed { name: format!("section_{}", index + 1), unit: radians(), weights }
+        };
+        let outputs = self.sections.iter().enumerate().map(observed).collect();
+        let Self { drive, damping, keep, angle, rate, .. } = self;
+        let reduction =
+            Reduction { drive: *drive, damping, keep: *keep, angle: *angle, rate: *rate, outputs };
+        reduction.planar(&structure).map_err(|(key, why)| match key.as_str() {
+            "damping" | "keep" => (key, why),
+            _ => too_far_apart(&why),
+        })
+    }
+}
+
+/// Every panel has modes, unless its numbers are so far apart that rounding takes them.
+fn too_far_apart(why: &str) -> Fault {
+    ("sections".to_owned(), format!("hold numbers too far apart: the matrix {why}"))
+}

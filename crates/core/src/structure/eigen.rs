@@ -1,0 +1,140 @@
+//! The eigenproblem K x = w² M x, exact in the low modes.
+//!
+//! Both matrices are positive definite. With the Cholesky factors K = L L' and M = R R', and B = L⁻¹ R, it is
+//! (B B') y = w⁻² y with x = w L⁻' y: the low modes are the large eigenvalues, which keep all their digits. (Reduced by
+//! the factor of M instead, the errors would be relative to the highest mode.) x' M x = 1.
+
+use faer::{Mat, Side};
+use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+
+/// Up to this order nalgebra solves it, whose result is the same on every machine. Above, faer is many times faster;
+/// its kernels, and so the last digits, depend on the processor.
+const SMALL: usize = 100;
+
+/// The modes: natural frequencies (rad/s), increasing, and for each the values of some linear functionals.
+pub struct Modes {
+    /// Natural frequencies (rad/s), increasing.
+    pub frequencies: Vec<f64>,
+    /// One row for each mode: c' x for each functional c, with x' M x = 1.
+    pub values: DMatrix<f64>,
+}
+
+/// Which matrix is not positive definite.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Indefinite {
+    /// The stiffness matrix.
+    Stiffness,
+    /// The mass matrix.
+    Mass,
+}
+
+/// The modes of a stiffness and a mass matrix, and the values of functionals, the columns of `functionals`.
+pub fn modes(
+    stiffness: DMatrix<f64>,
+    mass: DMatrix<f64>,
+    functionals: &DMatrix<f64>,
+) -> Result<Modes, Indefinite> {
+    let order = stiffness.nrows();
+    let reduced = if order <= SMALL {
+        small(stiffness, mass, functionals)?
+    } else {
+        large(&stiffness, &mass, functionals)?
+    };
+    let mut falling: Vec<usize> = (0..order).collect();
+    falling.sort_by(|a, b| reduced.squares[*b].total_cmp(&reduced.squares[*a]));
+    // What rounding has made of a square far below the largest is a frequency beyond every range.
+    let frequencies: Vec<f64> =
+        falling.iter().map(|n| 1.0 / libm::sqrt(reduced.squares[*n].max(f64::MIN_POSITIVE))).collect();
+    let values =
+        DMatrix::from_fn(order, functionals.ncols(), |n, c| frequencies[n] * reduced.values[(falling[n], c)]);
+    Ok(Modes { frequencies, values })
+}
+
+/// The eigenvalues of a symmetric matrix, increasing. Its lower half is read.
+pub fn values(matrix: DMatrix<f64>) -> Vec<f64> {
+    let mut values = if matrix.nrows() <= SMALL {
+        matrix.symmetric_eigenvalues().as_slice().to_vec()
+    } else {
+        let values = to_faer(&matrix).self_adjoint_eigenvalues(Side::Lower);
+        values.expect("a finite matrix has eigenvalues")
+    };
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// The eigenvalues w⁻² of B B' in any order, and y' L⁻¹ c for each eigenvector and functional.
+struct Reduced {
+    squares: Vec<f64>,
+    values: DMatrix<f64>,
+}
+
+fn small(
+    stiffness: DMatrix<f64>,
+    mass: DMatrix<f64>,
+    functionals: &DMatrix<f64>,
+) -> Result<Reduced, Indefinite> {
+    let factor = |matrix: DMatrix<f64>, indefinite| {
+        let diagonal = matrix.diagonal();
+        let factor = Cholesky::new(matrix).ok_or(indefinite)?.unpack();
+        let pivots = (0..diagonal.len()).map(|i| (factor[(i, i)], diagonal[i]));
+        if is_definite(pivots) { Ok(factor) } else { Err(indefinite) }
+    };
+    let l = factor(stiffness, Indefinite::Stiffness)?;
+    let r = factor(mass, Indefinite::Mass)?;
+    // The factors have no zero on their diagonals.
+    let b = l.solve_lower_triangular(&r).unwrap_or(r);
+    let eigen = SymmetricEigen::new(&b * b.transpose());
+    let functionals = l.solve_lower_triangular(functionals).unwrap_or_else(|| functionals.clone());
+    Ok(Reduced {
+        squares: eigen.eigenvalues.as_slice().to_vec(),
+        values: eigen.eigenvectors.tr_mul(&functionals),
+    })
+}
+
+fn large(
+    stiffness: &DMatrix<f64>,
+    mass: &DMatrix<f64>,
+    functionals: &DMatrix<f64>,
+) -> Result<Reduced, Indefinite> {
+    use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+
+    let factor = |matrix: &DMatrix<f64>, indefinite| {
+        let factor = to_faer(matrix).llt(Side::Lower).map_err(|_| indefinite)?;
+        let pivots = (0..matrix.nrows()).map(|i| (factor.L()[(i, i)], matrix[(i, i)]));
+        if is_definite(pivots) { Ok(factor) } else { Err(indefinite) }
+    };
+    let l = factor(stiffness, Indefinite::Stiffness)?;
+    let mut b = factor(mass, Indefinite::Mass)?.L().to_owned();
+    l.L().solve_lower_triangular_in_place(&mut b);
+    let mut square = Mat::zeros(b.nrows(), b.nrows());
+    matmul(
+        &mut square,
+        BlockStructure::TriangularLower,
+        faer::Accum::Replace,
+        &b,
+        BlockStructure::Rectangular,
+        b.transpose(),
+        BlockStructure::Rectangular,
+        1.0,
+        faer::Par::Seq,
+    );
+    let eigen = square.self_adjoint_eigen(Side::Lower).expect("a finite matrix has eigenvectors");
+    let mut functionals = to_faer(functionals);
+    l.L().solve_lower_triangular_in_place(&mut functionals);
+    let values = eigen.U().transpose() * &functionals;
+    Ok(Reduced {
+        squares: eigen.S().column_vector().iter().copied().collect(),
+        values: DMatrix::from_fn(values.nrows(), values.ncols(), |i, j| values[(i, j)]),
+    })
+}
+
+fn to_faer(matrix: &DMatrix<f64>) -> Mat<f64> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)])
+}
+
+/// Whether the pivots of a Cholesky factor, each with the diagonal element that it comes from, are more than what
+/// rounding leaves of zero.
+fn is_definite(pivots: impl ExactSizeIterator<Item = (f64, f64)>) -> bool {
+    let rounding = pivots.len() as f64 * f64::EPSILON;
+    pivots.into_iter().all(|(pivot, diagonal)| pivot * pivot > rounding * diagonal)
+}

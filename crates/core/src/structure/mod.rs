@@ -1,0 +1,220 @@
+//! A structure given by its mass and stiffness matrices, that turns about one axis: its modes.
+//!
+//! M q'' + K q = Q, where one coordinate is the angle theta of the hub (seed paper 2, equation (7)). A unit rigid rotation
+//! displaces the coordinates by r, so that with q = r theta + e the elastic coordinates e leave the hub out and theta is
+//! the only coordinate without stiffness:
+//!
+//! J theta'' + m' e'' = torque, m theta'' + Mc e'' + Kc e = 0, J = r' M r, m = the elastic part of M r.
+
+mod csv;
+mod eigen;
+mod market;
+mod matrix;
+mod npz;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::body::Drive;
+use eigen::Indefinite;
+pub use eigen::values as eigenvalues;
+pub use matrix::Matrix;
+
+/// The largest order.
+pub const LARGEST: usize = 2000;
+
+/// Differences up to this part of a matrix's largest element are taken for rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// What is wrong: the key, within those that describe the structure, and why.
+pub type Fault = (String, String);
+
+/// A structure that can turn about one axis, and in no other way without strain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Structure {
+    mass: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    hub: usize,
+    rotation: DVector<f64>,
+}
+
+/// The modes of a structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Modes {
+    /// Moment of inertia J about the axis (kg m²).
+    pub inertia: f64,
+    /// Natural frequencies (rad/s), increasing.
+    pub frequencies: Vec<f64>,
+    /// How the hub takes part in each mode of unit modal mass: of the free structure its angle X_n\[theta\]
+    /// (kg⁻¹ᐟ² m⁻¹), of the clamped one its coupling X_n' m (kg¹ᐟ² m; seed paper 2, equations (17) and (18)).
+    pub participations: Vec<f64>,
+    /// For each observed coordinate, what a unit rigid rotation gives.
+    pub rigid: Vec<f64>,
+    /// For each observed coordinate, what each mode of unit modal mass gives.
+    pub shapes: Vec<Vec<f64>>,
+}
+
+impl Structure {
+    /// The structure of a mass and a stiffness matrix (SI, of the order of the coordinates) with the hub's angle (rad) at
+    /// one place. `rotation` is the displacement of each coordinate under a unit rigid rotation; without one only the
+    /// hub's angle turns, and all other coordinates are relative to it.
+    ///
+    /// # Errors
+    /// A matrix that is not square, symmetric and finite, of an order from 2 to 2000; a hub or a rotation that does not
+    /// fit; a rotation that strains the structure. The fault's key is `mass`, `stiffness`, `hub` or `rotation`.
+    pub fn new(
+        mass: DMatrix<f64>,
+        stiffness: DMatrix<f64>,
+        hub: usize,
+        rotation: Option<&[f64]>,
+    ) -> Result<Self, Fault> {
+        let mass = symmetric("mass", mass)?;
+        let stiffness = symmetric("stiffness", stiffness)?;
+        let order = mass.nrows();
+        if stiffness.nrows() != order {
+            let found = stiffness.nrows();
+            return fault(
+                "stiffness",
+                format!("must be {order} x {order}, as the mass, got {found} x {found}"),
+            );
+        }
+        if hub >= order {
+            return fault("hub", format!("must be the index of a coordinate, 0 to {}, got {hub}", order - 1));
+        }
+        if let Some(i) = (0..order).find(|i| mass[(*i, *i)] <= 0.0) {
+            return fault(&format!("mass[{i}][{i}]"), format!("must be positive, got {}", mass[(i, i)]));
+        }
+        let turned = match rotation {
+            None => DVector::from_fn(order, |i, _| if i == hub { 1.0 } else { 0.0 }),
+            Some(turned) if turned.len() == order => DVector::from_column_slice(turned),
+            Some(turned) => {
+                let why =
+                    format!("must have one number for each of {order} coordinates, got {}", turned.len());
+                return fault("rotation", why);
+            }
+        };
+        if turned[hub] != 1.0 {
+            let why = format!("must be 1, as the angle of the hub itself, got {}", turned[hub]);
+            return fault(&format!("rotation[{hub}]"), why);
+        }
+        let strain = &stiffness * &turned;
+        let bound = ROUNDING * stiffness.amax() * turned.amax();
+        if let Some(i) = (0..order).find(|i| strain[*i].abs() > bound) {
+            let why = if rotation.is_some() {
+                format!("must strain nothing, but the stiffness gives {} for coordinate {i}", strain[i])
+            } else {
+                format!(
+                    "must be 0, as the hub's angle alone strains nothing, got {}; if other coordinates turn with the \
+                     hub, say by how much in `rotation`",
+                    strain[i]
+                )
+            };
+            let key = rotation.map_or_else(|| format!("stiffness[{i}][{hub}]"), |_| "rotation".to_owned());
+            return Err((key, why));
+        }
+        Ok(Self { mass, stiffness, hub, rotation: turned })
+    }
+
+    /// The mass matrix, of the order of the coordinates.
+    pub fn mass(&self) -> &DMatrix<f64> {
+        &self.mass
+    }
+
+    /// The stiffness matrix, of the order of the coordinates.
+    pub fn stiffness(&self) -> &DMatrix<f64> {
+        &self.stiffness
+    }
+
+    /// The elastic modes: those of the free structure where a torque is commanded, of the clamped one where the hub's
+    /// motion is. An observed coordinate is a sum of coordinates with these weights.
+    ///
+    /// # Errors
+    /// A matrix that is not positive definite.
+    pub fn modes(&self, drive: Drive, observed: &[Vec<f64>]) -> Result<Modes, Fault> {
+        let elastic: Vec<usize> = (0..self.mass.nrows()).filter(|i| *i != self.hub).collect();
+        let order = elastic.len();
+        let momenta = &self.mass * &self.rotation;
+        let inertia = momenta.dot(&self.rotation);
+        let coupling = DVector::from_fn(order, |i, _| momenta[elastic[i]]);
+        if inertia <= 0.0 {
+            return fault("mass", format!("{DEFINITE}, but the moment of inertia is {inertia}"));
+        }
+        let block =
+            |matrix: &DMatrix<f64>| DMatrix::from_fn(order, order, |i, j| matrix[(elastic[i], elastic[j])]);
+        let mut mass = block(&self.mass);
+        if drive == Drive::Torque {
+            mass.ger(-1.0 / inertia, &coupling, &coupling, 1.0);
+        }
+        let functionals = DMatrix::from_fn(order, 1 + observed.len(), |i, column| match column {
+            0 => coupling[i],
+            _ => observed[column - 1][elastic[i]],
+        });
+        let solved = eigen::modes(block(&self.stiffness), mass, &functionals).map_err(|which| match which {
+            Indefinite::Mass => ("mass".to_owned(), format!("{DEFINITE}, and is not")),
+            Indefinite::Stiffness => (
+                "stiffness".to_owned(),
+                format!(
+                    "{DEFINITE} with the hub held, and is not: the structure has another motion without strain \
+                     beside the rotation, or a negative stiffness"
+                ),
+            ),
+        })?;
+        let couplings = solved.values.column(0);
+        if drive == Drive::Motion && couplings.norm_squared() >= inertia {
+            return fault("mass", format!("{DEFINITE}, and is not"));
+        }
+        let rigid: Vec<f64> = observed.iter().map(|weights| dot(weights, self.rotation.as_slice())).collect();
+        let participations: Vec<f64> = match drive {
+            Drive::Torque => couplings.iter().map(|coupling| -coupling / inertia).collect(),
+            Drive::Motion => couplings.iter().copied().collect(),
+        };
+        // A free mode moves the hub too, and with it all that turns with the hub.
+        let turns = |n: usize, rigid: f64| match drive {
+            Drive::Torque => rigid * participations[n],
+            Drive::Motion => 0.0,
+        };
+        let shape = |(c, rigid): (usize, &f64)| {
+            (0..order).map(|n| solved.values[(n, c + 1)] + turns(n, *rigid)).collect()
+        };
+        let shapes = rigid.iter().enumerate().map(shape).collect();
+        Ok(Modes { inertia, frequencies: solved.frequencies, participations, rigid, shapes })
+    }
+}
+
+const DEFINITE: &str = "must be positive definite";
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
+}
+
+fn fault<T>(key: &str, why: String) -> Result<T, Fault> {
+    Err((key.to_owned(), why))
+}
+
+/// A matrix that is square, finite and symmetric to rounding, made symmetric to the last digit.
+fn symmetric(key: &str, mut matrix: DMatrix<f64>) -> Result<DMatrix<f64>, Fault> {
+    let (order, columns) = matrix.shape();
+    if order != columns {
+        return fault(key, format!("must be square, got {order} x {columns}"));
+    }
+    if !(2..=LARGEST).contains(&order) {
+        return fault(key, format!("must be of order 2 to {LARGEST}, got {order} x {order}"));
+    }
+    let places = || (0..order).flat_map(|i| (0..order).map(move |j| (i, j)));
+    if let Some((i, j)) = places().find(|place| !matrix[*place].is_finite()) {
+        return fault(
+            &format!("{key}[{i}][{j}]"),
+            format!("must be a finite number, got {}", matrix[(i, j)]),
+        );
+    }
+    let bound = ROUNDING * matrix.amax();
+    for (i, j) in places().filter(|(i, j)| i > j) {
+        let (lower, upper) = (matrix[(i, j)], matrix[(j, i)]);
+        if (lower - upper).abs() > bound {
+            let why = format!("must be symmetric: element [{i}][{j}] is {lower}, [{j}][{i}] is {upper}");
+            return fault(&format!("{key}[{i}][{j}]"), why);
+        }
+        let mean = 0.5 * (lower + upper);
+        (matrix[(i, j)], matrix[(j, i)]) = (mean, mean);
+    }
+    Ok(matrix)
+}
