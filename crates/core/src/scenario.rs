@@ -13,6 +13,7 @@ use crate::body::Body;
 use crate::document::{Document, ScenarioError, key};
 use crate::estimator::{Estimator, Form};
 use crate::law::Law;
+use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::quantity::{Finite, Positive};
 use crate::sensor::Sensor;
 use crate::time::Span;
@@ -48,6 +49,12 @@ pub struct Scenario {
     /// What is adapted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adaptation: Option<Adaptation>,
+    /// What is planned ahead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<Manoeuvre>,
+    /// The plan of the manoeuvre.
+    #[serde(skip)]
+    pub plan: Option<Plan>,
     /// What commands the torque.
     pub law: Law,
     /// What a full log holds.
@@ -117,10 +124,27 @@ impl Scenario {
             let stem = Path::new(document.origin()).file_stem();
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
         }
+        let inconsistent = |(key, why): (String, String)| document.inconsistent(&key, &why);
         match scenario.inconsistency() {
-            None => Ok(scenario),
-            Some((key, why)) => Err(document.inconsistent(&key, &why)),
+            None => scenario.plan = scenario.planned().map_err(inconsistent)?,
+            Some(problem) => return Err(inconsistent(problem)),
         }
+        Ok(scenario)
+    }
+
+    /// The plan of the manoeuvre, if there is one.
+    fn planned(&self) -> Result<Option<Plan>, (String, String)> {
+        let Some(manoeuvre) = &self.manoeuvre else { return Ok(None) };
+        let Body::Planar(body) = &self.body;
+        let (start, rate) = (manoeuvre.start_rate.get(), body.rate.get());
+        if start != rate {
+            let why = format!("must be the body's rate at the start, {rate}, got {start}");
+            return Err(("manoeuvre.start_rate".to_owned(), why));
+        }
+        manoeuvre.plan(body).map(Some).map_err(|(key, why)| match key.as_str() {
+            "" => ("manoeuvre".to_owned(), why),
+            key => (format!("manoeuvre.{key}"), why),
+        })
     }
 
     /// The scenario with all its defaults, as a table.
