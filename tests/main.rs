@@ -12,6 +12,7 @@ mod logs;
 mod manoeuvres;
 mod plot;
 mod relay;
+mod rivals;
 mod spacecraft;
 mod stops;
 mod study;
