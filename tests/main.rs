@@ -1,6 +1,7 @@
 //! All integration tests of flexsc, one binary.
 
 mod adaptation;
+mod bad_manoeuvres;
 mod bad_scenarios;
 mod campaigns;
 mod cli;
@@ -10,6 +11,7 @@ mod events;
 mod layout;
 mod logs;
 mod manoeuvres;
+mod plan;
 mod plot;
 mod relay;
 mod rivals;
@@ -17,3 +19,4 @@ mod spacecraft;
 mod stops;
 mod study;
 mod util;
+mod waveforms;

@@ -1,7 +1,5 @@
 //! The field: the commands that a planned manoeuvre is compared with, on the same body.
 
-use std::num::NonZeroU32;
-
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -115,11 +113,7 @@ fn lowest(suppress: usize) -> Suppression {
 }
 
 fn target(mode: usize, shift: f64, times: u32) -> Target {
-    Target {
-        mode,
-        shift: Finite::new(shift).unwrap_or_default(),
-        times: NonZeroU32::new(times).unwrap_or(NonZeroU32::MIN),
-    }
+    Target { mode, shift: Finite::new(shift).unwrap_or_default(), times }
 }
 
 /// So many lowest modes have double zeros: the first, the first two, all.

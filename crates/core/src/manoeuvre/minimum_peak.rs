@@ -15,8 +15,8 @@ use super::suppression::Zero;
 use super::task::Task;
 use super::waveform::Waveform;
 
-/// Newton's steps at most; some ten are needed.
-const STEPS: usize = 200;
+/// Newton's steps at most; some thirty are needed.
+const STEPS: usize = 400;
 /// Samples in the shortest period of f.
 const SAMPLES: f64 = 64.0;
 
@@ -70,32 +70,33 @@ impl Search {
 
     fn solve(&self) -> Option<Bang> {
         let mut weights = self.adjoint.least(&self.target)?;
+        let start = self.bang(&weights);
+        weights *= weights.dot(&self.target) / (start.amplitude * start.amplitude);
         let mut bang = self.bang(&weights);
-        weights *= weights.dot(&self.target) / (bang.amplitude * bang.amplitude);
-        bang = self.bang(&weights);
         let mut value = self.value(&weights, &bang);
         let mut gradient = self.gap(&bang);
+        // Where there are fewer switchings than functions the second derivatives leave directions flat, and where
+        // two merge they have no bound: the steps are damped (Levenberg).
+        let mut damping = 1e-2;
         for _ in 0..STEPS {
-            if gradient.amax() < 1e-14 {
+            if gradient.amax() < 1e-14 || damping > 1e8 {
                 break;
             }
-            let step = self.curvature(&weights, &bang).cholesky()?.solve(&-&gradient);
-            let slope = gradient.dot(&step);
-            let mut part = 1.0;
-            let (next, next_bang, next_value, next_gradient) = loop {
-                let next = &weights + &step * part;
-                let bang = self.bang(&next);
-                let (reached, left) = (self.value(&next, &bang), self.gap(&bang));
+            let mut curvature = self.curvature(&weights, &bang);
+            let ridge = damping * curvature.trace() / self.adjoint.len() as f64;
+            (0..self.adjoint.len()).for_each(|j| curvature[(j, j)] += ridge);
+            let step = curvature.cholesky().map(|factor| factor.solve(&-&gradient));
+            let next = step.map(|step| &weights + step);
+            let reached = next.map(|weights| (self.bang(&weights), weights));
+            damping *= 10.0;
+            if let Some((next, next_weights)) = reached {
+                let (next_value, next_gradient) = (self.value(&next_weights, &next), self.gap(&next));
                 // Near the end the value no longer tells, but the gradient does.
-                if reached <= value + 1e-4 * part * slope || left.norm() < 0.5 * gradient.norm() {
-                    break (next, bang, reached, left);
+                if next_value < value || next_gradient.norm() < 0.5 * gradient.norm() {
+                    (weights, bang, value, gradient) = (next_weights, next, next_value, next_gradient);
+                    damping = (damping * 1e-2).max(1e-15);
                 }
-                part *= 0.5;
-                if part < 1e-12 {
-                    return self.polished(bang, &gradient);
-                }
-            };
-            (weights, bang, value, gradient) = (next, next_bang, next_value, next_gradient);
+            }
         }
         self.polished(bang, &gradient)
     }
@@ -160,11 +161,6 @@ impl Search {
             let slope: f64 = self.adjoint.slopes(*rho).zip(weights.iter()).map(|(g, w)| g * w).sum();
             let floor = 1e-9 * bang.amplitude;
             curvature += &g * g.transpose() * (2.0 * bang.amplitude / slope.abs().max(floor));
-        }
-        // Fewer switchings than functions leave directions flat.
-        let ridge = 1e-13 * curvature.trace();
-        for j in 0..self.adjoint.len() {
-            curvature[(j, j)] += ridge;
         }
         curvature
     }

@@ -1,7 +1,5 @@
 //! Which modes a command leaves at rest.
 
-use std::num::NonZeroU32;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -36,11 +34,11 @@ pub struct Target {
     pub shift: Finite,
     /// So many times: each time more flattens the spectrum there by one derivative with frequency.
     #[serde(default = "once")]
-    pub times: NonZeroU32,
+    pub times: u32,
 }
 
-fn once() -> NonZeroU32 {
-    NonZeroU32::MIN
+fn once() -> u32 {
+    1
 }
 
 /// A zero that a command has: it leaves a mode of this frequency and damping at rest.
@@ -69,7 +67,7 @@ impl Suppression {
     /// The zeros, by frequency. `place` is the key of the table.
     pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Refusal> {
         let mut zeros = lowest(self.suppress, modes, place)?;
-        let beside: usize = self.zeros.iter().map(|target| target.times.get() as usize).sum();
+        let beside: usize = self.zeros.iter().map(|target| target.times as usize).sum();
         if zeros.len() + beside > MOST {
             let why = format!(
                 "must make at most {MOST} zeros together with `suppress`, got {}",
@@ -87,8 +85,11 @@ impl Suppression {
                 let why = format!("must be above -1, for a frequency above 0, got {}", target.shift.get());
                 return Err((key("shift"), why));
             }
+            if target.times == 0 {
+                return Err((key("times"), "must be 1 or more, got 0".to_owned()));
+            }
             let zero = Zero { frequency: factor * mode.frequency.get(), damping: mode.damping.get() };
-            zeros.extend(std::iter::repeat_n(zero, target.times.get() as usize));
+            zeros.extend(std::iter::repeat_n(zero, target.times as usize));
         }
         zeros.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
         Ok(zeros)
