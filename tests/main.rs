@@ -1,6 +1,7 @@
 //! All integration tests of flexsc, one binary.
 
 mod adaptation;
+mod bad_manoeuvres;
 mod bad_scenarios;
 mod campaigns;
 mod cli;
@@ -9,9 +10,14 @@ mod determinism;
 mod events;
 mod layout;
 mod logs;
+mod manoeuvres;
+mod plan;
 mod plot;
 mod relay;
+mod rivals;
+mod spacecraft;
 mod stops;
 mod structure;
 mod study;
 mod util;
+mod waveforms;

@@ -8,6 +8,7 @@ mod failure;
 mod figure;
 mod log;
 mod modes;
+mod plan;
 mod plot;
 mod progress;
 mod scenario;
@@ -43,6 +44,8 @@ enum Verb {
     Modes(scenario::Args),
     /// Tell the limit cycles of a scenario's relay law on a rigid body, and its resonances
     Cycle(scenario::Args),
+    /// Plan the manoeuvre of a scenario, or compare it with every other command
+    Plan(plan::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
     /// Print a topic of a log as a table
@@ -76,6 +79,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Sweep(args) => sweep::run(&args),
         Verb::Modes(args) => modes::run(&args),
         Verb::Cycle(args) => cycle::run(&args),
+        Verb::Plan(args) => plan::run(&args),
         Verb::Plot(args) => plot::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use flexsc_core::Scenario;
+use flexsc_core::body::Drive;
 use flexsc_core::law::Law;
 use flexsc_core::metrics::{Metrics, Value};
 
@@ -64,9 +65,13 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
             number("residual_energy_j"),
         );
     }
+    let (name, unit) = match scenario.model.drive {
+        Drive::Torque => ("torque", "N m"),
+        Drive::Motion => ("acceleration", "rad/s²"),
+    };
     let feedback = number("peak_feedback_torque_nm");
-    let of_it = if feedback > 0.0 { format!(", of the law {feedback:.3} N m") } else { String::new() };
-    say!("  torque         at most {:.3} N m{of_it}", number("peak_torque_nm"));
+    let of_it = if feedback > 0.0 { format!(", of the law {feedback:.4e} {unit}") } else { String::new() };
+    say!("  {name:<14} at most {:.4e} {unit}{of_it}", number("peak_torque_nm"));
     say!(
         "  angle          at most {:.3e} rad from the goal after it, {:.3e} rad over the last 5 s",
         number("angle_error_peak_rad"),

@@ -15,7 +15,7 @@ use crate::disturbance::Disturbance;
 use crate::document::{Document, ScenarioError, key};
 use crate::estimator::{Estimator, Form};
 use crate::law::{Goal, Law};
-use crate::manoeuvre::Plan;
+use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
@@ -54,6 +54,12 @@ pub struct Scenario {
     /// What is adapted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adaptation: Option<Adaptation>,
+    /// What is planned ahead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<Manoeuvre>,
+    /// The plan of the manoeuvre.
+    #[serde(skip)]
+    pub plan: Option<Plan>,
     /// What commands the torque. Only a scenario with a manoeuvre can do without.
     #[serde(default)]
     pub law: Law,
@@ -72,9 +78,6 @@ pub struct Scenario {
     /// Distributions of keys that a campaign draws anew for each run.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertain: BTreeMap<String, Distribution>,
-    /// The manoeuvre as planned on the model.
-    #[serde(skip)]
-    pub plan: Option<Plan>,
     /// The exact chain, where the scenario asks for it.
     #[serde(skip)]
     pub chain: Option<Chain>,
@@ -154,13 +157,29 @@ impl Scenario {
             })?,
         };
         scenario.chain = scenario.body.chain(&scenario.model);
-        if matches!(scenario.law, Law::Open(_)) && !document.has("law") && scenario.plan.is_none() {
+        if matches!(scenario.law, Law::Open(_)) && !document.has("law") && scenario.manoeuvre.is_none() {
             return Err(document.missing("law"));
         }
+        let inconsistent = |(key, why): (String, String)| document.inconsistent(&key, &why);
         match scenario.inconsistency() {
-            None => Ok(scenario),
-            Some((key, why)) => Err(document.inconsistent(&key, &why)),
+            None => scenario.plan = scenario.planned().map_err(inconsistent)?,
+            Some(problem) => return Err(inconsistent(problem)),
         }
+        Ok(scenario)
+    }
+
+    /// The plan of the manoeuvre, if there is one.
+    fn planned(&self) -> Result<Option<Plan>, (String, String)> {
+        let Some(manoeuvre) = &self.manoeuvre else { return Ok(None) };
+        let (start, rate) = (manoeuvre.start_rate.get(), self.model.rate.get());
+        if start != rate {
+            let why = format!("must be the body's rate at the start, {rate}, got {start}");
+            return Err(("manoeuvre.start_rate".to_owned(), why));
+        }
+        manoeuvre.plan(&self.model).map(Some).map_err(|(key, why)| match key.as_str() {
+            "" => ("manoeuvre".to_owned(), why),
+            key => (format!("manoeuvre.{key}"), why),
+        })
     }
 
     /// The scenario with all its defaults, as a table.
@@ -254,7 +273,7 @@ impl Scenario {
             let why = format!("must be less than the dead zone's width of {width}, got {gamma}");
             return at("law.relay.hysteresis", why);
         }
-        if self.plan.is_some() {
+        if self.manoeuvre.is_some() {
             let why = "holds the angle at 0: with a `[manoeuvre]` the law is `pd` or left out";
             return at("law.relay", why.to_owned());
         }
@@ -264,7 +283,7 @@ impl Scenario {
     fn drive_inconsistency(&self) -> Option<(String, String)> {
         let at = |key: &str, why: String| Some((key.to_owned(), why));
         let estimates = self.estimator.is_some();
-        if self.plan.is_some() && estimates {
+        if self.manoeuvre.is_some() && estimates {
             let why = "follows torques that are constant between switchings, not a `[manoeuvre]`";
             return at("estimator.envelope", why.to_owned());
         }

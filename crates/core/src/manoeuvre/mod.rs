@@ -1,18 +1,105 @@
 //! Manoeuvres: rotations planned ahead, whose command leaves the elastic modes at rest.
 
+mod adjoint;
+mod bang_bang;
+mod command;
+mod effort;
+mod extremum;
+mod field;
+mod history;
+mod minimum_energy;
+mod minimum_peak;
+mod phi;
+mod plan;
+mod planner;
+mod polynomial;
+mod quadrature;
+mod report;
+mod residual;
+mod series;
+mod shaper;
+mod suppression;
+mod task;
+mod timing;
 mod waveform;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::body::Planar;
+use crate::quantity::{Finite, Positive};
+use crate::time::Span;
+
+pub use command::{BangBang, Command, MinimumPeak, Polynomial};
+pub use effort::Effort;
+pub use extremum::Peak;
+pub use field::{Common, Outcome, Rival, Row, compare, field};
+pub use plan::Plan;
+pub use report::{Report, Tuned};
+pub use residual::Residual;
+pub use series::Coefficients;
+pub use shaper::{ExtraInsensitive, Impulse, Shaped, Shaper};
+pub use suppression::{Suppression, Target};
 pub use waveform::{Shape, Term, Waveform};
 
-/// A manoeuvre as planned.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
-    /// The command.
-    pub waveform: Waveform,
-    /// How long it lasts (s).
-    pub time: f64,
-    /// Rigid angle gained (rad).
-    pub angle: f64,
-    /// Rate at the end (rad/s).
-    pub end_rate: f64,
+use planner::Planner;
+
+/// Why a manoeuvre cannot be planned: the key, below that of the manoeuvre itself, and what is wrong with it.
+pub type Refusal = (String, String);
+
+/// A manoeuvre as a scenario describes it. The body's modes rest at its start.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Manoeuvre {
+    /// The angle by which the rigid body turns (rad).
+    pub angle: Finite,
+    /// Time of the manoeuvre (s). Left out, the shortest that the peak torque allows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<Span>,
+    /// Largest torque (N m); beside a time, a limit that the plan has to keep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_torque: Option<Positive>,
+    /// Rate before (rad/s): that of the body at its start.
+    #[serde(default)]
+    pub start_rate: Finite,
+    /// Rate after (rad/s).
+    #[serde(default)]
+    pub end_rate: Finite,
+    /// What turns the body.
+    pub command: Command,
+    /// What the command is convolved with; it takes a part of the time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shaper: Option<Shaper>,
+}
+
+impl Manoeuvre {
+    /// The plan of the manoeuvre for a body.
+    pub fn plan(&self, body: &Planar) -> Result<Plan, Refusal> {
+        if let Some(index) = body.modes.iter().position(|mode| mode.damping.get() >= 1.0) {
+            let damping = body.modes[index].damping.get();
+            let why = format!("needs modes that oscillate, and the damping of mode {index} is {damping}");
+            return Err(("command".to_owned(), why));
+        }
+        let planner = Planner::new(self, body)?;
+        match (self.time.map(Span::seconds), self.peak_torque.map(Positive::get)) {
+            (None, None) => Err((String::new(), "needs a `time`, a `peak_torque` or both".to_owned())),
+            (None, Some(limit)) => timing::shortest(&planner, limit),
+            (Some(time), None) => planner.plan(time),
+            (Some(time), Some(limit)) => {
+                let plan = planner.plan(time)?;
+                let peak = plan.peak_torque(body).value;
+                // A limit that is the peak itself as it was printed.
+                if peak <= limit * (1.0 + 1e-9) {
+                    return Ok(plan);
+                }
+                let takes = match timing::shortest(&planner, limit) {
+                    Ok(longer) => format!("with {limit} N m it takes {:.6} s", longer.time),
+                    Err(_) => format!("with {limit} N m no time is enough"),
+                };
+                let why =
+                    format!("must be at least {peak:.6} N m for a time of {time} s, got {limit}; {takes}");
+                Err(("peak_torque".to_owned(), why))
+            }
+        }
+    }
 }

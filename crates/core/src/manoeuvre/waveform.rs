@@ -1,5 +1,6 @@
 //! Waveforms: a command over time as a sum of terms, and the exact response of a mode to it.
 
+use super::phi::{exp, moment, phi};
 use crate::phasor::{Complex, Phasor};
 
 /// A command over time: the sum of its terms. Units are those of the command (N m, or rad/s² where the hub's motion
@@ -35,13 +36,35 @@ pub enum Shape {
         /// Amplitude of the sine.
         sine: f64,
     },
+    /// Re(exp(pole (t - from)) sum c\[n\] (t - from)^n).
+    Exponential {
+        /// Growth (1/s) and frequency (rad/s).
+        pole: Phasor,
+        /// The coefficients c.
+        coefficients: Vec<Phasor>,
+    },
 }
 
 impl Waveform {
     /// The value at a time (s), right-continuous.
     pub fn at(&self, t: f64) -> f64 {
-        let active = self.terms.iter().filter(|term| term.from <= t && t < term.to);
+        self.on_piece(t, t)
+    }
+
+    /// The value at a time (s) of the terms that are active around another: at a break, the limit from that side.
+    pub fn on_piece(&self, middle: f64, t: f64) -> f64 {
+        let active = self.terms.iter().filter(|term| term.from <= middle && middle < term.to);
         active.map(|term| term.value(t)).sum()
+    }
+
+    /// The largest frequency of a term (rad/s).
+    pub fn fastest(&self) -> f64 {
+        let frequency = |term: &Term| match &term.shape {
+            Shape::Polynomial(c) => (c.len() as f64 - 1.0).max(0.0) / (term.to - term.from),
+            Shape::Harmonic { frequency, .. } => frequency.abs(),
+            Shape::Exponential { pole, .. } => crate::phasor::abs(*pole),
+        };
+        self.terms.iter().map(frequency).fold(0.0, f64::max)
     }
 
     /// The times at which a term begins or ends (s), in order, each once.
@@ -55,6 +78,19 @@ impl Waveform {
     /// When the last term ends (s).
     pub fn end(&self) -> f64 {
         self.terms.iter().map(|term| term.to).fold(0.0, f64::max)
+    }
+
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        self.terms.iter().all(|term| match &term.shape {
+            Shape::Polynomial(c) => c.iter().all(|c| c.is_finite()),
+            Shape::Harmonic { frequency, cosine, sine } => {
+                frequency.is_finite() && cosine.is_finite() && sine.is_finite()
+            }
+            Shape::Exponential { pole, coefficients } => {
+                coefficients.iter().chain([pole]).all(|c| c.re.is_finite() && c.im.is_finite())
+            }
+        })
     }
 
     /// The integral of exp(pole (to - t)) u(t) from one time to another (s): what drives a mode of this pole.
@@ -86,6 +122,10 @@ impl Waveform {
                 Shape::Harmonic { frequency, cosine, sine } => {
                     Shape::Harmonic { frequency: *frequency, cosine: cosine * factor, sine: sine * factor }
                 }
+                Shape::Exponential { pole, coefficients } => Shape::Exponential {
+                    pole: *pole,
+                    coefficients: coefficients.iter().map(|c| c * factor).collect(),
+                },
             },
         };
         Self { terms: self.terms.iter().map(shift).collect() }
@@ -102,27 +142,32 @@ impl Term {
                 let (s, c) = libm::sincos(frequency * t);
                 cosine * c + sine * s
             }
+            Shape::Exponential { pole, coefficients } => {
+                let sum = coefficients.iter().rev().fold(Phasor::default(), |sum, c| sum * t + c);
+                (exp(pole * t) * sum).re
+            }
         }
     }
 
     fn response(&self, pole: Phasor, from: f64, to: f64) -> Phasor {
         let Some((start, end)) = self.within(from, to) else { return Phasor::default() };
         let h = end - start;
-        let driven = match &self.shape {
-            Shape::Polynomial(c) => {
-                let mut power = h; // n! h^(n + 1)
-                let mut sum = Phasor::default();
-                for (n, c) in rebased(c, start - self.from).into_iter().enumerate() {
-                    sum += phi(n + 1, pole * h) * (c * power);
-                    power *= h * (n + 1) as f64;
-                }
-                sum
+        let part = |own: Phasor, coefficients: Vec<Phasor>| {
+            let mut power = h; // n! h^(n + 1)
+            let mut sum = Phasor::default();
+            for (n, c) in coefficients.into_iter().enumerate() {
+                sum += phi(n + 1, (pole - own) * h) * c * power;
+                power *= h * (n + 1) as f64;
             }
-            Shape::Harmonic { frequency, .. } => {
-                let phasor = self.phasor(start);
-                let i = Complex { re: 0.0, im: *frequency };
-                let swing = |i: Phasor| exp(pole * h) * phi(1, (i - pole) * h) * h;
-                (phasor * swing(i) + phasor.conj() * swing(-i)) * 0.5
+            exp(own * h) * sum
+        };
+        let (own, coefficients) = self.about(start);
+        let driven = match self.shape {
+            Shape::Polynomial(_) => part(own, coefficients),
+            // The real part of the shape is half the sum of it and its conjugate.
+            _ => {
+                let conjugate = coefficients.iter().map(Phasor::conj).collect();
+                (part(own, coefficients) + part(own.conj(), conjugate)) * 0.5
             }
         };
         if end < to { driven * exp(pole * (to - end)) } else { driven }
@@ -131,24 +176,24 @@ impl Term {
     fn travel(&self, from: f64, to: f64) -> f64 {
         let Some((start, end)) = self.within(from, to) else { return 0.0 };
         let h = end - start;
-        let (impulse, travel) = match &self.shape {
-            Shape::Polynomial(c) => {
-                let mut power = h;
-                let (mut impulse, mut travel) = (0.0, 0.0);
-                for (n, c) in rebased(c, start - self.from).into_iter().enumerate() {
+        let (own, coefficients) = self.about(start);
+        let (mut impulse, mut travel) = (0.0, 0.0);
+        let mut power = h;
+        for (n, c) in coefficients.into_iter().enumerate() {
+            // Integrals of t^n exp(z t) and of (1 - t) t^n exp(z t) from 0 to 1.
+            let z = own * h;
+            let (whole, left) = match (n, &self.shape) {
+                (_, Shape::Polynomial(_)) => {
                     let n = n as f64;
-                    impulse += c * power / (n + 1.0);
-                    travel += c * power * h / ((n + 1.0) * (n + 2.0));
-                    power *= h;
+                    (Phasor::new(1.0 / (n + 1.0), 0.0), Phasor::new(1.0 / ((n + 1.0) * (n + 2.0)), 0.0))
                 }
-                (impulse, travel)
-            }
-            Shape::Harmonic { frequency, .. } => {
-                let phasor = self.phasor(start);
-                let turn = Complex { re: 0.0, im: frequency * h };
-                ((phasor * phi(1, turn)).re * h, (phasor * phi(2, turn)).re * h * h)
-            }
-        };
+                (0, _) => (phi(1, z), phi(2, z)),
+                _ => (moment(n, z), moment(n, z) - moment(n + 1, z)),
+            };
+            impulse += (c * whole).re * power;
+            travel += (c * left).re * power * h;
+            power *= h;
+        }
         travel + impulse * (to - end)
     }
 
@@ -158,56 +203,31 @@ impl Term {
         (start < end).then_some((start, end))
     }
 
-    /// A harmonic as Re(phasor exp(i frequency (t - at))).
-    fn phasor(&self, at: f64) -> Phasor {
-        match self.shape {
+    /// The shape as Re(exp(pole t) sum c\[n\] t^n) in the time t since another origin: its pole and c.
+    fn about(&self, origin: f64) -> (Phasor, Vec<Phasor>) {
+        let since = origin - self.from;
+        let (pole, coefficients) = match &self.shape {
+            Shape::Polynomial(c) => (Phasor::default(), c.iter().map(|c| Phasor::new(*c, 0.0)).collect()),
             Shape::Harmonic { frequency, cosine, sine } => {
-                let turn = exp(Complex { re: 0.0, im: frequency * (at - self.from) });
-                Complex { re: cosine, im: -sine } * turn
+                (Complex { re: 0.0, im: *frequency }, vec![Complex { re: *cosine, im: -sine }])
             }
-            Shape::Polynomial(_) => Phasor::default(),
+            Shape::Exponential { pole, coefficients } => (*pole, coefficients.clone()),
+        };
+        if since == 0.0 {
+            return (pole, coefficients);
         }
+        let turn = exp(pole * since);
+        (pole, rebased(coefficients, since).into_iter().map(|c| c * turn).collect())
     }
 }
 
 /// The coefficients of a polynomial about another origin.
-fn rebased(coefficients: &[f64], origin: f64) -> Vec<f64> {
-    let mut c = coefficients.to_vec();
-    if origin != 0.0 {
-        for low in 0..c.len() {
-            for n in (low..c.len() - 1).rev() {
-                c[n] += origin * c[n + 1];
-            }
+fn rebased(mut c: Vec<Phasor>, origin: f64) -> Vec<Phasor> {
+    for low in 0..c.len() {
+        for n in (low..c.len() - 1).rev() {
+            let above = c[n + 1];
+            c[n] += above * origin;
         }
     }
     c
-}
-
-fn exp(z: Phasor) -> Phasor {
-    crate::phasor::polar(libm::exp(z.re), z.im)
-}
-
-/// phi_n(z) = sum z^k/(n + k)! = the integral of exp(z (1 - t)) t^(n-1)/(n-1)! from 0 to 1.
-fn phi(n: usize, z: Phasor) -> Phasor {
-    let size = crate::phasor::abs(z);
-    if size < (n + 1) as f64 {
-        // Each term is smaller than the one before: nothing cancels.
-        let mut term = Phasor::new((1..=n).fold(1.0, |product, k| product / k as f64), 0.0);
-        let mut sum = term;
-        let mut k = n;
-        while crate::phasor::abs(term) > 1e-18 * crate::phasor::abs(sum) {
-            k += 1;
-            term = term * z / k as f64;
-            sum += term;
-        }
-        return sum;
-    }
-    // Upwards from exp, which |z| > n keeps from growing errors.
-    let mut factorial = 1.0;
-    let mut value = exp(z);
-    for k in 0..n {
-        value = (value - 1.0 / factorial) / z;
-        factorial *= (k + 1) as f64;
-    }
-    value
 }

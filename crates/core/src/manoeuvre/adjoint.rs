@@ -1,0 +1,160 @@
+//! The adjoint functions of a body: a command leaves rigid body and modes where it should if its products with them
+//! are right.
+//!
+//! They are functions of the part rho = (T - t)/T of the time that is left: 1, rho - 1/2, and for each zero the real and
+//! the imaginary part of exp(pole T rho), times rho, rho², ... where it is repeated.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::phi::{exp, moment};
+use super::suppression::Zero;
+use super::task::Task;
+use super::waveform::{Shape, Term, Waveform};
+use crate::phasor::Phasor;
+
+/// Re(exp(pole rho) sum c\[n\] rho^n).
+struct Function {
+    pole: Phasor,
+    coefficients: Vec<Phasor>,
+}
+
+/// The adjoint functions of a task, and the products that its command must have with them.
+pub struct Adjoint {
+    time: f64,
+    functions: Vec<Function>,
+}
+
+impl Adjoint {
+    /// The adjoint functions of a rigid body and these zeros, which are in order of their frequency.
+    pub fn new(time: f64, zeros: &[Zero]) -> Self {
+        let real = |c: &[f64]| Function {
+            pole: Phasor::default(),
+            coefficients: c.iter().map(|c| Phasor::new(*c, 0.0)).collect(),
+        };
+        let mut functions = vec![real(&[1.0]), real(&[-0.5, 1.0])];
+        let mut times = 0;
+        for (index, zero) in zeros.iter().enumerate() {
+            times = if index > 0 && zeros[index - 1] == *zero { times + 1 } else { 0 };
+            for unit in [Phasor::new(1.0, 0.0), Phasor::new(0.0, -1.0)] {
+                let mut coefficients = vec![Phasor::default(); times];
+                coefficients.push(unit);
+                functions.push(Function { pole: zero.pole() * time, coefficients });
+            }
+        }
+        Self { time, functions }
+    }
+
+    /// Their number.
+    pub fn len(&self) -> usize {
+        self.functions.len()
+    }
+
+    /// The products with the command, over rho from 0 to 1.
+    pub fn products(&self, task: &Task) -> DVector<f64> {
+        let mut products = DVector::zeros(self.len());
+        products[0] = task.mean();
+        products[1] = task.excess() / (task.time * task.time);
+        products
+    }
+
+    /// The products of the functions with each other.
+    pub fn gram(&self) -> DMatrix<f64> {
+        let product = |a: &Function, b: &Function| {
+            let mut sum = 0.0;
+            for (n, c) in a.coefficients.iter().enumerate() {
+                for (m, d) in b.coefficients.iter().enumerate() {
+                    if *c != Phasor::default() && *d != Phasor::default() {
+                        sum += 0.5 * (c * d * moment(n + m, a.pole + b.pole)).re;
+                        sum += 0.5 * (c * d.conj() * moment(n + m, a.pole + b.pole.conj())).re;
+                    }
+                }
+            }
+            sum
+        };
+        DMatrix::from_fn(self.len(), self.len(), |i, j| {
+            // Symmetric to the last bit.
+            let (i, j) = (i.min(j), i.max(j));
+            product(&self.functions[i], &self.functions[j])
+        })
+    }
+
+    /// The weights of the functions whose sum has these products: the command of the least energy.
+    pub fn least(&self, products: &DVector<f64>) -> Option<DVector<f64>> {
+        let gram = self.gram();
+        let scale = gram.diagonal().map(|d| 1.0 / libm::sqrt(d));
+        let scaled = DMatrix::from_fn(self.len(), self.len(), |i, j| gram[(i, j)] * scale[i] * scale[j]);
+        let factor = scaled.clone().cholesky()?;
+        let right = products.component_mul(&scale);
+        let mut weights = factor.solve(&right);
+        for _ in 0..2 {
+            weights += factor.solve(&(&right - &scaled * &weights));
+        }
+        let gap = (&right - &scaled * &weights).amax();
+        // Where the functions are dependent to rounding, so is what they promise.
+        (gap <= 1e-10 * right.amax()).then(|| weights.component_mul(&scale))
+    }
+
+    /// The functions at rho, one after the other.
+    pub fn at(&self, rho: f64) -> impl Iterator<Item = f64> {
+        self.functions.iter().map(move |f| (exp(f.pole * rho) * f.polynomial(rho)).re)
+    }
+
+    /// Their derivatives with rho, which they have without repetition.
+    pub fn slopes(&self, rho: f64) -> impl Iterator<Item = f64> {
+        self.functions.iter().map(move |f| match f.coefficients.as_slice() {
+            [c] => (exp(f.pole * rho) * f.pole * c).re,
+            c => c[1].re,
+        })
+    }
+
+    /// Their integrals from 0 to rho, which they have without repetition.
+    pub fn integrals(&self, rho: f64) -> impl Iterator<Item = f64> {
+        self.functions.iter().map(move |f| match f.coefficients.as_slice() {
+            [c] if f.pole == Phasor::default() => c.re * rho,
+            [c] => ((exp(f.pole * rho) - 1.0) / f.pole * c).re,
+            c => (c[0].re + 0.5 * c[1].re * rho) * rho,
+        })
+    }
+
+    /// The fastest frequency for rho (rad).
+    pub fn fastest(&self) -> f64 {
+        self.functions.iter().map(|f| f.pole.im).fold(0.0, f64::max)
+    }
+
+    /// The command that is a weighted sum of the functions.
+    pub fn waveform(&self, weights: &DVector<f64>) -> Waveform {
+        let term = |shape| Term { from: 0.0, to: self.time, shape };
+        let slope = weights[1] / self.time;
+        let mut terms = vec![term(Shape::Polynomial(vec![weights[0] + 0.5 * weights[1], -slope]))];
+        for (pair, weights) in
+            self.functions[2..].chunks_exact(2).zip(weights.as_slice()[2..].chunks_exact(2))
+        {
+            let f = &pair[0];
+            let power = f.coefficients.len() - 1;
+            let c = Phasor::new(weights[0], -weights[1]) * exp(f.pole);
+            if power == 0 && f.pole.re == 0.0 {
+                terms.push(term(Shape::Harmonic {
+                    frequency: f.pole.im / self.time,
+                    cosine: c.re,
+                    sine: c.im,
+                }));
+                continue;
+            }
+            // rho^power = (1 - t/T)^power.
+            let mut coefficients = Vec::new();
+            let mut binomial = 1.0;
+            for k in 0..=power {
+                coefficients.push(c * binomial);
+                binomial *= -((power - k) as f64) / (k + 1) as f64 / self.time;
+            }
+            terms.push(term(Shape::Exponential { pole: -f.pole / self.time, coefficients }));
+        }
+        Waveform { terms }
+    }
+}
+
+impl Function {
+    fn polynomial(&self, rho: f64) -> Phasor {
+        self.coefficients.iter().rev().fold(Phasor::default(), |sum, c| sum * rho + c)
+    }
+}

@@ -1,0 +1,96 @@
+//! The kinds of command that turn a body.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::series::{self, Coefficients, Family};
+use super::suppression::{self, Suppression, Zero};
+use super::task::Task;
+use super::waveform::Waveform;
+use super::{Refusal, bang_bang, minimum_energy, minimum_peak, polynomial};
+use crate::body::Mode;
+
+/// The kinds of command.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Command {
+    /// A series of sines (seed paper 2, equations (19) to (24)).
+    Sine(Suppression),
+    /// A series of cosines (seed paper 2, equations (25) to (30)).
+    Cosine(Suppression),
+    /// Full one way, then full the other: the least peak that turns the rigid body.
+    BangBang(BangBang),
+    /// The least integral of the command's square.
+    MinimumEnergy(Suppression),
+    /// The least peak.
+    MinimumPeak(MinimumPeak),
+    /// A polynomial of the angle.
+    Polynomial(Polynomial),
+}
+
+/// The command of two pieces; it has no parameters.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BangBang {}
+
+/// The command of the least peak that leaves modes at rest.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MinimumPeak {
+    /// So many modes of the lowest frequencies.
+    #[serde(default)]
+    pub suppress: usize,
+}
+
+/// A polynomial of the angle.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Polynomial {
+    /// Its degree: 3, 5, 7, 9, 11 or 13.
+    pub degree: u32,
+}
+
+impl Command {
+    /// The key of its table under `[manoeuvre.command]`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Sine(_) => "sine",
+            Self::Cosine(_) => "cosine",
+            Self::BangBang(_) => "bang_bang",
+            Self::MinimumEnergy(_) => "minimum_energy",
+            Self::MinimumPeak(_) => "minimum_peak",
+            Self::Polynomial(_) => "polynomial",
+        }
+    }
+
+    /// The zeros that it has, given a body's modes; what else is wrong with its parameters.
+    pub fn zeros(&self, modes: &[Mode]) -> Result<Vec<Zero>, Refusal> {
+        let place = format!("command.{}", self.kind());
+        match self {
+            Self::Sine(own) | Self::Cosine(own) | Self::MinimumEnergy(own) => own.zeros(modes, &place),
+            Self::MinimumPeak(own) => suppression::lowest(own.suppress, modes, &place),
+            Self::BangBang(_) => Ok(Vec::new()),
+            Self::Polynomial(own) if polynomial::DEGREES.contains(&own.degree) => Ok(Vec::new()),
+            Self::Polynomial(own) => {
+                let why = format!("must be 3, 5, 7, 9, 11 or 13, got {}", own.degree);
+                Err((format!("{place}.degree"), why))
+            }
+        }
+    }
+
+    /// The command that does a task and has these zeros; its amplitudes if it is a series.
+    pub fn waveform(&self, task: &Task, zeros: &[Zero]) -> Result<(Waveform, Option<Coefficients>), Refusal> {
+        let series = |family| {
+            let (waveform, coefficients) = series::plan(family, task, zeros);
+            Ok((waveform, Some(coefficients)))
+        };
+        match self {
+            Self::Sine(_) => series(Family::Sine),
+            Self::Cosine(_) => series(Family::Cosine),
+            Self::BangBang(_) => Ok((bang_bang::plan(task), None)),
+            Self::MinimumEnergy(_) => Ok((minimum_energy::plan(task, zeros)?, None)),
+            Self::MinimumPeak(_) => Ok((minimum_peak::plan(task, zeros)?, None)),
+            Self::Polynomial(own) => Ok((polynomial::plan(task, own.degree), None)),
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! What a manoeuvre costs: peak, root of the mean square, and integral of the square.
+
+use super::Plan;
+use super::extremum::Peak;
+use super::history::{History, torque};
+use super::plan::fastest;
+use super::quadrature::integral;
+use crate::body::{Drive, Planar};
+
+/// What a command or a torque costs, in its unit.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Effort {
+    /// The largest absolute value, and when.
+    pub peak: Peak,
+    /// The root of its mean square over the manoeuvre.
+    pub rms: f64,
+    /// The integral of its square over the manoeuvre.
+    pub square: f64,
+    /// Its value just after the start.
+    pub initial: f64,
+}
+
+impl Effort {
+    /// That of the command.
+    pub fn of_command(plan: &Plan) -> Self {
+        let command = &plan.waveform;
+        let panel = 4.0 / command.fastest().max(1e-9);
+        let value = |middle, t| command.on_piece(middle, t);
+        Self::new(plan, plan.peak(), panel, value)
+    }
+
+    /// That of the torque on the hub (N m).
+    pub fn of_torque(plan: &Plan, body: &Planar) -> Self {
+        match body.drive {
+            Drive::Torque => Self::of_command(plan),
+            Drive::Motion => {
+                let history = History::new(body, &plan.waveform, 1.0);
+                let panel = (4.0 / fastest(body, &plan.waveform)).max(plan.time / 2e3);
+                Self::new(plan, plan.peak_torque(body), panel, |middle, t| torque(body, &history, middle, t))
+            }
+        }
+    }
+
+    fn new(plan: &Plan, peak: Peak, panel: f64, value: impl Fn(f64, f64) -> f64) -> Self {
+        let breaks = plan.waveform.breaks();
+        let square = integral(&breaks, panel, |middle, t| value(middle, t) * value(middle, t));
+        let initial = breaks.get(1).map_or(0.0, |second| value(0.5 * second, 0.0));
+        Self { peak, rms: libm::sqrt(square / plan.time), square, initial }
+    }
+}

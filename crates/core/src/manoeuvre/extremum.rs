@@ -1,0 +1,65 @@
+//! The largest absolute value of a function that is smooth between breaks.
+
+/// A largest absolute value, and when it is reached.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Peak {
+    /// When (s).
+    pub time: f64,
+    /// The absolute value.
+    pub value: f64,
+}
+
+/// The largest absolute value of `f(middle, t)` over the pieces between these breaks, `middle` being a time inside the
+/// piece that t belongs to: at the ends of a piece it tells which limit is meant. Samples are at most `step` apart, and
+/// at least 32 in a piece; what may be the largest is refined to rounding.
+pub fn largest(breaks: &[f64], step: f64, f: impl Fn(f64, f64) -> f64) -> Peak {
+    let mut candidates = Vec::new();
+    for ends in breaks.windows(2) {
+        let (from, to) = (ends[0], ends[1]);
+        let middle = 0.5 * (from + to);
+        let count = ((to - from) / step).ceil().clamp(32.0, 1e6) as usize;
+        let time = |i: usize| from + (to - from) * (i as f64 / count as f64);
+        let values: Vec<f64> = (0..=count).map(|i| f(middle, time(i)).abs()).collect();
+        for (i, &value) in values.iter().enumerate() {
+            let (before, after) = (i.saturating_sub(1), (i + 1).min(count));
+            if value >= values[before] && value >= values[after] {
+                candidates.push((middle, time(before), time(i), time(after), value));
+            }
+        }
+    }
+    let coarse = candidates.iter().map(|candidate| candidate.4).fold(0.0, f64::max);
+    let mut peak = Peak::default();
+    for (middle, from, at, to, value) in candidates {
+        if value < 0.98 * coarse {
+            continue;
+        }
+        let found = refined(|t| f(middle, t).abs(), from, to);
+        let found = if found.value > value { found } else { Peak { time: at, value } };
+        // Of peaks that are equal but for rounding, the first.
+        if found.value > peak.value * (1.0 + 1e-13) || peak.value == 0.0 {
+            peak = found;
+        }
+    }
+    peak
+}
+
+/// The maximum of a function with a single one, by golden section.
+fn refined(f: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> Peak {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let mut low = to - GOLDEN * (to - from);
+    let mut high = from + GOLDEN * (to - from);
+    let (mut at_low, mut at_high) = (f(low), f(high));
+    // The value is flat: its own rounding is reached with half the digits of the time.
+    for _ in 0..40 {
+        if at_low >= at_high {
+            (to, high, at_high) = (high, low, at_low);
+            low = to - GOLDEN * (to - from);
+            at_low = f(low);
+        } else {
+            (from, low, at_low) = (low, high, at_high);
+            high = from + GOLDEN * (to - from);
+            at_high = f(high);
+        }
+    }
+    if at_low >= at_high { Peak { time: low, value: at_low } } else { Peak { time: high, value: at_high } }
+}

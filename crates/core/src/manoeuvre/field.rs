@@ -1,0 +1,219 @@
+//! The field: the commands that a planned manoeuvre is compared with, on the same body.
+
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::command::{BangBang, Command, MinimumPeak, Polynomial};
+use super::effort::Effort;
+use super::polynomial::DEGREES;
+use super::report::residuals_to_json;
+use super::residual::{Residual, residuals};
+use super::shaper::{ExtraInsensitive, Shaped, Shaper};
+use super::suppression::{Suppression, Target};
+use super::{Manoeuvre, Plan};
+use crate::body::Planar;
+use crate::quantity::{Finite, Fraction, Positive};
+use crate::time::Span;
+
+/// No command of the field suppresses more modes.
+const MOST: usize = 8;
+
+/// A command of the field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rival {
+    /// What it is called, the modes counted from 1.
+    pub name: String,
+    /// What turns the body.
+    pub command: Command,
+    /// What the command is convolved with.
+    pub shaper: Option<Shaper>,
+}
+
+/// What a command of the field comes to.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// What the command is called.
+    pub name: String,
+    /// The plan and what it comes to, or why there is none: the key, and what is wrong with it.
+    pub outcome: Result<Outcome, super::Refusal>,
+}
+
+/// A plan of the field, what it costs and what it leaves.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The plan.
+    pub plan: Plan,
+    /// What the torque on the hub costs (N m).
+    pub torque: Effort,
+    /// What is left in each coordinate.
+    pub residuals: Vec<Residual>,
+}
+
+/// What is the same for the whole field.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Common {
+    /// The time (s).
+    Time(Span),
+    /// The peak torque (N m): each command has its own time.
+    PeakTorque(Positive),
+}
+
+/// The commands that a body's modes allow.
+pub fn field(body: &Planar) -> Vec<Rival> {
+    // Indices of the modes, by frequency.
+    let mut order: Vec<usize> = (0..body.modes.len()).collect();
+    order.sort_by(|a, b| body.modes[*a].frequency.get().total_cmp(&body.modes[*b].frequency.get()));
+    order.truncate(MOST);
+    let modes = order.len();
+    let mut field = Vec::new();
+    let mut add = |name: String, command| field.push(Rival { name, command, shaper: None });
+    for (kind, series) in [("sine", Command::Sine as fn(Suppression) -> Command), ("cosine", Command::Cosine)]
+    {
+        for p in 0..=modes {
+            add(format!("{kind} p={p}"), series(lowest(p)));
+        }
+        for (words, zeros) in robust(kind, &order) {
+            add(format!("{kind} {words}"), series(zeros));
+        }
+    }
+    add("bang-bang, rigid".to_owned(), Command::BangBang(BangBang {}));
+    for p in 0..=modes {
+        let words = if p == 0 { "rigid".to_owned() } else { format!("p={p}") };
+        add(format!("minimum energy, {words}"), Command::MinimumEnergy(lowest(p)));
+    }
+    for count in twice(modes) {
+        let zeros = Suppression {
+            suppress: 0,
+            zeros: order[..count].iter().map(|mode| target(*mode, 0.0, 2)).collect(),
+        };
+        add(format!("minimum energy, {}", squares(count)), Command::MinimumEnergy(zeros));
+    }
+    for p in 1..=modes {
+        add(format!("minimum peak, p={p}"), Command::MinimumPeak(MinimumPeak { suppress: p }));
+    }
+    for (words, shaper) in shapers(&order) {
+        let command = Command::BangBang(BangBang {});
+        field.push(Rival { name: format!("{words} on bang-bang"), command, shaper: Some(shaper) });
+    }
+    for (words, shaper) in shapers(&order[..modes.min(1)]) {
+        if !matches!(shaper, Shaper::Zvdd(_)) {
+            let command = Command::Sine(lowest(0));
+            field.push(Rival { name: format!("{words} on sine p=0"), command, shaper: Some(shaper) });
+        }
+    }
+    for degree in DEGREES {
+        let command = Command::Polynomial(Polynomial { degree });
+        field.push(Rival { name: format!("polynomial of degree {degree}"), command, shaper: None });
+    }
+    field
+}
+
+fn lowest(suppress: usize) -> Suppression {
+    Suppression { suppress, zeros: Vec::new() }
+}
+
+fn target(mode: usize, shift: f64, times: u32) -> Target {
+    Target { mode, shift: Finite::new(shift).unwrap_or_default(), times }
+}
+
+/// So many lowest modes have double zeros: the first, the first two, all.
+fn twice(modes: usize) -> Vec<usize> {
+    let mut counts: Vec<usize> =
+        [1, 2, modes].into_iter().filter(|count| *count <= modes && *count > 0).collect();
+    counts.dedup();
+    counts
+}
+
+fn squares(count: usize) -> String {
+    match count {
+        1 => "w1²".to_owned(),
+        2 => "w1² w2²".to_owned(),
+        count => format!("w1² to w{count}²"),
+    }
+}
+
+/// The robust series of a body whose modes have these indices, by frequency.
+fn robust(kind: &str, modes: &[usize]) -> Vec<(&'static str, Suppression)> {
+    // Zeros at the Chebyshev points of a band of 10 %.
+    let side = 0.1 / std::f64::consts::SQRT_2;
+    let mut robust = Vec::new();
+    let mut add = |words, zeros| robust.push((words, Suppression { suppress: 0, zeros }));
+    if let &[first, ..] = modes {
+        add("w1²", vec![target(first, 0.0, 2)]);
+    }
+    if let &[first, second, ..] = modes {
+        if kind == "sine" {
+            add("w1² w2", vec![target(first, 0.0, 2), target(second, 0.0, 1)]);
+        }
+        add("w1² w2²", vec![target(first, 0.0, 2), target(second, 0.0, 2)]);
+    }
+    if let &[first, ..] = modes {
+        if kind == "sine" {
+            add("w1³", vec![target(first, 0.0, 3)]);
+        }
+        add("w1 (1 ± 7.07 %)", vec![target(first, -side, 1), target(first, side, 1)]);
+    }
+    robust
+}
+
+/// The shapers of a body whose modes have these indices, by frequency.
+fn shapers(modes: &[usize]) -> Vec<(&'static str, Shaper)> {
+    let on = |count: usize| Shaped { modes: modes[..count].to_vec() };
+    let ei = |count: usize| {
+        let vibration = Fraction::new(0.05).expect("between 0 and 1");
+        Shaper::Ei(ExtraInsensitive { modes: modes[..count].to_vec(), vibration })
+    };
+    let mut shapers = Vec::new();
+    if !modes.is_empty() {
+        shapers.push(("ZV(w1)", Shaper::Zv(on(1))));
+        shapers.push(("ZVD(w1)", Shaper::Zvd(on(1))));
+        shapers.push(("EI(w1)", ei(1)));
+        shapers.push(("ZVDD(w1)", Shaper::Zvdd(on(1))));
+    }
+    if modes.len() >= 2 {
+        shapers.push(("ZV(w1, w2)", Shaper::Zv(on(2))));
+        shapers.push(("ZVD(w1, w2)", Shaper::Zvd(on(2))));
+        shapers.push(("EI(w1, w2)", ei(2)));
+    }
+    shapers
+}
+
+/// What the field comes to on a body, in its order: the manoeuvre with each command in turn.
+pub fn compare(manoeuvre: &Manoeuvre, common: Common, body: &Planar, band: f64) -> Vec<Row> {
+    let (time, peak_torque) = match common {
+        Common::Time(time) => (Some(time), None),
+        Common::PeakTorque(peak) => (None, Some(peak)),
+    };
+    let row = |rival: Rival| {
+        let Rival { name, command, shaper } = rival;
+        let outcome = Manoeuvre { time, peak_torque, command, shaper, ..manoeuvre.clone() }.plan(body);
+        let outcome = outcome.map(|plan| Outcome {
+            torque: Effort::of_torque(&plan, body),
+            residuals: residuals(&plan, body, band),
+            plan,
+        });
+        Row { name, outcome }
+    };
+    field(body).into_par_iter().map(row).collect()
+}
+
+impl Row {
+    /// The row as a JSON object whose keys end with their units.
+    pub fn to_json(&self) -> Value {
+        match &self.outcome {
+            Err((key, why)) => json!({"command": self.name, "refused": format!("`{key}` {why}")}),
+            Ok(Outcome { plan, torque, residuals }) => {
+                let mut object = json!({
+                    "command": self.name,
+                    "time_s": plan.time,
+                    "peak_torque_nm": torque.peak.value,
+                    "rms_torque_nm": torque.rms,
+                    "energy_nm2_s": torque.square,
+                    "initial_torque_nm": torque.initial,
+                });
+                residuals_to_json(&mut object, residuals);
+                object
+            }
+        }
+    }
+}

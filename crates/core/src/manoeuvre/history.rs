@@ -1,0 +1,72 @@
+//! The modes of a body during a planned command, exactly.
+
+use super::suppression::Zero;
+use super::waveform::Waveform;
+use crate::body::{Drive, Planar};
+use crate::phasor::Phasor;
+
+/// Modes that rest at the start of a command.
+pub struct History<'a> {
+    command: &'a Waveform,
+    inertia: f64,
+    modes: Vec<Driven>,
+}
+
+/// A mode under the command.
+struct Driven {
+    pole: Phasor,
+    zero: Zero,
+    /// Displacement for each unit of the imaginary part of the command's response.
+    gain: f64,
+    modal_gain: f64,
+}
+
+/// Displacement, rate and acceleration of a mode.
+pub type Motion = [f64; 3];
+
+impl<'a> History<'a> {
+    /// The modes of a body, with all frequencies times a factor.
+    pub fn new(body: &Planar, command: &'a Waveform, factor: f64) -> Self {
+        let inertia = body.commanded_inertia();
+        let driven = |mode| {
+            let own = Zero::of(mode);
+            let zero = Zero { frequency: factor * own.frequency, ..own };
+            let pole = zero.pole();
+            Driven { pole, zero, gain: mode.gain.get() / (inertia * pole.im), modal_gain: mode.gain.get() }
+        };
+        Self { command, inertia, modes: body.modes.iter().map(driven).collect() }
+    }
+
+    /// Displacement (rad), rate and acceleration of each mode at a time (s); the acceleration is that of the piece of
+    /// the command around `middle`.
+    pub fn at(&self, middle: f64, t: f64) -> Vec<Motion> {
+        let moment = self.command.on_piece(middle, t) / self.inertia;
+        let motion = |mode: &Driven| {
+            let z = self.command.response(mode.pole, 0.0, t);
+            let (x, rate) = (mode.gain * z.im, mode.gain * (mode.pole * z).im);
+            let (w, zeta) = (mode.zero.frequency, mode.zero.damping);
+            [x, rate, mode.modal_gain * moment - 2.0 * zeta * w * rate - w * w * x]
+        };
+        self.modes.iter().map(motion).collect()
+    }
+
+    /// The amplitude with which each mode goes on after a time (s), decaying from there: |x + i x'/w| of an undamped
+    /// mode (rad).
+    pub fn amplitudes(&self, t: f64) -> Vec<f64> {
+        let amplitude =
+            |mode: &Driven| (mode.gain * crate::phasor::abs(self.command.response(mode.pole, 0.0, t))).abs();
+        self.modes.iter().map(amplitude).collect()
+    }
+}
+
+/// The torque on the hub (N m) at a time: the command itself, or what makes the hub move so.
+pub fn torque(body: &Planar, history: &History, middle: f64, t: f64) -> f64 {
+    let command = history.command.on_piece(middle, t);
+    match body.drive {
+        Drive::Torque => command,
+        Drive::Motion => {
+            let elastic: f64 = history.at(middle, t).iter().map(|[_, _, acceleration]| acceleration).sum();
+            body.inertia.get() * (command - elastic)
+        }
+    }
+}

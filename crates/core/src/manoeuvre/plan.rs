@@ -1,0 +1,58 @@
+//! A planned manoeuvre: the command, and what it promises.
+
+use super::extremum::{self, Peak};
+use super::history::{History, torque};
+use super::series::Coefficients;
+use super::waveform::Waveform;
+use crate::body::{Drive, Planar};
+
+/// A planned manoeuvre of a body whose modes rest at its start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The command (N m, or rad/s² where the hub's motion is commanded), zero outside 0 to `time`.
+    pub waveform: Waveform,
+    /// Time of the manoeuvre (s).
+    pub time: f64,
+    /// The angle by which the rigid body turns meanwhile (rad).
+    pub angle: f64,
+    /// Rate before (rad/s).
+    pub start_rate: f64,
+    /// Rate of the rigid body after (rad/s).
+    pub end_rate: f64,
+    /// The amplitudes, if the command is a series that no shaper changes.
+    pub coefficients: Option<Coefficients>,
+}
+
+impl Plan {
+    /// The largest absolute value of the command, and when.
+    pub fn peak(&self) -> Peak {
+        let command = &self.waveform;
+        let step = sampling(command.fastest());
+        extremum::largest(&command.breaks(), step, |middle, t| command.on_piece(middle, t))
+    }
+
+    /// The largest torque on the hub (N m), and when: that of the command, or where the hub's motion is commanded, what
+    /// makes it move so against the modes (seed paper 2, equation (17)).
+    pub fn peak_torque(&self, body: &Planar) -> Peak {
+        match body.drive {
+            Drive::Torque => self.peak(),
+            Drive::Motion => {
+                let history = History::new(body, &self.waveform, 1.0);
+                let step = sampling(fastest(body, &self.waveform)).max(self.time / 2e4);
+                extremum::largest(&self.waveform.breaks(), step, |middle, t| {
+                    torque(body, &history, middle, t)
+                })
+            }
+        }
+    }
+}
+
+/// The fastest frequency of a command and a body (rad/s).
+pub fn fastest(body: &Planar, command: &Waveform) -> f64 {
+    body.modes.iter().map(|mode| mode.frequency.get()).fold(command.fastest(), f64::max)
+}
+
+/// A twenty-fourth of the period of a frequency: no peak falls between such samples.
+pub fn sampling(frequency: f64) -> f64 {
+    std::f64::consts::TAU / (24.0 * frequency.max(1e-9))
+}

@@ -1,0 +1,102 @@
+//! Planning a manoeuvre for a time.
+
+use super::command::Command;
+use super::plan::Plan;
+use super::shaper::{Impulse, shaped};
+use super::suppression::Zero;
+use super::task::Task;
+use super::{Manoeuvre, Refusal};
+use crate::body::Planar;
+
+/// A manoeuvre of a body, all of whose keys are good, for any time.
+pub struct Planner<'a> {
+    /// The body.
+    pub body: &'a Planar,
+    command: &'a Command,
+    zeros: Vec<Zero>,
+    impulses: Vec<Impulse>,
+    inertia: f64,
+    angle: f64,
+    start_rate: f64,
+    end_rate: f64,
+}
+
+impl<'a> Planner<'a> {
+    /// A planner, if the manoeuvre fits the body.
+    pub fn new(manoeuvre: &'a Manoeuvre, body: &'a Planar) -> Result<Self, Refusal> {
+        let (angle, start_rate, end_rate) =
+            (manoeuvre.angle.get(), manoeuvre.start_rate.get(), manoeuvre.end_rate.get());
+        if angle == 0.0 && start_rate == end_rate {
+            let why = "must not be 0 where the rates before and after are the same, got 0";
+            return Err(("angle".to_owned(), why.to_owned()));
+        }
+        let zeros = manoeuvre.command.zeros(&body.modes)?;
+        let impulses = match &manoeuvre.shaper {
+            Some(shaper) => shaper.impulses(&body.modes)?,
+            None => vec![Impulse { delay: 0.0, area: 1.0 }],
+        };
+        let inertia = body.commanded_inertia();
+        let command = &manoeuvre.command;
+        Ok(Self { body, command, zeros, impulses, inertia, angle, start_rate, end_rate })
+    }
+
+    /// The length of the shaper (s): the command itself has the rest of the time.
+    pub fn shaper(&self) -> f64 {
+        self.impulses.iter().map(|impulse| impulse.delay).fold(0.0, f64::max)
+    }
+
+    /// The plan for a time (s).
+    pub fn plan(&self, time: f64) -> Result<Plan, Refusal> {
+        let shaper = self.shaper();
+        if shaper >= time {
+            let why = format!("must be longer than the shaper, which takes {shaper} s, got {time} s");
+            return Err(("time".to_owned(), why));
+        }
+        let impulse = self.inertia * (self.end_rate - self.start_rate);
+        let travel = self.inertia * (self.angle - self.start_rate * time);
+        // Each impulse of the shaper leaves the command's own gain of rate less time to become travel.
+        let mean: f64 = self.impulses.iter().map(|impulse| impulse.area * impulse.delay).sum();
+        let task = Task { time: time - shaper, impulse, travel: travel - impulse * (shaper - mean) };
+        let (own, coefficients) = self.command.waveform(&task, &self.zeros)?;
+        let (waveform, coefficients) = match self.impulses.as_slice() {
+            [_] => (own, coefficients),
+            impulses => (shaped(&own, impulses), None),
+        };
+        let plan = Plan {
+            waveform,
+            time,
+            angle: self.angle,
+            start_rate: self.start_rate,
+            end_rate: self.end_rate,
+            coefficients,
+        };
+        if plan.waveform.is_finite() {
+            return Ok(plan);
+        }
+        Err(("time".to_owned(), format!("must be one for which the command is finite, got {time} s")))
+    }
+
+    /// The time (s) below which no command of this peak torque (N m) turns the rigid body.
+    pub fn rigid_bound(&self, peak: f64) -> f64 {
+        // A² T² - 4 |E| A - P² = 0 with E = J (angle - mean rate T), which the bang-bang command meets.
+        let a = peak / self.body.inertia.get();
+        let (gained, mean) = (self.end_rate - self.start_rate, 0.5 * (self.end_rate + self.start_rate));
+        let mut first = f64::INFINITY;
+        for side in [1.0, -1.0] {
+            let half = 2.0 * side * mean / a;
+            let product = (4.0 * side * a * self.angle + gained * gained) / (a * a);
+            let discriminant = half * half + product;
+            if discriminant < 0.0 {
+                continue;
+            }
+            let root = libm::sqrt(discriminant);
+            for time in [root - half, -root - half] {
+                let excess = side * (self.angle - mean * time);
+                if time > 0.0 && excess >= -1e-9 * self.angle.abs() {
+                    first = first.min(time);
+                }
+            }
+        }
+        first
+    }
+}

@@ -1,0 +1,128 @@
+//! Commands as series of sines or of cosines that leave chosen modes at rest (seed paper 2, equations (19) to (30)).
+//!
+//! With T the time of the manoeuvre and sigma = 2 pi/T the command is a constant A0, a series with the harmonics
+//! kappa that carries the travel, and, where A0 is not zero, a series of k sigma that takes out what A0 does to the modes.
+//! The Laplace transform of each is a factor that has no pole, times a rational function whose numerator holds the
+//! chosen zeros, so that every amplitude is a product:
+//!
+//! ```text
+//! q_j(s) = (s² + 2 zeta_j w_j s + w_j²)/w_j²         one factor for each zero
+//! G_k    = prod_j q_j(i kappa_k) / prod_(j != k) (kappa_j² - kappa_k²)/kappa_j²
+//! sine:     (1 - e^(-sT)) C prod q_j / prod (1 + s²/kappa²)        kappa = k sigma,          k = 1..p+1
+//! cosine:   (1 + e^(-sT)) C s prod q_j / prod (1 + s²/kappa²)      kappa = (k - 1/2) sigma,  k = 1..p+1
+//! constant: (1 - e^(-sT)) A0/s prod q_j / prod (1 + s²/kappa²)     kappa = k sigma,          k = 1..p
+//! ```
+//!
+//! A linear solve would lose all digits beyond some eight zeros; the products lose none. For undamped modes G_k is
+//! real, and these are the paper's series, except that the paper's 2p + 1 sines (or cosines) cannot meet two equations in
+//! one scalar for each mode unless A0 is zero: the constant needs the even series.
+
+use std::f64::consts::PI;
+
+use super::suppression::Zero;
+use super::task::Task;
+use super::waveform::{Shape, Term, Waveform};
+use crate::phasor::Phasor;
+
+/// The amplitudes of a series, in units of the command.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coefficients {
+    /// The constant A0.
+    pub constant: f64,
+    /// Those of sin(k sigma t), or of cos((k - 1/2) sigma t), k = 1, 2, ...: antisymmetric about T/2.
+    pub odd: Vec<f64>,
+    /// Those of cos(k sigma t), k = 1, 2, ...: symmetric about T/2. None if the constant is zero and nothing is damped.
+    pub even: Vec<f64>,
+}
+
+/// What the series is made of.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// sin(k sigma t): the command begins and ends at zero.
+    Sine,
+    /// cos((k - 1/2) sigma t): smaller for the same travel.
+    Cosine,
+}
+
+/// The command, and the amplitudes that are told of it.
+pub fn plan(family: Family, task: &Task, zeros: &[Zero]) -> (Waveform, Coefficients) {
+    let sigma = 2.0 * PI / task.time;
+    let constant = task.mean();
+    // The even series is no longer symmetric with damping: it travels too.
+    let lag: f64 = zeros.iter().map(|zero| 2.0 * zero.damping / zero.frequency).sum();
+    let travel = task.excess() - constant * task.time * lag;
+
+    // k and the phasor c of each harmonic Re(c exp(i kappa t)).
+    let count = zeros.len();
+    let (half, carry): (f64, Vec<Phasor>) = match family {
+        Family::Sine => {
+            let at = |k| {
+                Phasor::new(0.0, -travel / task.time * k as f64 * sigma)
+                    * gain(k, count + 1, 0.0, sigma, zeros)
+            };
+            (0.0, (1..=count + 1).map(at).collect())
+        }
+        Family::Cosine => {
+            let at = |k| {
+                let kappa = (k as f64 - 0.5) * sigma;
+                gain(k, count + 1, 0.5, sigma, zeros) * (0.5 * travel * kappa * kappa)
+            };
+            (0.5, (1..=count + 1).map(at).collect())
+        }
+    };
+    let even: Vec<Phasor> = if constant == 0.0 {
+        Vec::new()
+    } else {
+        (1..=count).map(|k| gain(k, count, 0.0, sigma, zeros) * -constant).collect()
+    };
+
+    let mut terms = Vec::new();
+    let mut push = |shape| terms.push(Term { from: 0.0, to: task.time, shape });
+    if constant != 0.0 {
+        push(Shape::Polynomial(vec![constant]));
+    }
+    let mut harmonics = |half: f64, phasors: &[Phasor]| {
+        for (index, c) in phasors.iter().enumerate() {
+            let frequency = ((index + 1) as f64 - half) * sigma;
+            push(Shape::Harmonic { frequency, cosine: c.re, sine: -c.im });
+        }
+    };
+    let coefficients = match family {
+        Family::Sine => {
+            let zip = |k: usize| carry[k] + even.get(k).copied().unwrap_or_default();
+            let all: Vec<Phasor> = (0..carry.len()).map(zip).collect();
+            harmonics(half, &all);
+            let mut even: Vec<f64> = all.iter().map(|c| c.re).collect();
+            if zeros.iter().all(|zero| zero.damping == 0.0) {
+                even.truncate(if constant == 0.0 { 0 } else { count });
+            }
+            Coefficients { constant, odd: all.iter().map(|c| -c.im).collect(), even }
+        }
+        Family::Cosine => {
+            harmonics(half, &carry);
+            harmonics(0.0, &even);
+            let real = |c: &[Phasor]| c.iter().map(|c| c.re).collect();
+            Coefficients { constant, odd: real(&carry), even: real(&even) }
+        }
+    };
+    (Waveform { terms }, coefficients)
+}
+
+/// G_k of so many harmonics (k - half) sigma.
+fn gain(k: usize, harmonics: usize, half: f64, sigma: f64, zeros: &[Zero]) -> Phasor {
+    let own = k as f64 - half;
+    let kappa = own * sigma;
+    let mut others = (1..=harmonics).filter(|j| *j != k);
+    // One factor of each product at a time: the products by themselves would overflow.
+    let mut product = Phasor::new(1.0, 0.0);
+    for zero in zeros {
+        let w = zero.frequency;
+        let q = Phasor::new((w - kappa) * (w + kappa), 2.0 * zero.damping * w * kappa) / (w * w);
+        let other = others.next().map_or(1.0, |j| {
+            let other = j as f64 - half;
+            (other - own) * (other + own) / (other * other)
+        });
+        product *= q / other;
+    }
+    product
+}

@@ -1,0 +1,117 @@
+//! Input shapers: a command convolved with a few impulses, which takes modes out of it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Refusal;
+use super::suppression::{Zero, index_beyond};
+use super::waveform::Waveform;
+use crate::body::Mode;
+use crate::quantity::Fraction;
+
+/// The kinds of shaper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Shaper {
+    /// Zero vibration: two impulses for each mode.
+    Zv(Shaped),
+    /// Zero vibration and derivative: three impulses.
+    Zvd(Shaped),
+    /// Zero vibration and two derivatives: four impulses.
+    Zvdd(Shaped),
+    /// Extra insensitive: three impulses that leave a little vibration, and little more over a wider band.
+    Ei(ExtraInsensitive),
+}
+
+/// What a shaper takes out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Shaped {
+    /// Indices of the modes.
+    #[serde(default = "first")]
+    pub modes: Vec<usize>,
+}
+
+/// An extra-insensitive shaper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExtraInsensitive {
+    /// Indices of the modes.
+    #[serde(default = "first")]
+    pub modes: Vec<usize>,
+    /// Vibration that is left at the mode's frequency, relative to that of one impulse.
+    #[serde(default = "twentieth")]
+    pub vibration: Fraction,
+}
+
+fn first() -> Vec<usize> {
+    vec![0]
+}
+
+fn twentieth() -> Fraction {
+    Fraction::new(0.05).expect("between 0 and 1")
+}
+
+/// An impulse of a shaper; all together have the area 1.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Impulse {
+    /// When (s).
+    pub delay: f64,
+    /// How much.
+    pub area: f64,
+}
+
+impl Shaper {
+    /// The impulses for these modes of a body: a sequence for each, convolved. They are half a damped period apart.
+    pub fn impulses(&self, modes: &[Mode]) -> Result<Vec<Impulse>, Refusal> {
+        let (name, indices, areas) = match self {
+            Self::Zv(shaped) => ("zv", &shaped.modes, vec![1.0, 1.0]),
+            Self::Zvd(shaped) => ("zvd", &shaped.modes, vec![1.0, 2.0, 1.0]),
+            Self::Zvdd(shaped) => ("zvdd", &shaped.modes, vec![1.0, 3.0, 3.0, 1.0]),
+            Self::Ei(ei) => {
+                let v = ei.vibration.get();
+                ("ei", &ei.modes, vec![1.0 + v, 2.0 - 2.0 * v, 1.0 + v])
+            }
+        };
+        let key = format!("shaper.{name}.modes");
+        if indices.is_empty() {
+            return Err((key, "must hold the index of a mode, got none".to_owned()));
+        }
+        let mut impulses = vec![Impulse { delay: 0.0, area: 1.0 }];
+        for (place, &index) in indices.iter().enumerate() {
+            let Some(mode) = modes.get(index) else {
+                return Err((format!("{key}[{place}]"), index_beyond(index, modes)));
+            };
+            let own = sequence(&areas, &Zero::of(mode));
+            let later =
+                |a: &Impulse, b: &Impulse| Impulse { delay: a.delay + b.delay, area: a.area * b.area };
+            impulses = impulses.iter().flat_map(|a| own.iter().map(move |b| later(a, b))).collect();
+            if impulses.len() > 4096 {
+                return Err((key, format!("must make at most 4096 impulses, got {} modes", indices.len())));
+            }
+        }
+        Ok(impulses)
+    }
+}
+
+/// The impulses for one mode: each later one smaller by what damping took meanwhile.
+fn sequence(areas: &[f64], mode: &Zero) -> Vec<Impulse> {
+    let pole = mode.pole();
+    let half = std::f64::consts::PI / pole.im;
+    let decay = libm::exp(pole.re * half);
+    let mut shrink = 1.0;
+    let mut sequence = Vec::new();
+    for (index, area) in areas.iter().enumerate() {
+        sequence.push(Impulse { delay: index as f64 * half, area: area * shrink });
+        shrink *= decay;
+    }
+    let sum: f64 = sequence.iter().map(|impulse| impulse.area).sum();
+    sequence.iter_mut().for_each(|impulse| impulse.area /= sum);
+    sequence
+}
+
+/// A command convolved with impulses.
+pub fn shaped(command: &Waveform, impulses: &[Impulse]) -> Waveform {
+    let terms = impulses.iter().flat_map(|impulse| command.shifted(impulse.delay, impulse.area).terms);
+    Waveform { terms: terms.collect() }
+}

@@ -1,0 +1,121 @@
+//! Which modes a command leaves at rest.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Refusal;
+use crate::body::Mode;
+use crate::phasor::Phasor;
+use crate::quantity::Finite;
+
+/// No command has more zeros.
+const MOST: usize = 40;
+
+/// Which modes a command leaves at rest. Both keys add up.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Suppression {
+    /// So many modes of the lowest frequencies.
+    #[serde(default)]
+    pub suppress: usize,
+    /// Zeros beside them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub zeros: Vec<Target>,
+}
+
+/// A zero of the command's spectrum, at a mode or near it.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Target {
+    /// Index of the mode.
+    pub mode: usize,
+    /// Shift of its frequency, relative to it.
+    #[serde(default)]
+    pub shift: Finite,
+    /// So many times: each time more flattens the spectrum there by one derivative with frequency.
+    #[serde(default = "once")]
+    pub times: u32,
+}
+
+fn once() -> u32 {
+    1
+}
+
+/// A zero that a command has: it leaves a mode of this frequency and damping at rest.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Zero {
+    /// Natural frequency (rad/s).
+    pub frequency: f64,
+    /// Damping ratio, below 1.
+    pub damping: f64,
+}
+
+impl Zero {
+    /// The pole -zeta w + i w_d of a mode (1/s).
+    pub fn pole(&self) -> Phasor {
+        let Self { frequency: w, damping: zeta } = *self;
+        Phasor::new(-zeta * w, w * libm::sqrt((1.0 - zeta) * (1.0 + zeta)))
+    }
+
+    /// The zero at a mode.
+    pub fn of(mode: &Mode) -> Self {
+        Self { frequency: mode.frequency.get(), damping: mode.damping.get() }
+    }
+}
+
+impl Suppression {
+    /// The zeros, by frequency. `place` is the key of the table.
+    pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Refusal> {
+        let mut zeros = lowest(self.suppress, modes, place)?;
+        let beside: usize = self.zeros.iter().map(|target| target.times as usize).sum();
+        if zeros.len() + beside > MOST {
+            let why = format!(
+                "must make at most {MOST} zeros together with `suppress`, got {}",
+                zeros.len() + beside
+            );
+            return Err((format!("{place}.zeros"), why));
+        }
+        for (index, target) in self.zeros.iter().enumerate() {
+            let key = |name: &str| format!("{place}.zeros[{index}].{name}");
+            let Some(mode) = modes.get(target.mode) else {
+                return Err((key("mode"), index_beyond(target.mode, modes)));
+            };
+            let factor = 1.0 + target.shift.get();
+            if factor <= 0.0 {
+                let why = format!("must be above -1, for a frequency above 0, got {}", target.shift.get());
+                return Err((key("shift"), why));
+            }
+            if target.times == 0 {
+                return Err((key("times"), "must be 1 or more, got 0".to_owned()));
+            }
+            let zero = Zero { frequency: factor * mode.frequency.get(), damping: mode.damping.get() };
+            zeros.extend(std::iter::repeat_n(zero, target.times as usize));
+        }
+        zeros.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        Ok(zeros)
+    }
+}
+
+/// The zeros at so many modes of the lowest frequencies. `place` is the key of the table that has the number.
+pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Refusal> {
+    let key = || format!("{place}.suppress");
+    if count > modes.len() {
+        let why = format!("must be at most the number of the body's modes, {}, got {count}", modes.len());
+        return Err((key(), why));
+    }
+    if count > MOST {
+        return Err((key(), format!("must be at most {MOST}, got {count}")));
+    }
+    let mut zeros: Vec<Zero> = modes.iter().map(Zero::of).collect();
+    zeros.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    zeros.truncate(count);
+    Ok(zeros)
+}
+
+/// Why an index is none of a mode.
+pub fn index_beyond(index: usize, modes: &[Mode]) -> String {
+    match modes.len() {
+        0 => format!("must be the index of a mode, and the body has none, got {index}"),
+        count => format!("must be the index of a mode, 0 to {}, got {index}", count - 1),
+    }
+}

@@ -1,0 +1,93 @@
+//! The shortest time of a manoeuvre whose peak torque is limited, and the times to which a single harmonic is tuned.
+
+use super::Refusal;
+use super::plan::Plan;
+use super::planner::Planner;
+
+/// The search goes up by this factor until the peak is low enough.
+const STRIDE: f64 = 1.02;
+/// So many strides at most: a time ten thousand times that of the rigid body.
+const STRIDES: usize = 480;
+
+/// The plan of the shortest time whose peak torque (N m) does not exceed a limit.
+pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Refusal> {
+    let bound = planner.rigid_bound(limit);
+    let mut low = match planner.body.drive {
+        crate::body::Drive::Torque => bound,
+        // Modes that give way can make the hub's torque less than that of the rigid body.
+        crate::body::Drive::Motion => 0.5 * bound,
+    }
+    .max(planner.shaper() * (1.0 + 1e-9));
+    // Where the bound itself is the time, its rounding is forgiven.
+    let peak = |time: f64| -> Result<f64, Refusal> {
+        let plan = planner.plan(time)?;
+        Ok(plan.peak_torque(planner.body).value / limit - 1.0)
+    };
+    let excess = |time: f64| peak(time).unwrap_or(f64::INFINITY);
+    if !low.is_finite() || low <= 0.0 {
+        return Err(impossible(limit));
+    }
+    let mut above = excess(low);
+    if above <= 1e-12 {
+        return planner.plan(low);
+    }
+    for _ in 0..STRIDES {
+        let high = low * STRIDE;
+        let reached = excess(high);
+        if reached <= 0.0 {
+            return planner.plan(crossing(excess, (low, above), (high, reached)));
+        }
+        (low, above) = (high, reached);
+    }
+    Err(impossible(limit))
+}
+
+fn impossible(limit: f64) -> Refusal {
+    ("peak_torque".to_owned(), format!("must be enough for the command in some time, got {limit} N m"))
+}
+
+/// Where a function falls through zero, from above: a point at which it is not above, to 1e-13 of it.
+fn crossing(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -> f64 {
+    while high.0 - low.0 > 1e-13 * high.0 {
+        // A secant that stays off the ends, and the middle where it leads nowhere.
+        let secant = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
+        let length = high.0 - low.0;
+        let margin = 2e-14 * high.0;
+        for guess in [secant - margin, secant + margin, 0.5 * (low.0 + high.0)] {
+            if guess > low.0 && guess < high.0 {
+                let value = f(guess);
+                if value > 0.0 {
+                    low = (guess, value);
+                } else {
+                    high = (guess, value);
+                }
+            }
+            if high.0 - low.0 < 0.25 * length {
+                break;
+            }
+        }
+    }
+    high.0
+}
+
+/// A time for which a command of a single harmonic leaves a mode at rest.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Single {
+    /// A single sine: w T = 2 pi psi, psi >= 2 (seed paper 2, section 1.6 of its special cases).
+    Sine,
+    /// A single cosine: w T = (2 psi + 1) pi, psi >= 1; it needs the same rate before and after.
+    Cosine,
+}
+
+/// The times nearest to a given one (s), below and above it, for which a single harmonic leaves an undamped mode of this
+/// frequency (rad/s) at rest; there may be none below.
+pub fn tuned(single: Single, frequency: f64, time: f64) -> (Option<f64>, f64) {
+    let half = std::f64::consts::PI / frequency;
+    // w T/pi is 4, 6, 8, ... or 3, 5, 7, ...
+    let (first, step) = match single {
+        Single::Sine => (4.0, 2.0),
+        Single::Cosine => (3.0, 2.0),
+    };
+    let below = first + step * libm::floor((time / half - first) / step);
+    if below < first { (None, half * first) } else { (Some(half * below), half * (below + step)) }
+}

@@ -1,0 +1,83 @@
+//! The command `flexsc plan`: its numbers and its words.
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::spacecraft::text;
+use crate::study::close;
+use crate::util::Dir;
+
+fn dir(drive: &str, rate: f64, manoeuvre: &str) -> Dir {
+    Dir::holding("turn.toml", text(drive, rate, manoeuvre))
+}
+
+#[test]
+fn the_numbers_of_a_plan() {
+    let quarter =
+        format!("angle = {FRAC_PI_2:?}\ntime = 12.0\n[manoeuvre.command]\nsine = {{ suppress = 1 }}");
+    let told = dir("torque", 0.0, &quarter).run("plan turn.toml --json").exits(0).json();
+    let number =
+        |key: &str| told.pointer(key).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("{key}"));
+    for (key, exact, tolerance) in [
+        ("/time_s", 12.0, 0.0),
+        ("/coefficients_nm/0", 411.465238316, 1e-11),
+        ("/coefficients_nm/1", -190.087330099, 1e-11),
+        ("/peak_torque_nm", 521.080754063, 1e-11),
+        ("/rms_torque_nm", 320.4971414899, 1e-12),
+        ("/energy_nm2_s", 1232621.012439, 1e-12),
+        ("/residual_rad/phi4", 2.174721671e-5, 1e-8),
+        ("/residual_rad/angle", 8.285417207e-5, 1e-8),
+        ("/residual_worst_rad/phi4", 1.189e-3, 5e-4),
+        ("/residual_worst_5_percent_rad/phi4", 3.375e-4, 5e-4),
+        ("/peak_deflection_rad", 0.2157570444, 1e-9),
+        ("/peak_deflections_rad/angle", 0.132232747, 1e-8),
+        ("/residual_energy_j", 5.903e-5, 1e-3),
+    ] {
+        close(number(key), exact, tolerance);
+    }
+    assert_eq!(told["even_coefficients_nm"], serde_json::json!([]));
+    assert_eq!(told["constant_nm"], 0.0);
+    let dir = dir("torque", 0.0, &quarter);
+    dir.run("plan turn.toml").exits(0).says(&[
+        "411.465238316, -190.087330099 N m",
+        "521.080754 N m",
+        "phi4",
+        "1.189e-3",
+    ]);
+    // Another command, in the time that its peak allows.
+    let set = "--set manoeuvre.command.sine.suppress=2 --peak-torque 521.080754063";
+    let told = dir.run(&format!("plan turn.toml --json {set}")).exits(0).json();
+    assert!((told["time_s"].as_f64().expect("a time") - 14.2784).abs() < 1e-4);
+    close(told["peak_torque_nm"].as_f64().expect("a peak"), 521.080754063, 1e-12);
+    let told = dir.run("plan turn.toml --json --set manoeuvre.command={bang_bang={}}").exits(0).json();
+    assert!(told["coefficients_nm"].is_null() && told["harmonics_nm"].is_null());
+    // The same bytes each time.
+    let again = |_| dir.run("plan turn.toml --json --compare").exits(0).out;
+    assert_eq!(again(0), again(1));
+}
+
+#[test]
+fn rates_and_motion_have_their_keys() {
+    let spin = format!(
+        "angle = {FRAC_PI_2:?}\ntime = 12.0\nend_rate = 0.2\n[manoeuvre.command]\nsine = {{ suppress = 2 }}"
+    );
+    let told = dir("torque", 0.0, &spin).run("plan turn.toml --json").exits(0).json();
+    close(told["constant_nm"].as_f64().expect("a number"), 76.9445, 1e-12);
+    close(told["even_coefficients_nm"][0].as_f64().expect("a number"), -99.55520223269, 1e-11);
+    assert!(told["tuned_times_s"][0]["cosine"].is_null());
+    let quarter =
+        format!("angle = {FRAC_PI_2:?}\ntime = 12.0\n[manoeuvre.command]\nsine = {{ suppress = 2 }}");
+    let told = dir("motion", 0.0, &quarter).run("plan turn.toml --json").exits(0).json();
+    close(told["coefficients_rad_s2"][2].as_f64().expect("a number"), -0.0367391841, 2e-9);
+    close(told["peak_torque_nm"].as_f64().expect("a number"), 718.49901755, 1e-9);
+    assert!(told.get("coefficients_nm").is_none());
+}
+
+#[test]
+fn a_scenario_keeps_its_manoeuvre() {
+    let turn = "angle = 1.0\npeak_torque = 300.0\n[manoeuvre.command]\ncosine = { zeros = [{ mode = 1, shift = 0.1 }] }\n\
+                [manoeuvre.shaper]\nei = { modes = [0], vibration = 0.1 }";
+    let scenario = crate::spacecraft::scenario(&text("torque", 0.0, turn));
+    let again = crate::spacecraft::scenario(&scenario.to_toml());
+    assert_eq!((&scenario.manoeuvre, &scenario.plan), (&again.manoeuvre, &again.plan));
+    assert!(scenario.plan.is_some());
+}
