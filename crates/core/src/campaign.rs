@@ -113,8 +113,21 @@ impl Campaign {
             let scenario = Scenario { uncertain: BTreeMap::new(), ..self.scenario.clone() };
             return Ok(Run { number, scenario, drawn });
         }
-        let keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
+        let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
+        if self.plans_first() {
+            let grid = &keys[..usize::from(self.grid.is_some())];
+            let model = self.scenario_with(grid)?.model;
+            // A body holds nothing that TOML cannot express.
+            let model = Value::try_from(model).unwrap_or_else(|_| Value::Table(Table::new()));
+            keys.push(("manoeuvre.model", model));
+        }
         Ok(Run { number, scenario: self.scenario_with(&keys)?, drawn })
+    }
+
+    /// Whether the manoeuvre is planned for the body before its keys are drawn.
+    fn plans_first(&self) -> bool {
+        let itself = self.scenario.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.model.is_none());
+        itself && self.scenario.uncertain.keys().any(|key| key.starts_with("body."))
     }
 
     /// Simulates a run and gathers its metrics, beside another record.

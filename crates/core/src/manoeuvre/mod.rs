@@ -70,6 +70,10 @@ pub struct Manoeuvre {
     /// What the command is convolved with; it takes a part of the time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shaper: Option<Shaper>,
+    /// The body that the plan is made for; left out, the body itself. A campaign that draws keys of the body puts the
+    /// body as it is written here: what is planned does not know what is drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<Planar>,
 }
 
 impl Manoeuvre {

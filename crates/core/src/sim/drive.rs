@@ -47,7 +47,7 @@ impl Drive {
         Self {
             waveform,
             from: (scenario.model.angle.get(), scenario.model.rate.get()),
-            inertia: scenario.model.commanded_inertia(),
+            inertia: scenario.planned_for().commanded_inertia(),
             switching: matches!(scenario.law, Law::Relay(_)),
             disturbances: scenario.disturbance.clone(),
             edges,

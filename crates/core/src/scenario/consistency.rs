@@ -1,0 +1,166 @@
+//! What the single values of a scenario cannot show to be wrong: keys that do not fit each other.
+
+use super::Scenario;
+use super::epoch::nanoseconds_since_1970;
+use crate::actuator::Actuator;
+use crate::adaptation::Adaptation;
+use crate::body::{Body, Drive};
+use crate::disturbance::Disturbance;
+use crate::document::key;
+use crate::estimator::{Estimator, Form};
+use crate::law::Law;
+use crate::quantity::{Finite, NonNegative};
+
+impl Scenario {
+    /// The first key that does not fit the others, and what is wrong with it.
+    pub(super) fn inconsistency(&self) -> Option<(String, String)> {
+        let at = |key: &str, why: String| Some((key.to_owned(), why));
+        if self.name.contains(['/', '\\']) || self.name.contains(char::is_control) || self.name.len() > 200 {
+            let why = "names files: it has at most 200 bytes, no slash and no control character";
+            return at("name", why.to_owned());
+        }
+        if self.epoch.is_some_and(|epoch| nanoseconds_since_1970(&epoch).is_none()) {
+            let example = "2026-03-20T14:46:00Z";
+            return at("epoch", format!("must be a date and time from 1970 to 2500, such as {example}"));
+        }
+        // The first day of 2554 is the last whose nanoseconds fit 64 bits.
+        let longest = (u64::MAX - self.epoch_ns()) as f64 / 1e9;
+        if self.duration.seconds() >= longest {
+            let why = format!(
+                "must be below {longest:.4e} s, so that the log can count its nanoseconds from 1970, got {:e}",
+                self.duration.seconds()
+            );
+            return at("duration", why);
+        }
+        self.law_inconsistency()
+            .or_else(|| self.drive_inconsistency())
+            .or_else(|| self.estimator_inconsistency())
+            .or_else(|| self.adaptation_inconsistency())
+            .or_else(|| {
+                let mut table = self.to_table();
+                table.remove("uncertain");
+                self.uncertain.iter().find_map(|(key, distribution)| {
+                    let why = distribution.problem(key::get(&table, key))?;
+                    Some((format!("uncertain.\"{key}\""), why))
+                })
+            })
+    }
+
+    fn law_inconsistency(&self) -> Option<(String, String)> {
+        let Law::Relay(relay) = &self.law else { return None };
+        let (eps, gamma) = (relay.dead_zone.get(), relay.hysteresis.get());
+        let at = |key: &str, why: String| Some((key.to_owned(), why));
+        if gamma >= 2.0 * eps {
+            let width = 2.0 * eps;
+            let why = format!("must be less than the dead zone's width of {width}, got {gamma}");
+            return at("law.relay.hysteresis", why);
+        }
+        if self.manoeuvre.is_some() {
+            let why = "holds the angle at 0: with a `[manoeuvre]` the law is `pd` or left out";
+            return at("law.relay", why.to_owned());
+        }
+        if self.chain.is_some() {
+            let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form";
+            return at("body.panels.kinematics", why.to_owned());
+        }
+        None
+    }
+
+    fn drive_inconsistency(&self) -> Option<(String, String)> {
+        let at = |key: &str, why: String| Some((key.to_owned(), why));
+        let estimates = self.estimator.is_some();
+        if self.manoeuvre.is_some() && estimates {
+            let why = "follows torques that are constant between switchings, not a `[manoeuvre]`";
+            return at("estimator.envelope", why.to_owned());
+        }
+        let ordered = |d: &Disturbance| d.to.is_none_or(|to| d.from < to);
+        if let Some(index) = self.disturbance.iter().position(|d| !ordered(d)) {
+            let Disturbance { from, to, .. } = &self.disturbance[index];
+            let (from, to) = (from.get(), to.map_or(f64::NAN, NonNegative::get));
+            return at(
+                &format!("disturbance[{index}].to"),
+                format!("must be later than `from`, {from} s, got {to}"),
+            );
+        }
+        if let Actuator::Thrusters(thrusters) = &self.actuator {
+            let (period, minimum) = (thrusters.period.seconds(), thrusters.minimum_on.get());
+            if minimum > period {
+                let why = format!("must be at most the period of {period} s, got {minimum}");
+                return at("actuator.thrusters.minimum_on", why);
+            }
+            if thrusters.quantum.get() > period {
+                let why =
+                    format!("must be at most the period of {period} s, got {}", thrusters.quantum.get());
+                return at("actuator.thrusters.quantum", why);
+            }
+        }
+        if estimates && self.actuator != Actuator::Ideal {
+            let why = "must be `ideal` with an `[estimator.envelope]`, which knows the commanded torque only";
+            return at("actuator", why.to_owned());
+        }
+        if self.model.drive == Drive::Motion {
+            let moves =
+                "moves the hub by force, but the body's hub follows a given motion (`drive = \"motion\"`)";
+            if !self.disturbance.is_empty() {
+                return at("disturbance[0]", moves.to_owned());
+            }
+            if matches!(self.actuator, Actuator::Thrusters(_)) {
+                return at("actuator.thrusters", moves.to_owned());
+            }
+            if !matches!(self.law, Law::Open(_)) {
+                return at("law", moves.to_owned());
+            }
+            if self.chain.is_some() {
+                let why = "must be \"linear\" where the hub's motion is given";
+                return at("body.panels.kinematics", why.to_owned());
+            }
+        }
+        None
+    }
+
+    fn estimator_inconsistency(&self) -> Option<(String, String)> {
+        let Some(Estimator::Envelope(envelope)) = &self.estimator else { return None };
+        if envelope.form == Form::Truth && envelope.modes.is_some() {
+            let why = "of its own have no use for the form `truth`, which reads the body's".to_owned();
+            return Some(("estimator.envelope.modes".to_owned(), why));
+        }
+        let own = envelope.modes.as_ref().map(|modes| ("estimator.envelope", modes.as_slice()));
+        let (place, modes) = own.unwrap_or(("body.planar", &self.model.modes));
+        modes.iter().enumerate().find(|(_, mode)| mode.damping.get() >= 1.0).map(|(index, mode)| {
+            let why = format!("must be below 1 for a mode to have an envelope, got {}", mode.damping.get());
+            match (&self.body, own) {
+                (Body::Matrices(_) | Body::Panels(_), None) => {
+                    (format!("body.{}.damping", self.body.kind()), why)
+                }
+                _ => (format!("{place}.modes[{index}].damping"), why),
+            }
+        })
+    }
+
+    fn adaptation_inconsistency(&self) -> Option<(String, String)> {
+        let Some(Adaptation::RandomSearch(search)) = &self.adaptation else { return None };
+        let [low, high] = search.bounds.map(Finite::get);
+        let Law::Relay(relay) = &self.law else {
+            let why = "adapts the gain k_t of a law `relay`, and there is none".to_owned();
+            return Some(("adaptation.random_search".to_owned(), why));
+        };
+        let gain = relay.k_t.get();
+        let bounds = "adaptation.random_search.bounds".to_owned();
+        if self.estimator.is_none() {
+            let why = "needs the window means of an `[estimator.envelope]`, and there is none";
+            return Some(("adaptation.random_search".to_owned(), why.to_owned()));
+        }
+        if low >= high {
+            return Some((bounds, format!("must be [low, high] in this order, got [{low}, {high}]")));
+        }
+        if low <= 0.0 || high >= 1.0 {
+            let why = format!("must lie between 0 and 1, as k_t itself, got [{low}, {high}]");
+            return Some((bounds, why));
+        }
+        if !(low..=high).contains(&gain) {
+            let why = format!("must lie within the adaptation's bounds [{low}, {high}], got {gain}");
+            return Some(("law.relay.k_t".to_owned(), why));
+        }
+        None
+    }
+}

@@ -1,0 +1,41 @@
+//! The date of a run's start, as a count of nanoseconds.
+
+use toml::value::Datetime;
+
+/// Nanoseconds from 1970 to a date and time, which is UTC unless it has an offset; within 1970 to 2500.
+pub fn nanoseconds_since_1970(epoch: &Datetime) -> Option<u64> {
+    let (date, time) = (epoch.date?, epoch.time?);
+    // Days from the civil calendar, in years that begin in March, so that a leap day comes last.
+    let (year, month) = (i64::from(date.year), i64::from(date.month));
+    let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let days = 365 * year + year.div_euclid(4) - year.div_euclid(100)
+        + year.div_euclid(400)
+        + (153 * month + 2) / 5
+        + i64::from(date.day)
+        - 719_469;
+    let offset = match epoch.offset {
+        Some(toml::value::Offset::Custom { minutes }) => i64::from(minutes) * 60,
+        _ => 0,
+    };
+    let clock =
+        i64::from(time.hour) * 3600 + i64::from(time.minute) * 60 + i64::from(time.second.unwrap_or(0));
+    let seconds = u64::try_from(days * 86_400 + clock - offset).ok()?;
+    let nanoseconds = u64::from(time.nanosecond.unwrap_or(0));
+    (date.year < 2500).then(|| seconds * 1_000_000_000 + nanoseconds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn epochs_count_from_1970() {
+        let at = |text: &str| nanoseconds_since_1970(&text.parse().expect("a date"));
+        assert_eq!(at("1970-01-01T00:00:00Z"), Some(0));
+        // date --utc --date=2026-03-20T14:46:00Z +%s
+        assert_eq!(at("2026-03-20T14:46:00Z"), Some(1_774_017_960_000_000_000));
+        assert_eq!(at("2024-02-29T23:59:59.5+01:00"), Some(1_709_247_599_500_000_000));
+        assert_eq!(at("1969-12-31T23:00:00Z"), None);
+        assert_eq!(at("2026-03-20"), None);
+    }
+}

@@ -1,0 +1,247 @@
+//! The scenario: everything that a user writes about a study, and nothing that moves.
+
+mod consistency;
+mod epoch;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use toml::Table;
+use toml::value::Datetime;
+
+use crate::actuator::Actuator;
+use crate::adaptation::Adaptation;
+use crate::body::{Body, Chain, Planar};
+use crate::disturbance::Disturbance;
+use crate::document::{Document, ScenarioError};
+use crate::estimator::Estimator;
+use crate::law::{Goal, Law};
+use crate::manoeuvre::{Manoeuvre, Plan};
+use crate::quantity::Positive;
+use crate::sensor::Sensor;
+use crate::time::{Instant, Span};
+use crate::uncertain::Distribution;
+
+use epoch::nanoseconds_since_1970;
+
+/// A scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// Name of the study; left out, the name of its file.
+    #[serde(default)]
+    pub name: String,
+    /// What the study is about.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub about: String,
+    /// Seed of all randomness.
+    #[serde(default)]
+    pub seed: u64,
+    /// Simulated time (s).
+    pub duration: Span,
+    /// Date and time of the start; a log counts its time from here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
+    pub epoch: Option<Datetime>,
+    /// What is controlled.
+    pub body: Body,
+    /// The body with its modes, as it moves: solved from `body`.
+    #[serde(skip)]
+    pub model: Planar,
+    /// How the angle is measured.
+    #[serde(default)]
+    pub sensor: Sensor,
+    /// What is estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimator: Option<Estimator>,
+    /// What is adapted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<Adaptation>,
+    /// What is planned ahead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<Manoeuvre>,
+    /// The plan of the manoeuvre.
+    #[serde(skip)]
+    pub plan: Option<Plan>,
+    /// What commands the torque. Only a scenario with a manoeuvre can do without.
+    #[serde(default)]
+    pub law: Law,
+    /// How the commanded torque is executed.
+    #[serde(default)]
+    pub actuator: Actuator,
+    /// Disturbance torques.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub disturbance: Vec<Disturbance>,
+    /// What a full log holds.
+    #[serde(default)]
+    pub log: Log,
+    /// What the metrics compare with.
+    #[serde(default, skip_serializing_if = "Reference::is_empty")]
+    pub reference: Reference,
+    /// Distributions of keys that a campaign draws anew for each run.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub uncertain: BTreeMap<String, Distribution>,
+    /// The exact chain, where the scenario asks for it.
+    #[serde(skip)]
+    pub chain: Option<Chain>,
+}
+
+/// What a full log holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Log {
+    /// Period at which a full log holds the motion (s).
+    #[serde(default = "tenth")]
+    pub period: Span,
+}
+
+fn tenth() -> Span {
+    Span::from_seconds(0.1)
+}
+
+impl Default for Log {
+    fn default() -> Self {
+        Self { period: tenth() }
+    }
+}
+
+/// Levels of other runs that the metrics compare with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    /// Mean envelope without adaptation (rad), for the metric `envelope_reduction`; left out, the mean over
+    /// the run's own first window.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub envelope: Option<Positive>,
+}
+
+impl Reference {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl Scenario {
+    /// Reads a scenario file.
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        Self::from_document(&Document::load(path)?)
+    }
+
+    /// Reads a scenario from a text. `origin` is what errors call it.
+    pub fn parse(origin: &str, text: &str) -> Result<Self, ScenarioError> {
+        Self::from_document(&Document::parse(origin, text.to_owned())?)
+    }
+
+    /// Reads a scenario from a document.
+    pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
+        Self::solved(document, None)
+    }
+
+    /// Reads a scenario from a document that differs from another scenario in some keys. If the body is not among them,
+    /// its modes are taken over.
+    pub fn from_document_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
+        Self::solved(document, Some(parent))
+    }
+
+    fn solved(document: &Document, parent: Option<&Self>) -> Result<Self, ScenarioError> {
+        let mut scenario: Self = document.read()?;
+        if let Some(error) = document.unread(&scenario.to_table()) {
+            return Err(error);
+        }
+        if scenario.name.is_empty() {
+            let stem = Path::new(document.origin()).file_stem();
+            scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
+        }
+        scenario.body.locate(Path::new(document.origin()).parent().unwrap_or(Path::new("")));
+        scenario.model = match parent.filter(|parent| parent.body == scenario.body) {
+            Some(parent) => parent.model.clone(),
+            None => scenario.body.solve().map_err(|(key, why)| {
+                document.inconsistent(&format!("body.{}.{key}", scenario.body.kind()), &why)
+            })?,
+        };
+        scenario.chain = scenario.body.chain(&scenario.model);
+        if matches!(scenario.law, Law::Open(_)) && !document.has("law") && scenario.manoeuvre.is_none() {
+            return Err(document.missing("law"));
+        }
+        let inconsistent = |(key, why): (String, String)| document.inconsistent(&key, &why);
+        match scenario.inconsistency() {
+            None => scenario.plan = scenario.planned().map_err(inconsistent)?,
+            Some(problem) => return Err(inconsistent(problem)),
+        }
+        Ok(scenario)
+    }
+
+    /// The plan of the manoeuvre, if there is one.
+    fn planned(&self) -> Result<Option<Plan>, (String, String)> {
+        let Some(manoeuvre) = &self.manoeuvre else { return Ok(None) };
+        let body = self.planned_for();
+        if body.drive != self.model.drive {
+            let why = "must be the same as the body's".to_owned();
+            return Err(("manoeuvre.model.drive".to_owned(), why));
+        }
+        let (start, rate) = (manoeuvre.start_rate.get(), self.model.rate.get());
+        if start != rate {
+            let why = format!("must be the body's rate at the start, {rate}, got {start}");
+            return Err(("manoeuvre.start_rate".to_owned(), why));
+        }
+        manoeuvre.plan(body).map(Some).map_err(|(key, why)| match key.as_str() {
+            "" => ("manoeuvre".to_owned(), why),
+            key => (format!("manoeuvre.{key}"), why),
+        })
+    }
+
+    /// The scenario with all its defaults, as a table.
+    pub fn to_table(&self) -> Table {
+        // A scenario holds nothing that TOML cannot express.
+        Table::try_from(self).unwrap_or_default()
+    }
+
+    /// The scenario with all its defaults, as TOML.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).unwrap_or_default()
+    }
+
+    /// The body that the manoeuvre is planned for.
+    pub fn planned_for(&self) -> &Planar {
+        self.manoeuvre.as_ref().and_then(|manoeuvre| manoeuvre.model.as_ref()).unwrap_or(&self.model)
+    }
+
+    /// Where the law shall bring the body: the end of the manoeuvre, or angle 0 from the start on.
+    pub fn goal(&self) -> Goal {
+        self.plan.as_ref().map_or_else(Goal::default, |plan| Goal {
+            from: Instant::START + Span::from_seconds(plan.time),
+            angle: self.model.angle.get() + plan.angle,
+            rate: plan.end_rate,
+        })
+    }
+
+    /// The scenario without need of any file: the matrices of a structure give way to the modes that they came to.
+    pub fn self_contained(&self) -> Self {
+        let mut scenario = self.clone();
+        if matches!(self.body, Body::Matrices(_)) {
+            scenario.body = Body::Planar(self.model.clone());
+            scenario.uncertain.retain(|key, _| !key.starts_with("body.matrices"));
+        }
+        scenario
+    }
+
+    /// The date of the start in nanoseconds since 1970 UTC; 0 without one.
+    pub fn epoch_ns(&self) -> u64 {
+        self.epoch.as_ref().and_then(nanoseconds_since_1970).unwrap_or(0)
+    }
+
+    /// The JSON Schema of scenarios.
+    pub fn schema() -> serde_json::Value {
+        schemars::schema_for!(Scenario).to_value()
+    }
+
+    /// A viewer layout for logs of this kind of scenario.
+    pub fn layout(&self) -> Option<&'static str> {
+        Some(match &self.law {
+            Law::Relay(_) => include_str!("../../../../scenarios/layouts/relay.json"),
+            Law::Pd(_) | Law::Open(_) => include_str!("../../../../scenarios/layouts/rotation.json"),
+        })
+    }
+}
