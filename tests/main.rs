@@ -15,6 +15,7 @@ mod plan;
 mod plot;
 mod relay;
 mod rivals;
+mod rotation;
 mod spacecraft;
 mod stops;
 mod structure;
