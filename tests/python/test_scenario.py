@@ -82,7 +82,8 @@ def test_matrices_become_modes(fixed: Scenario, tmp_path: Path) -> None:
     mass = np.array([[10.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 3.0]])
     stiffness = np.array([[0.0, 0.0, 0.0], [0.0, 5.0, -1.0], [0.0, -1.0, 7.0]])
     tip = {"name": "tip", "weights": {"q2": 1.0}}
-    values = fixed.to_dict() | {"body": {"matrices": {"mass": mass, "stiffness": stiffness, "outputs": [tip]}}}
+    matrices = {"mass": mass, "stiffness": stiffness, "outputs": [tip]}
+    values = fixed.to_dict() | {"body": {"matrices": matrices}}
     inline = Scenario(values)
     exact = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)[1:])
     np.testing.assert_allclose(inline.modes["frequency"], exact, rtol=1e-12)
@@ -91,13 +92,13 @@ def test_matrices_become_modes(fixed: Scenario, tmp_path: Path) -> None:
     assert inline.outputs["tip"].shape == (3,)
     np.savez(tmp_path / "model.npz", M=mass, K=stiffness)
     path = str(tmp_path / "model.npz")
-    values["body"]["matrices"] |= {"mass": f"{path}:M", "stiffness": f"{path}:K"}
-    read = Scenario(values)
+    files = matrices | {"mass": f"{path}:M", "stiffness": f"{path}:K"}
+    read = Scenario(values | {"body": {"matrices": files}})
     np.testing.assert_array_equal(read.modes["gain"], inline.modes["gain"])
     (tmp_path / "model.npz").unlink()
     # The modes are known: only another body needs the file again.
-    assert read.with_("seed", 3).simulate(log="none").metrics == inline.with_("seed", 3).simulate(log="none").metrics
-    with pytest.raises(ScenarioError, match="model.npz"):
+    np.testing.assert_array_equal(read.with_("seed", 3).modes["gain"], inline.modes["gain"])
+    with pytest.raises(ScenarioError, match=r"model\.npz"):
         read.with_("body.matrices.keep", 1)
 
 

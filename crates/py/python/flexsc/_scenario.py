@@ -82,10 +82,10 @@ class Scenario:
     def modes(self) -> dict[str, npt.NDArray[np.float64]]:
         """The elastic modes, as arrays of shape (modes,).
 
-        `frequency` (rad/s), `period` (s), `damping` (ratio), `gain` (angle's response per unit of reduced torque),
-        `excitability`, the gain over the squared frequency (s²), `effective_inertia`, the gain times the moment of
-        inertia (kg m²), and `free_frequency` and `clamped_frequency` (rad/s), with the hub free and with the hub
-        held; NaN where there is no such body.
+        `frequency` (rad/s), `period` (s), `damping` (ratio), `gain` (angle's response per unit of reduced
+        torque), `excitability`, the gain over the squared frequency (s²), `effective_inertia`, the gain times
+        the moment of inertia (kg m²), and `free_frequency` and `clamped_frequency` (rad/s), with the hub free
+        and with the hub held; NaN where there is no such body.
         """
         import numpy as np
 
@@ -108,7 +108,7 @@ class Scenario:
 
     @property
     def outputs(self) -> dict[str, npt.NDArray[np.float64]]:
-        """The observed coordinates by name: the weight of the rigid angle, then of each mode; shape (1 + modes,)."""
+        """The observed coordinates by name: weights of the rigid angle and of each mode; shape (1 + modes,)."""
         import numpy as np
 
         outputs = json.loads(self._native.modes_json())["outputs"]
