@@ -108,7 +108,7 @@ class Scenario:
 
     @property
     def outputs(self) -> dict[str, npt.NDArray[np.float64]]:
-        """The observed coordinates by name: weights of the rigid angle and of each mode; shape (1 + modes,)."""
+        """The observed coordinates by name: weights of rigid angle and modes, of shape (1 + modes,)."""
         import numpy as np
 
         outputs = json.loads(self._native.modes_json())["outputs"]
