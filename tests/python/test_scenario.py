@@ -70,8 +70,36 @@ def test_properties(adaptive: Scenario) -> None:
     assert modes["damping"].tolist() == [0.0, 0.0]
     np.testing.assert_allclose(modes["excitability"], modes["gain"] / modes["frequency"] ** 2, rtol=1e-15)
     assert repr(adaptive) == "<flexsc.Scenario relay-adaptive: 20000 s, 2 modes, seed 157>"
+    np.testing.assert_allclose(modes["effective_inertia"], modes["gain"])
+    assert modes["free_frequency"].tolist() == [0.44, 0.755]
+    assert (modes["clamped_frequency"] < modes["frequency"]).all()
     rigid = adaptive.with_("body.planar.modes", [])
     assert rigid.modes["frequency"].shape == (0,)
+    assert rigid.outputs == {}
+
+
+def test_matrices_become_modes(fixed: Scenario, tmp_path: Path) -> None:
+    mass = np.array([[10.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 3.0]])
+    stiffness = np.array([[0.0, 0.0, 0.0], [0.0, 5.0, -1.0], [0.0, -1.0, 7.0]])
+    tip = {"name": "tip", "weights": {"q2": 1.0}}
+    matrices = {"mass": mass, "stiffness": stiffness, "outputs": [tip]}
+    values = fixed.to_dict() | {"body": {"matrices": matrices}}
+    inline = Scenario(values)
+    exact = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)[1:])
+    np.testing.assert_allclose(inline.modes["frequency"], exact, rtol=1e-12)
+    held = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass[1:, 1:], stiffness[1:, 1:])).real))
+    np.testing.assert_allclose(inline.modes["clamped_frequency"], held, rtol=1e-12)
+    assert inline.outputs["tip"].shape == (3,)
+    np.savez(tmp_path / "model.npz", M=mass, K=stiffness)
+    path = str(tmp_path / "model.npz")
+    files = matrices | {"mass": f"{path}:M", "stiffness": f"{path}:K"}
+    read = Scenario(values | {"body": {"matrices": files}})
+    np.testing.assert_array_equal(read.modes["gain"], inline.modes["gain"])
+    (tmp_path / "model.npz").unlink()
+    # The modes are known: only another body needs the file again.
+    np.testing.assert_array_equal(read.with_("seed", 3).modes["gain"], inline.modes["gain"])
+    with pytest.raises(ScenarioError, match=r"model\.npz"):
+        read.with_("body.matrices.keep", 1)
 
 
 def test_keys_are_set_in_a_copy(adaptive: Scenario) -> None:

@@ -9,9 +9,12 @@ use std::io::Cursor;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use flexsc_core::body::Drive;
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::record::{Detail, McapLog, Metrics, Record, RunEnd, Trace};
+use flexsc_core::structure::Structure;
 use flexsc_core::{Scenario, Simulation};
+use nalgebra::DMatrix;
 
 /// relay-quiet without its observer: switchings alone.
 const EVENTS: &str = r"
@@ -117,9 +120,37 @@ fn log(c: &mut Criterion) {
     group.finish();
 }
 
+/// A hub with a chain of springs whose masses all couple; benches/table.py solves the same matrices.
+fn chain(order: usize) -> Structure {
+    let mass = DMatrix::from_fn(order, order, |i, j| match (i, j) {
+        (0, 0) => 1e9,
+        (0, _) | (_, 0) => (i + j) as f64,
+        _ => 1.0 / (1.0 + i.abs_diff(j) as f64),
+    });
+    let stiffness = DMatrix::from_fn(order, order, |i, j| match (i, j) {
+        (0, _) | (_, 0) => 0.0,
+        _ if i == j => 2000.0,
+        _ if i.abs_diff(j) == 1 => -1000.0,
+        _ => 0.0,
+    });
+    Structure::new(mass, stiffness, 0, None).expect("a structure")
+}
+
+fn structure(c: &mut Criterion) {
+    let mut group = c.benchmark_group("structure");
+    group.sample_size(10).measurement_time(Duration::from_secs(8));
+    for order in [100, 1000] {
+        let structure = chain(order);
+        group.bench_with_input(BenchmarkId::from_parameter(order), &structure, |b, structure| {
+            b.iter(|| black_box(structure).modes(Drive::Torque, &[]).expect("modes"));
+        });
+    }
+    group.finish();
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    targets = run, modes, log
+    targets = run, modes, log, structure
 }
 criterion_main!(benches);

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::campaign::{Campaign, Grid, Outcome, Run};
 use flexsc_core::law::Law;
@@ -127,9 +128,13 @@ impl Scenario {
         self.inner.duration.seconds()
     }
 
-    fn modes(&self) -> Vec<[f64; 4]> {
-        let modes = self.inner.model.modes.iter();
-        modes.map(|m| [m.frequency.get(), m.damping.get(), m.gain.get(), m.excitability()]).collect()
+    #[getter]
+    fn mode_count(&self) -> usize {
+        self.inner.model.modes.len()
+    }
+
+    fn modes_json(&self) -> String {
+        json!(Modal::of(&self.inner.model)).to_string()
     }
 
     fn to_toml(&self) -> String {

@@ -2,5 +2,6 @@
 
 pub mod cycle;
 pub mod elliptic;
+pub mod modal;
 pub mod rigid_cycle;
 pub mod swing_integral;

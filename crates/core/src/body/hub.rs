@@ -42,7 +42,7 @@ impl Planar {
             let own = if i == j { inverse[i] * inverse[i] } else { 0.0 };
             own + sign * swing[i] * swing[j]
         });
-        let squares = eigenvalues(matrix);
+        let squares = eigenvalues(&matrix)?;
         squares.iter().rev().map(|square| (*square > 0.0).then(|| 1.0 / libm::sqrt(*square))).collect()
     }
 }

@@ -6,7 +6,7 @@
 
 use super::{Damping, Drive, Mode, Output, Planar};
 use crate::quantity::{Finite, Frequency, Positive};
-use crate::structure::{Fault, Structure};
+use crate::structure::{Fault, Structure, TOO_FAR_APART};
 
 /// What is kept of a structure, and how it starts.
 pub struct Reduction<'a> {
@@ -81,5 +81,5 @@ fn finite(value: f64) -> Result<Finite, Fault> {
 }
 
 fn too_large() -> Fault {
-    ("mass".to_owned(), "holds numbers too far apart for modes in double precision".to_owned())
+    ("mass".to_owned(), TOO_FAR_APART.to_owned())
 }

@@ -218,6 +218,7 @@ impl Scenario {
     }
 
     /// The scenario without need of any file: the matrices of a structure give way to the modes that they came to.
+    #[must_use]
     pub fn self_contained(&self) -> Self {
         let mut scenario = self.clone();
         if matches!(self.body, Body::Matrices(_)) {

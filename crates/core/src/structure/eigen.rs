@@ -19,13 +19,15 @@ pub struct Modes {
     pub values: DMatrix<f64>,
 }
 
-/// Which matrix is not positive definite.
+/// Why there are no modes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Indefinite {
-    /// The stiffness matrix.
+pub enum Unsolved {
+    /// The stiffness matrix is not positive definite.
     Stiffness,
-    /// The mass matrix.
+    /// The mass matrix is not positive definite.
     Mass,
+    /// The numbers leave the range of double precision.
+    Range,
 }
 
 /// The modes of a stiffness and a mass matrix, and the values of functionals, the columns of `functionals`.
@@ -33,7 +35,7 @@ pub fn modes(
     stiffness: DMatrix<f64>,
     mass: DMatrix<f64>,
     functionals: &DMatrix<f64>,
-) -> Result<Modes, Indefinite> {
+) -> Result<Modes, Unsolved> {
     let order = stiffness.nrows();
     let reduced = if order <= SMALL {
         small(stiffness, mass, functionals)?
@@ -50,16 +52,18 @@ pub fn modes(
     Ok(Modes { frequencies, values })
 }
 
-/// The eigenvalues of a symmetric matrix, increasing. Its lower half is read.
-pub fn values(matrix: DMatrix<f64>) -> Vec<f64> {
+/// The eigenvalues of a symmetric matrix, increasing; none if an element is not finite. Its lower half is read.
+pub fn values(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
+    if matrix.iter().any(|element| !element.is_finite()) {
+        return None;
+    }
     let mut values = if matrix.nrows() <= SMALL {
         matrix.symmetric_eigenvalues().as_slice().to_vec()
     } else {
-        let values = to_faer(&matrix).self_adjoint_eigenvalues(Side::Lower);
-        values.expect("a finite matrix has eigenvalues")
+        to_faer(matrix).self_adjoint_eigenvalues(Side::Lower).ok()?
     };
     values.sort_by(f64::total_cmp);
-    values
+    Some(values)
 }
 
 /// The eigenvalues w⁻² of B B' in any order, and y' L⁻¹ c for each eigenvector and functional.
@@ -72,18 +76,22 @@ fn small(
     stiffness: DMatrix<f64>,
     mass: DMatrix<f64>,
     functionals: &DMatrix<f64>,
-) -> Result<Reduced, Indefinite> {
+) -> Result<Reduced, Unsolved> {
     let factor = |matrix: DMatrix<f64>, indefinite| {
         let diagonal = matrix.diagonal();
         let factor = Cholesky::new(matrix).ok_or(indefinite)?.unpack();
         let pivots = (0..diagonal.len()).map(|i| (factor[(i, i)], diagonal[i]));
         if is_definite(pivots) { Ok(factor) } else { Err(indefinite) }
     };
-    let l = factor(stiffness, Indefinite::Stiffness)?;
-    let r = factor(mass, Indefinite::Mass)?;
+    let l = factor(stiffness, Unsolved::Stiffness)?;
+    let r = factor(mass, Unsolved::Mass)?;
     // The factors have no zero on their diagonals.
     let b = l.solve_lower_triangular(&r).unwrap_or(r);
-    let eigen = SymmetricEigen::new(&b * b.transpose());
+    let square = &b * b.transpose();
+    if square.iter().any(|element| !element.is_finite()) {
+        return Err(Unsolved::Range);
+    }
+    let eigen = SymmetricEigen::new(square);
     let functionals = l.solve_lower_triangular(functionals).unwrap_or_else(|| functionals.clone());
     Ok(Reduced {
         squares: eigen.eigenvalues.as_slice().to_vec(),
@@ -95,7 +103,7 @@ fn large(
     stiffness: &DMatrix<f64>,
     mass: &DMatrix<f64>,
     functionals: &DMatrix<f64>,
-) -> Result<Reduced, Indefinite> {
+) -> Result<Reduced, Unsolved> {
     use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 
     let factor = |matrix: &DMatrix<f64>, indefinite| {
@@ -103,8 +111,8 @@ fn large(
         let pivots = (0..matrix.nrows()).map(|i| (factor.L()[(i, i)], matrix[(i, i)]));
         if is_definite(pivots) { Ok(factor) } else { Err(indefinite) }
     };
-    let l = factor(stiffness, Indefinite::Stiffness)?;
-    let mut b = factor(mass, Indefinite::Mass)?.L().to_owned();
+    let l = factor(stiffness, Unsolved::Stiffness)?;
+    let mut b = factor(mass, Unsolved::Mass)?.L().to_owned();
     l.L().solve_lower_triangular_in_place(&mut b);
     let mut square = Mat::zeros(b.nrows(), b.nrows());
     matmul(
@@ -118,7 +126,10 @@ fn large(
         1.0,
         faer::Par::Seq,
     );
-    let eigen = square.self_adjoint_eigen(Side::Lower).expect("a finite matrix has eigenvectors");
+    if !square.is_all_finite() {
+        return Err(Unsolved::Range);
+    }
+    let eigen = square.self_adjoint_eigen(Side::Lower).map_err(|_| Unsolved::Range)?;
     let mut functionals = to_faer(functionals);
     l.L().solve_lower_triangular_in_place(&mut functionals);
     let values = eigen.U().transpose() * &functionals;

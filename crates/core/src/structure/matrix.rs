@@ -54,12 +54,14 @@ impl Matrix {
 
 /// Reads the file of a matrix.
 fn read_file(file: &str) -> Result<DMatrix<f64>, String> {
+    let extension =
+        |path: &str| Path::new(path).extension().map(|extension| extension.to_string_lossy().into_owned());
     let (path, array) = match file.rsplit_once(':') {
-        Some((path, array)) if path.ends_with(".npz") => (path, Some(array)),
+        Some((path, array)) if extension(path).as_deref() == Some("npz") => (path, Some(array)),
         _ => (file, None),
     };
-    let path = Path::new(path);
-    let read = match path.extension().and_then(|extension| extension.to_str()) {
+    let (kind, path) = (extension(path), Path::new(path));
+    let read = match kind.as_deref() {
         Some("csv") => csv::read(path),
         Some("mtx") => market::read(path),
         Some("npz") => npz::read(path, array),

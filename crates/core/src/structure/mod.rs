@@ -15,7 +15,7 @@ mod npz;
 use nalgebra::{DMatrix, DVector};
 
 use crate::body::Drive;
-use eigen::Indefinite;
+use eigen::Unsolved;
 pub use eigen::values as eigenvalues;
 pub use matrix::Matrix;
 
@@ -149,8 +149,9 @@ impl Structure {
             _ => observed[column - 1][elastic[i]],
         });
         let solved = eigen::modes(block(&self.stiffness), mass, &functionals).map_err(|which| match which {
-            Indefinite::Mass => ("mass".to_owned(), format!("{DEFINITE}, and is not")),
-            Indefinite::Stiffness => (
+            Unsolved::Range => ("mass".to_owned(), TOO_FAR_APART.to_owned()),
+                Unsolved::Mass => ("mass".to_owned(), format!("{DEFINITE}, and is not")),
+            Unsolved::Stiffness => (
                 "stiffness".to_owned(),
                 format!(
                     "{DEFINITE} with the hub held, and is not: the structure has another motion without strain \
@@ -179,6 +180,9 @@ impl Structure {
         Ok(Modes { inertia, frequencies: solved.frequencies, participations, rigid, shapes })
     }
 }
+
+/// What is wrong with matrices whose modes leave the range of numbers.
+pub const TOO_FAR_APART: &str = "holds numbers too far apart for modes in double precision";
 
 const DEFINITE: &str = "must be positive definite";
 

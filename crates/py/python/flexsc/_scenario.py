@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -81,14 +82,37 @@ class Scenario:
     def modes(self) -> dict[str, npt.NDArray[np.float64]]:
         """The elastic modes, as arrays of shape (modes,).
 
-        `frequency` (rad/s), `damping` (ratio), `gain` (angle's response per unit of reduced torque), and
-        `excitability`, the gain over the squared frequency (s²).
+        `frequency` (rad/s), `period` (s), `damping` (ratio), `gain` (angle's response per unit of reduced
+        torque), `excitability`, the gain over the squared frequency (s²), `effective_inertia`, the gain times
+        the moment of inertia (kg m²), and `free_frequency` and `clamped_frequency` (rad/s), with the hub free
+        and with the hub held; NaN where there is no such body.
         """
         import numpy as np
 
-        table = np.array(self._native.modes(), dtype=np.float64).reshape(-1, 4)
-        names = ("frequency", "damping", "gain", "excitability")
-        return {name: table[:, column].copy() for column, name in enumerate(names)}
+        table = json.loads(self._native.modes_json())
+        columns = {
+            "frequency": table["frequencies_rad_s"],
+            "period": table["periods_s"],
+            "damping": table["dampings"],
+            "gain": table["gains"],
+            "excitability": table["excitabilities_s2"],
+            "effective_inertia": table["effective_inertias_kg_m2"],
+            "free_frequency": table["free_frequencies_rad_s"],
+            "clamped_frequency": table["clamped_frequencies_rad_s"],
+        }
+        none = [np.nan] * self._native.mode_count
+        return {
+            name: np.array(none if column is None else column, dtype=np.float64)
+            for name, column in columns.items()
+        }
+
+    @property
+    def outputs(self) -> dict[str, npt.NDArray[np.float64]]:
+        """The observed coordinates by name: weights of rigid angle and modes, of shape (1 + modes,)."""
+        import numpy as np
+
+        outputs = json.loads(self._native.modes_json())["outputs"]
+        return {o["name"]: np.array([o["rigid"], *o["weights"]], dtype=np.float64) for o in outputs}
 
     def to_dict(self) -> dict[str, Any]:
         """The scenario with all its defaults, as `Scenario(...)` takes it."""
@@ -147,7 +171,7 @@ class Scenario:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        modes = len(self._native.modes())
+        modes = self._native.mode_count
         return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes} modes, seed {self.seed}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
