@@ -1,6 +1,8 @@
 //! Planned rotations: coefficients, costs and what is left, against 50-digit arithmetic and direct integration of the
 //! generalised coordinates (DOP853, rtol 1e-12 and better).
 
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use flexsc_core::manoeuvre::Residual;
@@ -106,9 +108,12 @@ fn turn(kind: &str, start: f64, end: f64, angle: f64, p: usize, drive: &str) -> 
     ))
 }
 
+/// Kind, rates, angle, constant, odd and even amplitudes; peak, when, and root mean square.
+type Turn = (&'static str, f64, f64, f64, f64, &'static [f64], &'static [f64], Option<(f64, f64, f64)>);
+
 #[test]
 fn rates_before_and_after() {
-    let cases: [(&str, f64, f64, f64, f64, &[f64], &[f64], Option<(f64, f64, f64)>); 3] = [
+    let cases: [Turn; 3] = [
         (
             "sine",
             0.1,

@@ -3,6 +3,8 @@
 //! The tables come from direct quadrature of each command's spectrum in NumPy, with Gramians and a dual Newton method
 //! of their own; a linear programme confirms the peaks.
 
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
 use flexsc_core::manoeuvre::{Common, Row, Shape, compare};
 use flexsc_core::quantity::Positive;
 use flexsc_core::time::Span;

@@ -2,6 +2,8 @@
 //!
 //! Frequencies, gains J X_n[0]² and weights P_4n/X_n[0] come from the eigenproblem in 40-digit arithmetic.
 
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
 use flexsc_core::body::{Body, Planar};
 use flexsc_core::manoeuvre::{Plan, Report};
 use flexsc_core::{Document, Scenario, ScenarioError};
