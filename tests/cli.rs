@@ -11,7 +11,9 @@ fn help_and_version_are_no_failure() {
     let dir = Dir::new();
     dir.run("--help").exits(0).prints(&["simulate", "sweep", "log", "Usage"]);
     dir.run("--version").exits(0).prints(&[env!("CARGO_PKG_VERSION")]);
-    for verb in ["simulate", "sweep", "modes", "cycle", "export", "log", "check", "schema", "completions"] {
+    for verb in
+        ["simulate", "sweep", "modes", "cycle", "plan", "export", "log", "check", "schema", "completions"]
+    {
         dir.run(&format!("{verb} --help")).exits(0).prints(&["Usage: flexsc", verb]);
     }
 }

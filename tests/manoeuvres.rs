@@ -1,6 +1,8 @@
 //! Planned rotations: coefficients, costs and what is left, against 50-digit arithmetic and direct integration of the
 //! generalised coordinates (DOP853, rtol 1e-12 and better).
 
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use flexsc_core::manoeuvre::Residual;
@@ -106,9 +108,12 @@ fn turn(kind: &str, start: f64, end: f64, angle: f64, p: usize, drive: &str) -> 
     ))
 }
 
+/// Kind, rates, angle, constant, odd and even amplitudes; peak, when, and root mean square.
+type Turn = (&'static str, f64, f64, f64, f64, &'static [f64], &'static [f64], Option<(f64, f64, f64)>);
+
 #[test]
 fn rates_before_and_after() {
-    let cases: [(&str, f64, f64, f64, f64, &[f64], &[f64], Option<(f64, f64, f64)>); 3] = [
+    let cases: [Turn; 3] = [
         (
             "sine",
             0.1,
@@ -369,7 +374,7 @@ fn a_single_harmonic_of_a_tuned_time() {
                     &format!("angle = 1.5\ntime = {time:?}\n[manoeuvre.command]\n{kind} = {{}}"),
                 );
                 let mut scenario = crate::spacecraft::scenario(&text);
-                let flexsc_core::body::Body::Planar(body) = &mut scenario.body;
+                let body = &mut scenario.model;
                 body.modes = vec![body.modes[tuned.mode]];
                 body.outputs.clear();
                 assert!(worst(&report(&scenario).residuals) < 2e-14, "{kind} mode {}", tuned.mode);

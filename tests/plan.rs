@@ -1,5 +1,7 @@
 //! The command `flexsc plan`: its numbers and its words.
 
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
 use std::f64::consts::FRAC_PI_2;
 
 use crate::spacecraft::text;

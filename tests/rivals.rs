@@ -3,6 +3,8 @@
 //! The tables come from direct quadrature of each command's spectrum in NumPy, with Gramians and a dual Newton method
 //! of their own; a linear programme confirms the peaks.
 
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
 use flexsc_core::manoeuvre::{Common, Row, Shape, compare};
 use flexsc_core::quantity::Positive;
 use flexsc_core::time::Span;
@@ -108,8 +110,8 @@ fn the_field_in_12_seconds() {
     for &(name, peak, rms, initial, phi4, near, worst, angle, angle_worst) in FIELD {
         let row = find(&rows, name);
         let torque = row.torque;
-        // Peaks of the reference are those of its nodes.
-        assert!((torque.peak.value - peak).abs() < 0.0051 + 4e-5 * peak, "{name}: {}", torque.peak.value);
+        // Peaks of the reference are those of its nodes, none of which is at an end.
+        assert!((torque.peak.value - peak).abs() < 0.0051 + 8e-5 * peak, "{name}: {}", torque.peak.value);
         assert!((torque.rms - rms).abs() < 0.0051, "{name}: {}", torque.rms);
         assert!((torque.initial.abs() - initial).abs() < 0.0051, "{name}: {}", torque.initial);
         digits(name, row.residuals[1].nominal, phi4);

@@ -2,7 +2,9 @@
 //!
 //! Frequencies, gains J X_n[0]² and weights P_4n/X_n[0] come from the eigenproblem in 40-digit arithmetic.
 
-use flexsc_core::body::{Body, Planar};
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
+use flexsc_core::body::Planar;
 use flexsc_core::manoeuvre::{Plan, Report};
 use flexsc_core::{Document, Scenario, ScenarioError};
 
@@ -86,8 +88,7 @@ pub fn with(text: &str, set: &[(&str, String)]) -> Result<Scenario, ScenarioErro
 
 /// The planar body of a scenario.
 pub fn body(scenario: &Scenario) -> &Planar {
-    let Body::Planar(body) = &scenario.body;
-    body
+    &scenario.model
 }
 
 /// The plan of a scenario.

@@ -19,7 +19,7 @@ fn quadrature(waveform: &Waveform, pole: Phasor, from: f64, to: f64) -> (Phasor,
             {
                 let t = centre + half * x;
                 let u = waveform.at(t) * weight * half;
-                driven += Phasor::from_polar((pole.re * (to - t)).exp(), pole.im * (to - t)) * u;
+                driven += flexsc_core::phasor::polar((pole.re * (to - t)).exp(), pole.im * (to - t)) * u;
                 travel += (to - t) * u;
             }
         }

@@ -47,13 +47,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         None => None,
     };
     if args.compare {
-        let common = match (limit, manoeuvre.time, manoeuvre.peak_torque) {
-            (Some(limit), _, _) | (None, None, Some(limit)) => Common::PeakTorque(limit),
-            (None, Some(time), _) => Common::Time(time),
-            // It would have no plan.
-            (None, None, None) => return Ok(()),
-        };
-        let rows = compare(manoeuvre, common, body, args.band);
+        let common = Common::of(manoeuvre, limit, plan);
+        let rows = compare(manoeuvre, common, scenario.planned_for(), args.band);
         return if args.scenario.json {
             lines(&rows)
         } else {
@@ -69,7 +64,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 key: "--peak-torque".to_owned(),
                 why,
             };
-            Cow::Owned(slower.plan(body).map_err(refused)?)
+            Cow::Owned(slower.plan(scenario.planned_for()).map_err(refused)?)
         }
     };
     let report = Report::new(&plan, body, args.band);
@@ -87,8 +82,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn lines(rows: &[Row]) -> Result<(), Failure> {
-    let lines: String = rows.iter().map(|row| format!("{}\n", row.to_json())).collect();
-    print(lines.as_bytes())
+    let lines: Vec<String> = rows.iter().map(|row| row.to_json().to_string()).collect();
+    print(format!("{}\n", lines.join("\n")).as_bytes())
 }
 
 fn tell(scenario: &Scenario, manoeuvre: &Manoeuvre, plan: &Plan, report: &Report, body: &Planar) {

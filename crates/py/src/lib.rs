@@ -15,12 +15,16 @@ use std::path::PathBuf;
 
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
+use flexsc_core::body::Planar;
 use flexsc_core::campaign::{Campaign, Grid, Outcome, Run};
 use flexsc_core::law::Law;
+use flexsc_core::manoeuvre::{Common, Manoeuvre, Plan, Report, Row, compare};
 use flexsc_core::metrics::{self, Metrics};
+use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
 use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
 use flexsc_core::{Document, ScenarioError};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -36,7 +40,8 @@ mod _native {
     use super::error::{LogError, ScenarioError, SimulationError};
     #[pymodule_export]
     use super::{
-        Log, Scenario, campaign, main, metrics_json, rigid_cycles_json, schema_json, simulate, to_mcap,
+        Log, Scenario, campaign, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,
+        schema_json, simulate, to_mcap,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -234,6 +239,48 @@ fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
     };
     let (cycles, resonances) = (cycles(law, body, law.k_t.get()), resonances(law, body));
     Ok(json!({"cycles": cycles, "resonances": resonances}).to_string())
+}
+
+/// The manoeuvre of a scenario, its plan and its body.
+fn planned(scenario: &Scenario) -> PyResult<(&Manoeuvre, &Plan, &Planar)> {
+    let flexsc_core::Scenario { manoeuvre, plan, model: body, .. } = &scenario.inner;
+    match (manoeuvre, plan) {
+        (Some(manoeuvre), Some(plan)) => Ok((manoeuvre, plan, body)),
+        _ => Err(PyValueError::new_err(format!("{}: there is no manoeuvre to plan", scenario.inner.name))),
+    }
+}
+
+fn checked_band(band: f64) -> PyResult<f64> {
+    let none = || PyValueError::new_err(format!("band must be between 0 and 1, got {band}"));
+    Fraction::new(band).map(Fraction::get).ok_or_else(none)
+}
+
+#[pyfunction]
+fn plan_json(scenario: &Scenario, band: f64) -> PyResult<String> {
+    let (_, plan, body) = planned(scenario)?;
+    Ok(Report::new(plan, body, checked_band(band)?).to_json(plan, body).to_string())
+}
+
+#[pyfunction]
+fn plan_torque<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    times: PyReadonlyArray1<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let (_, plan, _) = planned(scenario)?;
+    let values: Vec<f64> = times.as_array().iter().map(|t| plan.waveform.at(*t)).collect();
+    Ok(values.into_pyarray(py))
+}
+
+#[pyfunction]
+fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Option<f64>) -> PyResult<String> {
+    let (manoeuvre, plan, _) = planned(scenario)?;
+    let band = checked_band(band)?;
+    let none = |peak| PyValueError::new_err(format!("peak_torque must be a positive number, got {peak}"));
+    let limit = peak_torque.map(|peak| Positive::new(peak).ok_or_else(|| none(peak))).transpose()?;
+    let common = Common::of(manoeuvre, limit, plan);
+    let rows = aside(py, |_| compare(manoeuvre, common, scenario.inner.planned_for(), band))?;
+    Ok(serde_json::Value::from(rows.iter().map(Row::to_json).collect::<Vec<_>>()).to_string())
 }
 
 /// A log in memory.

@@ -116,7 +116,7 @@ fn expected(wanted: &str) -> &str {
     match wanted {
         "f64" => "a number",
         "u32" => "a whole number from 0 to 4294967295",
-        "u64" => "a whole number from 0 to 9223372036854775807",
+        "u64" | "usize" => "a whole number from 0 to 9223372036854775807",
         "a sequence" => "an array",
         "a map" => "a table",
         "a boolean" => "true or false",

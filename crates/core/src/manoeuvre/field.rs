@@ -58,6 +58,16 @@ pub enum Common {
     PeakTorque(Positive),
 }
 
+impl Common {
+    /// A peak torque that is asked for, else the manoeuvre's time, else the peak torque that its own time comes from.
+    pub fn of(manoeuvre: &Manoeuvre, asked: Option<Positive>, plan: &Plan) -> Self {
+        match (asked, manoeuvre.time, manoeuvre.peak_torque) {
+            (Some(peak), _, _) | (None, None, Some(peak)) => Self::PeakTorque(peak),
+            (None, time, _) => Self::Time(time.unwrap_or_else(|| Span::from_seconds(plan.time))),
+        }
+    }
+}
+
 /// The commands that a body's modes allow.
 pub fn field(body: &Planar) -> Vec<Rival> {
     // Indices of the modes, by frequency.

@@ -106,7 +106,9 @@ fn sequence(areas: &[f64], mode: &Zero) -> Vec<Impulse> {
         shrink *= decay;
     }
     let sum: f64 = sequence.iter().map(|impulse| impulse.area).sum();
-    sequence.iter_mut().for_each(|impulse| impulse.area /= sum);
+    for impulse in &mut sequence {
+        impulse.area /= sum;
+    }
     sequence
 }
 

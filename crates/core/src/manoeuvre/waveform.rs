@@ -162,13 +162,12 @@ impl Term {
             exp(own * h) * sum
         };
         let (own, coefficients) = self.about(start);
-        let driven = match self.shape {
-            Shape::Polynomial(_) => part(own, coefficients),
+        let driven = if matches!(self.shape, Shape::Polynomial(_)) {
+            part(own, coefficients)
+        } else {
             // The real part of the shape is half the sum of it and its conjugate.
-            _ => {
-                let conjugate = coefficients.iter().map(Phasor::conj).collect();
-                (part(own, coefficients) + part(own.conj(), conjugate)) * 0.5
-            }
+            let conjugate = coefficients.iter().map(Phasor::conj).collect();
+            (part(own, coefficients) + part(own.conj(), conjugate)) * 0.5
         };
         if end < to { driven * exp(pole * (to - end)) } else { driven }
     }

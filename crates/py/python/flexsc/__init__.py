@@ -22,11 +22,13 @@ from typing import Any
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, sweep
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
+from flexsc._plan import Plan
 from flexsc._scenario import Log, Result, Scenario
 
 __all__ = [
     "Log",
     "LogError",
+    "Plan",
     "Result",
     "Scenario",
     "ScenarioError",

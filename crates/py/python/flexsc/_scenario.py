@@ -10,6 +10,7 @@ from operator import index
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from flexsc import _native as engine
+from flexsc._plan import Plan
 from flexsc._values import arrays, document, plain, toml
 
 if TYPE_CHECKING:
@@ -148,6 +149,14 @@ class Scenario:
             ScenarioError: What is drawn makes no valid scenario.
         """
         return self._of(self._native.draw(run_number(run)))
+
+    def plan(self, band: float = 0.1) -> Plan:
+        """The plan of the scenario's manoeuvre; frequencies are off by at most a relative `band`.
+
+        Raises:
+            ValueError: The scenario has no manoeuvre, or the band is not between 0 and 1.
+        """
+        return Plan(self._native, band)
 
     def simulate(self, run: int = 0, log: Literal["events", "full", "none"] = "events") -> Result:
         """Simulate the scenario as it stands. Other Python threads go on meanwhile.

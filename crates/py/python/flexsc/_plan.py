@@ -1,0 +1,55 @@
+"""Planned manoeuvres."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+
+class Plan(Mapping[str, Any]):
+    """The plan of a scenario's manoeuvre: what it comes to, by the names of `flexsc plan --json`.
+
+    Units are in the names: `plan["peak_torque_nm"]`, `plan["residual_rad"]["angle"]`.
+    """
+
+    def __init__(self, scenario: engine.Scenario, band: float) -> None:
+        self._scenario = scenario
+        self._band = band
+        self._told: dict[str, Any] = json.loads(engine.plan_json(scenario, band))
+
+    def torque(self, time: npt.ArrayLike) -> npt.NDArray[Any]:
+        """The command (N m, or rad/s² where the hub's motion is commanded) at times (s), in their shape."""
+        import numpy as np
+
+        times = np.asarray(time, dtype=np.float64)
+        return engine.plan_torque(self._scenario, times.ravel()).reshape(times.shape)
+
+    def compare(self, peak_torque: float | None = None) -> list[dict[str, Any]]:
+        """Every command of the field on the same body, one dictionary each.
+
+        Args:
+            peak_torque: Plan each for this peak torque (N m), in a time of its own; left out, for the
+                scenario's time.
+        """
+        rows: list[dict[str, Any]] = json.loads(
+            engine.rivals_json(self._scenario, self._band, peak_torque)
+        )
+        return rows
+
+    def __getitem__(self, name: str) -> Any:
+        return self._told[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._told)
+
+    def __len__(self) -> int:
+        return len(self._told)
+
+    def __repr__(self) -> str:
+        return f"<flexsc.Plan: {self['angle_rad']:g} rad in {self['time_s']:g} s>"
