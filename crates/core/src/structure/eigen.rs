@@ -57,7 +57,9 @@ pub fn values(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
     if matrix.iter().any(|element| !element.is_finite()) {
         return None;
     }
-    let mut values = if matrix.nrows() <= SMALL {
+    let mut values = if matrix.is_empty() {
+        Vec::new() // A rigid body has no modes.
+    } else if matrix.nrows() <= SMALL {
         matrix.symmetric_eigenvalues().as_slice().to_vec()
     } else {
         to_faer(matrix).self_adjoint_eigenvalues(Side::Lower).ok()?
