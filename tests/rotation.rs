@@ -133,8 +133,8 @@ fn small_rotations_of_the_exact_chain_are_linear() {
         let (a, b) = (column(&linear, topic, name), column(&exact, topic, name));
         assert_eq!(a.len(), b.len());
         let worst = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // What is not linear is of third order.
-        assert!(worst < 1e-11, "{topic} {name}: {worst:e}");
+        // What is not linear is of third order; the integration errs by 1e-12 in each step.
+        assert!(worst < 5e-11, "{topic} {name}: {worst:e}");
     }
 }
 
@@ -180,7 +180,9 @@ fn thrusters_give_the_planned_impulse_in_pulses() {
     );
     // Finer pulses come nearer to the plan.
     let rate = |set: &[(&str, &str)]| {
-        number(&metrics(scenario("rotation-thrusters", set)), "arrival_rate_error_rad_s").abs()
+        let strong = [("manoeuvre.command.cosine.suppress", "2"), ("actuator.thrusters.torque", "800.0")];
+        let metrics = metrics(scenario("rotation-thrusters", &[&strong[..], set].concat()));
+        number(&metrics, "arrival_rate_error_rad_s").abs()
     };
     let fine = [
         ("actuator.thrusters.period", "0.05"),

@@ -58,7 +58,6 @@ pub fn text(drive: &str, rate: f64, manoeuvre: &str) -> String {
     let modes = if drive == "motion" { CLAMPED } else { FREE };
     format!(
         "duration = 20.0\n[body.planar]\ninertia = {INERTIA}\nrate = {rate}\ndrive = \"{drive}\"\n{modes}\
-         [law.relay]\ndead_zone = 2e-3\nhysteresis = 2e-4\nstrong = 1.0\nweak = 0.02\nk_t = 0.33\n\
          [manoeuvre]\n{manoeuvre}\n"
     )
 }

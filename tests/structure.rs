@@ -47,7 +47,7 @@ const CLAMPED: [[f64; 3]; 4] = [
 ];
 
 fn model(dir: &Dir, body: &str) -> Planar {
-    dir.write("study.toml", format!("{RELAY}{body}"));
+    dir.write("study.toml", format!("duration = 10.0\n[law.open]\n{body}"));
     Scenario::load(&dir.path("study.toml")).unwrap_or_else(|error| panic!("{error}")).model
 }
 
@@ -455,7 +455,10 @@ fn bad_structures_are_refused_at_their_keys() {
 #[test]
 fn the_command_tells_of_modes() {
     let dir = Dir::holding("free.toml", format!("{RELAY}{}", PANELS.replace("SET", "")));
-    dir.write("held.toml", format!("{RELAY}{}", PANELS.replace("SET", "drive = \"motion\"")));
+    dir.write(
+        "held.toml",
+        format!("duration = 10.0\n[law.open]\n{}", PANELS.replace("SET", "drive = \"motion\"")),
+    );
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
     for (name, inertia) in [("free", 0.0), ("held", 1.0)] {
         let told = dir.run(&format!("modes {name}.toml --json")).exits(0).json();
