@@ -1,9 +1,9 @@
 """Golden numbers of planned rotations, in 60-digit arithmetic.
 
-`python3 manoeuvre_oracle.py` writes `series-amplitudes.csv`, the amplitudes of the sine and the cosine series for
-20 and for 40 suppressed modes, by linear solves of their defining equations; and prints, for the paper's
-spacecraft, the slopes of the first mode's amplitude, the peaks where the hub's own motion is commanded, and what
-the undamped design leaves in the damped modes that it suppresses.
+`python3 manoeuvre_oracle.py` writes `series-amplitudes.csv`, the amplitudes of the sine and the cosine series
+for 20 and for 40 suppressed modes, by linear solves of their defining equations; and prints, for the paper's
+spacecraft, the slopes of the first mode's amplitude, the peaks where the hub's own motion is commanded, and
+what the undamped design leaves in the damped modes that it suppresses.
 """
 
 import csv
