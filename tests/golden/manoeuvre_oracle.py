@@ -1,9 +1,9 @@
 """Golden numbers of planned rotations, in 60-digit arithmetic.
 
-`python3 manoeuvre_oracle.py` writes `series-amplitudes.csv`, the amplitudes of the sine and the cosine series for 20 and
-for 40 suppressed modes, by linear solves of their defining equations; and prints, for the paper's spacecraft, the slopes
-of the first mode's amplitude, the peaks where the hub's own motion is commanded, and what the undamped design leaves
-in the damped modes that it suppresses.
+`python3 manoeuvre_oracle.py` writes `series-amplitudes.csv`, the amplitudes of the sine and the cosine series
+for 20 and for 40 suppressed modes, by linear solves of their defining equations; and prints, for the paper's
+spacecraft, the slopes of the first mode's amplitude, the peaks where the hub's own motion is commanded, and
+what the undamped design leaves in the damped modes that it suppresses.
 """
 
 import csv
@@ -92,11 +92,7 @@ def damped():
                 z = mp.mpf(zeta)
                 pole = mp.mpc(-z * w, w * mp.sqrt(1 - z * z))
                 swing = sum(
-                    b[k]
-                    * (k + 1)
-                    * SIGMA
-                    * (mp.exp(pole * T) - 1)
-                    / (pole**2 + ((k + 1) * SIGMA) ** 2)
+                    b[k] * (k + 1) * SIGMA * (mp.exp(pole * T) - 1) / (pole**2 + ((k + 1) * SIGMA) ** 2)
                     for k in range(p + 1)
                 )
                 total += abs(part * swing) / mp.im(pole)

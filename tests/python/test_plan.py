@@ -14,7 +14,9 @@ def turn(**manoeuvre: object) -> Scenario:
         {
             "duration": 20.0,
             "body": {"planar": {"inertia": 4616.67, "modes": [mode], "outputs": [output]}},
-            "law": {"relay": {"dead_zone": 2e-3, "hysteresis": 2e-4, "strong": 1.0, "weak": 0.02, "k_t": 0.3}},
+            "law": {
+                "relay": {"dead_zone": 2e-3, "hysteresis": 2e-4, "strong": 1.0, "weak": 0.02, "k_t": 0.3}
+            },
             "manoeuvre": {**TURN, **manoeuvre},
         }
     )
@@ -48,7 +50,7 @@ def test_the_field() -> None:
 
 
 def test_what_cannot_be_planned() -> None:
-    with pytest.raises(ScenarioError, match="manoeuvre.peak_torque.*at least 521.08.*got 500"):
+    with pytest.raises(ScenarioError, match=r"manoeuvre.peak_torque.*at least 521.08.*got 500"):
         turn(peak_torque=500.0)
     with pytest.raises(ValueError, match="band must be between 0 and 1, got 2"):
         turn().plan(band=2.0)

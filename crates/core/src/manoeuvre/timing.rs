@@ -73,7 +73,7 @@ fn crossing(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -
 /// A time for which a command of a single harmonic leaves a mode at rest.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Single {
-    /// A single sine: w T = 2 pi psi, psi >= 2 (seed paper 2, section 1.6 of its special cases).
+    /// A single sine: w T = 2 pi psi, psi >= 2.
     Sine,
     /// A single cosine: w T = (2 psi + 1) pi, psi >= 1; it needs the same rate before and after.
     Cosine,

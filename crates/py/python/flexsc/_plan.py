@@ -37,9 +37,7 @@ class Plan(Mapping[str, Any]):
             peak_torque: Plan each for this peak torque (N m), in a time of its own; left out, for the
                 scenario's time.
         """
-        rows: list[dict[str, Any]] = json.loads(
-            engine.rivals_json(self._scenario, self._band, peak_torque)
-        )
+        rows: list[dict[str, Any]] = json.loads(engine.rivals_json(self._scenario, self._band, peak_torque))
         return rows
 
     def __getitem__(self, name: str) -> Any:
