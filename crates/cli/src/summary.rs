@@ -4,7 +4,6 @@ use std::io::Write;
 
 use flexsc_core::Scenario;
 use flexsc_core::body::Drive;
-use flexsc_core::law::Law;
 use flexsc_core::metrics::{Metrics, Value};
 
 use crate::say;
@@ -14,15 +13,12 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     let (duration, modes) = (scenario.duration.seconds(), scenario.model.modes.len());
     let head = format!("{}   {duration} s, {modes} modes", scenario.name);
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
-    match scenario.law {
-        Law::Relay(_) => {
-            say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
-            switchings(scenario, metrics);
-        }
-        Law::Pd(_) | Law::Open(_) => {
-            say!("{head}, {:.1} ms", took * 1e3);
-            rotation(scenario, metrics);
-        }
+    if scenario.law.switches() {
+        say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
+        switchings(scenario, metrics);
+    } else {
+        say!("{head}, {:.1} ms", took * 1e3);
+        rotation(scenario, metrics);
     }
 }
 

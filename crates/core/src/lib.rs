@@ -4,9 +4,10 @@
 //! out. Within a run data goes one way round:
 //!
 //! ```text
-//! body --truth--> sensor --measurement--> estimator --belief--> law --hold--> body
-//!                                             |                  ^
-//!                                             +--> adaptation ---+
+//! body --truth--> sensor --measurement--> estimator --belief--> law --hold--> actuator --torque--> body
+//!                                             |                  ^                ^
+//!                                             +--> adaptation ---+                |
+//!                                     manoeuvre --goal-----------+--waveform------+
 //! ```
 //!
 //! ```

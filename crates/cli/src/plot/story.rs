@@ -3,7 +3,6 @@
 
 use std::path::Path;
 
-use flexsc_core::law::Law;
 use flexsc_core::record::{Column, Columns, Log, Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
@@ -134,7 +133,7 @@ impl Story {
 
     /// Whether the law is one that switches.
     pub fn switches(&self) -> bool {
-        matches!(self.scenario.law, Law::Relay(_))
+        self.scenario.law.switches()
     }
 
     /// When the last `count` cycles begin: a cycle lasts from one entry into the law's last state to the next, or

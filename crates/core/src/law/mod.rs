@@ -34,6 +34,11 @@ pub trait Control {
     /// The state that the law is in.
     fn state(&self) -> Phase;
 
+    /// Whether the law's switchings tell all that it does: its torque changes with its state alone.
+    fn switches(&self) -> bool {
+        false
+    }
+
     /// The value that the law's tunable parameter starts with; NaN if it has none.
     fn gain(&self) -> f64 {
         f64::NAN

@@ -62,6 +62,10 @@ impl Control for Relay {
         self.phase.unwrap_or(Phase::Start)
     }
 
+    fn switches(&self) -> bool {
+        true
+    }
+
     fn gain(&self) -> f64 {
         self.k_t.get()
     }

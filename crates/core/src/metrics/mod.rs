@@ -5,7 +5,6 @@ mod switchings;
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::law::Law;
 use crate::record::{self, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -184,9 +183,10 @@ pub enum Gather {
 impl Gather {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        match scenario.law {
-            Law::Relay(_) => Self::Switchings(Box::new(Switchings::new(scenario))),
-            Law::Pd(_) | Law::Open(_) => Self::Rotation(Box::new(Rotation::new(scenario))),
+        if scenario.law.switches() {
+            Self::Switchings(Box::new(Switchings::new(scenario)))
+        } else {
+            Self::Rotation(Box::new(Rotation::new(scenario)))
         }
     }
 

@@ -240,9 +240,10 @@ impl Scenario {
 
     /// A viewer layout for logs of this kind of scenario.
     pub fn layout(&self) -> Option<&'static str> {
-        Some(match &self.law {
-            Law::Relay(_) => include_str!("../../../../scenarios/layouts/relay.json"),
-            Law::Pd(_) | Law::Open(_) => include_str!("../../../../scenarios/layouts/rotation.json"),
+        Some(if self.law.switches() {
+            include_str!("../../../../scenarios/layouts/relay.json")
+        } else {
+            include_str!("../../../../scenarios/layouts/rotation.json")
         })
     }
 }

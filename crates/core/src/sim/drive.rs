@@ -5,7 +5,7 @@ use std::sync::Arc as Shared;
 use crate::actuator::{Actuator, Pulse};
 use crate::body::{Forced, Input};
 use crate::disturbance::Disturbance;
-use crate::law::{Goal, Law};
+use crate::law::Goal;
 use crate::manoeuvre::Waveform;
 use crate::record;
 use crate::scenario::Scenario;
@@ -48,7 +48,7 @@ impl Drive {
             waveform,
             from: (scenario.model.angle.get(), scenario.model.rate.get()),
             inertia: scenario.planned_for().commanded_inertia(),
-            switching: matches!(scenario.law, Law::Relay(_)),
+            switching: scenario.law.switches(),
             disturbances: scenario.disturbance.clone(),
             edges,
             next_period: scenario.actuator.period().map(|_| Instant::START),
