@@ -217,7 +217,7 @@ fn the_brake_keeps_the_gain_that_it_began_with() {
         panic!("a relay law")
     };
     let at = |seconds| Instant::START + Span::from_seconds(seconds);
-    let belief = |gain| Belief { angle: 6e-4, rate: 0.0, gain };
+    let belief = |gain| Belief { angle: 6e-4, gain, ..Belief::default() };
     let push = law.decide(at(0.0), Cause::Start, &Goal::default(), &belief(0.31));
     assert_eq!(push.torque, -4e-5);
     let brake = law.decide(at(4.0), Cause::Guard(0), &Goal::default(), &belief(0.25));

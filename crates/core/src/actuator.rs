@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{NonNegative, Positive};
+use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::{Instant, Span};
 
 /// The kinds of actuator.
@@ -17,6 +17,62 @@ pub enum Actuator {
     Hold(Hold),
     /// In each period one pulse of full torque, centred in it, with the impulse that a hold would have.
     Thrusters(Thrusters),
+    /// A flywheel on a motor with back-EMF.
+    Wheel(Wheel),
+}
+
+/// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wheel {
+    /// Torque for each unit of the law's command (N m; k'_u of seed papers 3 and 5 times the body's inertia).
+    pub gain: Positive,
+    /// Torque for each unit of the rate (N m s; k'_omega times the body's inertia).
+    #[serde(default)]
+    pub back_emf: NonNegative,
+    /// The rate that the back-EMF opposes.
+    #[serde(default)]
+    pub opposes: Opposes,
+    /// The wheel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotor: Option<Rotor>,
+    /// Commands of less than this are not executed.
+    #[serde(default)]
+    pub dead_zone: NonNegative,
+    /// Quantum of the command; 0 for none.
+    #[serde(default)]
+    pub quantum: NonNegative,
+    /// Largest command; left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<Positive>,
+    /// Time from a sample to the command that is computed from it (s).
+    #[serde(default)]
+    pub delay: NonNegative,
+}
+
+/// The rate that the back-EMF opposes.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Opposes {
+    /// The measured rate, elastic part included: so in the papers, which overstates the damping of the modes.
+    #[default]
+    BodyRate,
+    /// The rigid rate: the momentum of the wheel is that which the body's torque gave it, exactly.
+    RigidRate,
+}
+
+/// A wheel that stores momentum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rotor {
+    /// Moment of inertia (kg m²).
+    pub inertia: Positive,
+    /// Speed at the start (rad/s).
+    #[serde(default)]
+    pub speed: Finite,
+    /// Largest speed (rad/s), at which no torque drives it further; left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_limit: Option<Positive>,
 }
 
 /// A zero-order hold.
@@ -47,9 +103,25 @@ impl Actuator {
     /// The period in which the command is executed; none for an ideal actuator.
     pub fn period(&self) -> Option<Span> {
         match self {
-            Self::Ideal => None,
+            Self::Ideal | Self::Wheel(_) => None,
             Self::Hold(hold) => Some(hold.period),
             Self::Thrusters(thrusters) => Some(thrusters.period),
+        }
+    }
+}
+
+impl Wheel {
+    /// What is executed of a command: limited, quantised, nothing of a small one.
+    pub fn shaped(&self, command: f64) -> f64 {
+        let limit = self.limit.map_or(f64::INFINITY, Positive::get);
+        let (dead_zone, quantum) = (self.dead_zone.get(), self.quantum.get());
+        let command = command.clamp(-limit, limit);
+        if command.abs() < dead_zone {
+            0.0
+        } else if quantum > 0.0 {
+            libm::round(command / quantum) * quantum
+        } else {
+            command
         }
     }
 }

@@ -9,4 +9,15 @@ pub struct Belief {
     pub rate: f64,
     /// The law's tunable parameter as adapted so far; for the relay law the braking gain `k_t`.
     pub gain: f64,
+    /// The dominant mode, as an estimator gives it.
+    pub dominant: Dominant,
+}
+
+/// The mode that a step of the torque excites most.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Dominant {
+    /// Estimated displacement (rad).
+    pub displacement: f64,
+    /// Estimated natural frequency (rad/s).
+    pub frequency: f64,
 }

@@ -1,7 +1,9 @@
 //! What is controlled: a state, and its exact flow under a constant input.
 
 mod chain;
+mod coupled;
 mod damping;
+mod drift;
 mod forced;
 mod hub;
 mod matrices;
@@ -20,7 +22,9 @@ use serde::{Deserialize, Serialize};
 use crate::structure::Fault;
 
 pub use chain::{Chain, Flight};
+pub use coupled::{Coupled, exponential};
 pub use damping::Damping;
+pub use drift::{Drift, Point, Profile, Ramp, Sinusoid};
 pub use forced::{Forced, Input};
 pub use matrices::{Matrices, Sum};
 pub use mode::Mode;

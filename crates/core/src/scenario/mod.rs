@@ -13,7 +13,7 @@ use toml::value::Datetime;
 
 use crate::actuator::Actuator;
 use crate::adaptation::Adaptation;
-use crate::body::{Body, Chain, Planar};
+use crate::body::{Body, Chain, Drift, Planar};
 use crate::disturbance::Disturbance;
 use crate::document::{Document, ScenarioError};
 use crate::estimator::Estimator;
@@ -50,6 +50,9 @@ pub struct Scenario {
     /// The body with its modes, as it moves: solved from `body`.
     #[serde(skip)]
     pub model: Planar,
+    /// How the natural frequencies drift; left out, they do not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<Drift>,
     /// How the angle is measured.
     #[serde(default)]
     pub sensor: Sensor,

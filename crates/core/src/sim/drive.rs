@@ -92,7 +92,7 @@ impl Drive {
         let (from, h) = (now.seconds(), period.seconds());
         let planned = self.waveform.as_ref().map_or(0.0, |waveform| waveform.impulse(from, from + h));
         match &self.actuator {
-            Actuator::Ideal => {}
+            Actuator::Ideal | Actuator::Wheel(_) => {}
             Actuator::Hold(_) => self.held = self.feedback + planned / h,
             Actuator::Thrusters(thrusters) => {
                 self.held = 0.0;

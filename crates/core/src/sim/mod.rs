@@ -92,7 +92,7 @@ impl Simulation {
             drive: Drive::new(scenario),
             arrival: Arrival::new(scenario),
             goal: scenario.goal(),
-            belief: Belief { angle: 0.0, rate: 0.0, gain: scenario.law.gain() },
+            belief: Belief { gain: scenario.law.gain(), ..Belief::default() },
             hold: Hold { torque: 0.0, until: None, guards: Guards::NONE },
             trip: None,
             next_sample: scenario.sensor.period().map(|period| Instant::START + period),

@@ -1,0 +1,140 @@
+//! Natural frequencies that drift: each is its own at the start, times a ratio that follows a profile.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::quantity::{Finite, NonNegative, Positive};
+
+/// A profile of the ratio over time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Profile {
+    /// From 1 on a straight line to another ratio, which holds from then on.
+    Ramp(Ramp),
+    /// 1 + amplitude (cos(2 pi (t + phase)/period) - cos(2 pi phase/period)): panels that follow the Sun on an orbit.
+    Sinusoid(Sinusoid),
+    /// Straight lines between points, held before the first and after the last.
+    Table(Vec<Point>),
+}
+
+/// A straight change of the ratio.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ramp {
+    /// When it begins (s).
+    #[serde(default)]
+    pub from: NonNegative,
+    /// How long it lasts (s).
+    pub time: Positive,
+    /// The ratio after it.
+    pub to: Positive,
+}
+
+/// A periodic change of the ratio.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sinusoid {
+    /// Half of what lies between the smallest and the largest ratio.
+    pub amplitude: NonNegative,
+    /// Period (s).
+    pub period: Positive,
+    /// Time on the cosine at the start of the run (s).
+    #[serde(default)]
+    pub phase: Finite,
+}
+
+/// A point of a profile.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// Time (s).
+    pub time: NonNegative,
+    /// Ratio there.
+    pub ratio: Positive,
+}
+
+impl Profile {
+    /// The ratio at a time (s).
+    pub fn ratio(&self, t: f64) -> f64 {
+        match self {
+            Self::Ramp(ramp) => {
+                let part = ((t - ramp.from.get()) / ramp.time.get()).clamp(0.0, 1.0);
+                1.0 + (ramp.to.get() - 1.0) * part
+            }
+            Self::Sinusoid(s) => {
+                let at = |t: f64| libm::cos(std::f64::consts::TAU * (t + s.phase.get()) / s.period.get());
+                1.0 + s.amplitude.get() * (at(t) - at(0.0))
+            }
+            Self::Table(points) => {
+                let after = points.iter().position(|point| point.time.get() > t);
+                match (after, points) {
+                    (_, []) => 1.0,
+                    (Some(0), [first, ..]) => first.ratio.get(),
+                    (None, [.., last]) => last.ratio.get(),
+                    (Some(after), _) => {
+                        let (a, b) = (points[after - 1], points[after]);
+                        let part = (t - a.time.get()) / (b.time.get() - a.time.get());
+                        a.ratio.get() + part * (b.ratio.get() - a.ratio.get())
+                    }
+                }
+            }
+        }
+    }
+
+    /// The derivative of the ratio with time (1/s), that of what comes after at a kink.
+    pub fn slope(&self, t: f64) -> f64 {
+        match self {
+            Self::Ramp(ramp) => {
+                let during = (ramp.from.get()..ramp.from.get() + ramp.time.get()).contains(&t);
+                if during { (ramp.to.get() - 1.0) / ramp.time.get() } else { 0.0 }
+            }
+            Self::Sinusoid(s) => {
+                let rate = std::f64::consts::TAU / s.period.get();
+                -s.amplitude.get() * rate * libm::sin(rate * (t + s.phase.get()))
+            }
+            Self::Table(points) => {
+                let pair = points.windows(2).find(|pair| pair[0].time.get() <= t && t < pair[1].time.get());
+                pair.map_or(0.0, |pair| {
+                    (pair[1].ratio.get() - pair[0].ratio.get()) / (pair[1].time.get() - pair[0].time.get())
+                })
+            }
+        }
+    }
+
+    /// The times (s) at which the slope jumps.
+    pub fn kinks(&self) -> Vec<f64> {
+        match self {
+            Self::Ramp(ramp) => vec![ramp.from.get(), ramp.from.get() + ramp.time.get()],
+            Self::Sinusoid(_) => Vec::new(),
+            Self::Table(points) => points.iter().map(|point| point.time.get()).collect(),
+        }
+    }
+}
+
+/// How the frequencies of a body drift.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Drift {
+    /// All by one ratio.
+    Common(Profile),
+    /// Each by its own, in the order of the modes.
+    Each(Vec<Profile>),
+}
+
+impl Drift {
+    /// The ratio of a mode at a time (s).
+    pub fn ratio(&self, mode: usize, t: f64) -> f64 {
+        match self {
+            Self::Common(profile) => profile.ratio(t),
+            Self::Each(profiles) => profiles.get(mode).map_or(1.0, |profile| profile.ratio(t)),
+        }
+    }
+
+    /// The times (s) at which a slope jumps.
+    pub fn kinks(&self) -> Vec<f64> {
+        match self {
+            Self::Common(profile) => profile.kinks(),
+            Self::Each(profiles) => profiles.iter().flat_map(Profile::kinks).collect(),
+        }
+    }
+}
