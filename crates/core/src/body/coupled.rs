@@ -114,10 +114,10 @@ mod tests {
         let (ad, bd) = Coupled::new(&body, 1e-4, true, &[1.0; 4]).discrete(0.3);
         // SciPy's expm of the same system.
         let close = |value: f64, exact: f64| assert!((value / exact - 1.0).abs() < 1e-12, "{value} {exact}");
-        close(5e-4 * bd[0], 2.249920797089e-05);
-        close(5e-4 * bd[1], 1.499921017754e-04);
-        close(5e-4 * bd[2], 3.237699584497e-05);
-        close(5e-4 * bd[3], 2.156971523391e-04);
+        close(5e-4 * bd[0], 2.249_920_797_089e-05);
+        close(5e-4 * bd[1], 1.499_921_017_754e-04);
+        close(5e-4 * bd[2], 3.237_699_584_497e-05);
+        close(5e-4 * bd[3], 2.156_971_523_391e-04);
         close(ad[(0, 1)], 0.299_995_500_158_4);
         close(ad[(2, 2)], 0.995_952_791_283_2);
         close(ad[(2, 3)], 0.299_588_692_965_7);

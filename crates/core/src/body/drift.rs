@@ -67,7 +67,7 @@ impl Profile {
             }
             Self::Table(points) => {
                 let after = points.iter().position(|point| point.time.get() > t);
-                match (after, points) {
+                match (after, points.as_slice()) {
                     (_, []) => 1.0,
                     (Some(0), [first, ..]) => first.ratio.get(),
                     (None, [.., last]) => last.ratio.get(),
