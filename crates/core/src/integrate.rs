@@ -106,6 +106,61 @@ impl Extrapolation {
     }
 }
 
+/// A solution on its way: its steps depend on where it departs alone, not on where it is looked at.
+#[derive(Clone, Debug)]
+pub struct Trajectory {
+    integrator: Extrapolation,
+    /// The steps around now: time since departure (s), and y.
+    node: (f64, Vec<f64>),
+    next: (f64, Vec<f64>),
+    /// Length of the step after `next` (s).
+    step: f64,
+    /// y where it was looked at last.
+    here: Vec<f64>,
+}
+
+impl Trajectory {
+    /// A solution that begins with y; its first step is at most so long (s).
+    pub fn new(tolerance: f64, y: Vec<f64>, step: f64) -> Self {
+        Self {
+            integrator: Extrapolation::new(tolerance, y.len()),
+            node: (0.0, y.clone()),
+            next: (0.0, y.clone()),
+            step,
+            here: y,
+        }
+    }
+
+    /// y where it was looked at last.
+    pub fn here(&self) -> &[f64] {
+        &self.here
+    }
+
+    /// Departs anew from where it was looked at last.
+    pub fn depart(&mut self) {
+        self.node = (0.0, self.here.clone());
+        self.next = self.node.clone();
+    }
+
+    /// y at `h` seconds after departure, not before one asked for earlier. The field's time counts from the departure.
+    pub fn at(&mut self, field: &impl Field, h: f64) -> &[f64] {
+        let Self { integrator, node, next, step, here } = self;
+        while next.0 < h {
+            node.clone_from(next);
+            let (took, then) = integrator.step(field, next.0, &mut next.1, *step);
+            next.0 += took;
+            *step = then;
+        }
+        // A look between two steps changes neither.
+        here.clone_from(&node.1);
+        let mut t = node.0;
+        while t < h {
+            t += integrator.step(field, t, here, h - t).0;
+        }
+        here
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

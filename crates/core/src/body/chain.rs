@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::forced::Input;
 use super::{Mode, Planar, Sight, State};
-use crate::integrate::{Extrapolation, Field};
+use crate::integrate::{Field, Trajectory};
 use crate::structure::Structure;
 
 /// The equations of a chain.
@@ -134,59 +134,33 @@ impl Field for Driven<'_> {
 pub struct Flight {
     chain: Chain,
     input: Input,
-    integrator: Extrapolation,
-    /// The steps around now: time since departure (s), angles and rates.
-    node: (f64, Vec<f64>),
-    next: (f64, Vec<f64>),
-    /// Length of the step after `next` (s).
-    step: f64,
-    here: Vec<f64>,
+    /// Angles and rates.
+    trajectory: Trajectory,
 }
 
 impl Flight {
     /// A chain at rest at an angle, or turning at a rate, under no input.
     pub fn new(chain: &Chain, angle: f64, rate: f64) -> Self {
-        let here = chain.start(angle, rate);
-        Self {
-            integrator: Extrapolation::new(chain.tolerance, here.len()),
-            chain: chain.clone(),
-            input: Input::default(),
-            node: (0.0, here.clone()),
-            next: (0.0, here.clone()),
-            step: 0.05 / chain.frequencies.iter().copied().fold(1e-3, f64::max),
-            here,
-        }
+        let step = 0.05 / chain.frequencies.iter().copied().fold(1e-3, f64::max);
+        let trajectory = Trajectory::new(chain.tolerance, chain.start(angle, rate), step);
+        Self { chain: chain.clone(), input: Input::default(), trajectory }
     }
 
     /// Begins a motion under another input, from where the chain was seen last.
     pub fn depart(&mut self, input: &Input) {
         self.input = input.clone();
-        self.node = (0.0, self.here.clone());
-        self.next = self.node.clone();
+        self.trajectory.depart();
     }
 
     /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor at the hub sees.
     pub fn at(&mut self, h: f64, state: &mut State) -> Sight {
-        let Self { chain, input, integrator, node, next, step, here } = self;
-        let driven = Driven { chain, input };
-        while next.0 < h {
-            node.clone_from(next);
-            let (took, then) = integrator.step(&driven, next.0, &mut next.1, *step);
-            next.0 += took;
-            *step = then;
-        }
-        // A look between two steps changes neither.
-        here.clone_from(&node.1);
-        let mut t = node.0;
-        while t < h {
-            t += integrator.step(&driven, t, here, h - t).0;
-        }
+        self.trajectory.at(&Driven { chain: &self.chain, input: &self.input }, h);
         self.see(h, state)
     }
 
     fn see(&self, h: f64, state: &mut State) -> Sight {
         let n = self.chain.inertia.nrows();
-        let (angle, rate) = self.here.split_at(n);
+        let (angle, rate) = self.trajectory.here().split_at(n);
         let modal = &self.chain.modal * DVector::from_column_slice(angle);
         let modal_rate = &self.chain.modal * DVector::from_column_slice(rate);
         (state.rigid_angle, state.rigid_rate) = (modal[0], modal_rate[0]);
@@ -194,20 +168,25 @@ impl Flight {
             (phase.displacement, phase.quadrature) = (modal[index + 1], modal_rate[index + 1] / w);
         }
         let driven = Driven { chain: &self.chain, input: &self.input };
-        Sight { angle: angle[0], rate: rate[0], acceleration: driven.acceleration(h, &self.here)[0] }
+        Sight {
+            angle: angle[0],
+            rate: rate[0],
+            acceleration: driven.acceleration(h, self.trajectory.here())[0],
+        }
     }
 
     /// Value and rate of each output: the angle of each section relative to the hub.
     pub fn outputs(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let n = self.chain.inertia.nrows();
-        (1..n).map(move |k| (self.here[k] - self.here[0], self.here[n + k] - self.here[n]))
+        let y = self.trajectory.here();
+        (1..n).map(move |k| (y[k] - y[0], y[n + k] - y[n]))
     }
 
     /// Energy of motion and deformation (J).
     pub fn energy(&self) -> f64 {
         let Chain { inertia, stiffness, .. } = &self.chain;
         let n = inertia.nrows();
-        let (angle, rate) = self.here.split_at(n);
+        let (angle, rate) = self.trajectory.here().split_at(n);
         let angles = DVector::from_column_slice(angle);
         let mut twice = (stiffness * &angles).dot(&angles);
         for i in 0..n {

@@ -13,6 +13,7 @@ mod panels;
 mod planar;
 mod reduction;
 mod weights;
+mod wheeled;
 
 use std::path::Path;
 
@@ -32,6 +33,7 @@ pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
 pub use planar::{Arc, Drive, Planar};
 pub use weights::Weights;
+pub use wheeled::Coupling;
 
 /// The kinds of body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -99,6 +99,9 @@ metrics! {
         "Largest absolute value of each observed coordinate, in its own unit, at the same instants";
     ANGLE_ERROR_PEAK = "angle_error_peak_rad", "rad",
         "Largest distance of the hub's angle from the goal after the manoeuvre, at the same instants";
+    SETTLING_TIME = "settling_time_s", "s",
+        "Last time at which the hub's angle is outside reference.band of the goal, at the instants of a full log; null if it is so at the end";
+    ITAE = "itae", "rad s²", "Integral of time times the distance from the goal, from its beginning on, at the same instants";
     ANGLE_ERROR_LATE = "angle_error_late_rad", "rad", "The same over the last 5 s of the run";
     OUTPUT_SWINGS = "output_swings", "",
         "Half of what lies between the largest and the smallest value of each observed coordinate after the manoeuvre";

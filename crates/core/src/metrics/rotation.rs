@@ -1,17 +1,20 @@
 //! What a rotation comes to: where the manoeuvre ends, what vibration it leaves, how large torques and deflections are.
 
 use super::{
-    ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, OUTPUT_RESIDUALS,
-    OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_FEEDBACK, PEAK_OUTPUTS, PEAK_TORQUE, RESIDUAL_ENERGY, Told,
-    Value,
+    ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, OUTPUT_RESIDUALS,
+    OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_FEEDBACK, PEAK_OUTPUTS, PEAK_TORQUE, RESIDUAL_ENERGY,
+    SETTLING_TIME, Told, Value,
 };
 use crate::law::Goal;
+use crate::quantity::Positive;
 use crate::record::{Arrival, Motion, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
 /// What is late in a run (s).
 const LATE: f64 = 5.0;
+/// What counts as settled, as a part of the distance when the goal begins.
+const PART: f64 = 0.05;
 
 /// Gathers the motion of a rotation.
 #[derive(Clone, Debug)]
@@ -25,8 +28,48 @@ pub struct Rotation {
     torque: (f64, f64),
     /// Largest distances from the goal: after the manoeuvre, and late (rad).
     error: (f64, f64),
+    settling: Settling,
     /// Of each output, the largest absolute value, and the ranges after the manoeuvre and late.
     outputs: Vec<(f64, Range, Range)>,
+}
+
+/// How the distance from the goal dies away.
+#[derive(Copy, Clone, Debug)]
+struct Settling {
+    /// What counts as settled (rad); NaN until the goal begins, if it is a part of the distance then.
+    band: f64,
+    /// The last time outside it (s), and the last time of all.
+    outside: f64,
+    last: f64,
+    itae: f64,
+    /// The last time and integrand of it.
+    before: Option<(f64, f64)>,
+}
+
+impl Settling {
+    fn new(band: f64) -> Self {
+        Self { band, outside: 0.0, last: 0.0, itae: 0.0, before: None }
+    }
+
+    /// Takes a distance (rad), so long after the goal begins (s).
+    fn see(&mut self, now: f64, since: f64, distance: f64) {
+        if self.band.is_nan() {
+            self.band = PART * distance;
+        }
+        if distance > self.band {
+            self.outside = now;
+        }
+        self.last = now;
+        let integrand = since * distance;
+        if let Some((then, before)) = self.before {
+            self.itae += 0.5 * (integrand + before) * (now - then);
+        }
+        self.before = Some((now, integrand));
+    }
+
+    fn time(&self) -> f64 {
+        if self.outside < self.last { self.outside } else { f64::NAN }
+    }
 }
 
 /// The smallest and the largest of some values.
@@ -56,6 +99,7 @@ impl Rotation {
             arrival: None,
             torque: (0.0, 0.0),
             error: (f64::NAN, f64::NAN),
+            settling: Settling::new(scenario.reference.band.map_or(f64::NAN, Positive::get)),
             outputs: vec![(0.0, Range::EMPTY, Range::EMPTY); scenario.model.outputs.len()],
         }
     }
@@ -82,6 +126,8 @@ impl Rotation {
             (&PEAK_FEEDBACK, Value::Number(self.torque.1)),
             (&PEAK_OUTPUTS, outputs(|output| output.0)),
             (&ANGLE_ERROR_PEAK, Value::Number(self.error.0)),
+            (&SETTLING_TIME, Value::Number(self.settling.time())),
+            (&ITAE, Value::Number(self.settling.itae)),
             (&ANGLE_ERROR_LATE, Value::Number(self.error.1)),
             (&OUTPUT_SWINGS, outputs(|output| output.1.swing())),
             (&OUTPUT_SWINGS_LATE, outputs(|output| output.2.swing())),
@@ -97,6 +143,8 @@ impl Rotation {
         }
         if after {
             let error = (motion.attitude.angle_rad - self.goal.at(now).0).abs();
+            let since = now.since(self.goal.from).seconds();
+            self.settling.see(now.seconds(), since, error);
             // The larger one, whichever is a number.
             self.error.0 = self.error.0.max(error);
             if late {

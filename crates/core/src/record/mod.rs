@@ -23,7 +23,7 @@ pub use recover::recover;
 pub use topics::{
     Adaptation, Arrival, Attitude, Command, Envelope, GoalMotion, Law, Metric, Metrics, ModeEnvelope,
     ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Rate, Residual, TOPICS, Torque, Trigger,
-    WindowMean,
+    WheelMotion, WindowMean,
 };
 pub use trace::Trace;
 
@@ -66,6 +66,8 @@ pub struct Motion {
     pub outputs: Option<Outputs>,
     /// Goal and torques, of a scenario with more than a law.
     pub drive: Option<(GoalMotion, Torque)>,
+    /// The wheel, if there is one that stores momentum.
+    pub wheel: Option<WheelMotion>,
     /// Envelope, if the scenario has an observer.
     pub envelope: Option<Envelope>,
 }
@@ -164,6 +166,9 @@ trait TakeRow {
                 if let Some((goal, torque)) = &motion.drive {
                     self.take(now, goal)?;
                     self.take(now, torque)?;
+                }
+                if let Some(wheel) = &motion.wheel {
+                    self.take(now, wheel)?;
                 }
                 motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))
             }

@@ -102,6 +102,13 @@ rows! {
         /// Disturbances (N m).
         disturbance_nm: f64,
     }
+    /// The flywheel.
+    WheelMotion = "/wheel" {
+        /// Speed (rad/s).
+        speed_rad_s: f64,
+        /// Momentum (N m s).
+        momentum_nm_s: f64,
+    }
     /// Where the body shall be: on the manoeuvre, where it would be if it were rigid.
     GoalMotion = "/goal" {
         /// Angle (rad).

@@ -4,11 +4,11 @@ use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
 use crate::actuator::Actuator;
 use crate::adaptation::Adaptation;
-use crate::body::{Body, Drive};
+use crate::body::{Body, Drift, Drive, Profile};
 use crate::disturbance::Disturbance;
 use crate::document::key;
 use crate::estimator::{Estimator, Form};
-use crate::law::Law;
+use crate::law::{Extra, Law};
 use crate::quantity::{Finite, NonNegative};
 
 impl Scenario {
@@ -33,6 +33,7 @@ impl Scenario {
             return at("duration", why);
         }
         self.law_inconsistency()
+            .or_else(|| self.coupling_inconsistency())
             .or_else(|| self.drive_inconsistency())
             .or_else(|| self.estimator_inconsistency())
             .or_else(|| self.adaptation_inconsistency())
@@ -59,9 +60,90 @@ impl Scenario {
             let why = "holds the angle at 0: with a `[manoeuvre]` the law is `pd` or left out";
             return at("law.relay", why.to_owned());
         }
-        if self.chain.is_some() {
-            let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form";
+        let continuous = self.sensor.period().is_none();
+        if self.chain.is_some() && continuous {
+            let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form, or the sensor `sampled`";
             return at("body.panels.kinematics", why.to_owned());
+        }
+        if self.coupling().is_some() && continuous {
+            let why = "finds its crossings in closed form: with a wheel or a drift the sensor is `sampled`";
+            return at("law.relay", why.to_owned());
+        }
+        None
+    }
+
+    fn coupling_inconsistency(&self) -> Option<(String, String)> {
+        let at = |key: &str, why: String| Some((key.to_owned(), why));
+        if let Some(drift) = &self.drift {
+            let modes = self.model.modes.len();
+            let profiles: Vec<(String, &Profile)> = match drift {
+                Drift::Common(profile) => vec![("drift.common".to_owned(), profile)],
+                Drift::Each(profiles) if profiles.len() != modes => {
+                    return at(
+                        "drift.each",
+                        format!("must have a profile for each of {modes} modes, got {}", profiles.len()),
+                    );
+                }
+                Drift::Each(profiles) => {
+                    let key = |(index, profile)| (format!("drift.each[{index}]"), profile);
+                    profiles.iter().enumerate().map(key).collect()
+                }
+            };
+            for (key, profile) in profiles {
+                match profile {
+                    Profile::Sinusoid(sinusoid) if sinusoid.amplitude.get() >= 0.5 => {
+                        let why = format!(
+                            "must be below 0.5, so that no frequency vanishes, got {}",
+                            sinusoid.amplitude.get()
+                        );
+                        return at(&format!("{key}.sinusoid.amplitude"), why);
+                    }
+                    Profile::Table(points) if points.len() < 2 => {
+                        return at(
+                            &format!("{key}.table"),
+                            format!("must have two points or more, got {}", points.len()),
+                        );
+                    }
+                    Profile::Table(points) => {
+                        if let Some(index) = points.windows(2).position(|pair| pair[0].time >= pair[1].time) {
+                            let (index, time) = (index + 1, points[index + 1].time.get());
+                            return at(
+                                &format!("{key}.table[{index}].time"),
+                                format!("must be later than the one before, got {time}"),
+                            );
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        if let Law::Pd(pd) = &self.law
+            && let Some(Extra::Schedule(points)) = &pd.extra
+        {
+            if points.is_empty() {
+                return at("law.pd.extra.schedule", "must have at least one point".to_owned());
+            }
+            if let Some(index) = points.windows(2).position(|pair| pair[0].frequency >= pair[1].frequency) {
+                let frequency = points[index + 1].frequency.get();
+                let key = format!("law.pd.extra.schedule[{}].frequency", index + 1);
+                return at(&key, format!("must be above the one before, got {frequency}"));
+            }
+        }
+        let wheel = matches!(self.actuator, Actuator::Wheel(_));
+        let key = if wheel { "actuator.wheel" } else { "drift" };
+        if !wheel && self.drift.is_none() {
+            return None;
+        }
+        if wheel && self.manoeuvre.is_some() {
+            return at(key, "executes a law's samples, not a `[manoeuvre]`".to_owned());
+        }
+        if self.manoeuvre.is_some() && self.actuator == Actuator::Ideal {
+            let why = "leaves no closed form: a `[manoeuvre]` is then executed by an `[actuator.hold]` or thrusters";
+            return at(key, why.to_owned());
+        }
+        if self.chain.is_some() || self.model.drive == Drive::Motion {
+            let why = "needs linear modes of a body that a torque drives";
+            return at(key, why.to_owned());
         }
         None
     }

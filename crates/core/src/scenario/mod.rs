@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 use toml::value::Datetime;
 
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Opposes};
 use crate::adaptation::Adaptation;
-use crate::body::{Body, Chain, Drift, Planar};
+use crate::body::{Body, Chain, Coupling, Drift, Planar};
 use crate::disturbance::Disturbance;
 use crate::document::{Document, ScenarioError};
 use crate::estimator::Estimator;
@@ -118,6 +118,10 @@ pub struct Reference {
     /// the run's own first window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub envelope: Option<Positive>,
+    /// Distance from the goal that counts as settled (rad), for the metric `settling_time_s`; left out, 5 % of that at
+    /// which the goal begins.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band: Option<Positive>,
 }
 
 impl Reference {
@@ -204,6 +208,17 @@ impl Scenario {
     /// The scenario with all its defaults, as TOML.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).unwrap_or_default()
+    }
+
+    /// The motion of a body whose modes a wheel couples, or whose frequencies drift; none if they move on their own.
+    pub fn coupling(&self) -> Option<Coupling> {
+        let (back_emf, total) = match &self.actuator {
+            Actuator::Wheel(wheel) => (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate),
+            _ if self.drift.is_none() => return None,
+            _ => (0.0, true),
+        };
+        let back_emf = back_emf / self.model.inertia.get();
+        Some(Coupling::new(&self.model, self.drift.as_ref(), back_emf, total))
     }
 
     /// The body that the manoeuvre is planned for.

@@ -1,12 +1,14 @@
 //! What drives the body: the manoeuvre's waveform and the law's torque, through the actuator, and the disturbances.
 
+use std::collections::VecDeque;
 use std::sync::Arc as Shared;
 
-use crate::actuator::{Actuator, Pulse};
-use crate::body::{Forced, Input};
+use crate::actuator::{Actuator, Opposes, Pulse, Wheel};
+use crate::body::{Drift, Forced, Input};
 use crate::disturbance::Disturbance;
 use crate::law::Goal;
 use crate::manoeuvre::Waveform;
+use crate::quantity::Positive;
 use crate::record;
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
@@ -22,7 +24,7 @@ pub struct Drive {
     /// Whether the law is one that switches.
     switching: bool,
     disturbances: Vec<Disturbance>,
-    /// The instants, latest first, at which the waveform breaks or a disturbance changes.
+    /// The instants, latest first, at which the waveform breaks, a disturbance changes or the drift has a kink.
     edges: Vec<Instant>,
     actuator: Actuator,
     next_period: Option<Instant>,
@@ -31,8 +33,10 @@ pub struct Drive {
     owed: f64,
     /// Torque that the law holds (N m).
     feedback: f64,
-    /// Torque of a hold or a pulse (N m).
+    /// Torque of a hold or a pulse; of a wheel, without its back-EMF (N m).
     held: f64,
+    /// Commands that a wheel has not yet taken, with the instants at which it does.
+    delayed: VecDeque<(Instant, f64)>,
 }
 
 impl Drive {
@@ -40,8 +44,11 @@ impl Drive {
     pub fn new(scenario: &Scenario) -> Self {
         let waveform = scenario.plan.as_ref().map(|plan| Shared::new(plan.waveform.clone()));
         let breaks = waveform.iter().flat_map(|w| w.breaks()).map(|t| Instant::START + Span::from_seconds(t));
-        let mut edges: Vec<Instant> =
-            breaks.chain(scenario.disturbance.iter().flat_map(Disturbance::edges)).collect();
+        let kinks = scenario.drift.iter().flat_map(Drift::kinks);
+        let mut edges: Vec<Instant> = breaks
+            .chain(scenario.disturbance.iter().flat_map(Disturbance::edges))
+            .chain(kinks.map(|t| Instant::START + Span::from_seconds(t)))
+            .collect();
         edges.sort_by(|a, b| b.cmp(a));
         edges.dedup();
         Self {
@@ -57,22 +64,52 @@ impl Drive {
             owed: 0.0,
             feedback: 0.0,
             held: 0.0,
+            delayed: VecDeque::new(),
         }
     }
 
     /// The next instant at which the input changes by itself.
     pub fn due(&self) -> Option<Instant> {
         let pulse = self.pulse.map(|pulse| if self.held == 0.0 { pulse.from } else { pulse.to });
-        [self.edges.last().copied(), self.next_period, pulse].into_iter().flatten().min()
+        let delayed = self.delayed.front().map(|(at, _)| *at);
+        [self.edges.last().copied(), self.next_period, pulse, delayed].into_iter().flatten().min()
     }
 
-    /// Takes over the torque that the law holds (N m).
-    pub fn command(&mut self, feedback: f64) {
+    /// Takes over what the law holds from now on, of a body that turns at this rigid rate (rad/s).
+    pub fn command(&mut self, now: Instant, feedback: f64, rigid_rate: f64) {
         self.feedback = feedback;
+        if let Actuator::Wheel(wheel) = &self.actuator {
+            let delay = Span::from_seconds(wheel.delay.get());
+            self.delayed.push_back((now + delay, wheel.shaped(feedback)));
+            self.turn_wheel(now, rigid_rate);
+        }
     }
 
-    /// Does what is due now, after the law has decided.
-    pub fn serve(&mut self, now: Instant) {
+    /// Gives the wheel the commands that have come through.
+    fn turn_wheel(&mut self, now: Instant, rigid_rate: f64) {
+        let Actuator::Wheel(wheel) = &self.actuator else { return };
+        while let Some((_, command)) = self.delayed.front().copied().filter(|(at, _)| *at <= now) {
+            self.delayed.pop_front();
+            let torque = wheel.gain.get() * command;
+            // What accelerates the body takes speed from the wheel.
+            let spent = self
+                .speed(wheel, rigid_rate)
+                .is_some_and(|(speed, limit)| speed.abs() >= limit && speed * torque < 0.0);
+            self.held = if spent { 0.0 } else { torque };
+        }
+    }
+
+    /// Speed of a wheel that stores momentum, and its limit (rad/s).
+    fn speed(&self, wheel: &Wheel, rigid_rate: f64) -> Option<(f64, f64)> {
+        let rotor = wheel.rotor.as_ref()?;
+        let gained = self.inertia * (rigid_rate - self.from.1) / rotor.inertia.get();
+        let limit = rotor.speed_limit.map_or(f64::INFINITY, Positive::get);
+        Some((rotor.speed.get() - gained, limit))
+    }
+
+    /// Does what is due now, after the law has decided, for a body that turns at this rigid rate (rad/s).
+    pub fn serve(&mut self, now: Instant, rigid_rate: f64) {
+        self.turn_wheel(now, rigid_rate);
         while self.edges.last().is_some_and(|edge| *edge <= now) {
             self.edges.pop();
         }
@@ -120,7 +157,7 @@ impl Drive {
 
     /// Whether the torque has more to it than the switchings of a law tell.
     pub fn is_worth_telling(&self) -> bool {
-        !self.switching || !self.disturbances.is_empty() || self.next_period.is_some()
+        !self.switching || !self.disturbances.is_empty() || self.actuator != Actuator::Ideal
     }
 
     /// Angle (rad) and rate (rad/s) where the body shall be: on the manoeuvre, where it would be if it were rigid.
@@ -135,16 +172,31 @@ impl Drive {
         }
     }
 
-    /// The torques now, as logged.
-    pub fn torque(&self, now: Instant) -> record::Torque {
+    /// The torques now, as logged, on a body that turns at these rates (rad/s).
+    pub fn torque(&self, now: Instant, rate: f64, rigid_rate: f64) -> record::Torque {
         let feedforward_nm = self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds()));
         let command = feedforward_nm + self.feedback;
         record::Torque {
             feedforward_nm,
             feedback_nm: self.feedback,
-            applied_nm: if self.actuator == Actuator::Ideal { command } else { self.held },
+            applied_nm: match &self.actuator {
+                Actuator::Ideal => command,
+                Actuator::Wheel(wheel) => {
+                    let felt = if wheel.opposes == Opposes::BodyRate { rate } else { rigid_rate };
+                    self.held - wheel.back_emf.get() * felt
+                }
+                Actuator::Hold(_) | Actuator::Thrusters(_) => self.held,
+            },
             disturbance_nm: self.disturbance(now),
         }
+    }
+
+    /// The wheel, as logged, of a body that turns at this rigid rate (rad/s); none without one.
+    pub fn wheel(&self, rigid_rate: f64) -> Option<record::WheelMotion> {
+        let Actuator::Wheel(wheel) = &self.actuator else { return None };
+        let (speed, _) = self.speed(wheel, rigid_rate)?;
+        let inertia = wheel.rotor.as_ref().map_or(0.0, |rotor| rotor.inertia.get());
+        Some(record::WheelMotion { speed_rad_s: speed, momentum_nm_s: inertia * speed })
     }
 
     fn disturbance(&self, now: Instant) -> f64 {

@@ -145,8 +145,9 @@ impl Simulation {
         self.belief.angle = self.sensor.measure(sight.angle, &mut self.noise);
         self.belief.rate = sight.rate;
         self.hold = self.law.decide(self.now, Cause::Start, &self.goal, &self.belief);
-        self.drive.command(self.hold.torque);
-        self.drive.serve(self.now);
+        let rigid_rate = self.body.state().rigid_rate;
+        self.drive.command(self.now, self.hold.torque, rigid_rate);
+        self.drive.serve(self.now, rigid_rate);
         self.depart();
         record.record(self.now, Sample::Begin(&self.law_row()))?;
         if record.dense() {
@@ -190,7 +191,7 @@ impl Simulation {
         }
         if self.drive.due() == Some(now) {
             self.view()?;
-            self.drive.serve(now);
+            self.drive.serve(now, self.body.state().rigid_rate);
             self.depart();
         }
         if self.next_dense == Some(now) {
@@ -228,7 +229,7 @@ impl Simulation {
         }
         let before = self.law.state();
         self.hold = self.law.decide(now, cause, &self.goal, &self.belief);
-        self.drive.command(self.hold.torque);
+        self.drive.command(now, self.hold.torque, self.body.state().rigid_rate);
         self.depart();
         if before == self.law.state() {
             return Ok(());
@@ -287,8 +288,10 @@ impl Simulation {
         let envelope = self.watch.as_ref().map(|watch| watch.envelope(self.now));
         let drive = self.drive.is_worth_telling().then(|| {
             let (angle_rad, rate_rad_s) = self.drive.rigid_goal(&self.goal, self.now);
-            (GoalMotion { angle_rad, rate_rad_s }, self.drive.torque(self.now))
+            let (rate, rigid) = (rate.rate_rad_s, rate.rigid_rad_s);
+            (GoalMotion { angle_rad, rate_rad_s }, self.drive.torque(self.now, rate, rigid))
         });
-        Motion { attitude, rate, modes, outputs: self.body.outputs(), drive, envelope }
+        let wheel = self.drive.wheel(rate.rigid_rad_s);
+        Motion { attitude, rate, modes, outputs: self.body.outputs(), drive, wheel, envelope }
     }
 }

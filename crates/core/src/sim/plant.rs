@@ -1,6 +1,6 @@
 //! The body on its way: its motion since the last event, and what is seen of it now.
 
-use crate::body::{Arc, Flight, Input, Output, Sight, State};
+use crate::body::{Arc, Coupling, Flight, Input, Output, Sight, State};
 use crate::crossing::locate;
 use crate::guard::Guard;
 use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate};
@@ -29,6 +29,8 @@ enum Motion {
     Planar(Arc),
     /// Integrated.
     Chain(Box<Flight>),
+    /// Of coupled or drifting modes.
+    Coupled(Box<Coupling>),
 }
 
 impl Plant {
@@ -38,9 +40,13 @@ impl Plant {
         let mut arc = Arc::new(model);
         arc.depart(&state, &Input::default());
         let sight = arc.origin();
-        let flight = scenario.chain.as_ref().map(|chain| Flight::new(chain, sight.angle, sight.rate));
+        let motion = match (&scenario.chain, scenario.coupling()) {
+            (Some(chain), _) => Motion::Chain(Box::new(Flight::new(chain, sight.angle, sight.rate))),
+            (None, Some(coupling)) => Motion::Coupled(Box::new(coupling)),
+            (None, None) => Motion::Planar(arc),
+        };
         Self {
-            motion: flight.map_or(Motion::Planar(arc), |flight| Motion::Chain(Box::new(flight))),
+            motion,
             departed: Instant::START,
             sight,
             seen: Instant::START,
@@ -69,6 +75,7 @@ impl Plant {
                 self.sight = match &mut self.motion {
                     Motion::Planar(arc) => arc.at(h, &mut self.state),
                     Motion::Chain(flight) => flight.at(h, &mut self.state),
+                    Motion::Coupled(coupling) => coupling.at(h, &mut self.state),
                 };
             }
         }
@@ -80,6 +87,7 @@ impl Plant {
         match &mut self.motion {
             Motion::Planar(arc) => arc.depart(&self.state, input),
             Motion::Chain(flight) => flight.depart(input),
+            Motion::Coupled(coupling) => coupling.depart(self.seen.seconds(), input.constant),
         }
         self.departed = self.seen;
     }
@@ -121,7 +129,7 @@ impl Plant {
     pub fn outputs(&self) -> Option<Outputs> {
         let motion = |(value, rate)| OutputMotion { value, rate };
         let outputs: Vec<_> = match &self.motion {
-            Motion::Planar(_) => {
+            Motion::Planar(_) | Motion::Coupled(_) => {
                 let of = |output: &Output| {
                     (output.of(&self.state), output.rate_of(&self.state, &self.frequencies))
                 };
