@@ -22,3 +22,4 @@ mod structure;
 mod study;
 mod util;
 mod waveforms;
+mod wheel;

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use flexsc_core::Scenario;
+use flexsc_core::actuator::Actuator;
 use flexsc_core::body::Drive;
 use flexsc_core::metrics::{Metrics, Value};
 
@@ -66,13 +67,23 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
         Drive::Motion => ("acceleration", "rad/s²"),
     };
     let feedback = number("peak_feedback_torque_nm");
-    let of_it = if feedback > 0.0 { format!(", of the law {feedback:.4e} {unit}") } else { String::new() };
+    let of_it = match &scenario.actuator {
+        _ if feedback == 0.0 => String::new(),
+        Actuator::Wheel(_) => format!(", command {feedback:.4}"),
+        _ => format!(", of the law {feedback:.4e} {unit}"),
+    };
     say!("  {name:<14} at most {:.4e} {unit}{of_it}", number("peak_torque_nm"));
     say!(
         "  angle          at most {:.3e} rad from the goal after it, {:.3e} rad over the last 5 s",
         number("angle_error_peak_rad"),
         number("angle_error_late_rad"),
     );
+    let settling = number("settling_time_s");
+    if settling.is_finite() {
+        say!("  settling time  {settling} s");
+    } else {
+        say!("  settling time  not settled after {} s", scenario.duration.seconds());
+    }
     let of = |name: &str, index: usize| match metrics.get(name) {
         Some(Value::Numbers(numbers)) => numbers.get(index).copied().unwrap_or(f64::NAN),
         _ => f64::NAN,

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{Finite, NonNegative};
+use crate::quantity::{Finite, NonNegative, Positive};
 use crate::random::Stream;
 use crate::time::Span;
 
@@ -33,6 +33,10 @@ pub struct Sampled {
     /// Quantum of the output (rad); 0 for none.
     #[serde(default)]
     pub resolution: NonNegative,
+    /// Standard deviation of the white noise of a rate gyro (rad/s); left out, there is no gyro, and the rate is the
+    /// difference of the last two angles over the period.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_noise: Option<Positive>,
 }
 
 impl Sensor {
@@ -42,6 +46,25 @@ impl Sensor {
             Self::Continuous => None,
             Self::Sampled(sampled) => Some(sampled.period),
         }
+    }
+
+    /// Standard deviation of the gyro's rate (rad/s), if there is a gyro.
+    pub fn rate_noise(&self) -> Option<f64> {
+        match self {
+            Self::Continuous => None,
+            Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
+        }
+    }
+
+    /// Standard deviation of the measured angle (rad), that of its quantisation included.
+    pub fn angle_noise(&self) -> f64 {
+        let Self::Sampled(Sampled { noise, resolution, .. }) = self else { return 0.0 };
+        libm::sqrt(noise.get() * noise.get() + resolution.get() * resolution.get() / 12.0)
+    }
+
+    /// The gyro's measurement of a true rate (rad/s), if there is a gyro.
+    pub fn measure_rate(&self, rate: f64, noise: &mut Stream) -> Option<f64> {
+        self.rate_noise().map(|sd| rate + sd * noise.normal())
     }
 
     /// The measurement of a true angle (rad).

@@ -133,7 +133,9 @@ impl What {
             Self::Torque => true,
             Self::Angle => !story.switches(),
             Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
-            Self::Envelope => story.scenario.estimator.is_some(),
+            Self::Envelope => {
+                story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
+            }
             Self::Gain => !story.steps.is_empty(),
             Self::Modes => !story.scenario.model.modes.is_empty(),
         }

@@ -130,6 +130,14 @@ impl Drift {
         }
     }
 
+    /// The derivative of a mode's ratio with time (1/s), that of what comes after at a kink.
+    pub fn slope(&self, mode: usize, t: f64) -> f64 {
+        match self {
+            Self::Common(profile) => profile.slope(t),
+            Self::Each(profiles) => profiles.get(mode).map_or(0.0, |profile| profile.slope(t)),
+        }
+    }
+
     /// The times (s) at which a slope jumps.
     pub fn kinks(&self) -> Vec<f64> {
         match self {

@@ -28,6 +28,7 @@ pub use damping::Damping;
 pub use drift::{Drift, Point, Profile, Ramp, Sinusoid};
 pub use forced::{Forced, Input};
 pub use matrices::{Matrices, Sum};
+pub(crate) use mode::Flow;
 pub use mode::Mode;
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};

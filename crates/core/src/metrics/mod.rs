@@ -1,5 +1,6 @@
 //! Metrics: what a run comes to, as named numbers with units.
 
+mod filter;
 mod rotation;
 mod switchings;
 
@@ -9,6 +10,7 @@ use crate::record::{self, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
+use filter::Filter;
 use rotation::Rotation;
 use switchings::Switchings;
 
@@ -106,6 +108,17 @@ metrics! {
     OUTPUT_SWINGS = "output_swings", "",
         "Half of what lies between the largest and the smallest value of each observed coordinate after the manoeuvre";
     OUTPUT_SWINGS_LATE = "output_swings_late", "", "The same over the last 5 s of the run";
+    NEES_MEAN = "nees_mean", "",
+        "Mean over the assessed samples of the filter's normalised estimation error squared, over its number of states: 1 if its covariance is honest";
+    NIS_MEAN = "nis_mean", "",
+        "Mean of its normalised innovation squared over the number of measurements in a sample: 1 if honest";
+    NIS_INSIDE = "nis_inside_95", "",
+        "Fraction of the assessed samples whose NIS lies within the two-sided 95 % bounds of chi-square";
+    FREQUENCY_ERROR_RMS = "frequency_error_rms_rad_s", "rad/s",
+        "Root mean square error of the dominant mode's frequency as the law reads it, over the assessed samples";
+    FREQUENCY_ERROR_MAX = "frequency_error_max_rad_s", "rad/s", "Largest such error";
+    LOCK_LOST = "lock_lost", "", "1 if the filter lost the body at any time, else 0";
+    LOCK_LOST_AT = "lock_lost_at_s", "s", "When it lost it; null if it did not";
 }
 
 /// A metric and its value.
@@ -176,7 +189,14 @@ impl Value {
 
 /// Gathers the metrics of a run.
 #[derive(Clone, Debug)]
-pub enum Gather {
+pub struct Gather {
+    course: Course,
+    filter: Option<Filter>,
+}
+
+/// What kind of run it is.
+#[derive(Clone, Debug)]
+enum Course {
     /// Of a relay law.
     Switchings(Box<Switchings>),
     /// Of a rotation, under a manoeuvre or a PD law.
@@ -186,34 +206,41 @@ pub enum Gather {
 impl Gather {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        if scenario.law.switches() {
-            Self::Switchings(Box::new(Switchings::new(scenario)))
+        let course = if scenario.law.switches() {
+            Course::Switchings(Box::new(Switchings::new(scenario)))
         } else {
-            Self::Rotation(Box::new(Rotation::new(scenario)))
-        }
+            Course::Rotation(Box::new(Rotation::new(scenario)))
+        };
+        Self { course, filter: Filter::new(scenario) }
     }
 
     /// The metrics of the run that has ended.
     pub fn finish(self, scenario: &Scenario) -> Metrics {
-        Metrics(match self {
-            Self::Switchings(switchings) => switchings.finish(scenario),
-            Self::Rotation(rotation) => rotation.finish(),
-        })
+        let mut metrics = match self.course {
+            Course::Switchings(switchings) => switchings.finish(scenario),
+            Course::Rotation(rotation) => rotation.finish(),
+        };
+        metrics.extend(self.filter.into_iter().flat_map(Filter::finish));
+        Metrics(metrics)
     }
 }
 
 impl Record for Gather {
     fn dense(&self) -> bool {
-        match self {
-            Self::Switchings(switchings) => switchings.dense(),
-            Self::Rotation(rotation) => rotation.dense(),
-        }
+        let course = match &self.course {
+            Course::Switchings(switchings) => switchings.dense(),
+            Course::Rotation(rotation) => rotation.dense(),
+        };
+        course || self.filter.is_some()
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        match self {
-            Self::Switchings(switchings) => switchings.record(now, sample),
-            Self::Rotation(rotation) => rotation.record(now, sample),
+        if let (Some(filter), Sample::Estimate(estimate)) = (&mut self.filter, sample) {
+            filter.see(now, estimate);
+        }
+        match &mut self.course {
+            Course::Switchings(switchings) => switchings.record(now, sample),
+            Course::Rotation(rotation) => rotation.record(now, sample),
         }
     }
 }

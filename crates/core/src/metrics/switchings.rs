@@ -49,7 +49,7 @@ impl Switchings {
             gain: (f64::NAN, f64::NAN),
             frozen_at: f64::NAN,
             cycle: CycleWatch::new(&scenario.model, smooth),
-            observed: scenario.estimator.is_some(),
+            observed: scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()),
             adapted: scenario.adaptation.is_some(),
         }
     }
@@ -170,7 +170,7 @@ impl Record for Switchings {
                     self.frozen_at = now.seconds();
                 }
             }
-            Sample::Arrival(_) | Sample::Motion(_) | Sample::Law(_) => {}
+            Sample::Arrival(_) | Sample::Estimate(_) | Sample::Motion(_) | Sample::Law(_) => {}
         }
         Ok(())
     }

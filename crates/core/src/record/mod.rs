@@ -21,9 +21,9 @@ pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
 pub use recover::recover;
 pub use topics::{
-    Adaptation, Arrival, Attitude, Command, Envelope, GoalMotion, Law, Metric, Metrics, ModeEnvelope,
-    ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Rate, Residual, TOPICS, Torque, Trigger,
-    WheelMotion, WindowMean,
+    Adaptation, Arrival, Attitude, Command, Envelope, Estimate, GoalMotion, Law, Metric, Metrics,
+    ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Rate, Residual,
+    TOPICS, Torque, Trigger, WheelMotion, WindowMean,
 };
 pub use trace::Trace;
 
@@ -44,12 +44,14 @@ pub enum Sample<'a> {
     Adaptation(&'a Adaptation),
     /// The manoeuvre ended.
     Arrival(&'a Arrival),
+    /// A filter took a sample.
+    Estimate(&'a Estimate),
 }
 
 impl Sample<'_> {
     /// Whether only a dense record wants it.
     pub fn is_dense(self) -> bool {
-        matches!(self, Self::Motion(_) | Self::Law(_))
+        matches!(self, Self::Motion(_) | Self::Law(_) | Self::Estimate(_))
     }
 }
 
@@ -156,6 +158,7 @@ trait TakeRow {
             Sample::Window(mean) => self.take(now, mean),
             Sample::Adaptation(step) => self.take(now, step),
             Sample::Arrival(arrival) => self.take(now, arrival),
+            Sample::Estimate(estimate) => self.take(now, estimate),
             Sample::Motion(motion) => {
                 self.take(now, &motion.attitude)?;
                 self.take(now, &motion.rate)?;

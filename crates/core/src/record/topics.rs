@@ -174,6 +174,52 @@ rows! {
         /// Consecutive settled windows.
         settled: u64,
     }
+    /// One elastic mode as a filter sees it.
+    ModeEstimate {
+        /// Displacement (rad).
+        displacement_rad: f64,
+        /// Rate (rad/s).
+        rate_rad_s: f64,
+        /// Natural frequency (rad/s).
+        frequency_rad_s: f64,
+        /// Amplitude, sqrt(x² + (x'/w)²) (rad).
+        amplitude_rad: f64,
+        /// Its standard deviation (rad).
+        amplitude_sd_rad: f64,
+    }
+    /// What a Kalman filter makes of a sample.
+    Estimate = "/estimator" {
+        /// The dominant mode's index.
+        dominant: u64,
+        /// Its natural frequency as the law reads it (rad/s).
+        frequency_rad_s: f64,
+        /// Standard deviation of the estimated frequency (rad/s); 0 of a filter that takes it for known.
+        frequency_sd_rad_s: f64,
+        /// What that frequency really is (rad/s).
+        true_frequency_rad_s: f64,
+        /// The dominant mode's displacement as the law reads it (rad).
+        displacement_rad: f64,
+        /// Estimated frequency over the one at the start.
+        ratio: f64,
+        /// Its standard deviation.
+        ratio_sd: f64,
+        /// Its rate (1/s).
+        ratio_rate_1_s: f64,
+        /// Standard deviation of that rate (1/s).
+        ratio_rate_sd_1_s: f64,
+        /// Each mode.
+        modes: Vec<ModeEstimate>,
+        /// Measured angle less the predicted one (rad).
+        innovation_rad: f64,
+        /// Normalised innovation squared, summed over the measurements; NaN if the sample was dropped.
+        nis: f64,
+        /// Normalised estimation error squared against the true state: of an honest filter about the number of states.
+        nees: f64,
+        /// 1 while the dominant mode moves too little for its frequency to be learnt.
+        gated: u64,
+        /// 1 as long as the filter follows the body.
+        lock: u64,
+    }
     /// One metric, or one element of it.
     Metric {
         /// Name, as `flexsc schema --metrics` explains it.

@@ -9,7 +9,7 @@ use crate::disturbance::Disturbance;
 use crate::document::key;
 use crate::estimator::{Estimator, Form};
 use crate::law::{Extra, Law};
-use crate::quantity::{Finite, NonNegative};
+use crate::quantity::{Finite, NonNegative, Positive};
 
 impl Scenario {
     /// The first key that does not fit the others, and what is wrong with it.
@@ -150,10 +150,10 @@ impl Scenario {
 
     fn drive_inconsistency(&self) -> Option<(String, String)> {
         let at = |key: &str, why: String| Some((key.to_owned(), why));
-        let estimates = self.estimator.is_some();
-        if self.manoeuvre.is_some() && estimates {
+        let estimates = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
+        if let (Some(_), Some(estimator)) = (&self.manoeuvre, &self.estimator) {
             let why = "follows torques that are constant between switchings, not a `[manoeuvre]`";
-            return at("estimator.envelope", why.to_owned());
+            return at(&format!("estimator.{}", estimator.kind()), why.to_owned());
         }
         let ordered = |d: &Disturbance| d.to.is_none_or(|to| d.from < to);
         if let Some(index) = self.disturbance.iter().position(|d| !ordered(d)) {
@@ -201,7 +201,10 @@ impl Scenario {
     }
 
     fn estimator_inconsistency(&self) -> Option<(String, String)> {
-        let Some(Estimator::Envelope(envelope)) = &self.estimator else { return None };
+        let envelope = match self.estimator.as_ref()? {
+            Estimator::Envelope(envelope) => envelope,
+            estimator => return self.filter_inconsistency(estimator),
+        };
         if envelope.form == Form::Truth && envelope.modes.is_some() {
             let why = "of its own have no use for the form `truth`, which reads the body's".to_owned();
             return Some(("estimator.envelope.modes".to_owned(), why));
@@ -219,6 +222,51 @@ impl Scenario {
         })
     }
 
+    /// What is wrong with an estimator that acts at each sample.
+    fn filter_inconsistency(&self, estimator: &Estimator) -> Option<(String, String)> {
+        let kind = estimator.kind();
+        let at = |key: &str, why: String| Some((format!("estimator.{kind}{key}"), why));
+        if self.sensor.period().is_none() {
+            return at("", "acts at each sample of a `[sensor.sampled]`, and there is none".to_owned());
+        }
+        if self.model.modes.is_empty() {
+            return at("", "has no modes to estimate: the body has none".to_owned());
+        }
+        if self.model.drive == Drive::Motion {
+            let why = "sees the modes in the hub's angle, and with `drive = \"motion\"` they do not show";
+            return at("", why.to_owned());
+        }
+        if self.chain.is_some() {
+            let why = "must be \"linear\" for an estimator of modes";
+            return Some(("body.panels.kinematics".to_owned(), why.to_owned()));
+        }
+        if let Some(modes) = estimator.modes().filter(|modes| modes.len() != self.model.modes.len()) {
+            let (found, own) = (modes.len(), self.model.modes.len());
+            return at(".modes", format!("must be as many as the body's, {own}, got {found}"));
+        }
+        let silent = estimator.angle_noise().is_none() && self.sensor.angle_noise() == 0.0;
+        if estimator.filters() && silent {
+            let why = "must be given where the sensor has neither noise nor a resolution".to_owned();
+            return at(".angle_noise", why);
+        }
+        let [from, to] = estimator.assess();
+        if from >= to {
+            return at(".assess", format!("must be [from, to] in this order, got [{from}, {to}]"));
+        }
+        let (Estimator::ExtendedKalman(filter) | Estimator::UnscentedKalman(filter)) = estimator else {
+            return None;
+        };
+        let [low, high] = filter.bounds.map(Positive::get);
+        if low >= high {
+            return at(".bounds", format!("must be [low, high] in this order, got [{low}, {high}]"));
+        }
+        let ratio = filter.ratio.get();
+        if !(low..=high).contains(&ratio) {
+            return at(".ratio", format!("must lie within the bounds [{low}, {high}], got {ratio}"));
+        }
+        None
+    }
+
     fn adaptation_inconsistency(&self) -> Option<(String, String)> {
         let Some(Adaptation::RandomSearch(search)) = &self.adaptation else { return None };
         let [low, high] = search.bounds.map(Finite::get);
@@ -228,7 +276,7 @@ impl Scenario {
         };
         let gain = relay.k_t.get();
         let bounds = "adaptation.random_search.bounds".to_owned();
-        if self.estimator.is_none() {
+        if self.estimator.as_ref().is_none_or(|estimator| estimator.envelope().is_none()) {
             let why = "needs the window means of an `[estimator.envelope]`, and there is none";
             return Some(("adaptation.random_search".to_owned(), why.to_owned()));
         }

@@ -172,6 +172,12 @@ impl Drive {
         }
     }
 
+    /// The reduced moment that the actuator gives the body now (rad/s²), without a wheel's back-EMF.
+    pub fn held_moment(&self) -> f64 {
+        let torque = if self.actuator == Actuator::Ideal { self.feedback } else { self.held };
+        torque / self.inertia
+    }
+
     /// The torques now, as logged, on a body that turns at these rates (rad/s).
     pub fn torque(&self, now: Instant, rate: f64, rigid_rate: f64) -> record::Torque {
         let feedforward_nm = self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds()));

@@ -1,12 +1,13 @@
 //! The event loop.
 //!
-//! At one instant, in this order: the body arrives, the sensor samples, the estimator closes its window, the
+//! At one instant, in this order: the body arrives, the sensor samples, the estimator takes the sample or closes its window, the
 //! adaptation learns, the law decides once, the record is told. Between events the input is constant and the
 //! body's flow exact. `docs/events.md` states the rules.
 
 mod arrival;
 mod drive;
 mod plant;
+mod track;
 mod watch;
 
 use thiserror::Error;
@@ -23,6 +24,7 @@ use crate::time::{Instant, Span};
 use arrival::Arrival;
 use drive::Drive;
 use plant::Plant;
+use track::Track;
 use watch::Watch;
 
 /// More decisions than this at one instant are chatter: no scenario's law needs more than a few.
@@ -59,6 +61,7 @@ pub struct Simulation {
     sensor: Sensor,
     noise: Stream,
     watch: Option<Watch>,
+    track: Option<Track>,
     law: Law,
     drive: Drive,
     /// The end of the manoeuvre that lies ahead, if any.
@@ -88,6 +91,7 @@ impl Simulation {
             sensor: scenario.sensor.clone(),
             noise: seed.stream("sensor"),
             watch: Watch::new(scenario, seed),
+            track: Track::new(scenario, seed),
             law: scenario.law.clone(),
             drive: Drive::new(scenario),
             arrival: Arrival::new(scenario),
@@ -143,7 +147,8 @@ impl Simulation {
         self.begun = true;
         let sight = self.view()?;
         self.belief.angle = self.sensor.measure(sight.angle, &mut self.noise);
-        self.belief.rate = sight.rate;
+        self.belief.rate = self.sensor.measure_rate(sight.rate, &mut self.noise).unwrap_or(sight.rate);
+        self.estimate(record)?;
         self.hold = self.law.decide(self.now, Cause::Start, &self.goal, &self.belief);
         let rigid_rate = self.body.state().rigid_rate;
         self.drive.command(self.now, self.hold.torque, rigid_rate);
@@ -172,7 +177,7 @@ impl Simulation {
         let now = self.now;
         let mut tripped = self.trip.filter(|(at, _)| *at == now).map(|(_, guard)| guard);
         if self.next_sample == Some(now) {
-            self.sample()?;
+            self.sample(record)?;
             tripped = self.hold.guards.iter().position(|guard| guard.holds(self.belief.angle));
         }
         if self.watch.as_ref().is_some_and(|watch| watch.closes == now) {
@@ -206,15 +211,23 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes the sample of a sampled sensor.
-    fn sample(&mut self) -> Result<(), SimulationError> {
+    /// Takes the sample of a sampled sensor, which the estimator follows.
+    fn sample(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         let Some(period) = self.sensor.period() else { return Ok(()) };
         let sight = self.view()?;
         let angle = self.sensor.measure(sight.angle, &mut self.noise);
-        self.belief.rate = (angle - self.belief.angle) / period.seconds();
+        let difference = (angle - self.belief.angle) / period.seconds();
+        self.belief.rate = self.sensor.measure_rate(sight.rate, &mut self.noise).unwrap_or(difference);
         self.belief.angle = angle;
         self.next_sample = Some(self.now + period);
+        self.estimate(record)?;
         Ok(())
+    }
+
+    /// Lets the estimator take the sample that was measured last.
+    fn estimate(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
+        let Self { track, body, belief, now, .. } = self;
+        track.as_mut().map_or(Ok(()), |track| track.sample(*now, body.state(), belief, record))
     }
 
     fn decide(&mut self, cause: Cause, record: &mut impl Record) -> Result<(), SimulationError> {
@@ -257,6 +270,9 @@ impl Simulation {
     fn depart(&mut self) {
         if let Some(watch) = &mut self.watch {
             watch.command(self.now, self.body.state(), self.hold.torque);
+        }
+        if let Some(track) = &mut self.track {
+            track.command(self.now, self.drive.held_moment());
         }
         self.body.depart(&self.drive.input(self.now));
         self.trip = None;

@@ -25,7 +25,7 @@ pub struct Watch {
 impl Watch {
     /// The watch that a scenario asks for, if any.
     pub fn new(scenario: &Scenario, seed: Seed) -> Option<Self> {
-        let Estimator::Envelope(spec) = scenario.estimator.as_ref()?;
+        let spec = scenario.estimator.as_ref().and_then(Estimator::envelope)?;
         let search = scenario.adaptation.clone().map(|Adaptation::RandomSearch(constants)| {
             (Search::new(constants, scenario.law.gain()), seed.stream("adaptation"))
         });

@@ -1,0 +1,342 @@
+//! The filters at work: a normal distribution that is predicted over each period and updated by each sample.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::lock::Lock;
+use super::model::Model;
+use super::{Ranking, sigma};
+use crate::belief::Dominant;
+
+/// An innovation of more standard deviations than this is no measurement.
+const FARTHEST: f64 = 1e6;
+
+/// How the distribution is predicted.
+#[derive(Clone, Debug)]
+pub enum Prediction {
+    /// Kalman: by the transition over a period, and what a unit moment adds to it.
+    Linear(DMatrix<f64>, DVector<f64>),
+    /// Extended Kalman: the mean along the flow, the covariance by the flow's derivative.
+    Extended,
+    /// Unscented Kalman: both by points around the mean.
+    Unscented,
+}
+
+/// All numbers of a filter.
+#[derive(Clone, Debug)]
+pub struct Tuning {
+    /// What the body is taken for.
+    pub model: Model,
+    /// How the distribution is predicted.
+    pub prediction: Prediction,
+    /// Period of the samples (s).
+    pub period: f64,
+    /// Mean at the start.
+    pub mean: DVector<f64>,
+    /// Standard deviations at the start.
+    pub spread: DVector<f64>,
+    /// Spectral density of the moment's white noise ((rad/s²)² s).
+    pub moment_noise: f64,
+    /// Spectral densities of the white noises that drive a ratio (1/s) and its rate (1/s³).
+    pub ratio_noise: [f64; 2],
+    /// Standard deviations of the measured angle (rad) and, with a gyro, of the measured rate (rad/s).
+    pub angle_noise: f64,
+    /// See `angle_noise`.
+    pub rate_noise: Option<f64>,
+    /// The ratios stay within.
+    pub bounds: [f64; 2],
+    /// Amplitude of the dominant mode (rad) below which the ratios learn nothing.
+    pub gate: f64,
+    /// What makes a mode the dominant one.
+    pub ranking: Ranking,
+}
+
+/// A filter.
+#[derive(Clone, Debug)]
+pub struct Filter {
+    tuning: Tuning,
+    mean: DVector<f64>,
+    covariance: DMatrix<f64>,
+    noise: DMatrix<f64>,
+    /// Room for the derivative of the flow, transposed, and for a product.
+    tangent: DMatrix<f64>,
+    room: DMatrix<f64>,
+    lock: Lock,
+    lost: bool,
+    mode: usize,
+    gated: bool,
+    trusted: Dominant,
+}
+
+/// What a sample told the filter.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Told {
+    /// Measured angle less the predicted one (rad).
+    pub innovation: f64,
+    /// Normalised innovation squared, summed over the measurements; none if the sample was dropped.
+    pub nis: Option<f64>,
+}
+
+impl Filter {
+    /// A filter before its first sample.
+    pub fn new(tuning: Tuning) -> Self {
+        let order = tuning.model.order();
+        let covariance = DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
+        let mut filter = Self {
+            mean: tuning.mean.clone(),
+            covariance,
+            noise: DMatrix::zeros(order, order),
+            tangent: DMatrix::zeros(order, order),
+            room: DMatrix::zeros(order, order),
+            lock: Lock::new(1 + usize::from(tuning.rate_noise.is_some())),
+            lost: false,
+            mode: 0,
+            gated: false,
+            trusted: Dominant::default(),
+            tuning,
+        };
+        let input = DVector::from_fn(order, |i, _| filter.tuning.model.input(i));
+        filter.noise.ger(filter.tuning.moment_noise * filter.tuning.period, &input, &input, 0.0);
+        for at in (filter.tuning.model.motion()..order).step_by(2) {
+            for (offset, density) in filter.tuning.ratio_noise.iter().enumerate() {
+                filter.noise[(at + offset, at + offset)] = density * filter.tuning.period;
+            }
+        }
+        filter.mode = filter.most_excitable();
+        filter.trusted.frequency = filter.tuning.model.frequency(filter.mode, filter.mean.as_slice());
+        filter
+    }
+
+    /// Mean of the state.
+    pub fn mean(&self) -> &DVector<f64> {
+        &self.mean
+    }
+
+    /// Covariance of the state.
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.covariance
+    }
+
+    /// What the body is taken for.
+    pub fn model(&self) -> &Model {
+        &self.tuning.model
+    }
+
+    /// The dominant mode's index.
+    pub fn mode(&self) -> usize {
+        self.mode
+    }
+
+    /// Whether the filter has lost the body. It stays lost.
+    pub fn is_lost(&self) -> bool {
+        self.lost
+    }
+
+    /// Whether the dominant mode moves too little for its frequency to be seen.
+    pub fn is_gated(&self) -> bool {
+        self.gated
+    }
+
+    /// Frequency and displacement of the dominant mode that a law may rely on: while the mode moves too little, the
+    /// frequency is held; of a lost body the frequency is the last one and the displacement 0, which asks for nothing.
+    pub fn dominant(&self) -> Dominant {
+        self.trusted
+    }
+
+    /// Predicts the state over one period, in which the mean reduced moment was this (rad/s²).
+    pub fn predict(&mut self, moment: f64) {
+        let moment = if moment.is_finite() { moment } else { 0.0 };
+        let Self { tuning, mean, covariance, noise, tangent, room, gated, .. } = self;
+        let (model, period) = (&tuning.model, tuning.period);
+        let before = (mean.clone(), covariance.clone());
+        let carried = match &tuning.prediction {
+            Prediction::Linear(transition, push) => {
+                *mean = transition * &*mean + push * moment;
+                transition.mul_to(covariance, room);
+                room.mul_to(&transition.transpose(), covariance);
+                Some(())
+            }
+            Prediction::Extended => {
+                tangent.fill_with_identity();
+                model.propagate(period, moment, mean.as_mut_slice(), Some(tangent));
+                covariance.mul_to(tangent, room);
+                tangent.tr_mul_to(room, covariance);
+                Some(())
+            }
+            Prediction::Unscented => {
+                sigma::transform(mean, covariance, |point| model.propagate(period, moment, point, None))
+            }
+        };
+        *covariance += &*noise;
+        if *gated {
+            for at in model.motion()..model.order() {
+                covariance[(at, at)] -= noise[(at, at)];
+            }
+        }
+        for row in 0..covariance.nrows() {
+            for column in 0..row {
+                covariance[(row, column)] = covariance[(column, row)];
+            }
+        }
+        if carried.is_none() || !self.is_sound() {
+            (self.mean, self.covariance) = before;
+            self.lost = true;
+        }
+    }
+
+    /// Updates the state by the measured angle (rad) and, of a filter with a gyro, the measured rate (rad/s).
+    pub fn update(&mut self, angle: f64, rate: f64) -> Told {
+        let innovation = angle - self.seen(0);
+        let before = (self.mean.clone(), self.covariance.clone());
+        let gated = self.is_still();
+        let mut nis = self.learn(0, angle, self.tuning.angle_noise, gated);
+        if let Some(noise) = self.tuning.rate_noise {
+            nis = nis.and_then(|nis| Some(nis + self.learn(1, rate, noise, gated)?));
+        }
+        if nis.is_none() || !self.is_sound() {
+            (self.mean, self.covariance) = before;
+            nis = None;
+        }
+        self.gated = gated;
+        self.lost |= !self.lock.follows(nis);
+        self.hold_ratios();
+        self.choose_mode();
+        self.trust();
+        let innovation = if innovation.is_finite() { innovation } else { f64::NAN };
+        Told { innovation, nis }
+    }
+
+    /// The sum of every other component: of the angles from 0 on, of the rates from 1 on.
+    fn seen(&self, first: usize) -> f64 {
+        (first..self.tuning.model.motion()).step_by(2).map(|i| self.mean[i]).sum()
+    }
+
+    /// One scalar measurement, the sum of every other component. Its normalised innovation squared; none if it is none.
+    fn learn(&mut self, first: usize, measured: f64, noise: f64, gated: bool) -> Option<f64> {
+        let (order, motion) = (self.tuning.model.order(), self.tuning.model.motion());
+        let innovation = measured - self.seen(first);
+        let mut seen = DVector::zeros(order);
+        for i in (first..motion).step_by(2) {
+            seen += self.covariance.column(i);
+        }
+        let variance = (first..motion).step_by(2).map(|i| seen[i]).sum::<f64>() + noise * noise;
+        let nis = innovation * innovation / variance;
+        // A variance that is not positive, or an innovation that is no number, fails here too.
+        if !(variance > 0.0 && nis <= FARTHEST * FARTHEST) {
+            return None;
+        }
+        let mut gain = &seen / variance;
+        if gated {
+            gain.rows_mut(motion, order - motion).fill(0.0);
+        }
+        self.mean.axpy(innovation, &gain, 1.0);
+        // Joseph's form, (1 - K H) P (1 - K H)' + K R K', right for any gain, with its products written out.
+        for column in 0..order {
+            for row in 0..=column {
+                let value = self.covariance[(row, column)]
+                    - (gain[row] * seen[column] + seen[row] * gain[column])
+                    + variance * gain[row] * gain[column];
+                self.covariance[(row, column)] = value;
+                self.covariance[(column, row)] = value;
+            }
+        }
+        Some(nis)
+    }
+
+    /// Whether mean and covariance are numbers, and no variance is negative.
+    fn is_sound(&self) -> bool {
+        self.mean.iter().all(|m| m.is_finite())
+            && self.covariance.iter().all(|p| p.is_finite())
+            && (0..self.mean.len()).all(|i| self.covariance[(i, i)] >= 0.0)
+    }
+
+    fn is_still(&self) -> bool {
+        self.tuning.model.order() > self.tuning.model.motion()
+            && self.amplitude(self.mode).0 < self.tuning.gate
+    }
+
+    /// Keeps the ratios within their bounds: one that reaches them has lost the body.
+    fn hold_ratios(&mut self) {
+        let [low, high] = self.tuning.bounds;
+        let model = &self.tuning.model;
+        for at in (model.motion()..model.order()).step_by(2) {
+            if !(low..=high).contains(&self.mean[at]) {
+                self.mean[at] = self.mean[at].clamp(low, high);
+                self.mean[at + 1] = 0.0;
+                self.lost = true;
+            }
+        }
+    }
+
+    /// Estimated amplitude of a mode, sqrt(x² + (x'/w)²), and its standard deviation (rad).
+    pub fn amplitude(&self, mode: usize) -> (f64, f64) {
+        let (x, v) = (2 + 2 * mode, 3 + 2 * mode);
+        let w = self.tuning.model.frequency(mode, self.mean.as_slice());
+        let quadrature = self.mean[v] / w;
+        let amplitude = libm::hypot(self.mean[x], quadrature);
+        let (cos, sin) =
+            if amplitude > 0.0 { (self.mean[x] / amplitude, quadrature / amplitude) } else { (1.0, 0.0) };
+        let mut gradient = [(x, cos), (v, sin / w), (x, 0.0)];
+        if let Some(at) = self.tuning.model.ratio_of(mode) {
+            gradient[2] = (at, -sin * quadrature / self.mean[at]);
+        }
+        (amplitude, libm::sqrt(self.variance(&gradient)))
+    }
+
+    /// Estimated natural frequency of a mode, and its standard deviation (rad/s).
+    pub fn frequency(&self, mode: usize) -> (f64, f64) {
+        let model = &self.tuning.model;
+        let w = model.frequency(mode, self.mean.as_slice());
+        let sd =
+            model.ratio_of(mode).map_or(0.0, |at| w / self.mean[at] * libm::sqrt(self.covariance[(at, at)]));
+        (w, sd)
+    }
+
+    /// Variance of a sum of components.
+    fn variance(&self, weights: &[(usize, f64)]) -> f64 {
+        let terms =
+            weights.iter().flat_map(|a| weights.iter().map(|b| a.1 * b.1 * self.covariance[(a.0, b.0)]));
+        terms.sum::<f64>().max(0.0)
+    }
+
+    /// Normalised squared error of the estimate, which for a true state has the state's order as its mean. NaN if the
+    /// covariance has no inverse.
+    pub fn nees(&self, truth: &DVector<f64>) -> f64 {
+        let error = truth - &self.mean;
+        let root = Cholesky::new(self.covariance.clone());
+        root.map_or(f64::NAN, |root| error.dot(&root.solve(&error)))
+    }
+
+    fn most_excitable(&self) -> usize {
+        let value = |mode| self.tuning.model.excitability(mode, self.mean.as_slice()).abs();
+        (1..self.tuning.model.modes())
+            .fold(0, |best, mode| if value(mode) > value(best) { mode } else { best })
+    }
+
+    fn choose_mode(&mut self) {
+        match self.tuning.ranking {
+            Ranking::Excitability => self.mode = self.most_excitable(),
+            Ranking::Amplitude => {
+                let (mine, sd) = self.amplitude(self.mode);
+                let clear = |mode: &usize| {
+                    let (amplitude, own_sd) = self.amplitude(*mode);
+                    amplitude - mine > sd + own_sd
+                };
+                if let Some(mode) = (0..self.tuning.model.modes()).find(clear) {
+                    self.mode = mode;
+                }
+            }
+        }
+    }
+
+    fn trust(&mut self) {
+        if self.lost {
+            (self.trusted.displacement, self.trusted.rate) = (0.0, 0.0);
+            return;
+        }
+        self.trusted.displacement = self.mean[2 + 2 * self.mode];
+        self.trusted.rate = self.mean[3 + 2 * self.mode];
+        if !self.gated {
+            self.trusted.frequency = self.tuning.model.frequency(self.mode, self.mean.as_slice());
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! Kalman filters of the body's motion: linear, extended and unscented.
+//!
+//! The measured angle, and with a gyro the rate, tells the rigid motion and every mode. The extended and the unscented
+//! filter know the natural frequencies but for ratios, which drift as integrated random walks.
+
+mod filter;
+mod lock;
+mod model;
+mod sigma;
+
+use nalgebra::DVector;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::body::{Coupled, Mode, Planar};
+use crate::quantity::{NonNegative, Positive};
+use crate::random::Stream;
+
+pub use filter::{Filter, Prediction, Told, Tuning};
+pub use model::Model;
+
+/// A linear Kalman filter as a scenario describes it: natural frequencies that are known and constant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Kalman {
+    /// The modes as the filter knows them; left out, they are the body's own at the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modes: Option<Vec<Mode>>,
+    /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
+    #[serde(default = "moment_noise")]
+    pub moment_noise: NonNegative,
+    /// Standard deviation of the measured angle (rad); left out, that of the sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle_noise: Option<Positive>,
+    /// Standard deviations of what the filter knows at the start.
+    #[serde(default)]
+    pub initial: Initial,
+    /// What the filter takes for the state at the start.
+    #[serde(default)]
+    pub prior: Prior,
+    /// What makes a mode the dominant one.
+    #[serde(default)]
+    pub dominant: Ranking,
+    /// When the metrics judge the filter, from one time to another (s); left out, always.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub assess: Option<[NonNegative; 2]>,
+}
+
+/// An extended or an unscented Kalman filter as a scenario describes it: natural frequencies that drift.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Drifting {
+    /// The modes as the filter knows them; left out, they are the body's own at the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modes: Option<Vec<Mode>>,
+    /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
+    #[serde(default = "moment_noise")]
+    pub moment_noise: NonNegative,
+    /// Standard deviation of the measured angle (rad); left out, that of the sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle_noise: Option<Positive>,
+    /// Standard deviations of what the filter knows at the start.
+    #[serde(default)]
+    pub initial: Initial,
+    /// What the filter takes for the state at the start.
+    #[serde(default)]
+    pub prior: Prior,
+    /// What makes a mode the dominant one.
+    #[serde(default)]
+    pub dominant: Ranking,
+    /// When the metrics judge the filter, from one time to another (s); left out, always.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub assess: Option<[NonNegative; 2]>,
+    /// Which frequencies drift together.
+    #[serde(default)]
+    pub ratios: Ratios,
+    /// Ratio that the filter takes the frequencies to have at the start.
+    #[serde(default = "one")]
+    pub ratio: Positive,
+    /// Standard deviation of that ratio.
+    #[serde(default = "ratio_sd")]
+    pub ratio_sd: NonNegative,
+    /// Standard deviation of its rate at the start, which is taken for 0 (1/s).
+    #[serde(default = "ratio_rate_sd")]
+    pub ratio_rate_sd: NonNegative,
+    /// Spectral density of the white noise in a ratio (1/s).
+    #[serde(default = "ratio_noise")]
+    pub ratio_noise: NonNegative,
+    /// Spectral density of the white noise in the rate of a ratio (1/s³).
+    #[serde(default = "ratio_noise")]
+    pub ratio_rate_noise: NonNegative,
+    /// `[low, high]` of a ratio; the filter that reaches them has lost the body.
+    #[serde(default = "bounds")]
+    pub bounds: [Positive; 2],
+    /// Steps in which a period is predicted.
+    #[serde(default = "substeps")]
+    pub substeps: Substeps,
+    /// While the dominant mode's amplitude is below so many standard deviations of the angle, the ratios learn nothing.
+    #[serde(default = "gate")]
+    pub gate: NonNegative,
+}
+
+/// Standard deviations of what a filter knows at the start.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Initial {
+    /// Of the rigid angle (rad).
+    pub angle: NonNegative,
+    /// Of the rigid rate (rad/s).
+    pub rate: NonNegative,
+    /// Of the displacement of the mode with the largest k/w² (rad); of the others a tenth.
+    pub displacement: NonNegative,
+    /// Of the rate of that mode (rad/s); of the others a tenth.
+    pub mode_rate: NonNegative,
+}
+
+/// What a filter takes for the state at the start.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Prior {
+    /// The true one.
+    #[default]
+    True,
+    /// One drawn around the true one with the standard deviations of `initial` and, around `ratio`, of `ratio_sd`.
+    Drawn,
+}
+
+/// What makes a mode the dominant one.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Ranking {
+    /// The largest excitability k/w².
+    #[default]
+    Excitability,
+    /// An estimated amplitude that is larger than any other, beyond their standard deviations.
+    Amplitude,
+}
+
+/// Which frequencies drift together.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Ratios {
+    /// All, by one ratio.
+    #[default]
+    Common,
+    /// None: each mode has its own ratio.
+    Each,
+}
+
+impl Ratios {
+    /// How many ratios so many modes have.
+    pub fn count(self, modes: usize) -> usize {
+        if self == Self::Common { 1 } else { modes }
+    }
+}
+
+/// What a filter knows of the study around it.
+#[derive(Clone, Debug)]
+pub struct Setting<'a> {
+    /// The body.
+    pub body: &'a Planar,
+    /// Back-EMF of the wheel on it (1/s), and whether it opposes the total rate.
+    pub back_emf: (f64, bool),
+    /// Period of the samples (s).
+    pub period: f64,
+    /// Standard deviation of the sensor's angle (rad).
+    pub angle_noise: f64,
+    /// Standard deviation of the gyro's rate, if there is one (rad/s).
+    pub rate_noise: Option<f64>,
+}
+
+impl Kalman {
+    /// The filter in a setting; `draws` gives a drawn prior.
+    pub fn filter(&self, setting: &Setting<'_>, draws: &mut Stream) -> Filter {
+        let body = believed(setting.body, self.modes.as_deref());
+        let ones = vec![1.0; body.modes.len()];
+        let (transition, push) =
+            Coupled::new(&body, setting.back_emf.0, setting.back_emf.1, &ones).discrete(setting.period);
+        let model = Model::new(&body.modes, 0, setting.back_emf, 1, [1.0; 2]);
+        let (mean, spread) = start(setting.body, &model, self.initial, &[], self.prior, draws);
+        Filter::new(Tuning {
+            model,
+            prediction: Prediction::Linear(transition, push),
+            period: setting.period,
+            mean,
+            spread,
+            moment_noise: self.moment_noise.get(),
+            ratio_noise: [0.0; 2],
+            angle_noise: self.angle_noise.map_or(setting.angle_noise, Positive::get),
+            rate_noise: setting.rate_noise,
+            bounds: [1.0; 2],
+            gate: 0.0,
+            ranking: self.dominant,
+        })
+    }
+}
+
+impl Drifting {
+    /// The filter in a setting, extended or unscented; `draws` gives a drawn prior.
+    pub fn filter(&self, setting: &Setting<'_>, prediction: Prediction, draws: &mut Stream) -> Filter {
+        let body = believed(setting.body, self.modes.as_deref());
+        let bounds = self.bounds.map(Positive::get);
+        let ratios = self.ratios.count(body.modes.len());
+        let model = Model::new(&body.modes, ratios, setting.back_emf, self.substeps.get(), bounds);
+        let ratio = [self.ratio.get(), self.ratio_sd.get(), self.ratio_rate_sd.get()];
+        let (mean, spread) =
+            start(setting.body, &model, self.initial, &vec![ratio; ratios], self.prior, draws);
+        let angle_noise = self.angle_noise.map_or(setting.angle_noise, Positive::get);
+        let mut filter = Tuning {
+            model,
+            prediction,
+            period: setting.period,
+            mean,
+            spread,
+            moment_noise: self.moment_noise.get(),
+            ratio_noise: [self.ratio_noise.get(), self.ratio_rate_noise.get()],
+            angle_noise,
+            rate_noise: setting.rate_noise,
+            bounds,
+            gate: self.gate.get() * angle_noise,
+            ranking: self.dominant,
+        };
+        for index in 0..ratios {
+            let at = filter.model.motion() + 2 * index;
+            filter.mean[at] = filter.mean[at].clamp(bounds[0], bounds[1]);
+        }
+        Filter::new(filter)
+    }
+}
+
+/// The body with the modes that a filter knows.
+fn believed(body: &Planar, modes: Option<&[Mode]>) -> Planar {
+    Planar { modes: modes.unwrap_or(&body.modes).to_vec(), ..body.clone() }
+}
+
+/// Mean and standard deviations at the start; a ratio has its own mean, its standard deviation, and that of its rate.
+fn start(
+    body: &Planar,
+    model: &Model,
+    initial: Initial,
+    ratios: &[[f64; 3]],
+    prior: Prior,
+    draws: &mut Stream,
+) -> (DVector<f64>, DVector<f64>) {
+    let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
+    let motion = body.start().to_vector(&frequencies);
+    let excitability = |mode: usize| body.modes[mode].excitability().abs();
+    let largest = (0..body.modes.len()).map(excitability).fold(0.0, f64::max);
+    let mut mean: Vec<f64> = motion.iter().copied().collect();
+    let mut spread = vec![initial.angle.get(), initial.rate.get()];
+    for mode in 0..body.modes.len() {
+        let part = if excitability(mode) == largest { 1.0 } else { 0.1 };
+        spread.extend([part * initial.displacement.get(), part * initial.mode_rate.get()]);
+    }
+    for [ratio, sd, rate_sd] in ratios {
+        mean.extend([*ratio, 0.0]);
+        spread.extend([*sd, *rate_sd]);
+    }
+    if prior == Prior::Drawn {
+        // The rate of a ratio is unknown by nature: its mean stays 0.
+        for (index, (mean, sd)) in mean.iter_mut().zip(&spread).enumerate() {
+            if index < model.motion() || (index - model.motion()).is_multiple_of(2) {
+                *mean += sd * draws.normal();
+            }
+        }
+    }
+    (DVector::from_vec(mean), DVector::from_vec(spread))
+}
+
+impl Default for Initial {
+    fn default() -> Self {
+        let known = |sd| NonNegative::new(sd).unwrap_or_default();
+        Self { angle: known(1e-4), rate: known(1e-4), displacement: known(2e-3), mode_rate: known(6e-4) }
+    }
+}
+
+/// How many steps a period is predicted in.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Substeps(#[schemars(range(min = 1, max = 100))] u32);
+
+impl Substeps {
+    /// The number, if it is 1 to 100.
+    pub fn new(value: u32) -> Option<Self> {
+        (1..=100).contains(&value).then_some(Self(value))
+    }
+
+    /// The number itself.
+    pub const fn get(self) -> u32 {
+        self.0
+    }
+}
+
+impl<'de> Deserialize<'de> for Substeps {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = u32::deserialize(deserializer)?;
+        Self::new(value)
+            .ok_or_else(|| serde::de::Error::custom(format!("must be 1 to 100 steps, got {value}")))
+    }
+}
+
+fn moment_noise() -> NonNegative {
+    NonNegative::new(1e-13).unwrap_or_default()
+}
+
+fn one() -> Positive {
+    Positive::ONE
+}
+
+fn ratio_sd() -> NonNegative {
+    NonNegative::new(0.03).unwrap_or_default()
+}
+
+fn ratio_rate_sd() -> NonNegative {
+    NonNegative::new(0.003).unwrap_or_default()
+}
+
+fn ratio_noise() -> NonNegative {
+    NonNegative::new(1e-8).unwrap_or_default()
+}
+
+fn bounds() -> [Positive; 2] {
+    [0.1, 3.0].map(|bound| Positive::new(bound).unwrap_or(Positive::ONE))
+}
+
+fn substeps() -> Substeps {
+    Substeps(2)
+}
+
+fn gate() -> NonNegative {
+    NonNegative::new(10.0).unwrap_or_default()
+}

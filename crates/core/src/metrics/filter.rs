@@ -1,0 +1,87 @@
+//! How well a Kalman filter does: errors, and whether it knows how large they are.
+
+use super::{
+    FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told,
+    Value,
+};
+use crate::record::Estimate;
+use crate::scenario::Scenario;
+use crate::time::Instant;
+
+/// Chi-square lies between these with a probability of 95 %, of one and of two degrees of freedom.
+const INSIDE: [[f64; 2]; 2] =
+    [[9.820_691_171_752_583e-4, 5.023_886_187_314_888], [0.050_635_615_968_579_8, 7.377_758_908_227_871]];
+
+/// Gathers the samples of a filter.
+#[derive(Clone, Debug)]
+pub struct Filter {
+    assess: [f64; 2],
+    states: f64,
+    measurements: usize,
+    /// How many samples, and how many of them were not dropped.
+    count: (u64, u64),
+    nees: f64,
+    nis: f64,
+    inside: u64,
+    square: f64,
+    largest: f64,
+    lost_at: Option<f64>,
+}
+
+impl Filter {
+    /// An empty gathering for runs of a scenario with a filter.
+    pub fn new(scenario: &Scenario) -> Option<Self> {
+        let estimator = scenario.estimator.as_ref().filter(|estimator| estimator.filters())?;
+        Some(Self {
+            assess: estimator.assess(),
+            states: estimator.states(scenario.model.modes.len()) as f64,
+            measurements: 1 + usize::from(scenario.sensor.rate_noise().is_some()),
+            count: (0, 0),
+            nees: 0.0,
+            nis: 0.0,
+            inside: 0,
+            square: 0.0,
+            largest: 0.0,
+            lost_at: None,
+        })
+    }
+
+    /// Takes what the filter made of a sample.
+    pub fn see(&mut self, now: Instant, estimate: &Estimate) {
+        let t = now.seconds();
+        if estimate.lock == 0 {
+            self.lost_at.get_or_insert(t);
+        }
+        let [from, to] = self.assess;
+        if t < from || t > to {
+            return;
+        }
+        let error = (estimate.frequency_rad_s - estimate.true_frequency_rad_s).abs();
+        self.count.0 += 1;
+        self.nees += estimate.nees;
+        self.square += error * error;
+        self.largest = self.largest.max(error);
+        if estimate.nis.is_finite() {
+            let [low, high] = INSIDE[self.measurements - 1];
+            self.count.1 += 1;
+            self.nis += estimate.nis;
+            self.inside += u64::from((low..=high).contains(&estimate.nis));
+        }
+    }
+
+    /// The metrics of the run that has ended.
+    pub fn finish(self) -> [Told; 7] {
+        // 0/0 of no samples: no number.
+        let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
+        let largest = if self.count.0 > 0 { self.largest } else { f64::NAN };
+        [
+            (&NEES_MEAN, Value::Number(self.nees / all / self.states)),
+            (&NIS_MEAN, Value::Number(self.nis / measured / self.measurements as f64)),
+            (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),
+            (&FREQUENCY_ERROR_RMS, Value::Number(libm::sqrt(self.square / all))),
+            (&FREQUENCY_ERROR_MAX, Value::Number(largest)),
+            (&LOCK_LOST, Value::Count(u64::from(self.lost_at.is_some()))),
+            (&LOCK_LOST_AT, Value::Number(self.lost_at.unwrap_or(f64::NAN))),
+        ]
+    }
+}
