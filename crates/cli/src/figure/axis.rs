@@ -42,7 +42,7 @@ enum Form {
 }
 
 /// No logarithmic axis shows more decades: far below the largest value there is only rounding.
-const DECADES: f64 = 10.0;
+const DECADES: f64 = 8.0;
 
 /// Prefixes, from the smallest.
 const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
@@ -74,7 +74,7 @@ impl Axis {
         Self::exact(name, unit, 0.0..1.06 * highest)
     }
 
-    /// A logarithmic axis of whole decades that shows all of these values that are positive, but no more than ten decades.
+    /// A logarithmic axis of whole decades that shows all of these values that are positive, but no more than eight decades.
     pub fn decades(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
         let (low, high) = positive.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn decades_are_whole_and_at_most_ten() {
+    fn decades_are_whole_and_at_most_eight() {
         let residual = Axis::decades("phi4 left", "rad", [3e-5, 0.0, f64::NAN, 4e-2]);
         assert_eq!(residual.label(), "phi4 left, rad");
         assert_eq!(texts(&residual, 8), ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"]);
@@ -222,7 +222,7 @@ mod tests {
         assert!((residual.place(1e-3) + 3.0).abs() < 1e-12);
         assert!(!residual.place(0.0).is_finite() && !residual.place(-1.0).is_finite());
         let deep = Axis::decades("x", "m", [1e-17, 2e3]).extent();
-        assert!((deep.start + 6.0).abs() < 1e-12 && (deep.end - 4.0).abs() < 1e-12);
+        assert!((deep.start + 4.0).abs() < 1e-12 && (deep.end - 4.0).abs() < 1e-12);
         for values in [vec![], vec![0.0], vec![1.0], vec![1e300], vec![-3.0, f64::NAN]] {
             let extent = Axis::decades("x", "m", values.clone()).extent();
             assert!((extent.end - extent.start - 1.0).abs() < 1e-9, "{values:?}: {extent:?}");

@@ -58,9 +58,9 @@ impl<'a> Family<'a> {
             other.plan(planned_for).ok().map(Cow::Owned)
         };
         let own = |name: &str, colour| Member { name: name.to_owned(), colour, plan: Cow::Borrowed(plan) };
-        let series: Option<(fn(Suppression) -> Command, &Suppression)> = match &manoeuvre.command {
-            Command::Sine(own) => Some((Command::Sine, own)),
-            Command::Cosine(own) => Some((Command::Cosine, own)),
+        let series = match &manoeuvre.command {
+            Command::Sine(own) => Some((Command::Sine as fn(Suppression) -> Command, own)),
+            Command::Cosine(own) => Some((Command::Cosine as fn(Suppression) -> Command, own)),
             _ => None,
         };
         let members = if let Some((kind, suppression)) = series {

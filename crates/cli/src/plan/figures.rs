@@ -77,7 +77,8 @@ impl Family<'_> {
 
     fn angle(&self) -> Figure {
         let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[0])).collect());
-        let y = Axis::around("hub angle", "rad", heights(&lines));
+        // Of some radians milliradians would be long numbers.
+        let y = Axis::around("hub angle, rad", "", heights(&lines));
         let (plan, end) = (self.plan, self.end());
         let target = self.body.angle.get() + plan.angle;
         let goal = vec![(plan.time, target), (end, target + plan.end_rate * (end - plan.time))];
