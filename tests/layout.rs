@@ -36,13 +36,12 @@ fn has(columns: &Columns, field: &str) -> bool {
     }
 }
 
-#[test]
-fn every_path_is_a_field_of_a_log() {
-    let dir = Dir::with(&["relay-adaptive"]);
-    dir.run("simulate relay-adaptive.toml --log full --set duration=1200").exits(0);
-    let log = Log::open(&dir.path("relay-adaptive.mcap")).expect("a log");
+/// Every path of a layout must be a field of the log of a run.
+fn check(scenario: &str, options: &str, layout: &str) {
+    let dir = Dir::with(&[scenario]);
+    dir.run(&format!("simulate {scenario}.toml --log full {options}")).exits(0);
+    let log = Log::open(&dir.path(&format!("{scenario}.mcap"))).expect("a log");
 
-    let layout = include_str!("../scenarios/layouts/relay.json");
     let mut found = BTreeSet::new();
     paths(&serde_json::from_str(layout).expect("JSON"), &mut found);
     assert!(found.len() > 10, "{found:?}");
@@ -51,4 +50,11 @@ fn every_path_is_a_field_of_a_log() {
         let columns = log.columns(topic).unwrap_or_else(|error| panic!("{path}: {error}"));
         assert!(field.is_empty() || has(&columns, field), "{path}: no such field");
     }
+}
+
+#[test]
+fn every_path_is_a_field_of_a_log() {
+    check("relay-adaptive", "--set duration=1200", include_str!("../scenarios/layouts/relay.json"));
+    check("rotation-robust", "--set duration=20", include_str!("../scenarios/layouts/rotation.json"));
+    check("rotation-nonlinear", "--set duration=13", include_str!("../scenarios/layouts/rotation.json"));
 }

@@ -12,6 +12,7 @@ mod layout;
 mod logs;
 mod manoeuvres;
 mod plan;
+mod plan_figures;
 mod plot;
 mod relay;
 mod rivals;

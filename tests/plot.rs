@@ -102,3 +102,35 @@ fn a_figure_that_is_not_there_is_bad_input() {
     dir.run("plot relay-adaptive.mcap -o figures --what torque --format png").exits(0);
     assert_eq!(dir.names("figures"), ["relay-adaptive-torque.png"]);
 }
+
+#[test]
+fn rotations_have_figures_of_their_own() {
+    let dir = Dir::with(&["rotation-robust", "rotation-thrusters"]);
+    let axes = [
+        ("torque", ["torque, N m", "time, s"]),
+        ("angle", ["angle, mrad", "beyond the goal, mrad"]),
+        ("outputs", ["section_4, mrad", "time, s"]),
+        ("modes", ["displacement, mrad", "time, s"]),
+    ];
+    for (name, words) in
+        [("rotation-robust", ["disturbance", "feedback"]), ("rotation-thrusters", ["executed", "planned"])]
+    {
+        dir.run(&format!("simulate {name}.toml --log events --set duration=20")).exits(0);
+        dir.run(&format!("plot {name}.mcap --format svg -o events")).exits(0);
+        dir.run(&format!("simulate {name}.toml --log full --set duration=20")).exits(0);
+        dir.run(&format!("plot {name}.mcap --format svg -o full")).exits(0);
+        assert_eq!(dir.names("full").iter().filter(|file| file.starts_with(name)).count(), 4);
+        for (figure, axes) in axes {
+            let svg = dir.text(&format!("full/{name}-{figure}.svg"));
+            assert_eq!(svg, dir.text(&format!("events/{name}-{figure}.svg")), "{figure}");
+            let document = Document::parse(&svg).expect("well-formed XML");
+            let texts: Vec<_> =
+                document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
+            assert!(axes.iter().all(|axis| texts.contains(axis)), "{name} {figure}: {texts:?}");
+            assert!(figure != "torque" || words.iter().all(|word| texts.contains(word)), "{name}: {texts:?}");
+        }
+    }
+    dir.run("plot rotation-robust.mcap --what phase-plane")
+        .exits(2)
+        .says(&["it has torque, angle, outputs, modes"]);
+}

@@ -14,9 +14,6 @@ def turn(**manoeuvre: object) -> Scenario:
         {
             "duration": 20.0,
             "body": {"planar": {"inertia": 4616.67, "modes": [mode], "outputs": [output]}},
-            "law": {
-                "relay": {"dead_zone": 2e-3, "hysteresis": 2e-4, "strong": 1.0, "weak": 0.02, "k_t": 0.3}
-            },
             "manoeuvre": {**TURN, **manoeuvre},
         }
     )

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-
 from conftest import shipped
+from scipy.integrate import solve_ivp
 
 # The matrices of seed paper 2's example, from its data in exact decimals: q = [theta, v1, v2, v3, v4].
 M = np.array(
@@ -17,19 +16,22 @@ M = np.array(
     ]
 )
 K = np.zeros((5, 5))
-K[1:, 1:] = [[4160, -2560, 640, 0], [-2560, 3840, -2560, 640], [640, -2560, 3200, -1280], [0, 640, -1280, 640]]
+K[1:, 1:] = [
+    [4160, -2560, 640, 0],
+    [-2560, 3840, -2560, 640],
+    [640, -2560, 3200, -1280],
+    [0, 640, -1280, 640],
+]
 LENGTH = 2.5
 
 
 def integrate(field, breaks, t, start):
     """A solution at the times t, restarted where the torque breaks."""
-    ends = [*breaks, t[-1]]
     states, state, begin = [], start, 0.0
-    for end in ends:
-        inside = t[(t >= begin) & (t < end)] if end < t[-1] else t[t >= begin]
-        run = solve_ivp(
-            field, (begin, end), state, method="DOP853", rtol=3e-14, atol=1e-16, t_eval=np.append(inside, end)
-        )
+    for end in [*breaks, t[-1]]:
+        inside = t[(t >= begin) & ((t < end) | (end == t[-1]))]
+        at = np.unique(np.append(inside, end))
+        run = solve_ivp(field, (begin, end), state, method="DOP853", rtol=3e-14, atol=1e-16, t_eval=at)
         states.append(run.y[:, : len(inside)])
         state, begin = run.y[:, -1], end
     return np.hstack(states)

@@ -29,9 +29,8 @@ mean: float = table.statistics()["duty"]["mean"]
 duty: npt.NDArray[Any] = flexsc.sweep(scenario, "law.relay.k_t", np.linspace(0.3, 0.35, 3))["duty"]
 swept: flexsc.Table = flexsc.sweep(scenario, "law.relay.k_t", [0.3, 0.35])
 unit: str = flexsc.metrics()["duty"]["unit"]
-command_table = {"sine": {"suppress": 1}}
-manoeuvre = {"angle": 0.5, "time": 40.0, "start_rate": -2e-5, "command": command_table}
-turn: flexsc.Scenario = scenario.with_("manoeuvre", manoeuvre)
+turn: flexsc.Scenario = flexsc.Scenario.load(path.with_name("rotation-sine.toml"))
+turn = turn.with_({"manoeuvre.command": {"sine": {"suppress": 1}}, "manoeuvre.time": 40.0})
 plan: flexsc.Plan = turn.plan(band=0.05)
 command: npt.NDArray[Any] = plan.torque(np.linspace(0.0, 40.0, 5))
 peak: float = plan["peak_torque_nm"]

@@ -1,4 +1,4 @@
-//! Axes: a range, its unit with a prefix that keeps numbers short, and ticks at 1-2-5 steps.
+//! Axes: a range, its unit with a prefix that keeps numbers short, and ticks at 1-2-5 steps or at powers of ten.
 
 use std::ops::Range;
 
@@ -11,6 +11,17 @@ pub struct Axis {
     pub unit: &'static str,
     /// What it shows, in that unit.
     pub range: Range<f64>,
+    /// How values lie along it.
+    pub scale: Scale,
+}
+
+/// How values lie along an axis.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// In proportion.
+    Linear,
+    /// By their logarithms: only positive values have a place.
+    Logarithmic,
 }
 
 /// The ticks of an axis.
@@ -18,10 +29,20 @@ pub struct Axis {
 pub struct Ticks {
     /// Where they are, in the axis' unit.
     pub at: Vec<f64>,
-    /// The prefixed unit in the axis' own.
-    factor: f64,
-    decimals: usize,
+    form: Form,
 }
+
+/// How ticks are written.
+#[derive(Copy, Clone, Debug)]
+enum Form {
+    /// In a prefixed unit, which is `factor` times the axis' own.
+    Decimal { factor: f64, decimals: usize },
+    /// As powers of ten.
+    Power,
+}
+
+/// No logarithmic axis shows more decades: far below the largest value there is only rounding.
+const DECADES: f64 = 8.0;
 
 /// Prefixes, from the smallest.
 const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
@@ -35,7 +56,7 @@ impl Axis {
         let middle = if range.start.is_finite() { range.start } else { 0.0 };
         let half = if middle == 0.0 { 1.0 } else { 0.05 * middle.abs() };
         let range = if wide { range } else { middle - half..middle + half };
-        Self { name: name.to_owned(), unit, range }
+        Self { name: name.to_owned(), unit, range, scale: Scale::Linear }
     }
 
     /// An axis that shows all of these values, and a little more.
@@ -53,6 +74,29 @@ impl Axis {
         Self::exact(name, unit, 0.0..1.06 * highest)
     }
 
+    /// A logarithmic axis of whole decades that shows all of these values that are positive, but no more than eight decades.
+    pub fn decades(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
+        let (low, high) = positive.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = if high > 0.0 { (low.log10().floor(), high.log10().ceil()) } else { (-1.0, 0.0) };
+        let low = low.min(high - 1.0).max(high - DECADES);
+        let range = 10_f64.powf(low)..10_f64.powf(high);
+        Self { name: name.to_owned(), unit, range, scale: Scale::Logarithmic }
+    }
+
+    /// Where a value lies, in the numbers of [`Axis::extent`]; not finite if it has no place.
+    pub fn place(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => value,
+            Scale::Logarithmic => value.log10(),
+        }
+    }
+
+    /// Where the ends of the range lie.
+    pub fn extent(&self) -> Range<f64> {
+        self.place(self.range.start)..self.place(self.range.end)
+    }
+
     /// The same axis, named by another panel.
     pub fn unnamed(&self) -> Self {
         Self { name: String::new(), ..self.clone() }
@@ -68,6 +112,13 @@ impl Axis {
 
     /// At most about `most` ticks.
     pub fn ticks(&self, most: u32) -> Ticks {
+        if self.scale == Scale::Logarithmic {
+            let Range { start, end } = self.extent();
+            let (first, last) = (start.round() as i32, end.round() as i32);
+            let step = (last - first).unsigned_abs().div_ceil(most.max(1)).max(1);
+            let at = (first..=last).rev().step_by(step as usize).map(|power| 10_f64.powi(power));
+            return Ticks { at: at.collect(), form: Form::Power };
+        }
         let factor = 10_f64.powi(self.prefix().1);
         let (low, high) = (self.range.start / factor, self.range.end / factor);
         let rough = (high - low) / f64::from(most.max(1));
@@ -77,13 +128,16 @@ impl Axis {
         let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
         // A little tolerance: the logarithm of a power of ten may be rounded.
         let decimals = (-1e-9 - step.log10()).ceil().clamp(0.0, 12.0) as usize;
-        Ticks { at: (first..=last).map(|i| i as f64 * step * factor).collect(), factor, decimals }
+        Ticks {
+            at: (first..=last).map(|i| i as f64 * step * factor).collect(),
+            form: Form::Decimal { factor, decimals },
+        }
     }
 
     fn prefix(&self) -> (&'static str, i32) {
         let half = (self.range.end - self.range.start) / 2.0;
         let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(half / 10_f64.powi(*power)));
-        if self.unit.is_empty() {
+        if self.unit.is_empty() || self.scale == Scale::Logarithmic {
             return ("", 0);
         }
         PREFIXES.iter().find(fits).copied().unwrap_or(("", 0))
@@ -93,12 +147,30 @@ impl Axis {
 impl Ticks {
     /// The text of a tick.
     pub fn text(&self, at: f64) -> String {
-        let value = at / self.factor;
-        let plain = self.decimals <= 6 && value.abs() < 1e7;
-        let text = if plain { format!("{value:.*}", self.decimals) } else { format!("{value:.1e}") };
+        let Form::Decimal { factor, decimals } = self.form else {
+            return format!("10{}", superscript(at.log10().round() as i32));
+        };
+        let value = at / factor;
+        let plain = decimals <= 6 && value.abs() < 1e7;
+        let text = if plain { format!("{value:.decimals$}") } else { format!("{value:.1e}") };
         let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.' | 'e'));
         if zero { "0".to_owned() } else { text.replace('-', "−") }
     }
+}
+
+/// A whole number as an exponent.
+fn superscript(number: i32) -> String {
+    let raised = |character: char| match character {
+        '-' => '⁻',
+        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
+    };
+    number.to_string().chars().map(raised).collect()
+}
+
+/// The name and the unit that an axis of a quantity has: prefixes are those of SI units, so that any other unit stands
+/// in the name.
+pub fn name_and_unit(name: &str, unit: &str) -> (String, &'static str) {
+    if unit == "rad" { (name.to_owned(), "rad") } else { (format!("{name}, {unit}"), "") }
 }
 
 /// The number of 1, 2 or 5 times a power of ten that is nearest to a positive one.
@@ -136,6 +208,25 @@ mod tests {
         assert_eq!(texts(&gain, 5), ["0.305", "0.310", "0.315", "0.320", "0.325"]);
         let huge = Axis::exact("", "", -2e9..2e9);
         assert_eq!(texts(&huge, 2), ["−2.0e9", "0", "2.0e9"]);
+    }
+
+    #[test]
+    fn decades_are_whole_and_at_most_eight() {
+        let residual = Axis::decades("phi4 left", "rad", [3e-5, 0.0, f64::NAN, 4e-2]);
+        assert_eq!(residual.label(), "phi4 left, rad");
+        assert_eq!(texts(&residual, 8), ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"]);
+        assert_eq!(texts(&residual, 2), ["10⁻¹", "10⁻³", "10⁻⁵"]);
+        // Values are as far from one another as their logarithms, and zero is nowhere.
+        let extent = residual.extent();
+        assert!((extent.start + 5.0).abs() < 1e-12 && (extent.end + 1.0).abs() < 1e-12);
+        assert!((residual.place(1e-3) + 3.0).abs() < 1e-12);
+        assert!(!residual.place(0.0).is_finite() && !residual.place(-1.0).is_finite());
+        let deep = Axis::decades("x", "m", [1e-17, 2e3]).extent();
+        assert!((deep.start + 4.0).abs() < 1e-12 && (deep.end - 4.0).abs() < 1e-12);
+        for values in [vec![], vec![0.0], vec![1.0], vec![1e300], vec![-3.0, f64::NAN]] {
+            let extent = Axis::decades("x", "m", values.clone()).extent();
+            assert!((extent.end - extent.start - 1.0).abs() < 1e-9, "{values:?}: {extent:?}");
+        }
     }
 
     #[test]

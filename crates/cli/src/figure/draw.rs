@@ -65,7 +65,7 @@ fn total_height(panel: &Panel, plot: u32) -> u32 {
     LEGEND + plot + NUMBERS + if panel.x.name.is_empty() { 0 } else { NAME }
 }
 
-/// A panel's plot: a window of the plane on a rectangle of the backend.
+/// A panel's plot: a window of the plane, in the places that values have on the axes, on a rectangle of the backend.
 struct Plot {
     window: Window,
     height: u32,
@@ -82,18 +82,20 @@ impl Plot {
 }
 
 fn draw_panel(area: &Area<'_>, panel: &Panel, height: u32) -> Result<(), Error> {
-    let plot = Plot { window: Window { x: panel.x.range.clone(), y: panel.y.range.clone() }, height };
+    let plot = Plot { window: Window { x: panel.x.extent(), y: panel.y.extent() }, height };
     draw_axes(area, panel, &plot)?;
     for layer in &panel.layers {
+        let points: Vec<Point> =
+            layer.points.iter().map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
         match layer.shape {
             Shape::Line(_) | Shape::Dashes => {
-                for piece in pieces(&layer.points, &plot.window) {
+                for piece in pieces(&points, &plot.window) {
                     let piece = thin(&piece, &plot.window, COLUMNS).into_iter().map(|p| plot.place(p));
                     draw_line(area, layer, piece.collect())?;
                 }
             }
             _ => {
-                for point in layer.points.iter().filter(|point| plot.window.contains(**point)) {
+                for point in points.iter().filter(|point| plot.window.contains(**point)) {
                     draw_mark(area, layer, plot.place(*point))?;
                 }
             }
@@ -110,12 +112,16 @@ fn draw_axes(area: &Area<'_>, panel: &Panel, plot: &Plot) -> Result<(), Error> {
     let gap = 5 * UNITS as i32;
     let (grid, frame) = (stroke(GRID, 0.6), stroke(colour::GREY, 0.8));
     let ticks = panel.x.ticks(ACROSS / 85);
-    for (across, label) in ticks.at.iter().map(|at| (plot.place((*at, y.start)).0, ticks.text(*at))) {
+    for (across, label) in
+        ticks.at.iter().map(|at| (plot.place((panel.x.place(*at), y.start)).0, ticks.text(*at)))
+    {
         area.draw(&PathElement::new([(across, corner.1), (across, opposite.1)], grid))?;
         area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (across, corner.1 + gap))?;
     }
     let ticks = panel.y.ticks(plot.height / 28);
-    for (up, label) in ticks.at.iter().map(|at| (plot.place((x.start, *at)).1, ticks.text(*at))) {
+    for (up, label) in
+        ticks.at.iter().map(|at| (plot.place((x.start, panel.y.place(*at))).1, ticks.text(*at)))
+    {
         area.draw(&PathElement::new([(corner.0, up), (opposite.0, up)], grid))?;
         area.draw_text(&label, &text(11.0, HPos::Right, VPos::Center), (corner.0 - gap, up))?;
     }

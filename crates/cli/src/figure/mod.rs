@@ -2,13 +2,14 @@
 
 mod axis;
 mod draw;
+mod file;
 mod image;
 mod line;
 
 use plotters::style::RGBColor;
 
-pub use axis::{Axis, round_to_nice};
-pub use image::Renderer;
+pub use axis::{Axis, name_and_unit, round_to_nice};
+pub use file::{Format, save};
 pub use line::{Point, steps};
 
 /// Colours that also the colour-blind tell apart (Okabe and Ito).
@@ -46,6 +47,7 @@ pub struct Panel {
 }
 
 /// What is drawn in one go.
+#[derive(Clone)]
 pub struct Layer {
     /// Name in the legend; empty for none.
     pub name: String,

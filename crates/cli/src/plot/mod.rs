@@ -11,17 +11,13 @@ mod story;
 mod torque;
 
 use std::f64::consts::TAU;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use flexsc_core::record::Log;
-use flexsc_core::whole;
-use rayon::prelude::*;
 
 use crate::failure::Failure;
-use crate::figure::{Axis, Figure, Layer, Renderer, Shape, colour, round_to_nice};
-use crate::say;
+use crate::figure::{Axis, Figure, Format, Layer, Shape, colour, round_to_nice, save};
 use story::{Motion, Story};
 
 #[derive(clap::Args)]
@@ -58,16 +54,6 @@ enum What {
     Modes,
 }
 
-#[derive(Copy, Clone, PartialEq, ValueEnum)]
-enum Format {
-    /// Vector graphics
-    Svg,
-    /// Pixels
-    Png,
-    /// One file of each
-    Both,
-}
-
 pub fn run(args: &Args) -> Result<(), Failure> {
     let log = Log::open(&args.log)?;
     let story = Story::read(&log, &args.log)?;
@@ -94,35 +80,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
     let beside = args.log.parent().unwrap_or(Path::new(""));
     let directory = args.out.as_deref().unwrap_or(beside);
-    if args.out.is_some() {
-        std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
-    }
-    let name = args.log.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let renderer = Renderer::new();
-    let path = |what: What, extension: &str| directory.join(format!("{name}-{}.{extension}", what.name()));
-    let draw = |what: &What| -> Result<(String, Vec<u8>), Failure> {
-        let undrawn = |why| Failure::Draw { path: path(*what, "svg"), why };
-        let svg = what.figure(&story, &motion).svg().map_err(undrawn)?;
-        let wanted = args.format != Format::Svg;
-        let png = if wanted { renderer.png(&svg).map_err(undrawn)? } else { Vec::new() };
-        Ok((svg, png))
-    };
-    let drawn = chosen.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?;
-    for (what, (svg, png)) in chosen.iter().zip(&drawn) {
-        if args.format != Format::Png {
-            write(&path(*what, "svg"), svg.as_bytes())?;
-        }
-        if args.format != Format::Svg {
-            write(&path(*what, "png"), png)?;
-        }
-    }
-    Ok(())
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    whole::write(path, bytes).map_err(Failure::write(path))?;
-    say!("{} ({:.0} kB)", path.display(), bytes.len() as f64 / 1e3);
-    Ok(())
+    let name = args.log.file_stem().unwrap_or_default().to_string_lossy();
+    let file = |what: &What| format!("{name}-{}", what.name());
+    save(directory, args.format, chosen, file, |what| what.figure(&story, &motion))
 }
 
 impl What {

@@ -2,7 +2,7 @@
 
 use super::story::{Motion, Story};
 use super::{arrival, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, name_and_unit};
 
 /// So many coordinates have a panel, at most: the last ones, the outermost of a panel.
 const PANELS: usize = 6;
@@ -12,12 +12,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let skipped = motion.outputs.len().saturating_sub(PANELS);
     let panel = |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::body::Output))| {
         let x = time(0.0..story.end);
-        // Prefixes are those of SI units; another unit stands beside the name.
-        let (name, unit) = if output.unit == "rad" {
-            (output.name.clone(), "rad")
-        } else {
-            (format!("{}, {}", output.name, output.unit), "")
-        };
+        let (name, unit) = name_and_unit(&output.name, &output.unit);
         let y = Axis::around(&name, unit, values.iter().copied());
         let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
         let line = Layer::new("", colour::BLUE, Shape::Line(1.2), line);

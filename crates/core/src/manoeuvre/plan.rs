@@ -2,6 +2,7 @@
 
 use super::extremum::{self, Peak};
 use super::history::{History, torque};
+use super::residual;
 use super::series::Coefficients;
 use super::waveform::Waveform;
 use crate::body::{Drive, Planar};
@@ -44,6 +45,27 @@ impl Plan {
                 })
             }
         }
+    }
+
+    /// The torque on the hub (N m) over the manoeuvre: times (s) and values at most `step` seconds apart, with both limits
+    /// where it jumps.
+    pub fn torque(&self, body: &Planar, step: f64) -> Vec<(f64, f64)> {
+        let history = History::new(body, &self.waveform, 1.0);
+        let mut line = Vec::new();
+        for piece in self.waveform.breaks().windows(2) {
+            let (from, length) = (piece[0], piece[1] - piece[0]);
+            let count = libm::ceil(length / step).max(1.0);
+            let time = |i: u32| from + length * (f64::from(i) / count);
+            let middle = time(0) + 0.5 * length;
+            line.extend((0..=count as u32).map(time).map(|t| (t, torque(body, &history, middle, t))));
+        }
+        line
+    }
+
+    /// What is left in the hub's angle and in each output, as of a [`Residual`](super::Residual), of a body whose
+    /// frequencies are all `factor` times its own. Gains and weights stay as they are.
+    pub fn left(&self, body: &Planar, factor: f64) -> Vec<f64> {
+        residual::left(self, body, &residual::coordinates(body), factor)
     }
 }
 

@@ -47,14 +47,17 @@ pub fn coordinates(body: &Planar) -> Vec<Coordinate> {
     std::iter::once(angle).chain(outputs).collect()
 }
 
+/// The sum of the modes' amplitudes in each coordinate after the manoeuvre, with all frequencies times a factor.
+pub fn left(plan: &Plan, body: &Planar, coordinates: &[Coordinate], factor: f64) -> Vec<f64> {
+    let amplitudes = History::new(body, &plan.waveform, factor).amplitudes(plan.time);
+    let sum = |c: &Coordinate| c.weights.iter().zip(&amplitudes).map(|(w, a)| w.abs() * a).sum();
+    coordinates.iter().map(sum).collect()
+}
+
 /// What is left in each coordinate. Gains and weights stay as they are while the frequencies move together.
 pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<Residual> {
     let coordinates = coordinates(body);
-    let sums = |factor: f64| -> Vec<f64> {
-        let amplitudes = History::new(body, &plan.waveform, factor).amplitudes(plan.time);
-        let sum = |c: &Coordinate| c.weights.iter().zip(&amplitudes).map(|(w, a)| w.abs() * a).sum();
-        coordinates.iter().map(sum).collect()
-    };
+    let sums = |factor: f64| left(plan, body, &coordinates, factor);
     let worst = |band: f64| {
         let factor = |i: u32| 1.0 + band * (2.0 * f64::from(i) / f64::from(POINTS - 1) - 1.0);
         let largest = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect();

@@ -1,7 +1,12 @@
-//! `flexsc plan`: the plan of a scenario's manoeuvre, and how it stands in the field.
+//! `flexsc plan`: the plan of a scenario's manoeuvre, its figures, and how it stands in the field.
+
+mod family;
+mod figures;
+mod table;
 
 use std::borrow::Cow;
 use std::io::Write;
+use std::path::PathBuf;
 
 use flexsc_core::body::{Drive, Planar};
 use flexsc_core::manoeuvre::{Common, Manoeuvre, Plan, Report, Row, compare};
@@ -10,14 +15,16 @@ use flexsc_core::{Scenario, ScenarioError};
 use serde_json::json;
 
 use crate::failure::Failure;
+use crate::figure::Format;
 use crate::{print, say, scenario};
+use family::Family;
 
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     scenario: scenario::Args,
     /// Compare with every other command on the same body; JSON lines with --json
-    #[arg(long)]
+    #[arg(long, group = "views")]
     compare: bool,
     /// How far off the frequencies may be, relative to them
     #[arg(long, default_value_t = 0.1, value_name = "PART")]
@@ -25,8 +32,15 @@ pub struct Args {
     /// Plan for this peak torque (N m), each command in its own time, instead of the scenario's time
     #[arg(long, value_name = "TORQUE")]
     peak_torque: Option<f64>,
-    /// The coordinate whose residuals a comparison shows: `angle` or an output; the last output if left out
-    #[arg(long, value_name = "NAME", requires = "compare")]
+    /// Draw the command beside those that suppress fewer modes, or the rigid bang-bang, into this directory, made if it is
+    /// not there
+    #[arg(long, value_name = "DIR", group = "views")]
+    figures: Option<PathBuf>,
+    /// Form of the figures
+    #[arg(long, value_enum, default_value = "both", requires = "figures")]
+    format: Format,
+    /// The coordinate that a comparison and figures show: `angle` or an output; the last output if left out
+    #[arg(long, value_name = "NAME", requires = "views")]
     output: Option<String>,
 }
 
@@ -46,14 +60,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         Some(Ok(limit)) => Some(limit),
         None => None,
     };
+    let shown = chosen(args.output.as_deref(), body)?;
     if args.compare {
         let common = Common::of(manoeuvre, limit, plan);
         let rows = compare(manoeuvre, common, scenario.planned_for(), args.band);
-        return if args.scenario.json {
-            lines(&rows)
-        } else {
-            table(args, &scenario.name, body, common, &rows)
-        };
+        if args.scenario.json {
+            return lines(&rows);
+        }
+        table::tell(&scenario.name, body, args.band, shown, common, &rows);
+        return Ok(());
     }
     let plan: Cow<Plan> = match limit {
         None => Cow::Borrowed(plan),
@@ -68,6 +83,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     let report = Report::new(&plan, body, args.band);
+    if let Some(directory) = &args.figures {
+        let family = Family::new(&scenario.name, body, &plan, manoeuvre, scenario.planned_for(), shown);
+        figures::save(&family, args.band, directory, args.format)?;
+    }
     if args.scenario.json {
         let mut object = json!({"scenario": scenario.name, "command": manoeuvre.command.kind()});
         if let (Some(object), serde_json::Value::Object(told)) =
@@ -146,66 +165,12 @@ fn percent(band: f64) -> f64 {
     (band * 1e8).round() / 1e6
 }
 
-fn table(args: &Args, name: &str, body: &Planar, common: Common, rows: &[Row]) -> Result<(), Failure> {
-    let last = body.outputs.last().map_or("angle", |output| &output.name);
-    let chosen = args.output.as_deref().unwrap_or(last);
+/// The index of the coordinate that is shown: the chosen one, else the last output, else the hub's angle.
+fn chosen(output: Option<&str>, body: &Planar) -> Result<usize, Failure> {
     let names: Vec<&str> =
         std::iter::once("angle").chain(body.outputs.iter().map(|output| output.name.as_str())).collect();
-    let Some(column) = names.iter().position(|name| *name == chosen) else {
-        let why = format!("--output must be one of {}, got {chosen}", names.join(", "));
-        return Err(Failure::Arguments(why));
-    };
-    match common {
-        Common::Time(time) => say!("{name}   every command in {} s", time.seconds()),
-        Common::PeakTorque(peak) => say!("{name}   every command at a peak of {} N m", peak.get()),
-    }
-    let (band, hub) = (percent(args.band), "angle");
-    say!(
-        "  {:<28}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>11}{:>11}{:>11}",
-        "",
-        "time",
-        "peak",
-        "RMS",
-        "at 0+",
-        chosen,
-        "±5 %",
-        format!("±{band} %"),
-        hub,
-        format!("±{band} %")
-    );
-    say!(
-        "  {:<28}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>11}{:>11}{:>11}",
-        "",
-        "s",
-        "N m",
-        "N m",
-        "N m",
-        "left",
-        "worst",
-        "worst",
-        "left",
-        "worst"
-    );
-    for row in rows {
-        match &row.outcome {
-            Err((_, why)) => say!("  {:<28}{why}", row.name),
-            Ok(outcome) => {
-                let (own, hub) = (&outcome.residuals[column], &outcome.residuals[0]);
-                say!(
-                    "  {:<28}{:>10.4}{:>10.2}{:>10.2}{:>10.2}{:>11.3e}{:>11.3e}{:>11.3e}{:>11.3e}{:>11.3e}",
-                    row.name,
-                    outcome.plan.time,
-                    outcome.torque.peak.value,
-                    outcome.torque.rms,
-                    outcome.torque.initial,
-                    own.nominal,
-                    own.near,
-                    own.worst,
-                    hub.nominal,
-                    hub.worst
-                );
-            }
-        }
-    }
-    Ok(())
+    let Some(chosen) = output else { return Ok(names.len() - 1) };
+    names.iter().position(|name| *name == chosen).ok_or_else(|| {
+        Failure::Arguments(format!("--output must be one of {}, got {chosen}", names.join(", ")))
+    })
 }

@@ -1,0 +1,98 @@
+//! The commands that the figures of a plan overlay: a series with ever more modes suppressed, or a command beside the
+//! rigid bang-bang.
+
+use std::borrow::Cow;
+
+use flexsc_core::body::Planar;
+use flexsc_core::manoeuvre::{BangBang, Command, Manoeuvre, Plan, Suppression};
+use flexsc_core::time::Span;
+use plotters::style::RGBColor;
+
+use crate::figure::colour;
+
+/// So many commands at most.
+const MOST: usize = 5;
+/// The colours of p = 0, 1, ...
+const COLOURS: [RGBColor; MOST] =
+    [colour::ORANGE, colour::SKY, colour::GREEN, colour::VERMILLION, colour::BLUE];
+
+/// What the figures of a plan show.
+pub struct Family<'a> {
+    /// Name of the scenario.
+    pub name: &'a str,
+    /// The body.
+    pub body: &'a Planar,
+    /// The planned command.
+    pub plan: &'a Plan,
+    /// Index of the coordinate that is shown, of the hub's angle and the outputs.
+    pub shown: usize,
+    /// The commands, the lowest drawn first.
+    pub members: Vec<Member<'a>>,
+}
+
+/// A command of the family.
+pub struct Member<'a> {
+    /// Its name in the legend.
+    pub name: String,
+    /// Its colour.
+    pub colour: RGBColor,
+    /// Its plan.
+    pub plan: Cow<'a, Plan>,
+}
+
+impl<'a> Family<'a> {
+    /// The family of a plan: the series of its kind with up to as many zeros, or the rigid bang-bang, all in the same time.
+    /// What no plan can be made of is left out.
+    pub fn new(
+        name: &'a str,
+        body: &'a Planar,
+        plan: &'a Plan,
+        manoeuvre: &Manoeuvre,
+        planned_for: &Planar,
+        shown: usize,
+    ) -> Self {
+        let time = Some(Span::from_seconds(plan.time));
+        let in_time = |command: Command, shaped: bool| {
+            let shaper = if shaped { manoeuvre.shaper.clone() } else { None };
+            let other = Manoeuvre { time, peak_torque: None, command, shaper, ..manoeuvre.clone() };
+            other.plan(planned_for).ok().map(Cow::Owned)
+        };
+        let own = |name: &str, colour| Member { name: name.to_owned(), colour, plan: Cow::Borrowed(plan) };
+        let series = match &manoeuvre.command {
+            Command::Sine(own) => Some((Command::Sine as fn(Suppression) -> Command, own)),
+            Command::Cosine(own) => Some((Command::Cosine as fn(Suppression) -> Command, own)),
+            _ => None,
+        };
+        let members = if let Some((kind, suppression)) = series {
+            let beside: usize = suppression.zeros.iter().map(|target| target.times as usize).sum();
+            let plain = beside == 0;
+            let most = (suppression.suppress + beside).min(planned_for.modes.len());
+            let count = if plain { MOST } else { MOST - 1 };
+            let member = |p: usize| {
+                let (name, colour) = (format!("p = {p}"), COLOURS[p % MOST]);
+                if plain && p == most {
+                    return Some(own(&name, colour));
+                }
+                let lowest = Suppression { suppress: p, zeros: Vec::new() };
+                Some(Member { name, colour, plan: in_time(kind(lowest), true)? })
+            };
+            let first = (most + 1).saturating_sub(count);
+            let lower = (first..=most).filter_map(member);
+            lower.chain((!plain).then(|| own("as planned", colour::BLACK))).collect()
+        } else {
+            let words = manoeuvre.command.kind().replace('_', " ");
+            let shaped = if manoeuvre.shaper.is_some() { ", shaped" } else { "" };
+            let own = own(&format!("{words}{shaped}"), colour::BLUE);
+            let bang_bang = Command::BangBang(BangBang {});
+            let same = manoeuvre.command == bang_bang && manoeuvre.shaper.is_none();
+            let rigid = if same { None } else { in_time(bang_bang, false) };
+            let rigid = rigid.map(|plan| Member {
+                name: "bang-bang, rigid".to_owned(),
+                colour: colour::ORANGE,
+                plan,
+            });
+            rigid.into_iter().chain([own]).collect()
+        };
+        Self { name, body, plan, shown, members }
+    }
+}

@@ -1,0 +1,173 @@
+//! The figures of a plan: torque, hub angle and an output over time, and what is left over the error of the frequencies
+//! (seed paper 2, figures 3 to 8 and beyond).
+
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::Arc as Shared;
+
+use flexsc_core::body::{Arc, Drive, Forced, Input, Planar};
+use flexsc_core::manoeuvre::Plan;
+
+use super::family::{Family, Member};
+use crate::failure::Failure;
+use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Point, Shape, colour, name_and_unit};
+
+/// Points of a line, at least and at most.
+const FEWEST: f64 = 1500.0;
+const MOST: f64 = 20_000.0;
+/// Points of the band of frequencies.
+const BAND: u32 = 401;
+/// So many periods of the slowest mode are shown after the manoeuvre.
+const PERIODS: f64 = 4.0;
+
+/// A figure.
+#[derive(Copy, Clone, PartialEq)]
+enum What {
+    /// Torque on the hub during the manoeuvre.
+    Torque,
+    /// Angle of the hub, on into what is left.
+    Angle,
+    /// The chosen output, likewise.
+    Output,
+    /// What is left in the chosen coordinate, over the common factor of the frequencies.
+    Robustness,
+}
+
+/// Draws the figures into a directory: `band` is how far off the frequencies may be.
+pub fn save(family: &Family, band: f64, directory: &Path, format: Format) -> Result<(), Failure> {
+    let all = [What::Torque, What::Angle, What::Output, What::Robustness];
+    // The hub's angle has its own figure.
+    let there: Vec<What> = all.into_iter().filter(|what| *what != What::Output || family.shown > 0).collect();
+    let name = |what: &What| match what {
+        What::Torque => format!("{}-plan-torque", family.name),
+        What::Angle => format!("{}-plan-angle", family.name),
+        What::Output => format!("{}-plan-{}", family.name, in_a_path(&family.coordinate().0)),
+        What::Robustness => format!("{}-plan-robustness", family.name),
+    };
+    figure::save(directory, format, &there, name, |what| match what {
+        What::Torque => family.torque(),
+        What::Angle => family.angle(),
+        What::Output => family.output(),
+        What::Robustness => family.robustness(band),
+    })
+}
+
+/// A name without what parts directories.
+fn in_a_path(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
+}
+
+impl Family<'_> {
+    /// Name and unit of the shown coordinate.
+    fn coordinate(&self) -> (String, String) {
+        match self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index)) {
+            Some(output) => (output.name.clone(), output.unit.clone()),
+            None => ("angle".to_owned(), "rad".to_owned()),
+        }
+    }
+
+    fn torque(&self) -> Figure {
+        let lines = self.lines(|plan| plan.torque(self.body, self.step(self.plan.time)));
+        let unit = if self.body.inertia.get() == 1.0 { "rad/s²" } else { "N m" };
+        let y = Axis::around("torque", unit, heights(&lines));
+        let zero = Layer::new("", colour::GREY, Shape::Line(0.8), vec![(0.0, 0.0), (self.plan.time, 0.0)]);
+        let what = if self.body.drive == Drive::Motion { "torque that moves the hub" } else { "torque" };
+        self.figure(what, time(self.plan.time), y, vec![zero], lines)
+    }
+
+    fn angle(&self) -> Figure {
+        let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[0])).collect());
+        // Of some radians milliradians would be long numbers.
+        let y = Axis::around("hub angle, rad", "", heights(&lines));
+        let (plan, end) = (self.plan, self.end());
+        let target = self.body.angle.get() + plan.angle;
+        let goal = vec![(plan.time, target), (end, target + plan.end_rate * (end - plan.time))];
+        let goal = Layer::new("goal", colour::BLACK, Shape::Dashes, goal);
+        let below = vec![self.arrival(&y)];
+        let mut figure = self.figure("hub angle", time(end), y, below, lines);
+        figure.panels.iter_mut().for_each(|panel| panel.layers.push(goal.clone()));
+        figure
+    }
+
+    fn output(&self) -> Figure {
+        let (name, unit) = self.coordinate();
+        let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[1])).collect());
+        let (label, unit) = name_and_unit(&name, &unit);
+        let y = Axis::around(&label, unit, heights(&lines));
+        let below = vec![self.arrival(&y)];
+        self.figure(&name, time(self.end()), y, below, lines)
+    }
+
+    fn robustness(&self, band: f64) -> Figure {
+        let factor = |i: u32| band * (2.0 * f64::from(i) / f64::from(BAND - 1) - 1.0);
+        let left = |plan: &Plan, off: f64| plan.left(self.body, 1.0 + off)[self.shown];
+        let lines =
+            self.lines(|plan| (0..BAND).map(factor).map(|off| (1e2 * off, left(plan, off))).collect());
+        let (name, unit) = self.coordinate();
+        let (label, unit) = name_and_unit(&format!("left in {name}"), &unit);
+        let y = Axis::decades(&label, unit, heights(&lines));
+        let x = Axis::exact("all frequencies off by, %", "", -1e2 * band..1e2 * band);
+        self.figure(&format!("vibration left in {name}"), x, y, Vec::new(), lines)
+    }
+
+    fn lines(&self, line: impl Fn(&Plan) -> Vec<Point>) -> Vec<Vec<Point>> {
+        self.members.iter().map(|member| line(&member.plan)).collect()
+    }
+
+    fn figure(&self, what: &str, x: Axis, y: Axis, below: Vec<Layer>, lines: Vec<Vec<Point>>) -> Figure {
+        let layer = |(Member { name, colour, .. }, points): (&Member, Vec<Point>)| {
+            Layer::new(name, *colour, Shape::Line(1.5), points)
+        };
+        let layers = below.into_iter().chain(self.members.iter().zip(lines).map(layer)).collect();
+        let title = format!("{}: {what}", self.name);
+        Figure { title, panels: vec![Panel { x, y, layers }], panel_height: 340 }
+    }
+
+    /// A line where the manoeuvre ends.
+    fn arrival(&self, y: &Axis) -> Layer {
+        let ends = vec![(self.plan.time, y.range.start), (self.plan.time, y.range.end)];
+        Layer::new("", colour::GREY, Shape::Dashes, ends)
+    }
+
+    /// The end of what is shown (s).
+    fn end(&self) -> f64 {
+        let slowest = frequencies(self.body).fold(f64::INFINITY, f64::min);
+        let after = if slowest.is_finite() { PERIODS * TAU / slowest } else { 0.0 };
+        self.plan.time + after.max(0.2 * self.plan.time)
+    }
+
+    /// How far apart points are (s) of a line that is so long.
+    fn step(&self, length: f64) -> f64 {
+        let fastest = frequencies(self.body).fold(0.0, f64::max);
+        let fine = if fastest > 0.0 { TAU / (24.0 * fastest) } else { length };
+        fine.clamp(length / MOST, length / FEWEST)
+    }
+
+    /// The hub's angle and the shown coordinate under a plan, exactly.
+    fn motion(&self, plan: &Plan) -> Vec<(f64, [f64; 2])> {
+        let end = self.end();
+        let count = (end / self.step(end)).ceil();
+        let mut arc = Arc::new(self.body);
+        let mut state = self.body.start();
+        let waveform = Some(Forced::new(Shared::new(plan.waveform.clone()), 0.0));
+        arc.depart(&state.clone(), &Input { constant: 0.0, waveform });
+        let mut at = |t: f64| {
+            let angle = arc.at(t, &mut state).angle;
+            let output = self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index));
+            (t, [angle, output.map_or(angle, |output| output.of(&state))])
+        };
+        (0..=count as u32).map(|i| at(end * (f64::from(i) / count))).collect()
+    }
+}
+
+fn frequencies(body: &Planar) -> impl Iterator<Item = f64> {
+    body.modes.iter().map(|mode| mode.frequency.get())
+}
+
+fn heights(lines: &[Vec<Point>]) -> impl Iterator<Item = f64> {
+    lines.iter().flatten().map(|point| point.1)
+}
+
+fn time(end: f64) -> Axis {
+    Axis::exact("time", "s", 0.0..end)
+}
