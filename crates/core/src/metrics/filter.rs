@@ -25,6 +25,7 @@ pub struct Filter {
     inside: u64,
     square: f64,
     largest: f64,
+    /// Since when the filter has lost the body.
     lost_at: Option<f64>,
 }
 
@@ -51,6 +52,8 @@ impl Filter {
         let t = now.seconds();
         if estimate.lock == 0 {
             self.lost_at.get_or_insert(t);
+        } else {
+            self.lost_at = None;
         }
         let [from, to] = self.assess;
         if t < from || t > to {

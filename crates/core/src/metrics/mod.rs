@@ -117,8 +117,8 @@ metrics! {
     FREQUENCY_ERROR_RMS = "frequency_error_rms_rad_s", "rad/s",
         "Root mean square error of the dominant mode's frequency as the law reads it, over the assessed samples";
     FREQUENCY_ERROR_MAX = "frequency_error_max_rad_s", "rad/s", "Largest such error";
-    LOCK_LOST = "lock_lost", "", "1 if the filter lost the body at any time, else 0";
-    LOCK_LOST_AT = "lock_lost_at_s", "s", "When it lost it; null if it did not";
+    LOCK_LOST = "lock_lost", "", "1 if the filter has lost the body at the end of the run, else 0";
+    LOCK_LOST_AT = "lock_lost_at_s", "s", "When it lost it for good; null if it did not";
 }
 
 /// A metric and its value.

@@ -167,7 +167,7 @@ impl Track {
             modes: modes.collect(),
             innovation_rad: told.innovation,
             nis: told.nis.unwrap_or(f64::NAN),
-            nees: filter.nees(&truth.into()),
+            nees: filter.nees(&truth),
             gated: u64::from(filter.is_gated()),
             lock: u64::from(!filter.is_lost()),
         })

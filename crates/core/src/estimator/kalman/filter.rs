@@ -60,8 +60,11 @@ pub struct Filter {
     /// Room for the derivative of the flow, transposed, and for a product.
     tangent: DMatrix<f64>,
     room: DMatrix<f64>,
+    /// The distribution that a step began with.
+    before: (DVector<f64>, DMatrix<f64>),
     lock: Lock,
-    lost: bool,
+    /// Whether the distribution cannot be carried on.
+    broken: bool,
     mode: usize,
     gated: bool,
     trusted: Dominant,
@@ -87,8 +90,9 @@ impl Filter {
             noise: DMatrix::zeros(order, order),
             tangent: DMatrix::zeros(order, order),
             room: DMatrix::zeros(order, order),
+            before: (DVector::zeros(order), DMatrix::zeros(order, order)),
             lock: Lock::new(1 + usize::from(tuning.rate_noise.is_some())),
-            lost: false,
+            broken: false,
             mode: 0,
             gated: false,
             trusted: Dominant::default(),
@@ -126,9 +130,9 @@ impl Filter {
         self.mode
     }
 
-    /// Whether the filter has lost the body. It stays lost.
+    /// Whether the filter has lost the body: its innovations of late are not what it expects, or it cannot go on.
     pub fn is_lost(&self) -> bool {
-        self.lost
+        self.broken || self.lock.is_lost()
     }
 
     /// Whether the dominant mode moves too little for its frequency to be seen.
@@ -145,9 +149,9 @@ impl Filter {
     /// Predicts the state over one period, in which the mean reduced moment was this (rad/s²).
     pub fn predict(&mut self, moment: f64) {
         let moment = if moment.is_finite() { moment } else { 0.0 };
+        self.keep();
         let Self { tuning, mean, covariance, noise, tangent, room, gated, .. } = self;
         let (model, period) = (&tuning.model, tuning.period);
-        let before = (mean.clone(), covariance.clone());
         let carried = match &tuning.prediction {
             Prediction::Linear(transition, push) => {
                 *mean = transition * &*mean + push * moment;
@@ -178,31 +182,41 @@ impl Filter {
             }
         }
         if carried.is_none() || !self.is_sound() {
-            (self.mean, self.covariance) = before;
-            self.lost = true;
+            self.restore();
+            self.broken = true;
         }
     }
 
     /// Updates the state by the measured angle (rad) and, of a filter with a gyro, the measured rate (rad/s).
     pub fn update(&mut self, angle: f64, rate: f64) -> Told {
         let innovation = angle - self.seen(0);
-        let before = (self.mean.clone(), self.covariance.clone());
+        self.keep();
         let gated = self.is_still();
         let mut nis = self.learn(0, angle, self.tuning.angle_noise, gated);
         if let Some(noise) = self.tuning.rate_noise {
             nis = nis.and_then(|nis| Some(nis + self.learn(1, rate, noise, gated)?));
         }
         if nis.is_none() || !self.is_sound() {
-            (self.mean, self.covariance) = before;
+            self.restore();
             nis = None;
         }
         self.gated = gated;
-        self.lost |= !self.lock.follows(nis);
+        self.lock.take(nis);
         self.hold_ratios();
         self.choose_mode();
         self.trust();
         let innovation = if innovation.is_finite() { innovation } else { f64::NAN };
         Told { innovation, nis }
+    }
+
+    fn keep(&mut self) {
+        self.before.0.copy_from(&self.mean);
+        self.before.1.copy_from(&self.covariance);
+    }
+
+    fn restore(&mut self) {
+        self.mean.copy_from(&self.before.0);
+        self.covariance.copy_from(&self.before.1);
     }
 
     /// The sum of every other component: of the angles from 0 on, of the rates from 1 on.
@@ -262,7 +276,7 @@ impl Filter {
             if !(low..=high).contains(&self.mean[at]) {
                 self.mean[at] = self.mean[at].clamp(low, high);
                 self.mean[at + 1] = 0.0;
-                self.lost = true;
+                self.lock.lose();
             }
         }
     }
@@ -298,10 +312,10 @@ impl Filter {
         terms.sum::<f64>().max(0.0)
     }
 
-    /// Normalised squared error of the estimate, which for a true state has the state's order as its mean. NaN if the
+    /// Normalised squared error of the estimate against a true state of the same components, which has the state's order as its mean. NaN if the
     /// covariance has no inverse.
-    pub fn nees(&self, truth: &DVector<f64>) -> f64 {
-        let error = truth - &self.mean;
+    pub fn nees(&self, truth: &[f64]) -> f64 {
+        let error = DVector::from_row_slice(truth) - &self.mean;
         let root = Cholesky::new(self.covariance.clone());
         root.map_or(f64::NAN, |root| error.dot(&root.solve(&error)))
     }
@@ -329,7 +343,7 @@ impl Filter {
     }
 
     fn trust(&mut self) {
-        if self.lost {
+        if self.is_lost() {
             (self.trusted.displacement, self.trusted.rate) = (0.0, 0.0);
             return;
         }

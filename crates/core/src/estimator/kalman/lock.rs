@@ -1,9 +1,11 @@
-//! Whether a filter still follows the body: its innovations, squared and weighed, stay in their chi-square band.
+//! Whether a filter follows the body: its innovations, squared and weighed, stay in their chi-square band.
 
 /// Samples over which the innovations are judged.
 const WINDOW: usize = 50;
-/// How far above its mean a sum of the window may lie, in standard deviations of a normal: one in 10^9 lies above.
-const DEVIATIONS: f64 = 6.0;
+/// How far above its mean the sum over the window lies for the filter to be lost, and to follow again, in standard
+/// deviations of a normal. By chance one window in 10^9 lies above the first.
+const LOST: f64 = 6.0;
+const FOUND: f64 = 3.0;
 
 /// The innovations of late.
 #[derive(Clone, Debug)]
@@ -11,10 +13,9 @@ pub struct Lock {
     /// NIS of each sample, the oldest at `next`.
     recent: Vec<f64>,
     next: usize,
-    /// No sum over the window is larger as long as the filter follows.
-    largest: f64,
-    /// What a dropped measurement counts.
-    dropped: f64,
+    /// Above the first the filter is lost, below the second it follows again.
+    bounds: [f64; 2],
+    lost: bool,
 }
 
 impl Lock {
@@ -23,22 +24,43 @@ impl Lock {
         let degrees = (WINDOW * measurements) as f64;
         // Wilson and Hilferty: the cube root of chi-square over its degrees of freedom is about normal.
         let spread = 2.0 / (9.0 * degrees);
-        let root = 1.0 - spread + DEVIATIONS * libm::sqrt(spread);
-        let largest = degrees * root * root * root;
-        // A window of nothing but dropped measurements is above the band, a few of them are not.
-        let dropped = 2.0 * largest / WINDOW as f64;
-        Self { recent: Vec::with_capacity(WINDOW), next: 0, largest, dropped }
+        let quantile = |deviations: f64| {
+            let root = 1.0 - spread + deviations * libm::sqrt(spread);
+            degrees * root * root * root
+        };
+        Self {
+            recent: Vec::with_capacity(WINDOW),
+            next: 0,
+            bounds: [quantile(LOST), quantile(FOUND)],
+            lost: false,
+        }
     }
 
-    /// Takes the NIS of a sample, or none for a dropped measurement, and says whether the filter follows.
-    pub fn follows(&mut self, nis: Option<f64>) -> bool {
-        let nis = nis.unwrap_or(self.dropped);
+    /// Takes the NIS of a sample, or none for a dropped measurement.
+    pub fn take(&mut self, nis: Option<f64>) {
+        // A window of nothing but dropped measurements is above the band, a few of them are not.
+        let nis = nis.unwrap_or(2.0 * self.bounds[0] / WINDOW as f64);
         if self.recent.len() < WINDOW {
             self.recent.push(nis);
         } else {
             self.recent[self.next] = nis;
             self.next = (self.next + 1) % WINDOW;
         }
-        self.recent.len() < WINDOW || self.recent.iter().sum::<f64>() <= self.largest
+        if self.recent.len() == WINDOW {
+            let bound = self.bounds[usize::from(self.lost)];
+            self.lost = self.recent.iter().sum::<f64>() > bound;
+        }
+    }
+
+    /// The filter has lost the body for another reason: it has to prove itself over a whole window.
+    pub fn lose(&mut self) {
+        self.lost = true;
+        self.recent.clear();
+        self.next = 0;
+    }
+
+    /// Whether the filter has lost the body.
+    pub fn is_lost(&self) -> bool {
+        self.lost
     }
 }

@@ -7,6 +7,8 @@ mod filter;
 mod lock;
 mod model;
 mod sigma;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::DVector;
 use schemars::JsonSchema;

@@ -221,3 +221,104 @@ fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) 
         (*x, *v) = (a * *x + b * *v, c * *x + d * *v);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Coupled;
+    use crate::{Scenario, body::Planar};
+
+    const WIDE: [f64; 2] = [0.1, 3.0];
+
+    /// Four modes, of which the third is damped and the last overdamped.
+    fn body() -> Planar {
+        let text = "duration = 1.0\n[law.open]\n[body.planar]\nmodes = [{ frequency = 0.3, gain = 1.44 }, \
+                    { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165, damping = 0.02 }, \
+                    { frequency = 2.0, gain = 0.72, damping = 1.5 }]";
+        Scenario::parse("body", text).expect("valid").model
+    }
+
+    const STATE: [f64; 10] = [0.06, -1e-3, 4e-3, 2e-3, -1e-3, 3e-4, 2e-4, -5e-4, 1e-4, 7e-4];
+
+    /// The exact motion at a constant ratio, by the matrix exponential.
+    fn exact(back_emf: (f64, bool), ratio: f64, moment: f64, h: f64) -> Vec<f64> {
+        let (transition, push) = Coupled::new(&body(), back_emf.0, back_emf.1, &[ratio; 4]).discrete(h);
+        (transition * nalgebra::DVector::from_row_slice(&STATE) + push * moment).as_slice().to_vec()
+    }
+
+    fn split(
+        back_emf: (f64, bool),
+        ratio: f64,
+        moment: f64,
+        h: f64,
+        substeps: u32,
+    ) -> (Vec<f64>, DMatrix<f64>) {
+        let model = Model::new(&body().modes, 1, back_emf, substeps, WIDE);
+        let mut state = STATE.to_vec();
+        state.extend([ratio, 0.0]);
+        let mut tangent = DMatrix::identity(12, 12);
+        model.propagate(h, moment, &mut state, Some(&mut tangent));
+        (state, tangent.transpose())
+    }
+
+    #[test]
+    fn without_back_emf_the_flow_is_the_matrix_exponential() {
+        let (state, tangent) = split((0.0, true), 0.7, 3e-5, 0.3, 1);
+        for (value, exact) in state.iter().zip(exact((0.0, true), 0.7, 3e-5, 0.3)) {
+            assert!((value - exact).abs() < 1e-15, "{value} {exact}");
+        }
+        let (transition, _) = Coupled::new(&body(), 0.0, true, &[0.7; 4]).discrete(0.3);
+        assert!((tangent.view((0, 0), (10, 10)) - transition).amax() < 1e-14);
+    }
+
+    #[test]
+    fn splitting_is_of_second_order() {
+        for total in [true, false] {
+            let error = |substeps| {
+                let (transition, _) = Coupled::new(&body(), 0.05, total, &[0.7; 4]).discrete(0.3);
+                (split((0.05, total), 0.7, 3e-5, 0.3, substeps).1.view((0, 0), (10, 10)) - transition).amax()
+            };
+            let (one, two, ten) = (error(1), error(2), error(10));
+            assert!(
+                one > 1e-7 && (one / two - 4.0).abs() < 0.1 && (one / ten - 100.0).abs() < 2.0,
+                "{one} {two} {ten}"
+            );
+        }
+    }
+
+    #[test]
+    fn derivative_by_the_ratio_is_that_of_the_exact_motion() {
+        let (back_emf, moment, h, step) = ((1e-3, true), 3e-5, 0.3, 1e-5);
+        let (_, tangent) = split(back_emf, 0.7, moment, h, 100);
+        let (above, below) = (exact(back_emf, 0.7 + step, moment, h), exact(back_emf, 0.7 - step, moment, h));
+        for (row, (a, b)) in above.iter().zip(&below).enumerate() {
+            let slope = (a - b) / (2.0 * step);
+            assert!((tangent[(row, 10)] - slope).abs() < 2e-11, "{row}: {} {slope}", tangent[(row, 10)]);
+        }
+    }
+
+    #[test]
+    fn derivative_by_the_rate_is_that_of_the_flow_itself() {
+        for ratios in [1, 4] {
+            let model = Model::new(&body().modes, ratios, (1e-3, true), 3, WIDE);
+            let mut start = STATE.to_vec();
+            (0..ratios).for_each(|_| start.extend([0.7, -3e-3]));
+            let order = model.order();
+            let mut tangent = DMatrix::identity(order, order);
+            model.propagate(0.3, 3e-5, &mut start.clone(), Some(&mut tangent));
+            for column in 0..order {
+                let moved = |by: f64| {
+                    let mut state = start.clone();
+                    state[column] += by;
+                    model.propagate(0.3, 3e-5, &mut state, None);
+                    state
+                };
+                let (above, below) = (moved(1e-4), moved(-1e-4));
+                for row in 0..order {
+                    let slope = (above[row] - below[row]) / 2e-4;
+                    assert!((tangent[(column, row)] - slope).abs() < 1e-9, "{ratios} {row} {column}");
+                }
+            }
+        }
+    }
+}

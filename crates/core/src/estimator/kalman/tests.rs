@@ -1,0 +1,180 @@
+//! The filters against each other, and fed with nonsense.
+
+use super::*;
+use crate::Scenario;
+use crate::random::Seed;
+
+fn scenario(estimator: &str) -> Scenario {
+    let text = format!(
+        "duration = 1.0\n[law.open]\n[body.planar]\nangle = 0.06\nmodes = [{{ frequency = 0.3, gain = 1.44 }}, \
+         {{ frequency = 0.8, gain = 0.21 }}, {{ frequency = 1.0, gain = 0.165 }}, {{ frequency = 2.0, gain = 0.72 }}]\n\
+         [sensor.sampled]\nperiod = 0.3\nnoise = 1e-5\n[estimator.{estimator}"
+    );
+    Scenario::parse("filter", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A filter, with a back-EMF of 1e-4/s, with a gyro or without.
+fn filter(estimator: &str, rate_noise: Option<f64>) -> Filter {
+    use crate::estimator::Estimator;
+    let scenario = scenario(estimator);
+    let setting =
+        Setting { body: &scenario.model, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise };
+    let draws = &mut Seed { scenario: 3, run: 0 }.stream("prior");
+    match &scenario.estimator {
+        Some(Estimator::Kalman(spec)) => spec.filter(&setting, draws),
+        Some(Estimator::ExtendedKalman(spec)) => spec.filter(&setting, Prediction::Extended, draws),
+        Some(Estimator::UnscentedKalman(spec)) => spec.filter(&setting, Prediction::Unscented, draws),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Moments and angles of some run.
+fn course(sample: u32) -> (f64, f64) {
+    let t = 0.3 * f64::from(sample);
+    (3e-5 * libm::sin(0.1 * t), 0.06 * libm::exp(-0.02 * t) + 3e-3 * libm::sin(0.3 * t))
+}
+
+#[test]
+fn extended_filter_of_known_ratios_is_the_linear_one() {
+    let known =
+        "ratio_sd = 0.0\nratio_rate_sd = 0.0\nratio_noise = 0.0\nratio_rate_noise = 0.0\nsubsteps = 50\n";
+    let mut linear = filter("kalman]", None);
+    for kind in ["extended_kalman]", "unscented_kalman]"] {
+        // A point that is spread by nothing has no root of its covariance: next to nothing will do.
+        let known = if kind.starts_with('u') { known.replace("0.0", "1e-14") } else { known.to_owned() };
+        let mut other = filter(&format!("{kind}\n{known}"), None);
+        let mut linear = linear.clone();
+        for sample in 0..200 {
+            let (moment, angle) = course(sample);
+            linear.predict(moment);
+            other.predict(moment);
+            let (a, b) = (linear.update(angle, 0.0), other.update(angle, 0.0));
+            assert!((a.innovation - b.innovation).abs() < 1e-9, "{kind} {sample}: {a:?} {b:?}");
+        }
+        let difference = (linear.mean() - other.mean().rows(0, 10)).amax();
+        assert!(difference < 1e-8, "{kind}: {difference}");
+        let covariance = other.covariance().view((0, 0), (10, 10)) - linear.covariance();
+        assert!(covariance.amax() < 1e-6 * linear.covariance().amax(), "{kind}: {covariance}");
+    }
+    // And it is not the one of other frequencies.
+    linear.predict(1e-5);
+    assert!(linear.frequency(0) == (0.3, 0.0));
+}
+
+#[test]
+fn unscented_and_extended_filter_agree_where_little_is_unknown() {
+    let spec = "ratio_sd = 1e-5\nratio_rate_sd = 1e-6\nratio_noise = 1e-14\nratio_rate_noise = 1e-14\n\
+                initial = { angle = 1e-6, rate = 1e-6, displacement = 1e-5, mode_rate = 3e-6 }\n";
+    let mut extended = filter(&format!("extended_kalman]\n{spec}"), Some(1e-6));
+    let mut unscented = filter(&format!("unscented_kalman]\n{spec}"), Some(1e-6));
+    for sample in 0..100 {
+        let (moment, _) = course(sample);
+        extended.predict(moment);
+        unscented.predict(moment);
+        // What the filters expect, and a little of a surprise.
+        let seen = |first: usize| extended.mean().iter().take(10).skip(first).step_by(2).sum::<f64>();
+        let (angle, rate) = (seen(0) + 1e-6, seen(1) - 1e-7);
+        let (a, b) = (extended.update(angle, rate), unscented.update(angle, rate));
+        assert!((a.innovation - b.innovation).abs() < 1e-10, "{sample}: {a:?} {b:?}");
+    }
+    let spread = extended.covariance().diagonal().map(f64::sqrt);
+    let difference = (extended.mean() - unscented.mean()).component_div(&spread).amax();
+    assert!(difference < 1e-2, "{difference}");
+    for i in 0..12 {
+        let ratio = unscented.covariance()[(i, i)] / extended.covariance()[(i, i)];
+        assert!((ratio - 1.0).abs() < 1e-3, "{i}: {ratio}");
+    }
+}
+
+#[test]
+fn nonsense_is_never_passed_on() {
+    let nonsense: [(&str, fn(u32) -> f64); 7] = [
+        ("NaN", |_| f64::NAN),
+        ("infinite", |_| f64::INFINITY),
+        ("huge", |_| 1e300),
+        ("large", |sample| if sample % 2 == 0 { 1e6 } else { -1e6 }),
+        ("stuck", |_| 0.06),
+        ("now and then", |sample| if sample % 7 == 0 { f64::NAN } else { course(sample).1 }),
+        ("jumps", |sample| if sample > 50 { 3.0 } else { course(sample).1 }),
+    ];
+    for kind in [
+        "kalman]",
+        "extended_kalman]",
+        "unscented_kalman]",
+        "extended_kalman]\nratios = 'each'",
+        "extended_kalman]\nratio = 1.5",
+    ] {
+        for rate_noise in [None, Some(1e-6)] {
+            for (name, angle) in nonsense {
+                let mut filter = filter(kind, rate_noise);
+                for sample in 0..400 {
+                    filter.predict(if sample == 9 { f64::NAN } else { course(sample).0 });
+                    let told = filter.update(angle(sample), angle(sample + 1));
+                    assert!(told.nis.is_none_or(f64::is_finite), "{kind} {name} {sample}");
+                    let (belief, mode) = (filter.dominant(), filter.mode());
+                    let numbers = [
+                        belief.displacement,
+                        belief.frequency,
+                        filter.amplitude(mode).0,
+                        filter.frequency(mode).1,
+                    ];
+                    let all = numbers.iter().chain(filter.mean()).chain(filter.covariance());
+                    assert!(all.into_iter().all(|n| n.is_finite()), "{kind} {name} {sample}: {numbers:?}");
+                }
+                let (lost, belief) = (filter.is_lost(), filter.dominant());
+                assert!(lost || name == "now and then", "{kind} {name} {rate_noise:?}");
+                assert!(!lost || belief.displacement == 0.0, "{kind} {name}");
+                assert!((0.03..=0.9).contains(&belief.frequency), "{kind} {name}: {belief:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_still_mode_teaches_no_frequency() {
+    let run = |gate: &str| {
+        let mut filter = filter(
+            &format!(
+                "extended_kalman]\nprior = 'drawn'\ngate = {gate}\n\
+            initial = {{ angle = 1e-6, rate = 1e-7, displacement = 1e-6, mode_rate = 1e-7 }}"
+            ),
+            None,
+        );
+        let mut noise = Seed { scenario: 4, run: 0 }.stream("sensor");
+        for _ in 0..600 {
+            filter.predict(0.0);
+            filter.update(0.06 + 1e-5 * noise.normal(), 0.0);
+        }
+        filter
+    };
+    // The truth is at rest: whatever narrows the frequency is noise.
+    let (gated, open) = (run("10.0"), run("0.0"));
+    assert!(gated.is_gated() && !open.is_gated());
+    assert!(gated.frequency(0).1 > 0.15, "{:?}", gated.frequency(0));
+    assert!(open.frequency(0).1 < 0.05, "{:?}", open.frequency(0));
+    // The law is told the frequency of the prior.
+    let prior = filter(
+        "extended_kalman]\nprior = 'drawn'\n\
+        initial = { angle = 1e-6, rate = 1e-7, displacement = 1e-6, mode_rate = 1e-7 }",
+        None,
+    );
+    assert_eq!(gated.dominant().frequency, prior.dominant().frequency);
+}
+
+#[test]
+fn dominant_mode_is_the_most_excitable_or_the_largest() {
+    // The second mode swings alone.
+    let modes = "modes = [{ frequency = 0.3, gain = 1.44 }, { frequency = 0.8, gain = 0.21 }, \
+                 { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]\n";
+    for (ranking, mode) in [("excitability", 0), ("amplitude", 1)] {
+        let mut filter = filter(&format!("extended_kalman]\n{modes}dominant = '{ranking}'"), None);
+        for sample in 0..300 {
+            let t = 0.3 * f64::from(sample);
+            filter.predict(0.0);
+            filter.update(0.06 + 2e-3 * libm::sin(0.8 * t), 0.0);
+        }
+        assert_eq!(filter.mode(), mode, "{ranking}");
+        let (amplitude, sd) = filter.amplitude(1);
+        assert!((amplitude - 2e-3).abs() < 5.0 * sd && sd < 2e-4, "{amplitude} {sd}");
+    }
+}
