@@ -18,6 +18,8 @@ pub struct Belief {
 pub struct Dominant {
     /// Estimated displacement (rad).
     pub displacement: f64,
+    /// Its derivative with time (rad/s).
+    pub rate: f64,
     /// Estimated natural frequency (rad/s).
     pub frequency: f64,
 }

@@ -11,7 +11,7 @@ use crate::one_of::one_of;
 use crate::time::Instant;
 
 pub use open::Open;
-pub use pd::Pd;
+pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use relay::{Relay, Sides};
 
 one_of! {

@@ -1,28 +1,96 @@
-//! The sampled PD law, u = -k_p (x - x_goal) - k_d (x' - x'_goal), held between its samples.
+//! The sampled PD law, u = -k_p (y - y_goal) - k_d (y' - y'_goal), held between its samples.
+//!
+//! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the dominant
+//! mode (seed papers 3 and 5, equations (5), (7) and (8)).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Cause, Control, Goal, Guards, Hold, Phase};
 use crate::belief::Belief;
-use crate::quantity::{NonNegative, Positive};
+use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::{Instant, Span};
 
 /// The PD law. It takes over when the goal's manoeuvre ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pd {
-    /// Proportional gain (N m/rad).
+    /// Proportional gain (N m/rad; for a wheel, units of its command for each rad).
     pub k_p: NonNegative,
-    /// Derivative gain (N m s/rad).
+    /// Derivative gain (N m s/rad; without the second where the difference is raw).
     pub k_d: NonNegative,
     /// Period of its samples (s).
     pub period: Span,
+    /// How the derivative is taken.
+    #[serde(default)]
+    pub differentiation: Differentiation,
+    /// The extra loop over the dominant mode.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extra: Option<Extra>,
     /// Largest torque (N m); left out, there is no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
     #[serde(skip)]
     active: bool,
+    /// What was fed back at the last sample.
+    #[serde(skip)]
+    last: Option<f64>,
+}
+
+/// How the derivative is taken.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Differentiation {
+    /// The measured rate.
+    #[default]
+    Exact,
+    /// The difference of two samples over their period.
+    Difference,
+    /// The difference of two samples: the derivative gain then has the unit of the proportional one.
+    Raw,
+}
+
+/// The extra loop over the dominant mode: its gain is k_d of the papers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Extra {
+    /// A constant gain.
+    Gain(Finite),
+    /// A gain that follows the estimated frequency: straight lines between points, held before the first and after the
+    /// last.
+    Schedule(Vec<ScheduledGain>),
+}
+
+/// A point of a schedule.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScheduledGain {
+    /// Frequency of the dominant mode (rad/s).
+    pub frequency: Positive,
+    /// Gain there.
+    pub gain: Finite,
+}
+
+impl Extra {
+    /// The gain at a frequency of the dominant mode (rad/s).
+    pub fn gain(&self, frequency: f64) -> f64 {
+        match self {
+            Self::Gain(gain) => gain.get(),
+            Self::Schedule(points) => {
+                let after = points.partition_point(|point| point.frequency.get() <= frequency);
+                let at = |index: usize| (points[index].frequency.get(), points[index].gain.get());
+                match (after, points.len()) {
+                    (_, 0) => 0.0,
+                    (0, _) => at(0).1,
+                    (after, count) if after == count => at(count - 1).1,
+                    (after, _) => {
+                        let ((low, from), (high, to)) = (at(after - 1), at(after));
+                        from + (to - from) * (frequency - low) / (high - low)
+                    }
+                }
+            }
+        }
+    }
 }
 
 impl Control for Pd {
@@ -32,8 +100,17 @@ impl Control for Pd {
             return Hold { torque: 0.0, until: Some(goal.from), guards: Guards::NONE };
         }
         let (angle, rate) = goal.at(now);
-        let torque = -self.k_p.get() * (belief.angle - angle) - self.k_d.get() * (belief.rate - rate);
+        let gain = self.extra.as_ref().map_or(0.0, |extra| extra.gain(belief.dominant.frequency));
+        let error = belief.angle - angle + gain * belief.dominant.displacement;
+        let difference = error - self.last.unwrap_or(error);
+        let derivative = match self.differentiation {
+            Differentiation::Exact => belief.rate - rate + gain * belief.dominant.rate,
+            Differentiation::Difference => difference / self.period.seconds(),
+            Differentiation::Raw => difference,
+        };
+        self.last = Some(error);
         let limit = self.limit.map_or(f64::INFINITY, Positive::get);
+        let torque = -self.k_p.get() * error - self.k_d.get() * derivative;
         Hold { torque: torque.clamp(-limit, limit), until: Some(now + self.period), guards: Guards::NONE }
     }
 
