@@ -10,6 +10,7 @@ mod determinism;
 mod events;
 mod layout;
 mod logs;
+mod loops;
 mod manoeuvres;
 mod plan;
 mod plan_figures;

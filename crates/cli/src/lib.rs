@@ -6,7 +6,9 @@ mod cycle;
 mod export;
 mod failure;
 mod figure;
+mod grid;
 mod log;
+mod map;
 mod modes;
 mod plan;
 mod plot;
@@ -18,6 +20,7 @@ mod stop;
 mod summary;
 mod sweep;
 mod table;
+mod tune;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -46,6 +49,10 @@ enum Verb {
     Cycle(scenario::Args),
     /// Plan the manoeuvre of a scenario, or compare it with every other command
     Plan(plan::Args),
+    /// Find the gains of a sampled loop that are stable and settle in time, over the dominant mode's frequency
+    Tune(tune::Args),
+    /// Map the stability of a sampled loop over the dominant mode's frequency and the sampling period
+    Map(map::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
     /// Print a topic of a log as a table
@@ -80,6 +87,8 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Modes(args) => modes::run(&args),
         Verb::Cycle(args) => cycle::run(&args),
         Verb::Plan(args) => plan::run(&args),
+        Verb::Tune(args) => tune::run(&args),
+        Verb::Map(args) => map::run(&args),
         Verb::Plot(args) => plot::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),

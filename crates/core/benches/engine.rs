@@ -9,6 +9,7 @@ use std::io::Cursor;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use flexsc_core::analysis::sampled_loop::{Held, Loop, Scaling, Window, map};
 use flexsc_core::body::Drive;
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::record::{Detail, McapLog, Metrics, Record, RunEnd, Trace};
@@ -148,9 +149,58 @@ fn structure(c: &mut Criterion) {
     group.finish();
 }
 
+/// The fitted set of seed papers 3 and 5, figure 2, without a command that is shaped.
+const WHEEL: &str = r#"
+duration = 400.0
+[body.planar]
+angle = 0.06
+modes = [
+    { frequency = 0.2, gain = 1.44 }, { frequency = 0.533333333, gain = 0.21 },
+    { frequency = 0.666666667, gain = 0.165 }, { frequency = 1.333333333, gain = 0.72 },
+]
+[actuator.wheel]
+gain = 5e-4
+back_emf = 1e-4
+[law.pd]
+k_p = 7.5
+k_d = 275.0
+period = 0.3
+differentiation = "raw"
+"#;
+
+fn sampled_loop(c: &mut Criterion) {
+    let mut group = c.benchmark_group("sampled loop");
+    let window = Window { band: 0.003, horizon: 400.0 };
+    let looped = |text: &str| Loop::of(&scenario(text)).expect("a loop").0;
+    let (linear, shaped) = (looped(WHEEL), looped(&WHEEL.replace("back_emf", "dead_zone = 1e-3\nback_emf")));
+    let ratios = [1.0; 4];
+    group.bench_function("400 s", |b| b.iter(|| Held::new(black_box(&linear), &ratios).closed(0.0).settle(window)));
+    let held = Held::new(&linear, &ratios);
+    group.bench_function("400 s, another gain", |b| b.iter(|| held.closed(black_box(1.2)).settle(window)));
+    let held = Held::new(&shaped, &ratios);
+    group.bench_function("400 s, shaped command", |b| b.iter(|| held.closed(black_box(0.0)).settle(window)));
+    group.bench_function("spectral radius", |b| b.iter(|| held.closed(black_box(0.0)).spectral_radius()));
+    group.sample_size(10).measurement_time(Duration::from_secs(10));
+    let (frequencies, periods) = (even(0.05, 0.5, 96), even(0.1, 2.0, 200));
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    group.bench_function("map of 96 x 200", |b| {
+        b.iter(|| one.install(|| map(&linear, &frequencies, &periods, Scaling::All, |_| 0.0, window)));
+    });
+    // As the papers sample: every cell has the 1333 samples of 400 s.
+    let periods = even(0.299, 0.301, 200);
+    group.bench_function("map of 96 x 200, 0.3 s", |b| {
+        b.iter(|| one.install(|| map(&linear, &frequencies, &periods, Scaling::All, |_| 0.0, window)));
+    });
+    group.finish();
+}
+
+fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    targets = run, modes, log, structure
+    targets = run, modes, log, structure, sampled_loop
 }
 criterion_main!(benches);

@@ -8,6 +8,7 @@
 mod aside;
 mod columns;
 mod error;
+mod sampled;
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -38,6 +39,8 @@ use error::{log_error, scenario_error, simulation_error};
 mod _native {
     #[pymodule_export]
     use super::error::{LogError, ScenarioError, SimulationError};
+    #[pymodule_export]
+    use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
     #[pymodule_export]
     use super::{
         Log, Scenario, campaign, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,

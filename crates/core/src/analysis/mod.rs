@@ -4,4 +4,5 @@ pub mod cycle;
 pub mod elliptic;
 pub mod modal;
 pub mod rigid_cycle;
+pub mod sampled_loop;
 pub mod swing_integral;

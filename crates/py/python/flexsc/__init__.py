@@ -21,6 +21,7 @@ from typing import Any
 
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, sweep
+from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._scenario import Log, Result, Scenario
@@ -36,10 +37,13 @@ __all__ = [
     "Table",
     "__version__",
     "campaign",
+    "gain_region",
     "metrics",
     "read_log",
     "rigid_cycles",
+    "robust_gains",
     "schema",
+    "stability_map",
     "sweep",
 ]
 

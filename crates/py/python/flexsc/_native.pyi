@@ -15,14 +15,17 @@ __all__ = [
     "SimulationError",
     "__version__",
     "campaign",
+    "gain_regions_json",
     "main",
     "metrics_json",
     "plan_json",
     "plan_torque",
     "rigid_cycles_json",
     "rivals_json",
+    "robust_gains_json",
     "schema_json",
     "simulate",
+    "stability_map_json",
     "to_mcap",
 ]
 
@@ -97,6 +100,28 @@ def rigid_cycles_json(scenario: Scenario) -> str: ...
 def plan_json(scenario: Scenario, band: float) -> str: ...
 def plan_torque(scenario: Scenario, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
 def rivals_json(scenario: Scenario, band: float, peak_torque: float | None) -> str: ...
+def gain_regions_json(
+    scenario: Scenario,
+    frequencies: Sequence[float],
+    gains: tuple[float, float, float],
+    limit: float,
+    settled: tuple[float | None, float, bool],
+) -> str: ...
+def robust_gains_json(
+    scenario: Scenario,
+    frequencies: Sequence[float],
+    gains: tuple[float, float, float],
+    off: tuple[float, float],
+    goal: tuple[bool, float, float],
+    settled: tuple[float | None, float, bool],
+) -> str: ...
+def stability_map_json(
+    scenario: Scenario,
+    frequencies: Sequence[float],
+    periods: Sequence[float],
+    gain: float | None,
+    settled: tuple[float | None, float, bool],
+) -> str: ...
 def schema_json() -> str: ...
 def metrics_json() -> str: ...
 def main(args: Sequence[str]) -> int: ...

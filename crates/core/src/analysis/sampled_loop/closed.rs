@@ -1,0 +1,136 @@
+//! The closed loop: its matrix from sample to sample, and the angle at the samples.
+
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+use super::Shape;
+
+/// Samples that one product with a matrix gives.
+const BLOCK: usize = 32;
+/// Rows that are summed side by side.
+const LANES: usize = 8;
+
+/// A closed loop: u = shape(-feedback s), s+ = free s + forced u, x = angle s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Closed {
+    /// Transition without the command.
+    pub free: DMatrix<f64>,
+    /// What a unit of the command adds.
+    pub forced: DVector<f64>,
+    /// What the command is made of.
+    pub feedback: RowDVector<f64>,
+    /// What the angle (rad) is made of.
+    pub angle: RowDVector<f64>,
+    /// The state at the start.
+    pub start: DVector<f64>,
+    /// Period of the samples (s).
+    pub period: f64,
+    /// What shapes the command; none for a linear loop.
+    pub shape: Option<Shape>,
+}
+
+impl Closed {
+    /// A loop of so many states in which nothing happens.
+    pub(super) fn resting(order: usize) -> Self {
+        Self {
+            free: DMatrix::zeros(order, order),
+            forced: DVector::zeros(order),
+            feedback: RowDVector::zeros(order),
+            angle: RowDVector::zeros(order),
+            start: DVector::zeros(order),
+            period: 0.0,
+            shape: None,
+        }
+    }
+
+    /// The matrix of the linear loop, s+ = M s: all of the command is executed.
+    pub fn matrix(&self) -> DMatrix<f64> {
+        &self.free - &self.forced * &self.feedback
+    }
+
+    /// The angle at the first so many samples (rad), the start first.
+    pub fn angles(&self, count: usize) -> Vec<f64> {
+        let mut angles = Vec::with_capacity(count);
+        self.each_angle(count, |angle| angles.push(angle));
+        angles
+    }
+
+    /// Tells the angle at each of the first so many samples (rad), the start first.
+    pub fn each_angle(&self, count: usize, tell: impl FnMut(f64)) {
+        match &self.shape {
+            None => self.each_linear(count, tell),
+            Some(shape) => self.each_shaped(shape, count, tell),
+        }
+    }
+
+    /// A block of samples and the state after it are one product with a matrix: the angles are c s, c M s, c M² s, ...,
+    /// and the state is M^32 s.
+    fn each_linear(&self, count: usize, mut tell: impl FnMut(f64)) {
+        let matrix = self.matrix();
+        let order = matrix.nrows();
+        let mut rows = DMatrix::zeros(BLOCK, order);
+        let mut row = self.angle.clone();
+        let mut next = row.clone();
+        for i in 0..BLOCK {
+            rows.row_mut(i).copy_from(&row);
+            row.mul_to(&matrix, &mut next);
+            std::mem::swap(&mut row, &mut next);
+        }
+        let mut power = matrix;
+        let mut square = power.clone();
+        for _ in 0..BLOCK.ilog2() {
+            power.mul_to(&power, &mut square);
+            std::mem::swap(&mut power, &mut square);
+        }
+        let stacked = Panels::new(&[&rows, &power]);
+        let mut state = self.start.as_slice().to_vec();
+        let mut out = vec![0.0; stacked.rows()];
+        let mut left = count;
+        while left > 0 {
+            stacked.apply(&state, &mut out);
+            let told = left.min(BLOCK);
+            out[..told].iter().for_each(|angle| tell(*angle));
+            state.copy_from_slice(&out[BLOCK..BLOCK + order]);
+            left -= told;
+        }
+    }
+}
+
+/// A matrix by panels of rows that lie side by side in memory, column after column.
+pub(super) struct Panels {
+    panels: Vec<Vec<[f64; LANES]>>,
+}
+
+impl Panels {
+    /// Matrices of the same number of columns, one below the other.
+    pub(super) fn new(parts: &[&DMatrix<f64>]) -> Self {
+        let columns = parts.first().map_or(0, |part| part.ncols());
+        let rows: usize = parts.iter().map(|part| part.nrows()).sum();
+        let mut panels = vec![vec![[0.0; LANES]; columns]; rows.div_ceil(LANES)];
+        let mut first = 0;
+        for part in parts {
+            for (i, j) in (0..part.nrows()).flat_map(|i| (0..columns).map(move |j| (i, j))) {
+                panels[(first + i) / LANES][j][(first + i) % LANES] = part[(i, j)];
+            }
+            first += part.nrows();
+        }
+        Self { panels }
+    }
+
+    /// The number of rows, filled up with zeros to whole panels.
+    pub(super) fn rows(&self) -> usize {
+        self.panels.len() * LANES
+    }
+
+    /// The product with a vector.
+    pub(super) fn apply(&self, vector: &[f64], out: &mut [f64]) {
+        for (panel, out) in self.panels.iter().zip(out.chunks_exact_mut(LANES)) {
+            let mut sum = [0.0; LANES];
+            for (column, v) in panel.iter().zip(vector) {
+                for (sum, m) in sum.iter_mut().zip(column) {
+                    *sum += m * v;
+                }
+            }
+            out.copy_from_slice(&sum);
+        }
+    }
+}

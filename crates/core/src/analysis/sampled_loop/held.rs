@@ -1,0 +1,105 @@
+//! What a loop's body does between samples, at given frequencies: all that no gain changes.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Closed, Loop};
+use crate::body::Coupled;
+use crate::law::Differentiation;
+
+/// A loop's body in discrete time, z+ = Ad z + sum of B_i u_{k-n-i}.
+#[derive(Clone, Debug)]
+pub struct Held<'a> {
+    of: &'a Loop,
+    transition: DMatrix<f64>,
+    /// What a unit of the command from n samples ago adds, and of the one before that where a delay parts the period.
+    forced: Vec<DVector<f64>>,
+    /// Whole periods of the delay, n.
+    late: usize,
+}
+
+impl<'a> Held<'a> {
+    /// A loop at its own frequencies times these ratios.
+    pub fn new(of: &'a Loop, ratios: &[f64]) -> Self {
+        let coupled = Coupled::new(&of.body, of.back_emf, of.total, ratios);
+        let (transition, mut whole) = coupled.discrete(of.period);
+        whole *= of.authority;
+        let periods = of.delay / of.period;
+        // A delay of whole periods is one, whatever its last bits say.
+        let late = libm::floor(periods + 1e-9);
+        let part = (periods - late).max(0.0) * of.period;
+        let forced = if part > 1e-9 * of.period {
+            let (rest, new) = coupled.discrete(of.period - part);
+            let old = rest * coupled.discrete(part).1;
+            vec![new * of.authority, old * of.authority]
+        } else {
+            vec![whole]
+        };
+        Self { of, transition, forced, late: late as usize }
+    }
+
+    /// The loop closed with a gain of the extra loop.
+    ///
+    /// Its state is (z, y_{k-1} where the law takes differences, u_{k-1}, u_{k-2}, ... as far as they are still to come).
+    pub fn closed(&self, gain: f64) -> Closed {
+        let of = self.of;
+        let body = self.transition.nrows();
+        let differs = of.differentiation != Differentiation::Exact;
+        let pending = body + usize::from(differs);
+        let order = pending + self.late + self.forced.len() - 1;
+
+        // y and y' = every displacement and every rate, and the dominant mode's once more.
+        let weight = |j: usize| if j / 2 == of.dominant + 1 { 1.0 + gain } else { 1.0 };
+        let (k_p, k_d) = (of.k_p, of.k_d);
+        let (angle, rate, last) = match of.differentiation {
+            Differentiation::Exact => (k_p, k_d, 0.0),
+            Differentiation::Difference => (k_p + k_d / of.period, 0.0, -k_d / of.period),
+            Differentiation::Raw => (k_p + k_d, 0.0, -k_d),
+        };
+        let mut closed = Closed::resting(order);
+        for j in 0..body {
+            let (shown, fed) = if j % 2 == 0 { (1.0, angle) } else { (0.0, rate) };
+            closed.angle[j] = shown;
+            closed.feedback[j] = fed * weight(j);
+            if differs {
+                closed.free[(body, j)] = shown * weight(j);
+            }
+        }
+        if differs {
+            closed.feedback[body] = last;
+        }
+        closed.free.view_mut((0, 0), (body, body)).copy_from(&self.transition);
+        // The command that is now computed, or what is left of earlier ones.
+        for (i, column) in self.forced.iter().enumerate() {
+            match self.late + i {
+                0 => closed.forced.rows_mut(0, body).copy_from(column),
+                back => closed.free.view_mut((0, pending + back - 1), (body, 1)).copy_from(column),
+            }
+        }
+        for slot in pending..order {
+            if slot == pending {
+                closed.forced[slot] = 1.0;
+            } else {
+                closed.free[(slot, slot - 1)] = 1.0;
+            }
+        }
+        self.start(&mut closed.start, gain, differs);
+        closed.period = of.period;
+        closed.shape.clone_from(&of.shape);
+        closed
+    }
+
+    /// The body's state at the start. y_{-1} is y_0, so that the first difference is 0.
+    fn start(&self, state: &mut DVector<f64>, gain: f64, differs: bool) {
+        let body = &self.of.body;
+        (state[0], state[1]) = (body.angle.get(), body.rate.get());
+        for (i, mode) in body.modes.iter().enumerate() {
+            (state[2 + 2 * i], state[3 + 2 * i]) = (mode.displacement.get(), mode.rate.get());
+        }
+        if differs {
+            let modes = &body.modes;
+            let displaced: f64 = modes.iter().map(|mode| mode.displacement.get()).sum();
+            let dominant = modes.get(self.of.dominant).map_or(0.0, |mode| mode.displacement.get());
+            state[2 + 2 * modes.len()] = state[0] + displaced + gain * dominant;
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The map of stability and settling over the frequency of the dominant mode and the period of the samples.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Held, Loop, Scaling, Window};
+
+/// One cell of the map.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Cell {
+    /// Frequency of the dominant mode (rad/s).
+    pub frequency_rad_s: f64,
+    /// Period of the samples (s).
+    pub period_s: f64,
+    /// Spectral radius: the loop is stable below 1.
+    pub spectral_radius: f64,
+    /// Settling time (s); none if the angle does not settle within the horizon.
+    pub settling_s: Option<f64>,
+    /// Integral of time times |angle| (rad s²).
+    pub itae_rad_s2: f64,
+}
+
+/// The map with a gain of the extra loop that may depend on the frequency: a row for each frequency (rad/s), within it the
+/// periods (s). Rows are made on the threads of the current rayon pool. A delay of the loop counts as its part of the
+/// period, so that a delay of one sample stays one.
+pub fn map(
+    of: &Loop,
+    frequencies: &[f64],
+    periods: &[f64],
+    scaling: Scaling,
+    gain: impl Fn(f64) -> f64 + Sync,
+    window: Window,
+) -> Vec<Cell> {
+    let row = |frequency: &f64| -> Vec<Cell> {
+        let ratios = of.ratios(*frequency, scaling);
+        let mut changed = of.clone();
+        let cell = |period: &f64| {
+            (changed.period, changed.delay) = (*period, of.delay / of.period * period);
+            let closed = Held::new(&changed, &ratios).closed(gain(*frequency));
+            let settling = closed.settle(window);
+            Cell {
+                frequency_rad_s: *frequency,
+                period_s: *period,
+                spectral_radius: closed.spectral_radius(),
+                settling_s: settling.time_s,
+                itae_rad_s2: settling.itae_rad_s2,
+            }
+        };
+        periods.iter().map(cell).collect()
+    };
+    let rows: Vec<Vec<Cell>> = frequencies.par_iter().map(row).collect();
+    rows.into_iter().flatten().collect()
+}

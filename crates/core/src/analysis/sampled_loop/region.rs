@@ -1,0 +1,108 @@
+//! Where the gain of the extra loop may lie, over the frequency of the dominant mode (seed papers 3 and 5, figure 5).
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Closed, Held, Loop, Window};
+
+/// Which modes follow when the frequency of the dominant one changes.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Scaling {
+    /// All, by one ratio.
+    #[default]
+    All,
+    /// None: the dominant mode alone changes.
+    First,
+}
+
+/// Gains in even steps.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Gains {
+    /// The lowest.
+    pub low: f64,
+    /// The highest.
+    pub high: f64,
+    /// From one to the next.
+    pub step: f64,
+}
+
+impl Gains {
+    /// The gains, the lowest first.
+    pub fn values(&self) -> Vec<f64> {
+        let count = libm::floor((self.high - self.low) / self.step + 1e-9) as usize + 1;
+        (0..count).map(|index| self.low + index as f64 * self.step).collect()
+    }
+}
+
+/// The gains that do at one frequency of the dominant mode: the longest run of them without a gap.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Region {
+    /// Frequency of the dominant mode (rad/s).
+    pub frequency_rad_s: f64,
+    /// The lowest and the highest gain of the run; none if no gain does.
+    pub gain: Option<(f64, f64)>,
+    /// The middle of the run: k_d of equations (10) and (12).
+    pub midpoint: Option<f64>,
+    /// Settling time at the middle (s).
+    pub settling_s: Option<f64>,
+    /// Spectral radius at the middle.
+    pub spectral_radius: Option<f64>,
+    /// Settling time without the extra loop (s).
+    pub settling_without_s: Option<f64>,
+    /// Spectral radius without the extra loop.
+    pub spectral_radius_without: f64,
+}
+
+/// Whether a loop settles in time and is stable: an angle may stay small while a mode grows.
+fn does(closed: &Closed, window: Window, limit: f64) -> bool {
+    closed.settle(window).time_s.is_some_and(|time| time <= limit) && closed.spectral_radius() < 1.0
+}
+
+/// The region at one frequency (rad/s): gains whose settling time is at most the limit (s) and whose loop is stable.
+pub fn region(
+    of: &Loop,
+    frequency: f64,
+    scaling: Scaling,
+    gains: Gains,
+    window: Window,
+    limit: f64,
+) -> Region {
+    let held = Held::new(of, &of.ratios(frequency, scaling));
+    let (mut best, mut run): (Option<(f64, f64, usize)>, Option<(f64, f64, usize)>) = (None, None);
+    for gain in gains.values() {
+        run = does(&held.closed(gain), window, limit)
+            .then(|| run.map_or((gain, gain, 1), |(first, _, count)| (first, gain, count + 1)));
+        if run.map_or(0, |run| run.2) > best.map_or(0, |best| best.2) {
+            best = run;
+        }
+    }
+    let midpoint = best.map(|(low, high, _)| 0.5 * (low + high));
+    let middle = midpoint.map(|gain| held.closed(gain));
+    let without = held.closed(0.0);
+    Region {
+        frequency_rad_s: frequency,
+        gain: best.map(|(low, high, _)| (low, high)),
+        midpoint,
+        settling_s: middle.as_ref().and_then(|closed| closed.settle(window).time_s),
+        spectral_radius: middle.as_ref().map(Closed::spectral_radius),
+        settling_without_s: without.settle(window).time_s,
+        spectral_radius_without: without.spectral_radius(),
+    }
+}
+
+/// The region at each of these frequencies (rad/s), on the threads of the current rayon pool, in their order.
+pub fn regions(
+    of: &Loop,
+    frequencies: &[f64],
+    scaling: Scaling,
+    gains: Gains,
+    window: Window,
+    limit: f64,
+) -> Vec<Region> {
+    frequencies.par_iter().map(|w| region(of, *w, scaling, gains, window, limit)).collect()
+}
+
+/// The schedule of the midpoints: frequencies (rad/s) and gains, where there are any.
+pub fn midpoints(regions: &[Region]) -> Vec<(f64, f64)> {
+    regions.iter().filter_map(|region| Some((region.frequency_rad_s, region.midpoint?))).collect()
+}

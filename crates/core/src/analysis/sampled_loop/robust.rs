@@ -1,0 +1,166 @@
+//! A schedule of gains that settles soonest whatever of a set of perturbed loops is the true one.
+//!
+//! The midpoint of the papers' region centres the gain between its limits; this minimises the settling time itself, over the
+//! corners of a box of frequencies, modal gains, the wheel's gain and its delay, and at the centre of the box.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Closed, Gains, Held, Loop, Scaling, Window};
+use crate::quantity::{Finite, Frequency};
+
+/// How far off the model may be.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// All natural frequencies, relative to them.
+    pub frequency: f64,
+    /// All modal gains, relative to them.
+    pub modal_gain: f64,
+    /// The wheel's gain, relative to it.
+    pub authority: f64,
+    /// What the delay may have more (s).
+    pub delay: f64,
+}
+
+/// What is minimised.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Goal {
+    /// The settling time, and among equal ones the integral of time times |angle|.
+    #[default]
+    Settling,
+    /// The integral of time times |angle|: smooth in all parameters.
+    Itae,
+}
+
+/// The best gain at one frequency of the dominant mode.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Robust {
+    /// Frequency of the dominant mode (rad/s).
+    pub frequency_rad_s: f64,
+    /// The gain; none if every one leaves a perturbed loop with too little margin.
+    pub gain: Option<f64>,
+    /// Settling time of the loop as it is (s).
+    pub settling_s: Option<f64>,
+    /// The quantile of the settling times that was asked for (s); none if so many loops do not settle.
+    pub settling_quantile_s: Option<f64>,
+    /// The largest spectral radius of all perturbed loops.
+    pub spectral_radius: Option<f64>,
+    /// The same quantile without the extra loop (s).
+    pub settling_without_s: Option<f64>,
+}
+
+/// What a gain comes to.
+#[derive(Copy, Clone)]
+struct Score {
+    settling: f64,
+    itae: f64,
+    radius: f64,
+}
+
+impl Doubt {
+    /// The perturbed loops, the loop as it is first.
+    fn loops(&self, of: &Loop) -> Vec<Loop> {
+        let signs = |part: f64| if part > 0.0 { vec![-1.0, 1.0] } else { vec![0.0] };
+        let delays = if self.delay > 0.0 { vec![0.0, self.delay] } else { vec![0.0] };
+        let mut loops = vec![of.clone()];
+        for delay in delays {
+            for w in signs(self.frequency) {
+                for k in signs(self.modal_gain) {
+                    for b in signs(self.authority) {
+                        loops.push(self.off(of, w, k, b, delay));
+                    }
+                }
+            }
+        }
+        loops.dedup();
+        loops
+    }
+
+    fn off(&self, of: &Loop, w: f64, k: f64, b: f64, delay: f64) -> Loop {
+        let mut off = of.clone();
+        for mode in &mut off.body.modes {
+            let changed = mode.frequency.get() * (1.0 + w * self.frequency);
+            mode.frequency = Frequency::new(changed).unwrap_or(mode.frequency);
+            mode.gain = Finite::new(mode.gain.get() * (1.0 + k * self.modal_gain)).unwrap_or(mode.gain);
+        }
+        off.authority *= 1.0 + b * self.authority;
+        off.delay += delay;
+        off
+    }
+}
+
+/// The quantile of values that grow: the smallest that so large a part of them does not exceed.
+fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let index = libm::ceil(part * values.len() as f64) as usize;
+    values[index.clamp(1, values.len()) - 1]
+}
+
+fn score(held: &[Held], gain: f64, window: Window, part: f64, bound: f64) -> Option<Score> {
+    let closed: Vec<Closed> = held.iter().map(|held| held.closed(gain)).collect();
+    let mut radius: f64 = 0.0;
+    for closed in &closed {
+        radius = radius.max(closed.spectral_radius());
+        if radius.is_nan() || radius >= bound {
+            return None;
+        }
+    }
+    let settled: Vec<_> = closed.iter().map(|closed| closed.settle(window)).collect();
+    let of = |value: &dyn Fn(&super::Settling) -> f64| quantile(settled.iter().map(value).collect(), part);
+    Some(Score {
+        settling: of(&|settling| settling.crossing_s.unwrap_or(f64::INFINITY)),
+        itae: of(&|settling| settling.itae_rad_s2),
+        radius,
+    })
+}
+
+/// How a schedule is searched.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Search {
+    /// Gains that are tried.
+    pub gains: Gains,
+    /// Which modes follow the dominant one.
+    pub scaling: Scaling,
+    /// What counts as settled.
+    pub window: Window,
+    /// How far off the model may be.
+    pub doubt: Doubt,
+    /// What is minimised.
+    pub goal: Goal,
+    /// The quantile of it over the perturbed loops; 1 is the worst.
+    pub quantile: f64,
+    /// By how much every spectral radius stays below 1.
+    pub margin: f64,
+}
+
+/// The best gain at each of these frequencies (rad/s), on the threads of the current rayon pool, in their order.
+pub fn robust(of: &Loop, frequencies: &[f64], search: Search) -> Vec<Robust> {
+    let loops = search.doubt.loops(of);
+    let gains = search.gains.values();
+    let best = |frequency: &f64| {
+        let ratios = of.ratios(*frequency, search.scaling);
+        let held: Vec<Held> = loops.iter().map(|of| Held::new(of, &ratios)).collect();
+        let tried = |gain: f64| score(&held, gain, search.window, search.quantile, 1.0 - search.margin);
+        let key = |score: &Score| match search.goal {
+            Goal::Settling => (score.settling, score.itae),
+            Goal::Itae => (score.itae, score.settling),
+        };
+        let mut best: Option<(f64, Score)> = None;
+        for gain in &gains {
+            let Some(score) = tried(*gain) else { continue };
+            if best.as_ref().is_none_or(|(_, other)| key(&score) < key(other)) {
+                best = Some((*gain, score));
+            }
+        }
+        let finite = |time: f64| time.is_finite().then_some(time);
+        Robust {
+            frequency_rad_s: *frequency,
+            gain: best.map(|(gain, _)| gain),
+            settling_s: best.and_then(|(gain, _)| held[0].closed(gain).settle(search.window).time_s),
+            settling_quantile_s: best.and_then(|(_, score)| finite(score.settling)),
+            spectral_radius: best.map(|(_, score)| score.radius),
+            settling_without_s: tried(0.0).and_then(|score| finite(score.settling)),
+        }
+    };
+    frequencies.par_iter().map(best).collect()
+}

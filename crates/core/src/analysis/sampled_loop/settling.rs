@@ -1,0 +1,62 @@
+//! When the angle has settled: the settling time of the papers, and measures that are smooth in the parameters.
+
+use serde::Serialize;
+
+use super::Closed;
+
+/// What counts as settled, and for how long it is watched.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Window {
+    /// Half width of the band (rad).
+    pub band: f64,
+    /// How long the loop is watched (s): longer than any settling time that is of interest.
+    pub horizon: f64,
+}
+
+/// How a loop settles.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Settling {
+    /// The last sample outside the band (s), 0 if there is none: T_r of the papers. None if that is the last sample
+    /// watched: the loop has not settled.
+    pub time_s: Option<f64>,
+    /// Where a straight line from that sample to the next enters the band (s): free of the samples' steps.
+    pub crossing_s: Option<f64>,
+    /// Integral of time times |angle| over the horizon (rad s²): smooth in the parameters, where the settling time jumps
+    /// by half a period whenever a swing touches the band.
+    pub itae_rad_s2: f64,
+}
+
+impl Window {
+    /// The number of samples within it, its ends included.
+    pub fn samples(&self, period: f64) -> usize {
+        // A sample at the horizon itself counts, whatever its last bits say.
+        libm::floor(self.horizon / period * (1.0 + 1e-12)) as usize + 1
+    }
+}
+
+impl Closed {
+    /// How the loop settles, as seen at its samples.
+    pub fn settle(&self, window: Window) -> Settling {
+        let count = window.samples(self.period);
+        let Window { band, .. } = window;
+        let (mut index, mut outside) = (0_usize, None);
+        let (mut weighted, mut before, mut entry) = (0.0, 0.0_f64, 0.0);
+        self.each_angle(count, |angle| {
+            let size = angle.abs();
+            weighted += index as f64 * size;
+            // What is not a number is outside.
+            if size <= band {
+                if outside == Some(index.wrapping_sub(1)) {
+                    entry = (before - band) / (before - size);
+                }
+            } else {
+                outside = Some(index);
+            }
+            before = size;
+            index += 1;
+        });
+        let settled = outside.is_none_or(|last| last + 1 < count);
+        let at = |part: f64| settled.then(|| outside.map_or(0.0, |last| (last as f64 + part) * self.period));
+        Settling { time_s: at(0.0), crossing_s: at(entry), itae_rad_s2: weighted * self.period * self.period }
+    }
+}

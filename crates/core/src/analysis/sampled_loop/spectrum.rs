@@ -1,0 +1,117 @@
+//! The spectral radius of a closed loop, and the pair of motions that dies last.
+
+use nalgebra::linalg::Schur;
+use nalgebra::{Complex, DMatrix, DVector};
+use serde::Serialize;
+
+use super::Closed;
+
+/// Sweeps after which the search for eigenvalues is given up.
+const SWEEPS: usize = 10_000;
+/// Squarings in place of it: the 2^40th root of what a norm adds is below the last bit of 1.
+const SQUARINGS: u32 = 40;
+
+/// The slowest motion of a loop: a pair of eigenvalues, or a real one.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Slowest {
+    /// Absolute value of the eigenvalue: what a sample leaves of the motion.
+    pub radius: f64,
+    /// Angle by which it turns in a sample (rad).
+    pub turn_rad: f64,
+    /// Amplitude with which it begins in the angle (rad).
+    pub amplitude_rad: f64,
+    /// When its envelope enters the band (s), smooth in the parameters; none if it grows.
+    pub settling_s: Option<f64>,
+}
+
+impl Closed {
+    /// The eigenvalues of the linear loop, in the order in which they come out; none if the search finds no end.
+    pub fn eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
+        let matrix = self.matrix();
+        if matrix.iter().any(|m| !m.is_finite()) {
+            return None;
+        }
+        let schur = Schur::try_new(matrix, f64::EPSILON, SWEEPS)?;
+        Some(schur.complex_eigenvalues().iter().copied().collect())
+    }
+
+    /// The spectral radius of the linear loop: it is stable below 1. Infinite where a number is not finite.
+    pub fn spectral_radius(&self) -> f64 {
+        match self.eigenvalues() {
+            Some(values) => values.iter().map(|value| modulus(*value)).fold(0.0, f64::max),
+            None => gelfand(self.matrix()),
+        }
+    }
+
+    /// The slowest motion, and when it alone has settled.
+    pub fn slowest(&self, band: f64) -> Option<Slowest> {
+        let values = self.eigenvalues()?;
+        let mut value = *values.first()?;
+        for other in values {
+            // The upper one of a pair.
+            if modulus(other) > modulus(value) || (modulus(other) == modulus(value) && other.im > value.im) {
+                value = other;
+            }
+        }
+        let radius = modulus(value);
+        let matrix = self.matrix();
+        let right = eigenvector(&matrix, value)?;
+        let left = eigenvector(&matrix.transpose(), value)?;
+        let dot = |a: &DVector<Complex<f64>>, b: &DVector<Complex<f64>>| {
+            a.iter().zip(b.iter()).map(|(a, b)| a * b).sum::<Complex<f64>>()
+        };
+        let complex = |v: &[f64]| DVector::from_iterator(v.len(), v.iter().map(|v| Complex::new(*v, 0.0)));
+        let shown = dot(&complex(self.angle.as_slice()), &right);
+        let begun = dot(&left, &complex(self.start.as_slice()));
+        let pair = if value.im == 0.0 { 1.0 } else { 2.0 };
+        let amplitude = pair * modulus(shown * begun / dot(&left, &right));
+        let settling = if amplitude <= band {
+            Some(0.0)
+        } else {
+            (radius < 1.0).then(|| -libm::log(amplitude / band) / libm::log(radius) * self.period)
+        };
+        Some(Slowest {
+            radius,
+            turn_rad: libm::atan2(value.im, value.re),
+            amplitude_rad: amplitude,
+            settling_s: settling,
+        })
+    }
+}
+
+fn modulus(value: Complex<f64>) -> f64 {
+    libm::hypot(value.re, value.im)
+}
+
+/// An eigenvector by inverse iteration, from a place just beside the eigenvalue.
+fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> Option<DVector<Complex<f64>>> {
+    let order = matrix.nrows();
+    let beside = value * (1.0 + 1e-11);
+    let shifted = matrix.map(|m| Complex::new(m, 0.0)) - DMatrix::from_diagonal_element(order, order, beside);
+    let factors = shifted.lu();
+    let mut vector = DVector::from_fn(order, |i, _| Complex::new(1.0, 0.1 * i as f64));
+    for _ in 0..4 {
+        vector = factors.solve(&vector)?;
+        let size = vector.iter().map(|v| modulus(*v)).fold(0.0, f64::max);
+        vector.iter_mut().for_each(|v| *v /= size);
+    }
+    vector.iter().all(|v| v.re.is_finite() && v.im.is_finite()).then_some(vector)
+}
+
+/// The limit of |M^n|^(1/n), by squaring.
+fn gelfand(mut matrix: DMatrix<f64>) -> f64 {
+    let (mut logarithm, mut weight) = (0.0, 1.0);
+    for _ in 0..SQUARINGS {
+        let size = matrix
+            .iter()
+            .fold(0.0, |most: f64, m| if m.is_finite() { most.max(m.abs()) } else { f64::INFINITY });
+        if size == 0.0 || size == f64::INFINITY {
+            return size;
+        }
+        logarithm += weight * libm::log(size);
+        matrix /= size;
+        matrix = &matrix * &matrix;
+        weight *= 0.5;
+    }
+    libm::exp(logarithm)
+}

@@ -1,0 +1,90 @@
+//! The sampled loop that a scenario describes.
+
+use super::{Loop, Shape, Window};
+use crate::Scenario;
+use crate::actuator::{Actuator, Opposes, Wheel};
+use crate::body::Drive;
+use crate::law::{Extra, Law, Pd};
+use crate::quantity::Positive;
+
+impl Loop {
+    /// The loop of a scenario whose angle is measured exactly and at once, and the law that closes it.
+    ///
+    /// # Errors
+    /// A key that has no place in such a loop, and why.
+    pub fn of(scenario: &Scenario) -> Result<(Self, &Pd), (String, String)> {
+        let refused = |key: &str, why: &str| Err((key.to_owned(), why.to_owned()));
+        let Law::Pd(law) = &scenario.law else {
+            return refused("law", "must be `pd`: the loop that is analysed is a sampled one");
+        };
+        let body = scenario.model.clone();
+        if body.modes.is_empty() {
+            return refused("body", "must have a mode whose frequency changes");
+        }
+        if body.drive != Drive::Torque {
+            return refused("body", "must be turned by a torque, not by a given motion of the hub");
+        }
+        if scenario.manoeuvre.is_some() {
+            return refused("manoeuvre", "has no place in the analysis of a loop that brings the angle to 0");
+        }
+        let inertia = body.inertia.get();
+        let (wheel, gain, back_emf, total, delay) = match &scenario.actuator {
+            Actuator::Ideal => (None, 1.0, 0.0, true, 0.0),
+            Actuator::Wheel(wheel) => {
+                let total = wheel.opposes == Opposes::BodyRate;
+                (Some(wheel), wheel.gain.get(), wheel.back_emf.get(), total, wheel.delay.get())
+            }
+            Actuator::Hold(_) | Actuator::Thrusters(_) => {
+                return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop");
+            }
+        };
+        let shapes = |wheel: &&Wheel| {
+            wheel.limit.is_some() || wheel.quantum.get() > 0.0 || wheel.dead_zone.get() > 0.0
+        };
+        let shaping = wheel.filter(shapes);
+        let shape = (law.limit.is_some() || shaping.is_some()).then(|| Shape {
+            limit: law.limit.map_or(f64::INFINITY, Positive::get),
+            wheel: shaping.cloned(),
+        });
+        let sampled = Self {
+            back_emf: back_emf / inertia,
+            total,
+            authority: gain / inertia,
+            k_p: law.k_p.get(),
+            k_d: law.k_d.get(),
+            differentiation: law.differentiation,
+            dominant: Self::dominant_of(&body.modes),
+            period: law.period.seconds(),
+            delay,
+            shape,
+            body,
+        };
+        Ok((sampled, law))
+    }
+
+    /// The measured angle at the start (rad).
+    pub fn angle(&self) -> f64 {
+        self.body.start().angle()
+    }
+
+    /// A band of 5 % of the angle at the start, as in the papers.
+    ///
+    /// # Errors
+    /// The body starts at angle 0.
+    pub fn window(&self, band: Option<f64>, horizon: f64) -> Result<Window, (String, String)> {
+        match band.unwrap_or(0.05 * self.angle().abs()) {
+            band if band > 0.0 => Ok(Window { band, horizon }),
+            _ => Err((
+                "body".to_owned(),
+                "must start at an angle other than 0, or the band be given".to_owned(),
+            )),
+        }
+    }
+}
+
+impl Pd {
+    /// The gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
+    pub fn extra_gain(&self, frequency: f64) -> f64 {
+        self.extra.as_ref().map_or(0.0, |extra: &Extra| extra.gain(frequency))
+    }
+}

@@ -1,0 +1,147 @@
+"""Analyses of a sampled loop: regions of its extra gain, robust gains, maps of stability."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+from flexsc._scenario import Scenario
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    Numbers = Sequence[float] | npt.NDArray[np.float64]
+
+
+def gain_region(
+    scenario: Scenario,
+    frequencies: Numbers,
+    *,
+    gains: tuple[float, float, float] = (-2.0, 6.0, 0.05),
+    limit: float = 200.0,
+    band: float | None = None,
+    horizon: float = 600.0,
+    dominant_alone: bool = False,
+) -> dict[str, npt.NDArray[np.float64]]:
+    """The gains of the extra loop that are stable and settle in time, at each frequency of the dominant mode.
+
+    Args:
+        scenario: A body under a law `pd`.
+        frequencies: Frequencies of the dominant mode (rad/s).
+        gains: Lowest and highest gain, and the step from one to the next.
+        limit: The longest settling time (s).
+        band: Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the
+            start.
+        horizon: How long each loop is watched (s).
+        dominant_alone: The dominant mode alone changes its frequency, not all by one ratio.
+
+    Returns:
+        Columns of shape (frequencies,), NaN where no gain does: `frequency_rad_s`, `gain_min`, `gain_max`,
+        `midpoint`, `settling_s` and `spectral_radius` at the midpoint, `settling_without_s` and
+        `spectral_radius_without`, without the extra loop.
+
+    Raises:
+        ScenarioError: The scenario has no loop of this kind.
+        ValueError: A number is out of its range.
+    """
+    settled = (band, horizon, dominant_alone)
+    rows = json.loads(
+        engine.gain_regions_json(scenario._native, _floats(frequencies), gains, limit, settled)
+    )
+    for row in rows:
+        row["gain_min"], row["gain_max"] = row.pop("gain") or (None, None)
+    return _columns(rows)
+
+
+def robust_gains(
+    scenario: Scenario,
+    frequencies: Numbers,
+    *,
+    off: float = 0.1,
+    delay: float = 0.0,
+    itae: bool = False,
+    quantile: float = 1.0,
+    margin: float = 0.0,
+    gains: tuple[float, float, float] = (-2.0, 6.0, 0.05),
+    band: float | None = None,
+    horizon: float = 600.0,
+    dominant_alone: bool = False,
+) -> dict[str, npt.NDArray[np.float64]]:
+    """The gains that settle soonest while the model is off, at each frequency of the dominant mode.
+
+    Args:
+        scenario: A body under a law `pd`.
+        frequencies: Frequencies of the dominant mode (rad/s).
+        off: By which part frequencies, modal gains and the actuator's gain may be off.
+        delay: By how much more the command may be delayed (s).
+        itae: Minimise the integral of time times angle instead of the settling time.
+        quantile: The quantile of the perturbed loops that counts; 1 is the worst.
+        margin: By how much every spectral radius stays below 1.
+        gains: As for `gain_region`, with `band`, `horizon` and `dominant_alone`.
+
+    Returns:
+        Columns of shape (frequencies,), NaN where there is none: `frequency_rad_s`, `gain`, `settling_s`,
+        `settling_quantile_s`, `spectral_radius`, the largest, and `settling_without_s`.
+
+    Raises:
+        ScenarioError: The scenario has no loop of this kind.
+        ValueError: A number is out of its range.
+    """
+    rows = json.loads(
+        engine.robust_gains_json(
+            scenario._native,
+            _floats(frequencies),
+            gains,
+            (off, delay),
+            (itae, quantile, margin),
+            (band, horizon, dominant_alone),
+        )
+    )
+    return _columns(rows)
+
+
+def stability_map(
+    scenario: Scenario,
+    frequencies: Numbers,
+    periods: Numbers,
+    *,
+    gain: float | None = None,
+    band: float | None = None,
+    horizon: float = 600.0,
+    dominant_alone: bool = False,
+) -> dict[str, npt.NDArray[np.float64]]:
+    """Stability and settling over the dominant mode's frequency and the sampling period.
+
+    Args:
+        scenario: A body under a law `pd`.
+        frequencies: Frequencies of the dominant mode (rad/s).
+        periods: Periods of the samples (s); a delay of the wheel keeps its part of the period.
+        gain: Gain of the extra loop; left out, the scenario's.
+        band: As for `gain_region`, with `horizon` and `dominant_alone`.
+
+    Returns:
+        Columns of shape (frequencies, periods): `frequency_rad_s`, `period_s`, `spectral_radius`, `settling_s`
+        (NaN where the loop does not settle) and `itae_rad_s2`.
+
+    Raises:
+        ScenarioError: The scenario has no loop of this kind.
+        ValueError: A number is out of its range.
+    """
+    settled = (band, horizon, dominant_alone)
+    rows, columns = _floats(frequencies), _floats(periods)
+    cells = json.loads(engine.stability_map_json(scenario._native, rows, columns, gain, settled))
+    return {name: values.reshape(len(rows), len(columns)) for name, values in _columns(cells).items()}
+
+
+def _floats(values: Numbers) -> list[float]:
+    return [float(value) for value in values]
+
+
+def _columns(rows: list[dict[str, Any]]) -> dict[str, npt.NDArray[np.float64]]:
+    import numpy as np
+
+    names = rows[0] if rows else {}
+    return {name: np.array([row[name] for row in rows], dtype=np.float64) for name in names}

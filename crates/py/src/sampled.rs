@@ -1,0 +1,114 @@
+//! Analyses of a scenario's sampled loop.
+
+use flexsc_core::analysis::sampled_loop::{
+    Doubt, Gains, Goal, Loop, Scaling, Search, Window, map, regions, robust,
+};
+use flexsc_core::law::Pd;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use serde_json::json;
+
+use super::Scenario;
+use crate::aside::aside;
+use crate::error::scenario_error;
+
+/// Band (rad; 5 % of the angle at the start if there is none), horizon (s), and whether the dominant mode alone changes.
+type Settled = (Option<f64>, f64, bool);
+
+fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(Loop, &Pd, Window, Scaling)> {
+    let refused = |(key, why): (String, String)| {
+        let origin = scenario.inner.name.clone();
+        scenario_error(flexsc_core::ScenarioError::Key { origin, key, why })
+    };
+    let (band, horizon, alone) = settled;
+    let (of, law) = Loop::of(&scenario.inner).map_err(refused)?;
+    if !(horizon.is_finite() && horizon > 0.0 && horizon / of.period <= 1e7) {
+        let why = format!("horizon must be positive and at most 1e7 samples, got {horizon}");
+        return Err(PyValueError::new_err(why));
+    }
+    let window = of.window(band, horizon).map_err(refused)?;
+    Ok((of, law, window, if alone { Scaling::First } else { Scaling::All }))
+}
+
+fn all_positive(name: &str, values: &[f64]) -> PyResult<()> {
+    match values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
+        Some(value) => Err(PyValueError::new_err(format!("{name} must be positive numbers, got {value}"))),
+        None => Ok(()),
+    }
+}
+
+fn stepped((low, high, step): (f64, f64, f64)) -> PyResult<Gains> {
+    if low.is_finite() && low <= high && step > 0.0 && (high - low) / step < 1e5 {
+        return Ok(Gains { low, high, step });
+    }
+    let why = format!("gains must be (low, high, step) with at most 1e5 steps, got ({low}, {high}, {step})");
+    Err(PyValueError::new_err(why))
+}
+
+#[pyfunction]
+pub fn gain_regions_json(
+    py: Python<'_>,
+    scenario: &Scenario,
+    frequencies: Vec<f64>,
+    gains: (f64, f64, f64),
+    limit: f64,
+    settled: Settled,
+) -> PyResult<String> {
+    let (of, _, window, scaling) = sampled(scenario, settled)?;
+    all_positive("frequencies", &frequencies)?;
+    let gains = stepped(gains)?;
+    let rows = aside(py, |_| regions(&of, &frequencies, scaling, gains, window, limit))?;
+    Ok(json!(rows).to_string())
+}
+
+#[pyfunction]
+pub fn robust_gains_json(
+    py: Python<'_>,
+    scenario: &Scenario,
+    frequencies: Vec<f64>,
+    gains: (f64, f64, f64),
+    off: (f64, f64),
+    goal: (bool, f64, f64),
+    settled: Settled,
+) -> PyResult<String> {
+    let (of, _, window, scaling) = sampled(scenario, settled)?;
+    all_positive("frequencies", &frequencies)?;
+    let ((part, delay), (itae, quantile, margin)) = (off, goal);
+    for (name, value, fits) in [
+        ("off", part, (0.0..1.0).contains(&part)),
+        ("delay", delay, delay.is_finite() && delay >= 0.0),
+        ("quantile", quantile, quantile > 0.0 && quantile <= 1.0),
+        ("margin", margin, (0.0..1.0).contains(&margin)),
+    ] {
+        if !fits {
+            return Err(PyValueError::new_err(format!("{name} is out of its range, got {value}")));
+        }
+    }
+    let search = Search {
+        gains: stepped(gains)?,
+        scaling,
+        window,
+        doubt: Doubt { frequency: part, modal_gain: part, authority: part, delay },
+        goal: if itae { Goal::Itae } else { Goal::Settling },
+        quantile,
+        margin,
+    };
+    Ok(json!(aside(py, |_| robust(&of, &frequencies, search))?).to_string())
+}
+
+#[pyfunction]
+pub fn stability_map_json(
+    py: Python<'_>,
+    scenario: &Scenario,
+    frequencies: Vec<f64>,
+    periods: Vec<f64>,
+    gain: Option<f64>,
+    settled: Settled,
+) -> PyResult<String> {
+    let (of, law, window, scaling) = sampled(scenario, settled)?;
+    all_positive("frequencies", &frequencies)?;
+    all_positive("periods", &periods)?;
+    let gain = |frequency: f64| gain.unwrap_or_else(|| law.extra_gain(frequency));
+    let cells = aside(py, |_| map(&of, &frequencies, &periods, scaling, gain, window))?;
+    Ok(json!(cells).to_string())
+}

@@ -1,0 +1,403 @@
+//! The sampled loop of the wheel-controlled spacecraft: spectral radii, angles, settling times, regions, robust gains.
+//!
+//! Golden numbers: tests/golden/loop_oracle.py, NumPy and SciPy.
+
+use flexsc_core::Scenario;
+use flexsc_core::analysis::sampled_loop::{
+    Doubt, Gains, Goal, Held, Loop, Scaling, Search, Window, map, midpoints, regions, robust,
+};
+use flexsc_core::law::Differentiation;
+
+use crate::study::close;
+use crate::util::{Dir, table};
+
+/// The set that reproduces the papers' settling times: they print neither wheel nor period.
+const FITTED: &str = r#"duration = 600.0
+[body.planar]
+angle = 0.06
+modes = [
+    { frequency = 0.3, gain = 1.44 }, { frequency = 0.8, gain = 0.21 },
+    { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 },
+]
+[actuator.wheel]
+gain = 5e-4
+back_emf = 1e-4
+[law.pd]
+k_p = 7.5
+k_d = 275.0
+period = 0.3
+differentiation = "raw"
+"#;
+
+const WINDOW: Window = Window { band: 0.003, horizon: 2000.0 };
+const GAINS: Gains = Gains { low: -2.0, high: 6.0, step: 0.05 };
+
+fn fitted() -> Loop {
+    Loop::of(&Scenario::parse("fitted.toml", FITTED).expect("valid")).expect("a loop").0
+}
+
+fn at(of: &Loop, frequency: f64) -> Held<'_> {
+    Held::new(of, &of.ratios(frequency, Scaling::All))
+}
+
+#[test]
+fn angles_and_spectral_radii() {
+    // (frequency of the first mode, gain of the extra loop, spectral radius, angle at 30, 60, 120, 180 s).
+    let exact = [
+        (
+            0.3,
+            0.0,
+            0.998_961_065_6,
+            [6.838_532_896_7e-3, -1.933_063_297_5e-2, 6.397_906_598_3e-3, -1.805_240_273_8e-3],
+        ),
+        (
+            0.3,
+            1.2,
+            0.998_920_612_3,
+            [9.607_692_169_1e-3, -2.234_195_376_3e-2, 8.361_338_192e-3, -2.900_655_940_7e-3],
+        ),
+        (
+            0.2,
+            0.0,
+            0.998_917_952_4,
+            [1.477_580_781_3e-2, -1.992_289_388e-2, 8.386_662_579_5e-3, -3.020_589_641_4e-3],
+        ),
+        (
+            0.1,
+            0.0,
+            0.998_845_153_8,
+            [1.022_409_979_1e-2, -1.091_753_117_1e-2, 5.065_223_561_3e-3, -1.183_326_714_8e-3],
+        ),
+        (
+            0.05,
+            0.0,
+            0.999_786_614_5,
+            [2.584_140_527_9e-3, 3.222_946_385_7e-3, -8.478_564_216_7e-3, 2.299_678_254_1e-3],
+        ),
+    ];
+    let of = fitted();
+    for (frequency, gain, radius, angles) in exact {
+        let closed = at(&of, frequency).closed(gain);
+        let ours = closed.spectral_radius();
+        assert!((ours - radius).abs() < 1e-10, "{frequency}, {gain}: {ours}");
+        let x = closed.angles(601);
+        for (sample, angle) in [100, 200, 400, 600].into_iter().zip(angles) {
+            assert!((x[sample] - angle).abs() < 1e-12, "{frequency}, {gain}, {sample}: {}", x[sample]);
+        }
+    }
+    for (frequency, gain, radius) in [(0.1, 1.2, 0.999_100_528_6), (0.1, -0.5, 0.998_853_113_6)] {
+        let ours = at(&of, frequency).closed(gain).spectral_radius();
+        assert!((ours - radius).abs() < 1e-10, "{frequency}, {gain}: {ours}");
+    }
+}
+
+#[test]
+fn settling_times() {
+    let of = fitted();
+    // The last sample outside, and where the angle itself enters the band, from samples 100 times as dense.
+    for (frequency, gain, horizon, sample, entry) in [
+        (0.2, 0.0, 2000.0, 180.3, Some(180.513)),
+        (0.15, 0.0, 2000.0, 196.5, None),
+        (0.12, 0.0, 2000.0, 265.5, None),
+        (0.1, 0.0, 2000.0, 351.0, None),
+        (0.1, -0.5, 2000.0, 207.3, None),
+        (0.05, 0.0, 2000.0, 1521.6, Some(1521.795)),
+        // Watched for less, what is outside later is not seen.
+        (0.05, 0.0, 1500.0, 1421.4, Some(1421.67)),
+        (0.1, 1.2, 600.0, 586.8, None),
+        (0.1, 1.2, 2000.0, 807.0, None),
+    ] {
+        let settling = at(&of, frequency).closed(gain).settle(Window { horizon, ..WINDOW });
+        let (time, crossing) = (settling.time_s.expect("settled"), settling.crossing_s.expect("settled"));
+        assert!((time - sample).abs() < 1e-9, "{frequency}, {gain}: {time}");
+        assert!((0.0..0.3).contains(&(crossing - time)), "{time} {crossing}");
+        assert!(entry.is_none_or(|entry| (crossing - entry).abs() < 0.02), "{crossing}");
+    }
+    // What is not settled at the horizon is not settled.
+    let closed = at(&of, 0.05).closed(0.0);
+    assert_eq!(closed.settle(Window { horizon: 1521.6, ..WINDOW }).time_s, None);
+    assert!(closed.settle(Window { horizon: 1521.9, ..WINDOW }).time_s.is_some());
+    assert_eq!(closed.settle(Window { band: 0.07, ..WINDOW }).time_s, Some(0.0));
+    assert_eq!(closed.settle(Window { band: 0.07, ..WINDOW }).crossing_s, Some(0.0));
+}
+
+#[test]
+fn the_slowest_pair_envelops_what_is_left() {
+    let of = fitted();
+    let closed = at(&of, 0.05).closed(0.0);
+    let slowest = closed.slowest(0.003).expect("eigenvalues");
+    close(slowest.radius, closed.spectral_radius(), 1e-14);
+    // Late in the run nothing else is left: the largest angle of a swing touches the envelope.
+    let x = closed.angles(6000);
+    let left = |k: usize| slowest.amplitude_rad * slowest.radius.powf(k as f64);
+    let touched = (5000..6000).map(|k| x[k].abs() / left(k)).fold(0.0, f64::max);
+    assert!((touched - 1.0).abs() < 2e-3, "{touched}");
+    // The envelope bounds the settling time, and is within half a swing of it.
+    let (time, bound) = (closed.settle(WINDOW).time_s.expect("settled"), slowest.settling_s.expect("stable"));
+    let swing = 0.3 * std::f64::consts::PI / slowest.turn_rad.abs();
+    assert!(time <= bound && bound < time + swing, "{time} {bound} {swing}");
+}
+
+#[test]
+fn the_integral_and_the_shaped_command() {
+    let mut of = fitted();
+    let x = at(&of, 0.2).closed(1.2).angles(6667);
+    let itae: f64 = x.iter().enumerate().map(|(k, x)| 0.09 * k as f64 * x.abs()).sum();
+    close(at(&of, 0.2).closed(1.2).settle(WINDOW).itae_rad_s2, itae, 1e-12);
+    // A command that is never shaped, by the other way of computing.
+    let scenario = |set: &str| {
+        let text = FITTED.replace("[law.pd]", &format!("{set}\n[law.pd]"));
+        Loop::of(&Scenario::parse("shaped.toml", &text).expect("valid")).expect("a loop").0
+    };
+    let idle = scenario("limit = 1e9");
+    for (shaped, linear) in at(&idle, 0.2).closed(1.2).angles(6667).iter().zip(&x) {
+        assert!((shaped - linear).abs() < 1e-13);
+    }
+    // A dead zone leaves what a command within it would have moved: u never answers angles of less than 1e-4/7.5 rad.
+    let dead = at(&scenario("dead_zone = 0.05"), 0.2).closed(0.0).angles(6667);
+    let late = |x: &[f64]| x[6000..].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    assert!(late(&x) < 1e-5 && late(&dead) > 1e-3, "{:e} {:e}", late(&x), late(&dead));
+    // A limit slows the start: the rate cannot grow beyond b limit t.
+    of = scenario("limit = 0.1");
+    let limited = at(&of, 0.2).closed(0.0).angles(11);
+    assert!((limited[10] - 0.06).abs() < 5e-4 * 0.1 * 3.535 * 4.5 * 1.01);
+}
+
+#[test]
+fn delays() {
+    let of = fitted();
+    // One period late is the same, whether the loop says so or the state holds the command.
+    let late = |delay: f64| Loop { delay, ..of.clone() };
+    let one = late(0.3);
+    let closed = Held::new(&one, &[1.0; 4]).closed(0.5);
+    assert_eq!(closed.free.nrows(), 12);
+    let (x, y) = (closed.angles(50), Held::new(&of, &[1.0; 4]).closed(0.5).angles(50));
+    assert_eq!(x[1].to_bits(), x[0].to_bits());
+    assert!((x[1] - y[1]).abs() > 1e-6);
+    // A part of a period: so close to none, or to a whole one, it is nearly that.
+    for (delay, like) in [(1e-6, &y), (0.3 - 1e-6, &x), (0.3 + 1e-6, &x)] {
+        let late = late(delay);
+        let angles = Held::new(&late, &[1.0; 4]).closed(0.5).angles(50);
+        assert!(angles.iter().zip(like.iter()).all(|(a, b)| (a - b).abs() < 1e-7), "{delay}");
+    }
+    // Halved periods with every second sample: a delay of half a period, by hand.
+    let half = late(0.15);
+    let fine = late(0.0);
+    let fine = Loop { period: 0.15, ..fine };
+    let step = Held::new(&fine, &[1.0; 4]).closed(0.0);
+    let x = Held::new(&half, &[1.0; 4]).closed(0.0).angles(40);
+    let mut state = step.start.clone();
+    let (mut last, mut u) = ((&step.angle * &state).x, 0.0);
+    for angle in x {
+        let y = (&step.angle * &state).x;
+        assert!((y - angle).abs() < 1e-14);
+        state = &step.free * &state + &step.forced * u;
+        u = -(7.5 * y + 275.0 * (y - last));
+        last = y;
+        state = &step.free * &state + &step.forced * u;
+    }
+}
+
+#[test]
+fn the_region_of_the_extra_gain() {
+    let of = fitted();
+    let window = Window { horizon: 600.0, ..WINDOW };
+    let found = regions(&of, &[0.1, 0.15, 0.2, 0.25, 0.3, 0.35], Scaling::All, GAINS, window, 200.0);
+    let exact = [
+        None,
+        Some((-0.75, 0.1)),
+        Some((-0.8, 1.0)),
+        Some((-0.85, 2.25)),
+        Some((-0.9, 3.7)),
+        Some((-0.95, 5.45)),
+    ];
+    for (region, exact) in found.iter().zip(exact) {
+        match (region.gain, exact) {
+            (Some((low, high)), Some((lowest, highest))) => {
+                assert!((low - lowest).abs() < 1e-9 && (high - highest).abs() < 1e-9, "{region:?}");
+                assert!(region.settling_s.expect("settled") <= 200.0);
+            }
+            (None, None) => {}
+            _ => panic!("{region:?}"),
+        }
+    }
+    assert_eq!(found[2].settling_without_s.map(|time| (time * 10.0).round()), Some(1803.0));
+    let schedule = midpoints(&found);
+    assert_eq!(schedule.len(), 5);
+    assert!((schedule[3].1 - 1.4).abs() < 1e-9 && (schedule[0].1 + 0.325).abs() < 1e-9);
+}
+
+#[test]
+fn the_lower_edge_of_stability() {
+    // y keeps the sign of the dominant mode's displacement down to 1 + gain = 0: on a grid of 0.1, -1 from 0.08 to 0.5 rad/s.
+    let of = fitted();
+    for (frequency, edge) in [(0.05, -0.9), (0.08, -1.0), (0.2, -1.0), (0.5, -1.0)] {
+        let held = at(&of, frequency);
+        let lowest =
+            (-30..10).map(|n| 0.1 * f64::from(n)).find(|gain| held.closed(*gain).spectral_radius() < 1.0);
+        assert!((lowest.expect("stable somewhere") - edge).abs() < 1e-9, "{frequency}: {lowest:?}");
+        assert!(held.closed(59.9).spectral_radius() < 1.0);
+    }
+}
+
+/// The longest period, on a grid of 0.05 s, up to which every loop is stable.
+fn longest(of: &Loop, frequency: f64, scaling: Scaling) -> f64 {
+    let periods: Vec<f64> = (1..60).map(|n| 0.05 * f64::from(n)).collect();
+    let cells = map(of, &[frequency], &periods, scaling, |_| 0.0, Window { horizon: 1.0, ..WINDOW });
+    let stable = cells.iter().take_while(|cell| cell.spectral_radius < 1.0).count();
+    periods[stable.saturating_sub(1)]
+}
+
+#[test]
+fn the_longest_periods() {
+    let of = fitted();
+    for (frequency, limit) in [(0.05, 1.95), (0.1, 1.75), (0.15, 1.4), (0.2, 1.1), (0.3, 0.75)] {
+        let period = longest(&of, frequency, Scaling::All);
+        assert!((period - limit).abs() < 0.051, "{frequency}: {period}");
+        let period = longest(&of, frequency, Scaling::First);
+        assert!((period - 0.75).abs() < 0.051, "{frequency}, others fixed: {period}");
+    }
+}
+
+#[test]
+fn a_band_of_frequencies_can_be_unstable() {
+    // The exact rate, one sample late, slow samples and a wheel that damps as much as the law.
+    let (period, back_emf, authority) = (14.0, 0.02, 1e-4);
+    let of = Loop {
+        period,
+        delay: period,
+        back_emf,
+        authority,
+        differentiation: Differentiation::Exact,
+        ..fitted()
+    };
+    let unstable: Vec<u32> = (50..=200)
+        .step_by(5)
+        .filter(|n| {
+            let ratios = of.ratios(1e-3 * f64::from(*n), Scaling::First);
+            Held::new(&of, &ratios).closed(0.0).spectral_radius() >= 1.0
+        })
+        .collect();
+    assert_eq!(unstable, (70..=155).step_by(5).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_map_is_its_cells() {
+    let of = fitted();
+    let (frequencies, periods) = ([0.1, 0.2, 0.3], [0.1, 0.3, 3.0, 0.7]);
+    let window = Window { horizon: 400.0, ..WINDOW };
+    let gain = |frequency: f64| 4.0 * frequency;
+    let cells = map(&of, &frequencies, &periods, Scaling::First, gain, window);
+    assert_eq!(cells.len(), 12);
+    for (index, cell) in cells.iter().enumerate() {
+        let (frequency, period) = (frequencies[index / 4], periods[index % 4]);
+        assert_eq!((cell.frequency_rad_s, cell.period_s), (frequency, period));
+        let one = Loop { period, ..of.clone() };
+        let closed = Held::new(&one, &[frequency / 0.3, 1.0, 1.0, 1.0]).closed(4.0 * frequency);
+        assert_eq!(cell.spectral_radius.to_bits(), closed.spectral_radius().to_bits());
+        assert_eq!(cell.settling_s, closed.settle(window).time_s);
+    }
+    assert!(cells[2].spectral_radius > 1.0 && cells[2].settling_s.is_none());
+}
+
+#[test]
+fn robust_gains() {
+    let of = fitted();
+    let part = 0.05;
+    let search = Search {
+        gains: Gains { step: 0.1, ..GAINS },
+        scaling: Scaling::All,
+        window: Window { horizon: 600.0, ..WINDOW },
+        doubt: Doubt { frequency: part, modal_gain: part, authority: part, delay: 0.3 },
+        goal: Goal::Settling,
+        quantile: 1.0,
+        margin: 1e-4,
+    };
+    let frequencies = [0.1, 0.2, 0.3];
+    let found = robust(&of, &frequencies, search);
+    // The worst of the corners, by hand: no gain of the grid is better than the one found.
+    let worst = |frequency: f64, gain: f64| {
+        let mut worst: f64 = 0.0;
+        for corner in 0..16 {
+            let sign = |bit: u32| if corner >> bit & 1 == 0 { 0.95 } else { 1.05 };
+            let text = FITTED
+                .replace("gain = 1.44", &format!("gain = {}", 1.44 * sign(0)))
+                .replace("gain = 0.21", &format!("gain = {}", 0.21 * sign(0)))
+                .replace("gain = 0.165", &format!("gain = {}", 0.165 * sign(0)))
+                .replace("gain = 0.72", &format!("gain = {}", 0.72 * sign(0)))
+                .replace(
+                    "gain = 5e-4",
+                    &format!("gain = {}\ndelay = {}", 5e-4 * sign(1), 0.3 * f64::from(corner >> 3)),
+                );
+            let loop_ = Loop::of(&Scenario::parse("corner.toml", &text).expect("valid")).expect("a loop").0;
+            let closed = at(&loop_, frequency * sign(2)).closed(gain);
+            let settling = closed.settle(search.window).crossing_s.unwrap_or(f64::INFINITY);
+            worst = worst.max(if closed.spectral_radius() < 1.0 - 1e-4 { settling } else { f64::INFINITY });
+        }
+        worst
+    };
+    for robust in &found {
+        let gain = robust.gain.expect("a gain");
+        let ours = robust.settling_quantile_s.expect("settled");
+        assert!((worst(robust.frequency_rad_s, gain) - ours).abs() < 1e-6, "{robust:?}");
+        for other in [-0.7, -0.4, 0.0, 0.5, 1.2] {
+            assert!(ours <= worst(robust.frequency_rad_s, other) + 1e-9, "{robust:?} {other}");
+        }
+        assert!(robust.spectral_radius.expect("a radius") < 1.0 - 1e-4);
+        assert!(ours <= robust.settling_without_s.unwrap_or(f64::INFINITY));
+    }
+    // No loop is that quick.
+    assert_eq!(robust(&of, &[0.2], Search { margin: 0.5, ..search })[0].gain, None);
+}
+
+#[test]
+fn the_command_tells_regions_schedules_and_maps() {
+    let dir = Dir::holding("fitted.toml", FITTED);
+    let few = "--frequency 0.15:0.3:4";
+    let told = dir.run(&format!("tune fitted.toml --json {few}")).exits(0).json();
+    let rows = told["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 4);
+    assert!((rows[1]["midpoint"].as_f64().expect("a gain") - 0.1).abs() < 1e-9);
+    dir.run(&format!("tune fitted.toml {few}")).exits(0).says(&["rad/s", "0.2000", "1.000", "180.3"]);
+    // The schedule is one that a scenario takes.
+    let schedule =
+        dir.run(&format!("tune fitted.toml --schedule {few}")).exits(0).prints(&["[law.pd.extra]"]);
+    let scheduled = Scenario::parse("scheduled.toml", &format!("{FITTED}{schedule}")).expect("valid");
+    let law = Loop::of(&scheduled).expect("a loop").1;
+    assert!((law.extra_gain(0.2) - 0.1).abs() < 1e-9 && (law.extra_gain(1.0) - 1.4).abs() < 1e-9);
+    let sure =
+        dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:0.25 --json {few}")).exits(0).json();
+    assert!(sure["rows"][0]["gain"].is_number());
+    dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:0.25 {few}")).exits(0).says(&["off by 5 %"]);
+
+    dir.run("map fitted.toml --frequency 0.1:0.3:3 --period 0.1:0.7:4 -o map.csv")
+        .exits(0)
+        .says(&["12 cells"]);
+    let rows = table(&dir, "map.csv");
+    assert_eq!(rows.len(), 12);
+    let told = dir.run("map fitted.toml --frequency 0.1:0.3:3 --period 0.1:0.7:4 --json").exits(0).json();
+    for (row, cell) in rows.iter().zip(told["rows"].as_array().expect("rows")) {
+        assert_eq!(row["spectral_radius"].parse().ok(), cell["spectral_radius"].as_f64());
+        assert_eq!(row["settling_s"].parse().ok(), cell["settling_s"].as_f64());
+    }
+}
+
+#[test]
+fn what_is_no_sampled_loop() {
+    let dir = Dir::with(&["relay-fixed", "rotation-sine"]);
+    dir.run("tune relay-fixed.toml").exits(2).says(&["`law`", "must be `pd`"]);
+    dir.write("fitted.toml", FITTED);
+    for (arguments, words) in [
+        ("tune fitted.toml --frequency 0.3:0.1:4", "LO:HI:N"),
+        ("tune fitted.toml --gain 1:2", "LO:HI:STEP"),
+        ("tune fitted.toml --limit -3", "--limit"),
+        ("tune fitted.toml --robust 1.5", "--robust must be 0 or more and below 1, got 1.5"),
+        ("tune fitted.toml --band 0", "--band must be a positive number, got 0"),
+        ("tune fitted.toml --set body.planar.angle=0", "the band be given"),
+        ("tune fitted.toml --set body.planar.modes=[]", "must have a mode"),
+        ("tune fitted.toml --set actuator={hold={period=0.3}}", "must be `wheel` or `ideal`"),
+        ("map fitted.toml --frequency 0.1:0.3:3", "--period"),
+    ] {
+        dir.run(arguments).exits(2).says(&[words]);
+    }
+}
