@@ -68,7 +68,8 @@ pub fn region(
     limit: f64,
 ) -> Region {
     let held = Held::new(of, &of.ratios(frequency, scaling));
-    let (mut best, mut run): (Option<(f64, f64, usize)>, Option<(f64, f64, usize)>) = (None, None);
+    type Run = (f64, f64, usize);
+    let (mut best, mut run): (Option<Run>, Option<Run>) = (None, None);
     for gain in gains.values() {
         run = does(&held.closed(gain), window, limit)
             .then(|| run.map_or((gain, gain, 1), |(first, _, count)| (first, gain, count + 1)));

@@ -88,7 +88,8 @@ fn unscented_and_extended_filter_agree_where_little_is_unknown() {
 
 #[test]
 fn nonsense_is_never_passed_on() {
-    let nonsense: [(&str, fn(u32) -> f64); 7] = [
+    type Course = fn(u32) -> f64;
+    let nonsense: [(&str, Course); 7] = [
         ("NaN", |_| f64::NAN),
         ("infinite", |_| f64::INFINITY),
         ("huge", |_| 1e300),
