@@ -8,6 +8,7 @@ mod cli;
 mod cycles;
 mod determinism;
 mod events;
+mod filters;
 mod layout;
 mod logs;
 mod loops;

@@ -12,6 +12,8 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use flexsc_core::analysis::sampled_loop::{Held, Loop, Scaling, Window, map};
 use flexsc_core::body::Drive;
 use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::estimator::kalman::{Drifting, Prediction, Setting};
+use flexsc_core::random::Seed;
 use flexsc_core::record::{Detail, McapLog, Metrics, Record, RunEnd, Trace};
 use flexsc_core::structure::Structure;
 use flexsc_core::{Scenario, Simulation};
@@ -34,6 +36,10 @@ strong = 4e-5
 weak = 1e-6
 k_t = 0.3389
 ";
+
+/// The body of seed papers 3 and 5, with four modes.
+const MODES: &str = "duration = 1.0\n[law.open]\n[body.planar]\nangle = 0.01\nmodes = [{ frequency = 0.3, gain = 1.44 }, \
+                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
 
 const WINDOWS: &str = "[estimator.envelope]\nwindow = 500.0\n";
 
@@ -98,6 +104,27 @@ fn modes(c: &mut Criterion) {
         group.throughput(Throughput::Elements(count as u64));
         group.bench_with_input(BenchmarkId::from_parameter(count), &scenario, |b, scenario| {
             b.iter(|| simulate(black_box(scenario), &mut ()));
+        });
+    }
+    group.finish();
+}
+
+/// One sample of each filter of twelve states: prediction over a period, and update.
+fn filters(c: &mut Criterion) {
+    let mut group = c.benchmark_group("filter");
+    for (name, prediction) in [("ekf step", Prediction::Extended), ("ukf step", Prediction::Unscented)] {
+        let body = scenario(MODES).model;
+        let setting =
+            Setting { body: &body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise: None };
+        let draws = &mut Seed { scenario: 0, run: 0 }.stream("prior");
+        let mut filter = Drifting::default().filter(&setting, prediction, draws);
+        let mut sample = 0.0;
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                sample += 1.0;
+                filter.predict(black_box(1e-6 * libm::cos(0.03 * sample)));
+                filter.update(black_box(0.01 + 2e-3 * libm::cos(0.09 * sample)), 0.0)
+            });
         });
     }
     group.finish();
@@ -203,6 +230,6 @@ fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    targets = run, modes, log, structure, sampled_loop
+    targets = run, modes, filters, log, structure, sampled_loop
 }
 criterion_main!(benches);

@@ -58,6 +58,9 @@ fn does(closed: &Closed, window: Window, limit: f64) -> bool {
     closed.settle(window).time_s.is_some_and(|time| time <= limit) && closed.spectral_radius() < 1.0
 }
 
+/// The first and the last of a row of gains, and how many they are.
+type Run = (f64, f64, usize);
+
 /// The region at one frequency (rad/s): gains whose settling time is at most the limit (s) and whose loop is stable.
 pub fn region(
     of: &Loop,
@@ -68,7 +71,6 @@ pub fn region(
     limit: f64,
 ) -> Region {
     let held = Held::new(of, &of.ratios(frequency, scaling));
-    type Run = (f64, f64, usize);
     let (mut best, mut run): (Option<Run>, Option<Run>) = (None, None);
     for gain in gains.values() {
         run = does(&held.closed(gain), window, limit)

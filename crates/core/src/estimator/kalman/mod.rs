@@ -269,6 +269,29 @@ fn start(
     (DVector::from_vec(mean), DVector::from_vec(spread))
 }
 
+impl Default for Drifting {
+    fn default() -> Self {
+        Self {
+            modes: None,
+            moment_noise: moment_noise(),
+            angle_noise: None,
+            initial: Initial::default(),
+            prior: Prior::default(),
+            dominant: Ranking::default(),
+            assess: None,
+            ratios: Ratios::default(),
+            ratio: Positive::ONE,
+            ratio_sd: ratio_sd(),
+            ratio_rate_sd: ratio_rate_sd(),
+            ratio_noise: ratio_noise(),
+            ratio_rate_noise: ratio_noise(),
+            bounds: bounds(),
+            substeps: substeps(),
+            gate: gate(),
+        }
+    }
+}
+
 impl Default for Initial {
     fn default() -> Self {
         let known = |sd| NonNegative::new(sd).unwrap_or_default();
