@@ -201,8 +201,7 @@ fn delays() {
 #[test]
 fn the_region_of_the_extra_gain() {
     let of = fitted();
-    let window = Window { horizon: 600.0, ..WINDOW };
-    let found = regions(&of, &[0.1, 0.15, 0.2, 0.25, 0.3, 0.35], Scaling::All, GAINS, window, 200.0);
+    let found = regions(&of, &[0.1, 0.15, 0.2, 0.25, 0.3, 0.35], Scaling::All, GAINS, WINDOW, 200.0);
     let exact = [
         None,
         Some((-0.75, 0.1)),
@@ -377,20 +376,26 @@ fn the_command_tells_regions_schedules_and_maps() {
     assert_eq!(rows.len(), 12);
     let told = dir.run("map fitted.toml --frequency 0.1:0.3:3 --period 0.1:0.7:4 --json").exits(0).json();
     for (row, cell) in rows.iter().zip(told["rows"].as_array().expect("rows")) {
-        assert_eq!(row["spectral_radius"].parse().ok(), cell["spectral_radius"].as_f64());
-        assert_eq!(row["settling_s"].parse().ok(), cell["settling_s"].as_f64());
+        let (table, json): (f64, _) =
+            (row["spectral_radius"].parse().expect("a number"), &cell["spectral_radius"]);
+        close(table, json.as_f64().expect("a number"), 1e-15);
+        assert_eq!(row["settling_s"].is_empty(), cell["settling_s"].is_null());
     }
+    // The table's own settling time, in which a sample is outside the band 5 % of 0.06 rad.
+    assert_eq!(rows[5]["period_s"].parse(), Ok(0.3));
+    let settling: f64 = rows[5]["settling_s"].parse().expect("settled");
+    assert!((settling - 180.3).abs() < 0.31, "{settling}");
 }
 
 #[test]
 fn what_is_no_sampled_loop() {
     let dir = Dir::with(&["relay-fixed", "rotation-sine"]);
-    dir.run("tune relay-fixed.toml").exits(2).says(&["`law`", "must be `pd`"]);
+    dir.run("tune relay-fixed.toml").exits(2).says(&["law: must be `pd`"]);
     dir.write("fitted.toml", FITTED);
     for (arguments, words) in [
         ("tune fitted.toml --frequency 0.3:0.1:4", "LO:HI:N"),
         ("tune fitted.toml --gain 1:2", "LO:HI:STEP"),
-        ("tune fitted.toml --limit -3", "--limit"),
+        ("tune fitted.toml --limit 0", "--limit must be a positive number, got 0"),
         ("tune fitted.toml --robust 1.5", "--robust must be 0 or more and below 1, got 1.5"),
         ("tune fitted.toml --band 0", "--band must be a positive number, got 0"),
         ("tune fitted.toml --set body.planar.angle=0", "the band be given"),

@@ -56,7 +56,7 @@ pub struct Settled {
     #[arg(long, value_name = "ANGLE")]
     band: Option<f64>,
     /// How long each loop is watched (s)
-    #[arg(long, value_name = "TIME", default_value_t = 600.0)]
+    #[arg(long, value_name = "TIME", default_value_t = 2000.0)]
     horizon: f64,
     /// The dominant mode alone changes its frequency, not all by one ratio
     #[arg(long)]

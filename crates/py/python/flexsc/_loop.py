@@ -23,7 +23,7 @@ def gain_region(
     gains: tuple[float, float, float] = (-2.0, 6.0, 0.05),
     limit: float = 200.0,
     band: float | None = None,
-    horizon: float = 600.0,
+    horizon: float = 2000.0,
     dominant_alone: bool = False,
 ) -> dict[str, npt.NDArray[np.float64]]:
     """The gains of the extra loop that are stable and settle in time, at each frequency of the dominant mode.
@@ -67,7 +67,7 @@ def robust_gains(
     margin: float = 0.0,
     gains: tuple[float, float, float] = (-2.0, 6.0, 0.05),
     band: float | None = None,
-    horizon: float = 600.0,
+    horizon: float = 2000.0,
     dominant_alone: bool = False,
 ) -> dict[str, npt.NDArray[np.float64]]:
     """The gains that settle soonest while the model is off, at each frequency of the dominant mode.
@@ -110,7 +110,7 @@ def stability_map(
     *,
     gain: float | None = None,
     band: float | None = None,
-    horizon: float = 600.0,
+    horizon: float = 2000.0,
     dominant_alone: bool = False,
 ) -> dict[str, npt.NDArray[np.float64]]:
     """Stability and settling over the dominant mode's frequency and the sampling period.

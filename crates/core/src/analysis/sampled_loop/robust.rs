@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Closed, Gains, Held, Loop, Scaling, Window};
+use super::{Gains, Held, Loop, Scaling, Window};
 use crate::quantity::{Finite, Frequency};
 
 /// How far off the model may be.
@@ -96,22 +96,25 @@ fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
     values[index.clamp(1, values.len()) - 1]
 }
 
-fn score(held: &[Held], gain: f64, window: Window, part: f64, bound: f64) -> Option<Score> {
-    let closed: Vec<Closed> = held.iter().map(|held| held.closed(gain)).collect();
-    let mut radius: f64 = 0.0;
-    for closed in &closed {
+/// What a gain comes to; none if a loop has too little margin, or if the worst one settles later than that (s).
+fn score(held: &[Held], gain: f64, search: &Search, beat: f64) -> Option<Score> {
+    let (mut radius, mut settled) = (0.0_f64, Vec::with_capacity(held.len()));
+    for held in held {
+        let closed = held.closed(gain);
+        let settling = closed.settle(search.window);
+        let time = settling.crossing_s.unwrap_or(f64::INFINITY);
+        if search.quantile >= 1.0 && time > beat {
+            return None;
+        }
+        settled.push((time, settling.itae_rad_s2));
         radius = radius.max(closed.spectral_radius());
-        if radius.is_nan() || radius >= bound {
+        if radius.is_nan() || radius >= 1.0 - search.margin {
             return None;
         }
     }
-    let settled: Vec<_> = closed.iter().map(|closed| closed.settle(window)).collect();
-    let of = |value: &dyn Fn(&super::Settling) -> f64| quantile(settled.iter().map(value).collect(), part);
-    Some(Score {
-        settling: of(&|settling| settling.crossing_s.unwrap_or(f64::INFINITY)),
-        itae: of(&|settling| settling.itae_rad_s2),
-        radius,
-    })
+    let settling = quantile(settled.iter().map(|(time, _)| *time).collect(), search.quantile);
+    let itae = quantile(settled.iter().map(|(_, itae)| *itae).collect(), search.quantile);
+    Some(Score { settling, itae, radius })
 }
 
 /// How a schedule is searched.
@@ -140,14 +143,17 @@ pub fn robust(of: &Loop, frequencies: &[f64], search: Search) -> Vec<Robust> {
     let best = |frequency: &f64| {
         let ratios = of.ratios(*frequency, search.scaling);
         let held: Vec<Held> = loops.iter().map(|of| Held::new(of, &ratios)).collect();
-        let tried = |gain: f64| score(&held, gain, search.window, search.quantile, 1.0 - search.margin);
         let key = |score: &Score| match search.goal {
             Goal::Settling => (score.settling, score.itae),
             Goal::Itae => (score.itae, score.settling),
         };
         let mut best: Option<(f64, Score)> = None;
         for gain in &gains {
-            let Some(score) = tried(*gain) else { continue };
+            let beat = match (search.goal, &best) {
+                (Goal::Settling, Some((_, best))) => best.settling,
+                _ => f64::INFINITY,
+            };
+            let Some(score) = score(&held, *gain, &search, beat) else { continue };
             if best.as_ref().is_none_or(|(_, other)| key(&score) < key(other)) {
                 best = Some((*gain, score));
             }
@@ -159,7 +165,8 @@ pub fn robust(of: &Loop, frequencies: &[f64], search: Search) -> Vec<Robust> {
             settling_s: best.and_then(|(gain, _)| held[0].closed(gain).settle(search.window).time_s),
             settling_quantile_s: best.and_then(|(_, score)| finite(score.settling)),
             spectral_radius: best.map(|(_, score)| score.radius),
-            settling_without_s: tried(0.0).and_then(|score| finite(score.settling)),
+            settling_without_s: score(&held, 0.0, &search, f64::INFINITY)
+                .and_then(|score| finite(score.settling)),
         }
     };
     frequencies.par_iter().map(best).collect()
