@@ -5,6 +5,7 @@ Formatting and lints, the Rust tests, then the Python wheel in an environment of
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import venv
@@ -26,6 +27,8 @@ def main():
         sys.exit("flexsc needs Python 3.10 or newer")
     if shutil.which("cargo") is None:
         sys.exit("flexsc needs Rust: no `cargo` on the path")
+    # A shell's background jobs ignore Ctrl-C, and what they start inherits that: the tests send it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     binaries = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
     if not binaries.exists():
         venv.create(ENVIRONMENT, with_pip=True)
