@@ -220,7 +220,7 @@ fn estimates_are_in_a_full_log() {
     let dir = Dir::new();
     dir.write("loop.toml", looped("extended_kalman]\nprior = 'drawn'").to_toml());
     dir.run("simulate loop.toml --log full --set duration=3").exits(0);
-    let log = Log::open(&dir.path("loop.mcap")).expect("a log");
+    let log = Log::open(&dir.path("looped.mcap")).expect("a log");
     let estimates = log.columns("/estimator").expect("a topic");
     assert_eq!(estimates.len(), 11);
     let Some(Column::Rows(counts, modes)) = estimates.get("modes") else { panic!("no modes") };
@@ -228,7 +228,7 @@ fn estimates_are_in_a_full_log() {
     let truth = estimates.numbers("true_frequency_rad_s").expect("a column");
     assert!(truth.iter().all(|w| *w == 0.3), "{truth:?}");
     dir.run("simulate loop.toml --log events --set duration=3").exits(0);
-    let log = Log::open(&dir.path("loop.mcap")).expect("a log");
+    let log = Log::open(&dir.path("looped.mcap")).expect("a log");
     assert!(log.columns("/estimator").is_err());
 }
 

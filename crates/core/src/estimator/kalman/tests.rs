@@ -28,6 +28,9 @@ fn filter(estimator: &str, rate_noise: Option<f64>) -> Filter {
     }
 }
 
+/// What a sensor says at a sample.
+type Measured = fn(u32) -> f64;
+
 /// Moments and angles of some run.
 fn course(sample: u32) -> (f64, f64) {
     let t = 0.3 * f64::from(sample);
@@ -92,8 +95,7 @@ fn unscented_and_extended_filter_agree_where_little_is_unknown() {
 
 #[test]
 fn nonsense_is_never_passed_on() {
-    type Course = fn(u32) -> f64;
-    let nonsense: [(&str, Course); 7] = [
+    let nonsense: [(&str, Measured); 7] = [
         ("NaN", |_| f64::NAN),
         ("infinite", |_| f64::INFINITY),
         ("huge", |_| 1e300),
