@@ -122,7 +122,7 @@ const KEYS: &[Case] = &[
     ("unknown kind of body", Lines(&[(3, "[body.planer]"), (6, "[[body.planer.modes]]")]), 3, "planer", &["`planer` is not known here", "expected one of `planar`"]),
     ("unknown kind of sensor", Line(25, "[sensor.sampld]"), 25, "sampld", &["`sampld` is not known here", "`continuous` or `sampled`"]),
     ("unknown kind of sensor, as a word", Cut(25, 26, "sensor = \"continous\"\nduration = 1"), 1, "\"continous\"", &["`sensor`", "`continous` is not known here", "`continuous` or `sampled`"]),
-    ("unknown kind of estimator", Line(18, "[estimator.envelop]"), 18, "envelop", &["`envelop` is not known here", "expected `envelope`"]),
+    ("unknown kind of estimator", Line(18, "[estimator.envelop]"), 18, "envelop", &["`envelop` is not known here", "expected one of `envelope`, `truth`"]),
     ("unknown kind of adaptation", Line(21, "[adaptation.random]"), 21, "random", &["`random` is not known here", "expected `random_search`"]),
     ("unknown form", Line(19, "window = 50.0\nform = \"dynamc\""), 20, "\"dynamc\"", &["`estimator.envelope.form`", "`dynamc` is not known here", "`dynamic`, `trigonometric`, `truth`"]),
     ("unknown sides", Line(12, "dead_zone = 5e-4\nsides = \"three\""), 13, "\"three\"", &["`law.relay.sides`", "`three` is not known here", "expected `two` or `one`"]),
