@@ -51,11 +51,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn csv(cells: &[Cell]) -> String {
-    let mut table = "frequency_rad_s,period_s,spectral_radius,settling_s,itae_rad_s2\n".to_owned();
-    for cell in cells {
+    let row = |cell: &Cell| {
         let settling = cell.settling_s.map_or(String::new(), |time| time.to_string());
         let Cell { frequency_rad_s, period_s, spectral_radius, itae_rad_s2, .. } = cell;
-        table += &format!("{frequency_rad_s},{period_s},{spectral_radius:e},{settling},{itae_rad_s2:e}\n");
-    }
-    table
+        format!("{frequency_rad_s},{period_s},{spectral_radius:e},{settling},{itae_rad_s2:e}\n")
+    };
+    let rows: Vec<String> = cells.iter().map(row).collect();
+    format!("frequency_rad_s,period_s,spectral_radius,settling_s,itae_rad_s2\n{}", rows.concat())
 }

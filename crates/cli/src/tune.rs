@@ -84,7 +84,7 @@ impl Settled {
 }
 
 /// A scenario's loop.
-pub fn sampled<'a>(scenario: &'a flexsc_core::Scenario) -> Result<(Loop, &'a Pd), Failure> {
+pub fn sampled(scenario: &flexsc_core::Scenario) -> Result<(Loop, &Pd), Failure> {
     Ok(Loop::of(scenario).map_err(refused(&scenario.name))?)
 }
 
@@ -162,7 +162,7 @@ fn out(
         }
         let points: Vec<String> = schedule
             .iter()
-            .map(|(w, gain)| format!("    {{ frequency = {:.6}, gain = {gain:.4} }},\n", w))
+            .map(|(w, gain)| format!("    {{ frequency = {w:.6}, gain = {gain:.4} }},\n"))
             .collect();
         return print(format!("[law.pd.extra]\nschedule = [\n{}]\n", points.concat()).as_bytes());
     }
