@@ -145,9 +145,9 @@ def loop():
         lines.append(f"| {name} | {told[0]} | {told[1]} |")
     lines += [
         "",
-        f"- Its spectral radius takes {duration(one('spectral radius'))}; a map of 96 frequencies and 200 periods"
-        f" from 0.1 to 2 s {duration(one('map of 96 x 200'))} on one thread, of as many cells with 1333 samples"
-        f" each {duration(one('map of 96 x 200, 0.3 s'))}.",
+        f"- Its spectral radius takes {duration(one('spectral radius'))}; a map of 96 frequencies and 200"
+        f" periods from 0.1 to 2 s {duration(one('map of 96 x 200'))} on one thread, one of as many cells"
+        f" with 1333 samples each {duration(one('map of 96 x 200, 0.3 s'))}.",
     ]
     return lines
 

@@ -41,7 +41,7 @@ def radius(matrix):
 
 
 def angles(frequency, gain, count):
-    matrix, fed = closed(frequency, gain)
+    matrix, _ = closed(frequency, gain)
     state = np.zeros(11)
     state[0], state[10] = 0.06, 0.06
     out = np.empty(count)
@@ -53,7 +53,7 @@ def angles(frequency, gain, count):
 
 def crossing(frequency, gain, horizon):
     """The last time at which the motion between the samples is outside 3 mrad."""
-    matrix, fed = closed(frequency, gain)
+    _, fed = closed(frequency, gain)
     fine, push = held(FREQUENCIES * frequency / 0.3, 1e-4, 5e-4, 0.003)
     state, last, out = np.r_[0.06, np.zeros(9)], 0.06, 0.0
     for k in range(int(horizon / 0.3)):
@@ -83,11 +83,12 @@ def late(frequency, period):
 if __name__ == "__main__":
     for w, gain in [(0.3, 0), (0.3, 1.2), (0.2, 0), (0.1, 0), (0.05, 0), (0.1, 1.2), (0.1, -0.5)]:
         x = angles(w, gain, 6000)[[100, 200, 400, 600]]
-        print(f"w {w} gain {gain}: radius {radius(closed(w, gain)[0]):.10f}, x {x}, {settles(w, gain, 2000):.1f} s")
+        print(f"w {w} gain {gain}: radius {radius(closed(w, gain)[0]):.10f}, x {x}")
+        print(f"    settles in {settles(w, gain, 2000):.1f} s")
     for w in (0.15, 0.12):
         print(f"w {w}: {settles(w, 0):.1f} s")
     print("watched for less:", settles(0.05, 0, 1500), settles(0.1, 1.2, 600))
-    print("between the samples:", crossing(0.2, 0.0, 400.0), crossing(0.05, 0.0, 1500.0), crossing(0.05, 0.0, 2000.0))
+    print("between the samples:", crossing(0.2, 0, 400), crossing(0.05, 0, 1500), crossing(0.05, 0, 2000))
     grid = np.round(np.arange(-2.0, 6.001, 0.05), 2)
     for w in (0.1, 0.15, 0.2, 0.25, 0.3, 0.35):
         does = [g for g in grid if settles(w, g) <= 200.0 and radius(closed(w, g)[0]) < 1.0]

@@ -59,7 +59,8 @@ def test_the_map() -> None:
 def test_robust_gains_make_a_schedule() -> None:
     found = robust_gains(fitted(), [0.2, 0.3], off=0.05, gains=(-1.0, 2.0, 0.25))
     assert (found["settling_quantile_s"] >= found["settling_s"]).all()
-    points = [{"frequency": w, "gain": k} for w, k in zip(found["frequency_rad_s"], found["gain"], strict=True)]
+    pairs = zip(found["frequency_rad_s"], found["gain"], strict=True)
+    points = [{"frequency": w, "gain": k} for w, k in pairs]
     scheduled = fitted(extra={"schedule": points})
     gain = found["gain"].mean()
     between = stability_map(scheduled, [0.25], [0.3])
@@ -67,7 +68,7 @@ def test_robust_gains_make_a_schedule() -> None:
 
 
 def test_what_cannot_be_analysed() -> None:
-    with pytest.raises(ScenarioError, match="law.*must be `pd`"):
+    with pytest.raises(ScenarioError, match=r"law.*must be `pd`"):
         gain_region(Scenario({**fitted().to_dict(), "law": {"open": {}}}), [0.2])
     with pytest.raises(ValueError, match="frequencies must be positive numbers, got 0"):
         gain_region(fitted(), [0.2, 0.0])

@@ -202,7 +202,7 @@ fn sampled_loop(c: &mut Criterion) {
     let (linear, shaped) = (looped(WHEEL), looped(&WHEEL.replace("back_emf", "dead_zone = 1e-3\nback_emf")));
     let ratios = [1.0; 4];
     group.bench_function("400 s", |b| {
-        b.iter(|| Held::new(black_box(&linear), &ratios).closed(0.0).settle(window))
+        b.iter(|| Held::new(black_box(&linear), &ratios).closed(0.0).settle(window));
     });
     let held = Held::new(&linear, &ratios);
     group.bench_function("400 s, another gain", |b| b.iter(|| held.closed(black_box(1.2)).settle(window)));

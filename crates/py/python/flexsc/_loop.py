@@ -48,9 +48,7 @@ def gain_region(
         ValueError: A number is out of its range.
     """
     settled = (band, horizon, dominant_alone)
-    rows = json.loads(
-        engine.gain_regions_json(scenario._native, _floats(frequencies), gains, limit, settled)
-    )
+    rows = json.loads(engine.gain_regions_json(scenario._native, _floats(frequencies), gains, limit, settled))
     for row in rows:
         row["gain_min"], row["gain_max"] = row.pop("gain") or (None, None)
     return _columns(rows)
@@ -123,8 +121,8 @@ def stability_map(
         band: As for `gain_region`, with `horizon` and `dominant_alone`.
 
     Returns:
-        Columns of shape (frequencies, periods): `frequency_rad_s`, `period_s`, `spectral_radius`, `settling_s`
-        (NaN where the loop does not settle) and `itae_rad_s2`.
+        Columns of shape (frequencies, periods): `frequency_rad_s`, `period_s`, `spectral_radius`,
+        `settling_s` (NaN where the loop does not settle) and `itae_rad_s2`.
 
     Raises:
         ScenarioError: The scenario has no loop of this kind.
