@@ -30,9 +30,7 @@ impl Gains {
     /// The gains, the lowest first.
     pub fn values(&self) -> Vec<f64> {
         let count = libm::floor((self.high - self.low) / self.step + 1e-9) as usize + 1;
-        // Free of the last digits that the product brings: a gain that a user reads.
-        let tidy = |gain: f64| libm::round(gain * 1e9) / 1e9;
-        (0..count).map(|index| tidy(self.low + index as f64 * self.step)).collect()
+        (0..count).map(|index| self.low + index as f64 * self.step).collect()
     }
 }
 
@@ -55,14 +53,6 @@ pub struct Region {
     pub spectral_radius_without: f64,
 }
 
-/// Gains one after the other, all of which do.
-#[derive(Copy, Clone)]
-struct Run {
-    low: f64,
-    high: f64,
-    count: usize,
-}
-
 /// Whether a loop settles in time and is stable: an angle may stay small while a mode grows.
 fn does(closed: &Closed, window: Window, limit: f64) -> bool {
     closed.settle(window).time_s.is_some_and(|time| time <= limit) && closed.spectral_radius() < 1.0
@@ -83,22 +73,18 @@ pub fn region(
     let held = Held::new(of, &of.ratios(frequency, scaling));
     let (mut best, mut run): (Option<Run>, Option<Run>) = (None, None);
     for gain in gains.values() {
-        let longer = run.map_or(Run { low: gain, high: gain, count: 1 }, |run| Run {
-            high: gain,
-            count: run.count + 1,
-            ..run
-        });
-        run = does(&held.closed(gain), window, limit).then_some(longer);
-        if run.map_or(0, |run| run.count) > best.map_or(0, |best| best.count) {
+        run = does(&held.closed(gain), window, limit)
+            .then(|| run.map_or((gain, gain, 1), |(first, _, count)| (first, gain, count + 1)));
+        if run.map_or(0, |run| run.2) > best.map_or(0, |best| best.2) {
             best = run;
         }
     }
-    let midpoint = best.map(|best| 0.5 * (best.low + best.high));
+    let midpoint = best.map(|(low, high, _)| 0.5 * (low + high));
     let middle = midpoint.map(|gain| held.closed(gain));
     let without = held.closed(0.0);
     Region {
         frequency_rad_s: frequency,
-        gain: best.map(|best| (best.low, best.high)),
+        gain: best.map(|(low, high, _)| (low, high)),
         midpoint,
         settling_s: middle.as_ref().and_then(|closed| closed.settle(window).time_s),
         spectral_radius: middle.as_ref().map(Closed::spectral_radius),
