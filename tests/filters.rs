@@ -86,7 +86,7 @@ fn monte_carlo(runs: u64, noise: f64, angle: f64, estimator: &str) -> Tally {
             if k > 0 {
                 filter.predict(moment);
             }
-            let told = filter.update(angle, 0.0);
+            let told = filter.update(Some((angle, 0.0)));
             moment = -WHEEL * (7.5 * angle + 275.0 * (angle - before.unwrap_or(angle)));
             before = Some(angle);
             if t > 30.0 {

@@ -73,7 +73,7 @@ pub struct Filter {
 /// What a sample told the filter.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Told {
-    /// Measured angle less the predicted one (rad).
+    /// Measured angle less the predicted one (rad); 0 if the sample was dropped.
     pub innovation: f64,
     /// Normalised innovation squared, summed over the measurements; none if the sample was dropped.
     pub nis: Option<f64>,
@@ -187,15 +187,17 @@ impl Filter {
         }
     }
 
-    /// Updates the state by the measured angle (rad) and, of a filter with a gyro, the measured rate (rad/s).
-    pub fn update(&mut self, angle: f64, rate: f64) -> Told {
-        let innovation = angle - self.seen(0);
+    /// Updates the state by the measured angle (rad) and, of a filter with a gyro, the measured rate (rad/s); by nothing
+    /// if there is no measurement.
+    pub fn update(&mut self, measured: Option<(f64, f64)>) -> Told {
         self.keep();
         let gated = self.is_still();
-        let mut nis = self.learn(0, angle, self.tuning.angle_noise, gated);
-        if let Some(noise) = self.tuning.rate_noise {
-            nis = nis.and_then(|nis| Some(nis + self.learn(1, rate, noise, gated)?));
-        }
+        let innovation = measured.map_or(0.0, |(angle, _)| angle - self.seen(0));
+        let mut nis = measured.and_then(|(angle, rate)| {
+            let nis = self.learn(0, angle, self.tuning.angle_noise, gated)?;
+            let Some(noise) = self.tuning.rate_noise else { return Some(nis) };
+            Some(nis + self.learn(1, rate, noise, gated)?)
+        });
         if nis.is_none() || !self.is_sound() {
             self.restore();
             nis = None;
@@ -205,8 +207,7 @@ impl Filter {
         self.hold_ratios();
         self.choose_mode();
         self.trust();
-        let innovation = if innovation.is_finite() { innovation } else { f64::NAN };
-        Told { innovation, nis }
+        Told { innovation: if nis.is_some() { innovation } else { 0.0 }, nis }
     }
 
     fn keep(&mut self) {
@@ -312,12 +313,13 @@ impl Filter {
         terms.sum::<f64>().max(0.0)
     }
 
-    /// Normalised squared error of the estimate against a true state of the same components, which has the state's order as its mean. NaN if the
-    /// covariance has no inverse.
+    /// Normalised squared error of the estimate against a true state of the same components, whose mean is the state's
+    /// order if the filter is honest. It is at most 10^12, also where the covariance has no inverse.
     pub fn nees(&self, truth: &[f64]) -> f64 {
         let error = DVector::from_row_slice(truth) - &self.mean;
         let root = Cholesky::new(self.covariance.clone());
-        root.map_or(f64::NAN, |root| error.dot(&root.solve(&error)))
+        let nees = root.map_or(f64::INFINITY, |root| error.dot(&root.solve(&error)));
+        if nees <= FARTHEST * FARTHEST { nees } else { FARTHEST * FARTHEST }
     }
 
     fn most_excitable(&self) -> usize {
