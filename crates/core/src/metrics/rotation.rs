@@ -15,7 +15,7 @@ use crate::time::Instant;
 /// What is late in a run (s).
 const LATE: f64 = 5.0;
 /// Frequencies of a drift at which its loop is judged, besides its kinks and its end.
-const DRIFTING: u32 = 32;
+const DRIFTING: u32 = 8;
 /// What counts as settled, as a part of the distance when the goal begins.
 const PART: f64 = 0.05;
 
