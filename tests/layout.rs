@@ -57,7 +57,11 @@ fn every_path_is_a_field_of_a_log() {
     check("relay-adaptive", "--set duration=1200", include_str!("../scenarios/layouts/relay.json"));
     check("rotation-robust", "--set duration=20", include_str!("../scenarios/layouts/rotation.json"));
     let rotor = "--set actuator.wheel.rotor={inertia=1e-4}";
-    check("wheel-ekf", &format!("--set duration=20 {rotor}"), include_str!("../scenarios/layouts/wheel.json"));
+    check(
+        "wheel-ekf",
+        &format!("--set duration=20 {rotor}"),
+        include_str!("../scenarios/layouts/wheel.json"),
+    );
     check("rotation-nonlinear", "--set duration=13", include_str!("../scenarios/layouts/rotation.json"));
 }
 

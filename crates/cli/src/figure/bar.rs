@@ -26,7 +26,7 @@ const COLOUR: u32 = 10;
 pub fn draw(area: &Area<'_>, bar: &Bar, left: u32) -> Result<(), Error> {
     let middle = 2 + COLOUR / 2;
     area.draw_text(&bar.name, &text(11.0, HPos::Left, VPos::Center), at(left, middle))?;
-    let first = left + bar.name.chars().count() as u32 * 65 / 10 + 12;
+    let first = left + bar.name.chars().count() as u32 * 58 / 10 + 14;
     let across = |index: usize| first + index as u32 * CLASS;
     for (index, colour) in bar.colours.iter().enumerate() {
         let (from, to) = (across(index), across(index + 1));

@@ -104,7 +104,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, height: u32) -> Result<(), Error> 
                 }
             }
             Shape::Area(_) => {
-                for polygon in polygons(&points, &plot.window, COLUMNS) {
+                for polygon in polygons(&points, &plot.window, ACROSS) {
                     let corners: Vec<_> = polygon.into_iter().map(|p| plot.place(p)).collect();
                     area.draw(&Polygon::new(corners, layer.style()))?;
                 }

@@ -8,7 +8,7 @@ use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 /// What counts as settled if a scenario does not say: a part of the distance when the goal begins.
 const PART: f64 = 0.05;
 /// The second panel of a body that is brought to angle 0 shows so many bands to each side.
-const BANDS: f64 = 3.0;
+const BANDS: f64 = 4.0;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let over_time =
@@ -35,8 +35,8 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         let panel = |x: Axis, y: Axis, named: bool| {
             let mut layers = marks(&y);
             layers.push(Layer::new("angle", colour::BLACK, Shape::Line(1.2), over_time(&motion.angle)));
-            if !named {
-                layers.iter_mut().for_each(|layer| layer.name.clear());
+            for layer in layers.iter_mut().filter(|_| !named) {
+                layer.name.clear();
             }
             Panel::new(x, y, layers)
         };

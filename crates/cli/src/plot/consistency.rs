@@ -26,21 +26,18 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         let shown = || line.iter().map(|point| point.1).chain([low, high]);
         let far = shown().any(|value| value > FAR);
         let y = if far { Axis::decades(name, "", shown()) } else { Axis::from_zero(name, "", shown()) };
-        let mut layers = lock::spans(motion, &y);
-        if !named {
-            layers.iter_mut().for_each(|layer| layer.name.clear());
-        }
+        let mut layers = lock::spans(motion, &y, named);
         let level = |height: f64| [(0.0, height), (story.end, height)];
         let of = if averaged == 1 { "one sample".to_owned() } else { format!("{averaged} samples") };
         layers.extend([
             Layer::new(
-                &format!("95 % of {of}"),
+                &format!("95 % of chi-square, {of}"),
                 colour::GREEN,
                 Shape::Area(0.2),
                 band(&level(low), &level(high)),
             ),
             Layer::new("", colour::GREY, Shape::Line(0.8), level(1.0).to_vec()),
-            Layer::new(&format!("mean of {window} samples"), colour::BLUE, Shape::Line(1.2), line),
+            Layer::new(&format!("mean of the last {window} samples"), colour::BLUE, Shape::Line(1.2), line),
         ]);
         Panel::new(time(0.0..story.end), y, layers)
     };
@@ -52,11 +49,11 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     Figure { title: title(story, "consistency of the filter"), panels, panel_height: 200 }
 }
 
-/// Means over so many samples in a row, each at its middle. A sample without a value counts in none.
+/// Means over so many samples in a row, each at the last of them. A sample without a value counts in none.
 fn averages(values: &[Point], window: usize) -> Vec<Point> {
     let mean = |row: &[Point]| {
         let finite = || row.iter().map(|point| point.1).filter(|value| value.is_finite());
-        (0.5 * (row[0].0 + row[row.len() - 1].0), finite().sum::<f64>() / finite().count() as f64)
+        (row[row.len() - 1].0, finite().sum::<f64>() / finite().count() as f64)
     };
     values.windows(window).map(mean).collect()
 }
@@ -91,7 +88,7 @@ mod tests {
     #[test]
     fn dropped_samples_do_not_count() {
         let values = [(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, 5.0)];
-        assert_eq!(averages(&values, 3), [(1.0, 2.0), (2.0, 4.0)]);
+        assert_eq!(averages(&values, 3), [(2.0, 2.0), (3.0, 4.0)]);
         assert!(averages(&[], 3).is_empty());
     }
 }

@@ -14,15 +14,14 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let x = time(0.0..story.end);
     let heights = estimated.iter().chain(&truth).map(|point| point.1);
     let y = Axis::around("displacement", "rad", heights);
-    let mut layers = lock::spans(motion, &y);
+    let mut layers = lock::spans(motion, &y, true);
     layers.extend([
-        Layer::new("estimated", colour::ORANGE, Shape::Line(2.0), estimated),
+        Layer::new("estimated, as the law reads it", colour::ORANGE, Shape::Line(2.0), estimated),
         Layer::new("true", colour::BLACK, Shape::Dashes, truth),
     ]);
     let whole = Panel::new(x.unnamed(), y, layers);
     let y = Axis::around("error", "rad", error.iter().map(|point| point.1));
-    let mut layers = lock::spans(motion, &y);
-    layers.iter_mut().for_each(|layer| layer.name.clear());
+    let mut layers = lock::spans(motion, &y, false);
     layers.push(Layer::new("", colour::GREY, Shape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]));
     layers.push(Layer::new("", colour::BLUE, Shape::Line(1.0), error));
     let panels = vec![whole, Panel::new(x, y, layers)];

@@ -25,13 +25,14 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let gain = |w: f64| of(story).map_or(0.0, |extra| extra.gain(w));
     let gains: Vec<Point> = read.iter().map(|(t, w)| (*t, gain(*w))).collect();
     let x = time(0.0..story.end);
-    let panel = |x: Axis, name: &str, line: Vec<Point>| {
+    let panel = |x: Axis, name: &str, line: Vec<Point>, named: bool| {
         let y = Axis::around(name, "", line.iter().map(|point| point.1));
-        let mut layers = lock::spans(motion, &y);
+        let mut layers = lock::spans(motion, &y, named);
         layers.push(Layer::new("", colour::BLUE, Shape::Line(1.4), line));
         Panel::new(x, y, layers)
     };
-    let panels = vec![panel(x.unnamed(), "gain k_d", gains), panel(x, "frequency, rad/s", read)];
+    let panels =
+        vec![panel(x.unnamed(), "gain k_d", gains, true), panel(x, "frequency read, rad/s", read, false)];
     Figure { title: title(story, "extra loop"), panels, panel_height: 200 }
 }
 

@@ -20,15 +20,16 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let shown = [&estimated, &truth, &lower, &upper].into_iter().flat_map(|points| heights(points));
     let y = Axis::around("frequency, rad/s", "", shown.map(|value| value.clamp(0.0, most)));
     let x = time(0.0..story.end);
-    let mut layers = lock::spans(motion, &y);
+    let mut layers = lock::spans(motion, &y, true);
     layers.extend([
         Layer::new("± 2 standard deviations", colour::SKY, Shape::Area(0.35), band(&lower, &upper)),
         Layer::new("estimated", colour::BLUE, Shape::Line(1.4), estimated),
         Layer::new("true", colour::BLACK, Shape::Dashes, truth),
     ]);
     if motion.estimates.iter().any(|estimate| estimate.read_frequency != estimate.frequency) {
-        let read = line(&|e| e.read_frequency);
-        layers.push(Layer::new("as the law reads it", colour::ORANGE, Shape::Line(1.2), read));
+        let apart = |e: &Estimate| e.read_frequency != e.frequency;
+        let read = line(&|e| if apart(e) { e.read_frequency } else { f64::NAN });
+        layers.push(Layer::new("held for the law", colour::ORANGE, Shape::Line(1.2), read));
     }
     let whole = Panel::new(x.unnamed(), y, layers);
 
@@ -36,8 +37,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let [lower, upper] = [-2.0, 2.0].map(|deviations| line(&|e| deviations * e.frequency_sd));
     let shown = [&error, &lower, &upper].into_iter().flat_map(|points| heights(points));
     let y = Axis::around("error", "rad/s", shown.map(|value| value.clamp(-most, most)));
-    let mut layers = lock::spans(motion, &y);
-    layers.iter_mut().for_each(|layer| layer.name.clear());
+    let mut layers = lock::spans(motion, &y, false);
     layers.extend([
         Layer::new("", colour::SKY, Shape::Area(0.35), band(&lower, &upper)),
         Layer::new("", colour::GREY, Shape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]),

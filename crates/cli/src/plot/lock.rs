@@ -3,11 +3,12 @@
 use super::motion::{Estimate, Motion};
 use crate::figure::{Axis, Layer, Point, Shape, band, colour};
 
-/// The areas, over the whole height of a panel.
-pub fn spans(motion: &Motion, y: &Axis) -> Vec<Layer> {
+/// The areas, over the whole height of a panel, in its legend or not.
+pub fn spans(motion: &Motion, y: &Axis, named: bool) -> Vec<Layer> {
     let area = |name: &str, colour, is: fn(&Estimate) -> bool| {
         let points = shaded(&motion.estimates, y, is);
-        (!points.is_empty()).then(|| Layer::new(name, colour, Shape::Area(0.2), points))
+        (!points.is_empty())
+            .then(|| Layer::new(if named { name } else { "" }, colour, Shape::Area(0.2), points))
     };
     let gated = area("gated", colour::GREY, |estimate| estimate.gated);
     let lost = area("lock lost", colour::VERMILLION, |estimate| estimate.lost);

@@ -115,12 +115,12 @@ fn estimates(columns: &Columns) -> Vec<Estimate> {
         "nis",
         "nees",
     ];
-    let flags = modes.iter().zip(gated).zip(lock);
-    let row = |(index, (numbers, ((mode, gated), lock))): (usize, ([f64; 7], ((&u64, &u64), &u64)))| {
+    let at = |of: &[u64], index: usize| of.get(index).copied().unwrap_or_default();
+    let row = |(index, numbers): (usize, [f64; 7])| {
         let [time, read_frequency, frequency_sd, true_frequency, displacement, nis, nees] = numbers;
-        let mode = *mode as usize;
+        let mode = at(modes, index) as usize;
         let frequency = own.get(mode).and_then(|of| of.get(index)).copied().unwrap_or(f64::NAN);
-        let (gated, lost) = (*gated != 0, *lock == 0);
+        let (gated, lost) = (at(gated, index) != 0, at(lock, index) == 0);
         Estimate {
             time,
             mode,
@@ -135,7 +135,7 @@ fn estimates(columns: &Columns) -> Vec<Estimate> {
             lost,
         }
     };
-    rows(columns, names).zip(flags).enumerate().map(row).collect()
+    rows(columns, names).enumerate().map(row).collect()
 }
 
 /// A column of the rows within each row, one vector for each place in a row.
@@ -228,5 +228,24 @@ fn extend(columns: &mut Vec<Vec<f64>>, row: impl Iterator<Item = f64>) {
             columns.push(Vec::new());
         }
         columns[index].push(value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_displacement_is_exact_at_rows_and_cubic_between() {
+        let time: Vec<f64> = (0..20).map(f64::from).collect();
+        let modes = vec![time.iter().map(|t| (0.3 * t).sin()).collect()];
+        let mode_rates = vec![time.iter().map(|t| 0.3 * (0.3 * t).cos()).collect()];
+        let motion = Motion { time, modes, mode_rates, ..Motion::default() };
+        assert_eq!(motion.displacement(0, 7.0).to_bits(), motion.modes[0][7].to_bits());
+        for t in [0.2, 6.5, 18.9] {
+            assert!((motion.displacement(0, t) - (0.3 * t).sin()).abs() < 3e-5, "{t}");
+        }
+        assert!([-1.0, 19.5].iter().all(|t| motion.displacement(0, *t).is_nan()));
+        assert!(motion.displacement(1, 7.0).is_nan());
     }
 }

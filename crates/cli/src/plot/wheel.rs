@@ -37,5 +37,5 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         panel(x.unnamed(), "speed", "rad/s", speeds, limit.map(|(speed, _)| speed)),
         panel(x, "momentum", momentum, momenta, limit.map(|(speed, inertia)| speed * inertia)),
     ];
-    Figure { title: title(story, "wheel"), panels, panel_height: 200 }
+    Figure { title: title(story, "flywheel"), panels, panel_height: 200 }
 }

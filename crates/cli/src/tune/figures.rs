@@ -91,12 +91,13 @@ impl Tuned<'_> {
         let (nominal, worst) = (robust(&|r| r.settling_s), robust(&|r| r.settling_quantile_s));
         let x = self.frequency();
         let shown = [&middle, &without, &nominal, &worst].into_iter().flatten().map(|point| point.1);
-        let times = shown.chain([self.limit]).map(|time| time.min(BEYOND * self.limit));
+        let finite = shown.filter(|time| time.is_finite()).chain([self.limit]);
+        let times = finite.map(|time| time.min(BEYOND * self.limit));
         let y = Axis::from_zero("settling time, s", "", times);
         let level = vec![(x.range.start, self.limit), (x.range.end, self.limit)];
         let layers = vec![
             Layer::new("limit", colour::GREY, Shape::Dashes, level),
-            Layer::new("without the extra loop", colour::ORANGE, Shape::Line(1.4), without),
+            Layer::new("without the extra loop", colour::BLACK, Shape::Line(1.4), without),
             Layer::new("middle of the region", colour::BLUE, Shape::Line(1.6), middle),
             Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), nominal),
             Layer::new("the same, perturbed", colour::VERMILLION, Shape::Dashes, worst),
