@@ -26,3 +26,4 @@ mod study;
 mod util;
 mod waveforms;
 mod wheel;
+mod wheel_figures;

@@ -260,6 +260,10 @@ impl Scenario {
     pub fn layout(&self) -> Option<&'static str> {
         Some(if self.law.switches() {
             include_str!("../../../../scenarios/layouts/relay.json")
+        } else if matches!(self.actuator, Actuator::Wheel(_))
+            || (matches!(self.law, Law::Pd(_)) && self.manoeuvre.is_none())
+        {
+            include_str!("../../../../scenarios/layouts/wheel.json")
         } else {
             include_str!("../../../../scenarios/layouts/rotation.json")
         })
