@@ -43,7 +43,7 @@ impl Disturbance {
 /// A disturbance at work.
 #[derive(Clone, Debug)]
 pub struct Disturbing {
-    disturbance: Disturbance,
+    what: Disturbance,
     draws: Stream,
     /// The draw that is held (N m), and when the next is due.
     drawn: f64,
@@ -54,12 +54,7 @@ impl Disturbing {
     /// A disturbance before its start, with its own stream of draws.
     pub fn new(disturbance: &Disturbance, draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
-        Self {
-            next: noisy.then(|| at(disturbance.from)),
-            disturbance: disturbance.clone(),
-            draws,
-            drawn: 0.0,
-        }
+        Self { next: noisy.then(|| at(disturbance.from)), what: disturbance.clone(), draws, drawn: 0.0 }
     }
 
     /// When the next draw is due.
@@ -69,18 +64,18 @@ impl Disturbing {
 
     /// Draws the noise anew if that is due.
     pub fn serve(&mut self, now: Instant) {
-        let Some(period) = self.disturbance.period else { return };
+        let Some(period) = self.what.period else { return };
         while let Some(next) = self.next.filter(|next| *next <= now) {
             // Of the power of white noise, a draw that is held has what falls into its period.
-            self.drawn = libm::sqrt(self.disturbance.noise.get() / period.seconds()) * self.draws.normal();
+            self.drawn = libm::sqrt(self.what.noise.get() / period.seconds()) * self.draws.normal();
             let next = next + period;
-            self.next = self.disturbance.to.is_none_or(|to| next < at(to)).then_some(next);
+            self.next = self.what.to.is_none_or(|to| next < at(to)).then_some(next);
         }
     }
 
     /// The torque at an instant (N m), right-continuous.
     pub fn torque(&self, now: Instant) -> f64 {
-        if self.disturbance.acts(now) { self.disturbance.torque.get() + self.drawn } else { 0.0 }
+        if self.what.acts(now) { self.what.torque.get() + self.drawn } else { 0.0 }
     }
 }
 

@@ -24,7 +24,7 @@ struct Coordinate {
 /// The ratio of some modes over a step, and its square: their series, and how many terms are not 0.
 #[derive(Clone, Debug)]
 struct Ratio {
-    ratio: [f64; SERIES],
+    itself: [f64; SERIES],
     square: [f64; SERIES],
     terms: (usize, usize),
 }
@@ -49,15 +49,15 @@ pub struct Drifting {
 }
 
 impl Ratio {
-    const ONE: Self = Self { ratio: [0.0; SERIES], square: [0.0; SERIES], terms: (0, 0) };
+    const ONE: Self = Self { itself: [0.0; SERIES], square: [0.0; SERIES], terms: (0, 0) };
 
     /// Expands a profile at a time (s).
     fn expand(&mut self, drift: &Drift, mode: usize, t: f64) {
-        let terms = drift.series(mode, t, &mut self.ratio);
+        let terms = drift.series(mode, t, &mut self.itself);
         let last = (2 * terms - 1).min(SERIES);
         for n in 0..last {
             let parts = n.saturating_sub(terms - 1)..=n.min(terms - 1);
-            self.square[n] = parts.map(|j| self.ratio[j] * self.ratio[n - j]).sum();
+            self.square[n] = parts.map(|j| self.itself[j] * self.itself[n - j]).sum();
         }
         self.terms = (terms, last);
     }
@@ -150,7 +150,7 @@ impl Drifting {
                     if c.drag > 0.0 {
                         let rate = |j: usize| (n - j + 1) as f64 * c.series[n - j + 1];
                         let slowing: f64 =
-                            (0..ratio.terms.0.min(n + 1)).map(|j| ratio.ratio[j] * rate(j)).sum();
+                            (0..ratio.terms.0.min(n + 1)).map(|j| ratio.itself[j] * rate(j)).sum();
                         acceleration -= c.drag * slowing;
                     }
                 }
