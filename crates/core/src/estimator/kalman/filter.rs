@@ -67,6 +67,8 @@ pub struct Filter {
     broken: bool,
     mode: usize,
     gated: bool,
+    /// For how long (s).
+    gated_for: f64,
     trusted: Dominant,
 }
 
@@ -95,6 +97,7 @@ impl Filter {
             broken: false,
             mode: 0,
             gated: false,
+            gated_for: 0.0,
             trusted: Dominant::default(),
             tuning,
         };
@@ -202,7 +205,7 @@ impl Filter {
             self.restore();
             nis = None;
         }
-        self.gated = gated;
+        self.rest(gated);
         self.lock.take(nis);
         self.hold_ratios();
         self.choose_mode();
@@ -267,6 +270,22 @@ impl Filter {
     fn is_still(&self) -> bool {
         self.tuning.model.order() > self.tuning.model.motion()
             && self.amplitude(self.mode).0 < self.tuning.gate
+    }
+
+    /// Whether the dominant mode is too still from this sample on. After a whole period of it the ratios are taken to stand
+    /// still, too: nothing tells how far their rates would carry them. That they may move stays in the covariance.
+    fn rest(&mut self, gated: bool) {
+        self.gated = gated;
+        let before = self.gated_for;
+        self.gated_for = if gated { before + self.tuning.period } else { 0.0 };
+        let model = &self.tuning.model;
+        let whole = std::f64::consts::TAU / model.frequency(self.mode, self.mean.as_slice());
+        if before < whole && self.gated_for >= whole {
+            for rate in (model.motion() + 1..model.order()).step_by(2) {
+                self.covariance[(rate, rate)] += self.mean[rate] * self.mean[rate];
+                self.mean[rate] = 0.0;
+            }
+        }
     }
 
     /// Keeps the ratios within their bounds: one that reaches them has lost the body.
