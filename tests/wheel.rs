@@ -211,6 +211,18 @@ fn what_does_not_go_with_a_wheel_is_refused() {
         ("wheel-fixed-gain", "drift.common={sinusoid={amplitude=0.5,period=100.0}}", "must be below 0.5"),
         ("wheel-fixed-gain", "law.pd.extra={schedule=[]}", "must have at least one point"),
         ("wheel-fixed-gain", "drift.common.ramp.to=0.0", "must be a positive number, got 0"),
+        (
+            "wheel-fixed-gain",
+            "estimator={envelope={window=1.0}}",
+            "`law.pd.extra` feeds back the dominant mode",
+        ),
+        (
+            "wheel-fixed-gain",
+            "sensor.sampled.faults=[{stuck={from=9.0,to=3.0}}]",
+            "`sensor.sampled.faults[0]` must have `from` before `to`",
+        ),
+        ("wheel-fixed-gain", "sensor.sampled.faults=[{bent={from=9.0}}]", "`stuck` or `silent`"),
+        ("wheel-fixed-gain", "disturbance=[{noise=1e-13}]", "`disturbance[0].period` must be given"),
     ];
     for (name, set, words) in cases {
         dir.run(&format!("check {name}.toml")).exits(0);

@@ -19,6 +19,8 @@ def fitted(**law: Any) -> Scenario:
             "body": {"planar": {"angle": 0.06, "modes": modes}},
             "actuator": {"wheel": {"gain": 5e-4, "back_emf": 1e-4}},
             "law": {"pd": pd},
+            "sensor": {"sampled": {"period": 0.3}},
+            "estimator": {"truth": {}},
         }
     )
 
