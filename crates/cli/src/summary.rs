@@ -84,6 +84,14 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
     } else {
         say!("  settling time  not settled after {} s", scenario.duration.seconds());
     }
+    let radius = number("spectral_radius");
+    if radius.is_finite() {
+        let verdict = if radius < 1.0 { "stable" } else { "unstable" };
+        say!("  sampled loop   spectral radius {radius:.7}: {verdict}");
+    }
+    if metrics.number("lock_lost").is_some() {
+        filter(metrics);
+    }
     let of = |name: &str, index: usize| match metrics.get(name) {
         Some(Value::Numbers(numbers)) => numbers.get(index).copied().unwrap_or(f64::NAN),
         _ => f64::NAN,
@@ -97,5 +105,21 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
             of("output_swings", index),
             of("output_swings_late", index),
         );
+    }
+}
+
+/// What a Kalman filter came to.
+fn filter(metrics: &Metrics) {
+    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    say!(
+        "  filter         frequency off by {:.4e} rad/s rms, at most {:.4e}; NEES {:.2}, NIS {:.2} of what it expects",
+        number("frequency_error_rms_rad_s"),
+        number("frequency_error_max_rad_s"),
+        number("nees_mean"),
+        number("nis_mean"),
+    );
+    let lost = number("lock_lost_at_s");
+    if lost.is_finite() {
+        say!("  filter         has lost the body at {lost} s");
     }
 }

@@ -109,7 +109,7 @@ fn modes(c: &mut Criterion) {
     group.finish();
 }
 
-/// One sample of each filter of twelve states: prediction over a period, and update.
+/// One sample of each filter of twelve states, prediction over a period and update; whole runs with drifting frequencies.
 fn filters(c: &mut Criterion) {
     let mut group = c.benchmark_group("filter");
     for (name, prediction) in [("ekf step", Prediction::Extended), ("ukf step", Prediction::Unscented)] {
@@ -126,6 +126,13 @@ fn filters(c: &mut Criterion) {
                 filter.update(Some((black_box(0.01 + 2e-3 * libm::cos(0.09 * sample)), 0.0)))
             });
         });
+    }
+    for (name, text) in [
+        ("run of 600 s, mode known", include_str!("../../../scenarios/wheel-scheduled-gain.toml")),
+        ("run of 600 s, extended filter", include_str!("../../../scenarios/wheel-ekf.toml")),
+    ] {
+        let run = Run { number: 0, scenario: scenario(text), drawn: Vec::new() };
+        group.bench_function(name, |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
     }
     group.finish();
 }
