@@ -152,6 +152,10 @@ def loop():
     return lines
 
 
+def filtered(name):
+    return criterion("filter", name)
+
+
 def table():
     subprocess.run(["cargo", "build", "--release"], cwd=ROOT, check=True)
     subprocess.run(["cargo", "bench", "-p", "flexsc-core", "--bench", "engine"], cwd=ROOT, check=True)
@@ -183,10 +187,10 @@ def table():
     lines += [
         "",
         f"- One event costs {duration(events / 2526)}; SciPy found {scipy_events} switchings in 2000 s.",
-        f"- A sample of an extended Kalman filter of 12 states takes {duration(criterion('filter', 'ekf step'))},"
-        f" of an unscented one {duration(criterion('filter', 'ukf step'))}; 600 s of wheel-scheduled-gain, whose"
-        f" frequencies drift, {duration(criterion('filter', 'run of 600 s, mode known'))}, of wheel-ekf"
-        f" {duration(criterion('filter', 'run of 600 s, extended filter'))}, all metrics included.",
+        f"- A sample of an extended Kalman filter of 12 states takes {duration(filtered('ekf step'))}, of an"
+        f" unscented one {duration(filtered('ukf step'))}; 600 s of wheel-scheduled-gain, whose frequencies"
+        f" drift, {duration(filtered('run of 600 s, mode known'))}, of wheel-ekf"
+        f" {duration(filtered('run of 600 s, extended filter'))}, all metrics included.",
         f"- A dense log is written at {4 * 200_000 / dense / 1e6:.2f} million messages/s on one core,"
         " simulation included.",
         f"- The modes of a structure of order 1000 take {duration(solved)} on one core; SciPy's eigh"
