@@ -13,6 +13,17 @@ pub struct Belief {
     pub dominant: Dominant,
 }
 
+/// What is believed of a spatial body, about its three axes: written by gyro and estimator, read by the law.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct AxesBelief {
+    /// How far the attitude is beyond the goal (rad). The law knows it exactly: seed paper 4 has no error of it.
+    pub angle: [f64; 3],
+    /// Rigid rates (rad/s): the gyro's, or what an estimator makes of them.
+    pub rate: [f64; 3],
+    /// Changes of the rigid rates that are commanded, and not yet measured (rad/s).
+    pub queued: [f64; 3],
+}
+
 /// The mode that a step of the torque excites most.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Dominant {

@@ -101,6 +101,11 @@ impl Frequency {
     pub const LARGEST: f64 = 1e3;
 }
 
+impl Fraction {
+    /// Exactly one half.
+    pub const HALF: Self = Self(0.5);
+}
+
 impl Positive {
     /// Exactly one.
     pub const ONE: Self = Self(1.0);

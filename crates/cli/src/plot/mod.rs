@@ -57,6 +57,7 @@ enum What {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let log = Log::open(&args.log)?;
     let story = Story::read(&log, &args.log)?;
+    story.scenario.one_angle()?;
     let there: Vec<_> = What::value_variants().iter().copied().filter(|what| what.is_in(&story)).collect();
     if let Some(missing) = args.what.iter().find(|what| !there.contains(what)) {
         let names: Vec<_> = there.iter().map(|what| what.name()).collect();

@@ -2,6 +2,7 @@
 
 pub mod cycle;
 pub mod elliptic;
+pub mod influence;
 pub mod modal;
 pub mod rigid_cycle;
 pub mod sampled_loop;

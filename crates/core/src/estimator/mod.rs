@@ -2,6 +2,7 @@
 
 mod envelope;
 pub mod kalman;
+mod rigid_rate;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,7 @@ use crate::quantity::{NonNegative, Positive};
 
 pub use envelope::{Envelope, Form, Observer};
 pub use kalman::{Drifting, Kalman};
+pub use rigid_rate::{RateFilter, RigidRate};
 
 /// The kinds of estimator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,6 +28,8 @@ pub enum Estimator {
     ExtendedKalman(Drifting),
     /// The same by an unscented Kalman filter.
     UnscentedKalman(Drifting),
+    /// The rigid rates of a spatial body.
+    RigidRate(RigidRate),
 }
 
 /// An ideal observer has nothing to set.
@@ -42,6 +46,7 @@ impl Estimator {
             Self::Kalman(_) => "kalman",
             Self::ExtendedKalman(_) => "extended_kalman",
             Self::UnscentedKalman(_) => "unscented_kalman",
+            Self::RigidRate(_) => "rigid_rate",
         }
     }
 
@@ -62,7 +67,7 @@ impl Estimator {
             | Self::Kalman(Kalman { modes, .. })
             | Self::ExtendedKalman(Drifting { modes, .. })
             | Self::UnscentedKalman(Drifting { modes, .. }) => modes.as_deref(),
-            Self::Truth(_) => None,
+            Self::Truth(_) | Self::RigidRate(_) => None,
         }
     }
 
@@ -72,14 +77,14 @@ impl Estimator {
             Self::Kalman(Kalman { angle_noise, .. })
             | Self::ExtendedKalman(Drifting { angle_noise, .. })
             | Self::UnscentedKalman(Drifting { angle_noise, .. }) => angle_noise.map(Positive::get),
-            Self::Envelope(_) | Self::Truth(_) => None,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) => None,
         }
     }
 
     /// How many states it estimates of a body with so many modes.
     pub fn states(&self, modes: usize) -> usize {
         match self {
-            Self::Envelope(_) | Self::Truth(_) => 0,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) => 0,
             Self::Kalman(_) => 2 + 2 * modes,
             Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => {
                 2 + 2 * modes + 2 * filter.ratios.count(modes)
@@ -93,7 +98,7 @@ impl Estimator {
             Self::Kalman(Kalman { assess, .. })
             | Self::ExtendedKalman(Drifting { assess, .. })
             | Self::UnscentedKalman(Drifting { assess, .. }) => *assess,
-            Self::Envelope(_) | Self::Truth(_) => None,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) => None,
         };
         window.map_or([0.0, f64::INFINITY], |window| window.map(NonNegative::get))
     }

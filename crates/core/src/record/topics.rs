@@ -220,6 +220,81 @@ rows! {
         /// 1 as long as the filter follows the body.
         lock: u64,
     }
+    /// The rates about one axis.
+    AxisRate {
+        /// Rate at the gyro, elastic part included (rad/s).
+        rate_rad_s: f64,
+        /// Rate of the body as if it were rigid (rad/s).
+        rigid_rad_s: f64,
+        /// Elastic part at the gyro (rad/s).
+        elastic_rad_s: f64,
+        /// What the gyro gave at the last cycle (rad/s).
+        measured_rad_s: f64,
+        /// Rigid rate that the law read at the last cycle (rad/s).
+        believed_rad_s: f64,
+    }
+    /// The rates of a spatial body, in its own axes.
+    Rates = "/rates" {
+        /// About x, y and z.
+        axes: Vec<AxisRate>,
+    }
+    /// The attitude of a spatial body.
+    Pointing = "/pointing" {
+        /// Real part of the quaternion that turns vectors of the body into inertial ones.
+        q_w: f64,
+        /// Its part along x.
+        q_x: f64,
+        /// Its part along y.
+        q_y: f64,
+        /// Its part along z.
+        q_z: f64,
+        /// Roll, the last of the rotations about z, y and x that make the attitude (rad).
+        roll_rad: f64,
+        /// Pitch, the second (rad).
+        pitch_rad: f64,
+        /// Yaw, the first (rad).
+        yaw_rad: f64,
+        /// Angle about the body's x beyond the target (rad).
+        roll_error_rad: f64,
+        /// Angle about the body's y beyond the target (rad).
+        pitch_error_rad: f64,
+        /// Angle about the body's z beyond the target (rad).
+        yaw_error_rad: f64,
+    }
+    /// One mass-normalised elastic mode.
+    Vibration {
+        /// Displacement (m sqrt(kg)).
+        displacement: f64,
+        /// Rate (m sqrt(kg)/s).
+        rate: f64,
+        /// Energy of motion and deformation (J).
+        energy_j: f64,
+    }
+    /// The elastic modes of a spatial body, in the order of the scenario.
+    Vibrations = "/vibrations" {
+        /// Each mode.
+        modes: Vec<Vibration>,
+    }
+    /// The energies of a spatial body.
+    Energy = "/energy" {
+        /// Of the rotation (J).
+        rotational_j: f64,
+        /// Of the elastic modes, of motion and deformation (J).
+        elastic_j: f64,
+        /// Absolute value of the angular momentum (N m s).
+        momentum_nm_s: f64,
+    }
+    /// A cycle in which jets fire: from its start on for these times, with the sign of the rate that they push to.
+    Jets = "/jets" {
+        /// About x (s).
+        roll_on_s: f64,
+        /// About y (s).
+        pitch_on_s: f64,
+        /// About z (s).
+        yaw_on_s: f64,
+        /// Propellant used until the end of these pulses, since the start of the run (kg).
+        fuel_kg: f64,
+    }
     /// One metric, or one element of it.
     Metric {
         /// Name, as `flexsc schema --metrics` explains it.

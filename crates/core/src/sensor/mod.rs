@@ -1,4 +1,6 @@
-//! How the angle is measured: continuously and exactly, or sampled with noise and a resolution.
+//! How the angle is measured: continuously and exactly, or sampled with noise and a resolution; the rates of a spatial body.
+
+mod gyro;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::random::Stream;
 use crate::time::Span;
+
+pub use gyro::{Gyro, Readout};
 
 /// The kinds of angle measurement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -16,6 +20,8 @@ pub enum Sensor {
     Continuous,
     /// A sample at each period, held until the next: guards are tested at samples.
     Sampled(Sampled),
+    /// The rates of a spatial body, in each cycle of its law.
+    Gyro(Gyro),
 }
 
 /// A sampled angle sensor.
@@ -43,7 +49,7 @@ impl Sensor {
     /// The period of the samples, if the sensor is sampled.
     pub fn period(&self) -> Option<Span> {
         match self {
-            Self::Continuous => None,
+            Self::Continuous | Self::Gyro(_) => None,
             Self::Sampled(sampled) => Some(sampled.period),
         }
     }
@@ -51,7 +57,7 @@ impl Sensor {
     /// Standard deviation of the gyro's rate (rad/s), if there is a gyro.
     pub fn rate_noise(&self) -> Option<f64> {
         match self {
-            Self::Continuous => None,
+            Self::Continuous | Self::Gyro(_) => None,
             Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
         }
     }
@@ -70,7 +76,7 @@ impl Sensor {
     /// The measurement of a true angle (rad).
     pub fn measure(&self, angle: f64, noise: &mut Stream) -> f64 {
         match self {
-            Self::Continuous => angle,
+            Self::Continuous | Self::Gyro(_) => angle,
             Self::Sampled(sampled) => sampled.measure(angle, noise),
         }
     }
