@@ -20,6 +20,7 @@ mod relay;
 mod rivals;
 mod rotation;
 mod spacecraft;
+mod spatial;
 mod stops;
 mod structure;
 mod study;

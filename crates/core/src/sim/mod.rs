@@ -55,16 +55,6 @@ impl Simulation {
         }
     }
 
-    /// The run, if it is one of a body with one angle.
-    pub fn planar(&mut self) -> Option<&mut PlanarRun> {
-        if let Self::Planar(run) = self { Some(run) } else { None }
-    }
-
-    /// The run, if it is one of a spatial body.
-    pub fn spatial(&mut self) -> Option<&mut SpatialRun> {
-        if let Self::Spatial(run) = self { Some(run) } else { None }
-    }
-
     /// Runs to the end of the scenario.
     pub fn run(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         self.run_until(Instant::END, record)
