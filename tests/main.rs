@@ -3,6 +3,7 @@
 mod adaptation;
 mod bad_manoeuvres;
 mod bad_scenarios;
+mod bad_spatial;
 mod campaigns;
 mod cli;
 mod cycles;
@@ -21,6 +22,7 @@ mod rivals;
 mod rotation;
 mod spacecraft;
 mod spatial;
+mod station;
 mod stops;
 mod structure;
 mod study;

@@ -7,6 +7,7 @@ mod gain;
 mod modes;
 mod outputs;
 mod phase_plane;
+mod spatial;
 mod story;
 mod torque;
 
@@ -18,6 +19,7 @@ use flexsc_core::record::Log;
 
 use crate::failure::Failure;
 use crate::figure::{Axis, Figure, Format, Layer, Shape, colour, round_to_nice, save};
+use spatial::Cycles;
 use story::{Motion, Story};
 
 #[derive(clap::Args)]
@@ -52,12 +54,19 @@ enum What {
     Gain,
     /// Each elastic mode: under a law that switches at the end of the run, else over all of it
     Modes,
+    /// Of a spatial body: angles beyond the target
+    Pointing,
+    /// Of a spatial body: rates, rigid and at the gyro
+    Rates,
+    /// Of a spatial body: energy of the elastic modes, and propellant
+    Energy,
+    /// Of a spatial body: for how long the jets fire
+    Jets,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let log = Log::open(&args.log)?;
     let story = Story::read(&log, &args.log)?;
-    story.scenario.one_angle()?;
     let there: Vec<_> = What::value_variants().iter().copied().filter(|what| what.is_in(&story)).collect();
     if let Some(missing) = args.what.iter().find(|what| !there.contains(what)) {
         let names: Vec<_> = there.iter().map(|what| what.name()).collect();
@@ -69,8 +78,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let chosen = if args.what.is_empty() { &there } else { &args.what };
+    let cycles = if story.scenario.spatial.is_some() {
+        Cycles::read(&story, &log, &args.log)?
+    } else {
+        Cycles::default()
+    };
     let moving = [What::PhasePlane, What::Envelope, What::Modes].iter().any(|what| chosen.contains(what));
-    let motion = if !story.switches() {
+    let motion = if story.scenario.spatial.is_some() {
+        Motion::default()
+    } else if !story.switches() {
         story.motion(&log, &args.log, 0.0, 0.0)?
     } else if moving {
         let late = phase_plane::late(&story).min(swings(&story).start);
@@ -83,26 +99,28 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let directory = args.out.as_deref().unwrap_or(beside);
     let name = args.log.file_stem().unwrap_or_default().to_string_lossy();
     let file = |what: &What| format!("{name}-{}", what.name());
-    save(directory, args.format, chosen, file, |what| what.figure(&story, &motion))
+    save(directory, args.format, chosen, file, |what| what.figure(&story, &motion, &cycles))
 }
 
 impl What {
     /// Whether a log has what the figure shows.
     fn is_in(self, story: &Story) -> bool {
+        let spatial = story.scenario.spatial.is_some();
         match self {
             Self::PhasePlane => story.switches(),
-            Self::Torque => true,
-            Self::Angle => !story.switches(),
+            Self::Torque => !spatial,
+            Self::Angle => !story.switches() && !spatial,
             Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
             Self::Envelope => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
             }
             Self::Gain => !story.steps.is_empty(),
             Self::Modes => !story.scenario.model.modes.is_empty(),
+            Self::Pointing | Self::Rates | Self::Energy | Self::Jets => spatial,
         }
     }
 
-    fn figure(self, story: &Story, motion: &Motion) -> Figure {
+    fn figure(self, story: &Story, motion: &Motion, cycles: &Cycles) -> Figure {
         match self {
             Self::PhasePlane => phase_plane::figure(story, motion),
             Self::Torque if story.switches() => torque::figure(story),
@@ -112,6 +130,10 @@ impl What {
             Self::Envelope => envelope::figure(story, motion),
             Self::Gain => gain::figure(story),
             Self::Modes => modes::figure(story, motion),
+            Self::Pointing => spatial::pointing(story, cycles),
+            Self::Rates => spatial::rates(story, cycles),
+            Self::Energy => spatial::energy(story, cycles),
+            Self::Jets => spatial::jets(story, cycles),
         }
     }
 

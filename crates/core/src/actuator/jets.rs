@@ -101,7 +101,10 @@ impl Jets {
             }
             if body.point(&thruster.point).is_none() {
                 let (points, found) = (body.point_names(), &thruster.point);
-                return refused("point", format!("must be one of the body's points, {points}, got `{found}`"));
+                return refused(
+                    "point",
+                    format!("must be one of the body's points, {points}, got `{found}`"),
+                );
             }
         }
         let Groups { roll, pitch, yaw } = &self.groups;
@@ -159,6 +162,12 @@ impl Jets {
         if quantum > 0.0 {
             on = libm::round(on / quantum) * quantum;
         }
-        if on > most { most } else if on < minimum { 0.0 } else { on }
+        if on > most {
+            most
+        } else if on < minimum {
+            0.0
+        } else {
+            on
+        }
     }
 }

@@ -42,7 +42,8 @@ impl Influences {
             dampings: modes.iter().map(|mode| mode.damping.get()).collect(),
             influences: per_axis(&|axis, mode, force| seen[mode].1[axis] * force / signed(axis)),
             energies_j_s2: per_axis(&|_, _, force| 0.5 * force * force),
-            accelerations_rad_s2: [0, 1, 2].map(|axis| [0, 1].map(|sign| spatial.groups[axis][sign].acceleration)),
+            accelerations_rad_s2: [0, 1, 2]
+                .map(|axis| [0, 1].map(|sign| spatial.groups[axis][sign].acceleration)),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! What a run of a spatial body comes to: propellant, firings, elastic energy, pointing.
 
 use super::{
-    BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, POINTING_END, Told,
-    Value,
+    BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, POINTING_END,
+    Told, Value,
 };
 use crate::record::Cycle;
 use crate::scenario::Scenario;

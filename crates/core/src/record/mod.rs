@@ -22,8 +22,9 @@ pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
 pub use recover::recover;
 pub use topics::{
     Adaptation, Arrival, Attitude, AxisRate, Command, Energy, Envelope, Estimate, GoalMotion, Jets, Law,
-    Metric, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params,
-    Pointing, Rate, Rates, Residual, TOPICS, Torque, Trigger, Vibration, Vibrations, WheelMotion, WindowMean,
+    Metric, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs,
+    Params, Pointing, Rate, Rates, Residual, TOPICS, Torque, Trigger, Vibration, Vibrations, WheelMotion,
+    WindowMean,
 };
 pub use trace::Trace;
 
@@ -87,6 +88,8 @@ pub struct Cycle {
     pub pulses: u64,
     /// Energy of the elastic modes (J).
     pub elastic_energy_j: f64,
+    /// Rigid rates (rad/s).
+    pub rigid_rate_rad_s: [f64; 3],
     /// Elastic part of the rates at the gyro (rad/s).
     pub elastic_rate_rad_s: [f64; 3],
     /// Angles beyond the target (rad).

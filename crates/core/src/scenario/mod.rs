@@ -285,10 +285,9 @@ impl Scenario {
 
     /// A viewer layout for logs of this kind of scenario.
     pub fn layout(&self) -> Option<&'static str> {
-        if self.spatial.is_some() {
-            return None;
-        }
-        Some(if self.law.switches() {
+        Some(if self.spatial.is_some() {
+            include_str!("../../../../scenarios/layouts/spatial.json")
+        } else if self.law.switches() {
             include_str!("../../../../scenarios/layouts/relay.json")
         } else {
             include_str!("../../../../scenarios/layouts/rotation.json")

@@ -47,7 +47,9 @@ impl SpatialLoop {
         let estimator = match &scenario.estimator {
             None => None,
             Some(Estimator::RigidRate(estimator)) => Some(estimator.clone()),
-            Some(_) => return refused("estimator", "must be `rigid_rate` or left out for a `[body.spatial]`"),
+            Some(_) => {
+                return refused("estimator", "must be `rigid_rate` or left out for a `[body.spatial]`");
+            }
         };
         for (there, key) in [
             (scenario.adaptation.is_some(), "adaptation"),
@@ -61,7 +63,10 @@ impl SpatialLoop {
                     "disturbance" => ": it has a `body.spatial.disturbance`",
                     _ => "",
                 };
-                return refused(key, &format!("is for bodies with one angle, not for a `[body.spatial]`{instead}"));
+                return refused(
+                    key,
+                    &format!("is for bodies with one angle, not for a `[body.spatial]`{instead}"),
+                );
             }
         }
         if body.point(&gyro.point).is_none() {

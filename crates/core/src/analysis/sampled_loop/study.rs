@@ -15,7 +15,10 @@ impl Loop {
     pub fn of(scenario: &Scenario) -> Result<(Self, &Pd), (String, String)> {
         let refused = |key: &str, why: &str| Err((key.to_owned(), why.to_owned()));
         if scenario.spatial.is_some() {
-            return refused("body.spatial", "turns about three axes: the loop that is analysed has one angle");
+            return refused(
+                "body.spatial",
+                "turns about three axes: the loop that is analysed has one angle",
+            );
         }
         let Law::Pd(law) = &scenario.law else {
             return refused("law", "must be `pd`: the loop that is analysed is a sampled one");

@@ -17,9 +17,8 @@ pub struct Elastic {
 impl Elastic {
     /// The modes of a body that is often moved on by `cycle` seconds.
     pub fn new(body: &Spatial, cycle: f64) -> Self {
-        let flow = |mode: &SpatialMode| {
-            Flow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping))
-        };
+        let flow =
+            |mode: &SpatialMode| Flow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping));
         let flows: Vec<Flow> = body.modes.iter().map(flow).collect();
         let transitions = flows.iter().map(|flow| flow.transition(cycle)).collect();
         Self { flows, cycle, transitions }

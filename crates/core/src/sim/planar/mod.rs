@@ -10,9 +10,9 @@ mod plant;
 mod track;
 mod watch;
 
+use super::SimulationError;
 use crate::belief::Belief;
 use crate::body::{Sight, State};
-use super::SimulationError;
 use crate::law::{Cause, Goal, Hold, Law};
 use crate::random::{Seed, Stream};
 use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
