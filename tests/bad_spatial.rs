@@ -67,7 +67,8 @@ fn parts_of_a_loop_fit_each_other() {
     let law = "[law.pd]\nk_p = 1.0\nk_d = 1.0\nperiod = 0.1\n";
     let part = |from: &str, to: &str| {
         let from = FREE.find(from).expect("a part");
-        &FREE[from..to.is_empty().then_some(FREE.len()).unwrap_or_else(|| FREE.find(to).expect("a part"))]
+        let to = if to.is_empty() { FREE.len() } else { FREE.find(to).expect("a part") };
+        &FREE[from..to]
     };
     let (gyro, phase_plane, jets) =
         (part("[sensor", "[law"), part("[law", "[actuator"), part("[actuator", ""));
