@@ -1,14 +1,15 @@
 """Golden numbers of tests/spatial.rs: `python3 tests/golden/station_oracle.py` prints them.
 
 Modes by SciPy's matrix exponential, tumbling by Taylor series of 30 digits (mpmath), and the whole loop of
-scenarios/iss-manoeuvre.toml without noise by Runge-Kutta steps of 0.01 s, on which all pulses begin and end. Takes about a minute.
+scenarios/iss-manoeuvre.toml without noise by Runge-Kutta steps of 0.01 s, on which all pulses begin and end.
+It takes about a minute.
 """
 
 import pathlib
-import tomllib
 
 import mpmath
 import numpy as np
+import tomllib
 from scipy.linalg import expm
 
 
@@ -33,6 +34,10 @@ def modes():
     print("three pieces:", state[:2])
 
 
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
 def tumbling():
     mpmath.mp.dps = 30
     inertia = mpmath.matrix([[5, 0.4, -0.2], [0.4, 3, 0.1], [-0.2, 0.1, 2]])
@@ -42,8 +47,7 @@ def tumbling():
         def of(_, y):
             w = mpmath.matrix(y[4:])
             momentum = inertia * w
-            cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-            turn = inverse * mpmath.matrix([m + t for m, t in zip(cross(momentum, w), torque)])
+            turn = inverse * mpmath.matrix([m + t for m, t in zip(cross(momentum, w), torque, strict=True)])
             q, v = y[0], y[1:4]
             spin = cross(v, w)
             vector = [(q * w[i] + spin[i]) / 2 for i in range(3)]
@@ -52,7 +56,8 @@ def tumbling():
         return of
 
     for torque in [(0, 0, 0), (0.02, -0.01, 0.03)]:
-        solution = mpmath.odefun(rate([mpmath.mpf(str(t)) for t in torque]), 0, [1, 0, 0, 0, mpmath.mpf("0.3"), mpmath.mpf("-0.2"), mpmath.mpf("0.5")])
+        start = [1, 0, 0, 0, mpmath.mpf("0.3"), mpmath.mpf("-0.2"), mpmath.mpf("0.5")]
+        solution = mpmath.odefun(rate([mpmath.mpf(str(t)) for t in torque]), 0, start)
         print("tumbling", torque, "at 40 s:", [mpmath.nstr(v, 17) for v in solution(40)])
 
 
@@ -60,7 +65,9 @@ def quaternion(roll, pitch, yaw):
     def times(a, b):
         return np.r_[a[0] * b[0] - a[1:] @ b[1:], a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])]
 
-    about = lambda axis, angle: np.r_[np.cos(angle / 2), np.sin(angle / 2) * np.eye(3)[axis]]
+    def about(axis, angle):
+        return np.r_[np.cos(angle / 2), np.sin(angle / 2) * np.eye(3)[axis]]
+
     return times(times(about(2, yaw), about(1, pitch)), about(0, roll)), times
 
 
@@ -83,7 +90,8 @@ def station():
                 thrust += each["thrust"]
                 for i, mode in enumerate(body["modes"]):
                     shape = mode["shapes"][each["point"]]
-                    forces[i] += np.dot(shape["translation"], force) + np.dot(shape["rotation"], np.cross(offset, force))
+                    forces[i] += np.dot(shape["translation"], force)
+                    forces[i] += np.dot(shape["rotation"], np.cross(offset, force))
             groups[axis, sign] = torque, forces, thrust / (jets["specific_impulse"] * 9.80665)
     strength = {key: abs(torque[key[0]]) / inertia[key[0], key[0]] for key, (torque, _, _) in groups.items()}
 
@@ -106,7 +114,10 @@ def station():
     estimate, executed, queued, firing = np.zeros(3), np.zeros(3), np.zeros(3), [False] * 3
     part = study["estimator"]["rigid_rate"]["correction"]
     pulses, fuel, peak, first = 0, 0.0, 0.0, []
-    changes = lambda on: np.array([on[a] * strength[a, 1 if on[a] >= 0 else -1] for a in range(3)])
+
+    def changes(on):
+        return np.array([on[a] * strength[a, 1 if on[a] >= 0 else -1] for a in range(3)])
+
     last = round(study["duration"] / cycle)
     for k in range(last + 1):
         target = goal if k * cycle >= begins - 1e-9 else rest

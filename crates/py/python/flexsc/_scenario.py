@@ -88,8 +88,8 @@ class Scenario:
         the moment of inertia (kg m²), and `free_frequency` and `clamped_frequency` (rad/s), with the hub free
         and with the hub held; NaN where there is no such body.
 
-        Of a spatial body `frequency`, `period` and `damping`, and of shape (modes, 3) `influence`, the jump of
-        the elastic rate at the gyro for each jump of the rigid rate that the jets give about x, y and z.
+        Of a spatial body `frequency`, `period` and `damping`, and `influence` of shape (modes, 3): the jump
+        of the elastic rate at the gyro for each jump of the rigid rate that the jets give about x, y and z.
         """
         import numpy as np
 
