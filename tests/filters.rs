@@ -1,173 +1,214 @@
-//! Kalman filters against a body that they do not know: many runs with drifting frequencies, and in the loop.
+//! Kalman filters in the loop, over many runs, and what they make of nonsense.
+//!
+//! The numbers that runs are held against come from another implementation of the same filter, in Python, over 200 runs.
 
-use flexsc_core::Scenario;
-use flexsc_core::body::Coupled;
-use flexsc_core::estimator::Estimator;
-use flexsc_core::estimator::kalman::{Filter, Prediction, Setting};
-use flexsc_core::random::{Seed, Stream};
-use flexsc_core::record::{Column, Log};
+use flexsc_core::campaign::Campaign;
+use flexsc_core::metrics::Metrics;
+use flexsc_core::record::{Column, Columns, Detail, Log, Trace};
+use flexsc_core::{Scenario, Simulation};
+use rayon::prelude::*;
 
-use crate::study::metrics;
+use crate::study::{metrics, scenario};
 use crate::util::Dir;
 
-/// The spacecraft of the third seed paper: modal gains, and frequencies that fall to a third in 200 s.
-const GAINS: [f64; 4] = [1.44, 0.21, 0.165, 0.72];
+const PERIOD: f64 = 0.3;
 const BODY: &str = "modes = [{ frequency = 0.3, gain = 1.44 }, { frequency = 0.8, gain = 0.21 }, \
                     { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
-const PERIOD: f64 = 0.3;
-const SAMPLES: usize = 667;
-/// Gain and back-EMF of the wheel (rad/s², 1/s), and the density of what else moves the body.
-const WHEEL: f64 = 5e-4;
-const BACK_EMF: f64 = 1e-4;
-const KICKS: f64 = 1e-13;
+/// The run of the tests with the base law alone: the filter watches.
+const WATCHING: (&str, &str) = ("law.pd.extra", "{ gain = 0.0 }");
 
-fn ratio(t: f64) -> f64 {
-    1.0 - t.min(200.0) / 300.0
+/// The spacecraft whose frequencies fall to a third in 200 s, with these keys of its filter set.
+fn ekf(set: &[(&str, &str)]) -> Scenario {
+    let full = |key: &str| key.replace("filter.", "estimator.extended_kalman.");
+    let keys: Vec<(String, &str)> = set.iter().map(|(key, value)| (full(key), *value)).collect();
+    let keys: Vec<_> = keys.iter().map(|(key, value)| (key.as_str(), *value)).collect();
+    scenario("wheel-ekf", &keys)
 }
 
-fn scenario(noise: f64, angle: f64, estimator: &str) -> Scenario {
-    let text = format!(
-        "duration = 200.0\n[law.open]\n[body.planar]\nangle = {angle}\n{BODY}\n[sensor.sampled]\nperiod = {PERIOD}\n\
-         noise = {noise}\n[estimator.{estimator}"
-    );
-    Scenario::parse("filters", &text).unwrap_or_else(|error| panic!("{error}"))
+/// The same with an unscented filter.
+fn unscented(set: &[(&str, &str)]) -> Scenario {
+    let text = ekf(set).to_toml().replace("estimator.extended_kalman", "estimator.unscented_kalman");
+    Scenario::parse("unscented", &text).expect("valid")
 }
 
-fn filter(scenario: &Scenario, draws: &mut Stream) -> Filter {
-    let setting = Setting {
-        body: &scenario.model,
-        back_emf: (BACK_EMF, true),
-        period: PERIOD,
-        angle_noise: scenario.sensor.angle_noise(),
-        rate_noise: None,
-    };
-    match &scenario.estimator {
-        Some(Estimator::ExtendedKalman(spec)) => spec.filter(&setting, Prediction::Extended, draws),
-        Some(Estimator::UnscentedKalman(spec)) => spec.filter(&setting, Prediction::Unscented, draws),
-        other => panic!("{other:?}"),
-    }
+/// The metrics of so many runs.
+fn runs(scenario: &Scenario, count: u64) -> Vec<Metrics> {
+    let study = Campaign::new(scenario.clone(), "filters", None).expect("a campaign");
+    let run = |number| Campaign::simulate(&study.run(number).expect("a run"), ()).expect("metrics");
+    (0..count).into_par_iter().map(run).collect()
 }
 
-/// What many runs come to, from 30 s on.
-#[derive(Debug)]
-struct Tally {
-    /// Root mean square error of the dominant frequency (rad/s), and the median and largest of the runs' largest errors.
-    rms: f64,
-    median: f64,
-    worst: f64,
-    nees: f64,
-    nis: f64,
-    lost: u32,
-    /// Root mean square error at the end, and the standard deviation that the filter claims.
-    end: (f64, f64),
+/// A metric of all runs, the smallest first.
+fn sorted(runs: &[Metrics], name: &str) -> Vec<f64> {
+    let mut values: Vec<f64> = runs.iter().map(|run| run.number(name).expect("a metric")).collect();
+    values.sort_by(f64::total_cmp);
+    values
 }
 
-/// Runs of a filter beside a body with drifting frequencies under a sampled PD law.
-fn monte_carlo(runs: u64, noise: f64, angle: f64, estimator: &str) -> Tally {
-    let scenario = scenario(noise, angle, estimator);
-    // The exponential at the middle of each half period: off by 4e-8 rad, where the sensor is off by 1e-5 rad.
-    let half = |k: usize| {
-        let middle = (k as f64 + 0.5) * 0.5 * PERIOD;
-        Coupled::new(&scenario.model, BACK_EMF, true, &[ratio(middle); 4]).discrete(0.5 * PERIOD)
-    };
-    let path: Vec<_> = (0..2 * SAMPLES).map(half).collect();
-    let mut tally =
-        Tally { rms: 0.0, median: 0.0, worst: 0.0, nees: 0.0, nis: 0.0, lost: 0, end: (0.0, 0.0) };
-    let (mut count, mut largest) = (0.0, Vec::new());
-    for run in 0..runs {
-        let seed = Seed { scenario: 1, run };
-        let (mut sensor, mut kicks) = (seed.stream("sensor"), seed.stream("kicks"));
-        let mut filter = filter(&scenario, &mut seed.stream("prior"));
-        let mut z = scenario.model.start().to_vector(&[0.3, 0.8, 1.0, 2.0]);
-        let (mut before, mut moment, mut worst) = (None, 0.0, 0.0_f64);
-        for k in 0..=SAMPLES {
-            let t = k as f64 * PERIOD;
-            let angle = z.iter().step_by(2).sum::<f64>() + noise * sensor.normal();
-            if k > 0 {
-                filter.predict(moment);
-            }
-            let told = filter.update(angle, 0.0);
-            moment = -WHEEL * (7.5 * angle + 275.0 * (angle - before.unwrap_or(angle)));
-            before = Some(angle);
-            if t > 30.0 {
-                let error = filter.frequency(0).0 - 0.3 * ratio(t);
-                let mut truth = z.as_slice().to_vec();
-                truth.extend([ratio(t), if t < 200.0 { -1.0 / 300.0 } else { 0.0 }]);
-                count += 1.0;
-                tally.rms += error * error;
-                tally.nees += filter.nees(&truth) / 12.0;
-                tally.nis += told.nis.expect("a measurement");
-                worst = worst.max(error.abs());
-            }
-            if k == SAMPLES {
-                let (w, sd) = filter.frequency(0);
-                tally.end.0 += (w - 0.1) * (w - 0.1) / runs as f64;
-                tally.end.1 += sd * sd / runs as f64;
-                break;
-            }
-            for (transition, push) in &path[2 * k..2 * k + 2] {
-                z = transition * &z + push * moment;
-            }
-            // A quiet body has nothing but the noise of its sensor.
-            let kick = if scenario.model.angle.get() == 0.0 {
-                0.0
-            } else {
-                (KICKS * PERIOD).sqrt() * kicks.normal()
-            };
-            z[1] += kick;
-            GAINS.iter().enumerate().for_each(|(mode, gain)| z[3 + 2 * mode] += gain * kick);
-        }
-        tally.lost += u32::from(filter.is_lost());
-        largest.push(worst);
-    }
-    largest.sort_by(f64::total_cmp);
-    Tally {
-        rms: (tally.rms / count).sqrt(),
-        median: largest[largest.len() / 2],
-        worst: largest[largest.len() - 1],
-        nees: tally.nees / count,
-        nis: tally.nis / count,
-        lost: tally.lost,
-        end: (tally.end.0.sqrt(), tally.end.1.sqrt()),
-    }
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Root mean square over all samples of all runs.
+fn rms(runs: &[Metrics]) -> f64 {
+    let squares: Vec<f64> = sorted(runs, "frequency_error_rms_rad_s").iter().map(|rms| rms * rms).collect();
+    mean(&squares).sqrt()
 }
 
 #[test]
 fn extended_filter_follows_the_drift() {
-    // An independent implementation over 200 runs: rms 0.00111, median of the largest 0.0034, worst 0.0068, NEES/n 1.01,
-    // NIS 1.012, no loss. Runs scatter by about a third of their rms, so that 100 of them are within 10 %.
-    let tally = monte_carlo(100, 1e-5, 0.06, "extended_kalman]\nprior = 'drawn'");
-    assert!((tally.rms / 1.11e-3 - 1.0).abs() < 0.15, "{tally:?}");
-    assert!((tally.median / 3.4e-3 - 1.0).abs() < 0.15 && tally.worst < 0.01, "{tally:?}");
-    assert!((tally.nees - 1.01).abs() < 0.15, "{tally:?}");
-    assert!((tally.nis - 1.012).abs() < 0.03, "{tally:?}");
-    assert_eq!(tally.lost, 0, "{tally:?}");
-    // The filter's claim is honest where the ramp ends.
-    assert!(tally.end.0 < 1.3 * tally.end.1, "{tally:?}");
+    // Over 200 runs: rms 0.00111, largest error 0.0034 in the median and 0.0068 at most, NEES over the number of states
+    // 1.01, NIS 1.012, no loss. A run's rms scatters by a fifth, and over 1200 runs 0.7 % begin so far off that theirs
+    // is above 0.003.
+    let runs = runs(&ekf(&[WATCHING, ("duration", "200")]), 200);
+    let follows = |run: &Metrics| run.number("frequency_error_rms_rad_s").expect("a metric") < 3e-3;
+    let (runs, astray): (Vec<_>, Vec<_>) = runs.into_iter().partition(follows);
+    assert!(astray.len() <= 4, "{astray:?}");
+    let largest = sorted(&runs, "frequency_error_max_rad_s");
+    assert!((rms(&runs) / 1.11e-3 - 1.0).abs() < 0.15, "{}", rms(&runs));
+    assert!(
+        (largest[100] / 3.4e-3 - 1.0).abs() < 0.1 && *largest.last().expect("runs") < 0.015,
+        "{largest:?}"
+    );
+    let [nees, nis, inside] =
+        ["nees_mean", "nis_mean", "nis_inside_95"].map(|name| mean(&sorted(&runs, name)));
+    assert!((nees - 1.01).abs() < 0.15, "{nees}");
+    assert!((nis - 1.012).abs() < 0.03 && (inside - 0.94).abs() < 0.02, "{nis} {inside}");
+    assert_eq!(sorted(&runs, "lock_lost").last(), Some(&0.0));
 }
 
 #[test]
 fn unscented_filter_follows_it_and_is_less_sure() {
-    let tally = monte_carlo(40, 1e-5, 0.06, "unscented_kalman]\nprior = 'drawn'");
-    assert!((tally.rms / 1.11e-3 - 1.0).abs() < 0.2, "{tally:?}");
-    assert!((0.75..1.0).contains(&tally.nees) && tally.lost == 0, "{tally:?}");
+    let runs = runs(&unscented(&[WATCHING, ("duration", "200")]), 60);
+    assert!((rms(&runs) / 1.11e-3 - 1.0).abs() < 0.2, "{}", rms(&runs));
+    let nees = mean(&sorted(&runs, "nees_mean"));
+    assert!((0.75..1.0).contains(&nees) && sorted(&runs, "lock_lost")[59] == 0.0, "{nees}");
+}
+
+#[test]
+fn scheduled_gain_follows_the_filter() {
+    // The Python implementation: median 171.9 s, all between 138 s, where a swing just stays within the band, and 174 s.
+    // The page that this study comes from says 173.4 s. With the mode known the loop settles in 172.0 s.
+    let runs = runs(&ekf(&[]), 60);
+    let settling = sorted(&runs, "settling_time_s");
+    assert!((settling[30] - 172.0).abs() < 0.8, "{settling:?}");
+    assert!(settling[0] > 138.0 && settling[59] < 200.0, "{settling:?}");
+}
+
+#[test]
+fn robust_schedule_beats_the_middle_and_none() {
+    // The same draws for all three: 98 % of the runs must settle sooner, in the median by a fifth.
+    let robust = scenario("wheel-robust-gain", &[]);
+    let middle = scenario("wheel-scheduled-gain", &[]);
+    let table = |scenario: &Scenario| scenario.to_toml().parse::<toml::Table>().expect("TOML");
+    let with = |extra: toml::Value| {
+        let mut table = table(&robust);
+        table["law"]["pd"].as_table_mut().expect("a law").insert("extra".to_owned(), extra);
+        Scenario::parse("other", &table.to_string()).expect("valid")
+    };
+    let none = toml::Value::Table("gain = 0.0".parse().expect("TOML"));
+    let settling = |scenario: &Scenario| -> Vec<f64> {
+        let of = |run: &Metrics| run.number("settling_time_s").expect("a metric");
+        runs(scenario, 50).iter().map(of).collect()
+    };
+    let ours = settling(&robust);
+    for other in [with(table(&middle)["law"]["pd"]["extra"].clone()), with(none)] {
+        let theirs = settling(&other);
+        let sooner = ours.iter().zip(&theirs).filter(|(a, b)| a < b).count();
+        let median = |mut times: Vec<f64>| {
+            times.sort_by(f64::total_cmp);
+            times[times.len() / 2]
+        };
+        assert!(sooner >= 49, "{sooner}");
+        assert!(median(ours.clone()) < 0.8 * median(theirs.clone()), "{ours:?} {theirs:?}");
+    }
 }
 
 #[test]
 fn bad_priors_lose_the_body_and_the_filter_says_so() {
-    // The independent one lost 3 of 200 with the extended filter and 2 of 200 with the unscented one.
-    let spec = "prior = 'drawn'\nratio_sd = 0.1";
-    let extended = monte_carlo(200, 1e-5, 0.06, &format!("extended_kalman]\n{spec}"));
-    assert!((1..=14).contains(&extended.lost) && extended.worst > 0.1, "{extended:?}");
+    // The other implementation lost 3 of 200 for good.
+    let runs = runs(&ekf(&[WATCHING, ("duration", "200"), ("filter.ratio_sd", "0.1")]), 200);
+    let lost = sorted(&runs, "lock_lost").iter().sum::<f64>();
+    assert!((1.0..=14.0).contains(&lost), "{lost}");
+    // Those that kept the body are as good as with a good prior.
+    let kept: Vec<Metrics> = runs.into_iter().filter(|run| run.number("lock_lost") == Some(0.0)).collect();
+    let median = sorted(&kept, "frequency_error_rms_rad_s")[kept.len() / 2];
+    assert!(median < 1.5e-3, "{median}");
 }
 
 #[test]
 fn quiet_body_teaches_nothing() {
     // Without the gate the filter claims a hundredth of a rad/s while it is off by more than a tenth.
-    let open = monte_carlo(30, 1e-5, 0.0, "extended_kalman]\nprior = 'drawn'\ngate = 0.0");
-    assert!(open.end.0 > 0.08 && open.end.1 < 0.03, "{open:?}");
-    let gated = monte_carlo(30, 1e-5, 0.0, "extended_kalman]\nprior = 'drawn'");
-    assert!(gated.end.0 < 1.5 * gated.end.1, "{gated:?}");
+    let end = |gate: &str| {
+        let quiet =
+            [("body.planar.angle", "0.0"), ("disturbance", "[]"), ("duration", "200"), ("filter.gate", gate)];
+        let study = Campaign::new(open(&quiet), "quiet", None).expect("a campaign");
+        let each = |number| {
+            let mut trace = Trace::new(Detail::Full);
+            Simulation::new(&study.run(number).expect("a run").scenario, number)
+                .run(&mut trace)
+                .expect("a run");
+            let estimates = trace.topic("/estimator").expect("a topic");
+            let last = |name: &str| *estimates.numbers(name).and_then(|c| c.last()).expect("a row");
+            let error = last("ratio") - 1.0 / 3.0;
+            (0.3 * error, 0.3 * last("ratio_sd"))
+        };
+        let ends: Vec<(f64, f64)> = (0..30).into_par_iter().map(each).collect();
+        let rms =
+            |of: fn(&(f64, f64)) -> f64| (ends.iter().map(|end| of(end).powi(2)).sum::<f64>() / 30.0).sqrt();
+        (rms(|end| end.0), rms(|end| end.1))
+    };
+    let (error, claim) = end("0.0");
+    assert!(error > 0.08 && claim < 0.03, "{error} {claim}");
+    let (error, claim) = end("10.0");
+    assert!(error < 1.5 * claim, "{error} {claim}");
+}
+
+/// The spacecraft without a law.
+fn open(set: &[(&str, &str)]) -> Scenario {
+    let text = ekf(set).to_toml();
+    let mut table: toml::Table = text.parse().expect("TOML");
+    table.insert("law".to_owned(), toml::Value::Table("open = {}".parse().expect("TOML")));
+    Scenario::parse("open", &table.to_string()).expect("valid")
+}
+
+/// Whether every number in these columns is finite.
+fn finite(columns: &Columns) -> bool {
+    columns.columns.iter().all(|(_, column)| match column {
+        Column::Numbers(numbers) => numbers.iter().all(|number| number.is_finite()),
+        Column::Rows(_, rows) => finite(rows),
+        _ => true,
+    })
+}
+
+#[test]
+fn nonsense_is_reported_as_a_lost_lock() {
+    let fault = |fault: &'static str| ("sensor.sampled.faults", fault);
+    let ratio = |ratio: &'static str| ("filter.ratio", ratio);
+    let cases = [
+        ("silent from the start", fault("[{ silent = { from = 0.0 } }]"), true),
+        ("silent", fault("[{ silent = { from = 60.0 } }]"), true),
+        ("silent for a while", fault("[{ silent = { from = 60.0, to = 63.0 } }]"), false),
+        ("stuck", fault("[{ stuck = { from = 60.0 } }]"), true),
+        ("frequencies wrong by a half", ratio("1.5"), true),
+        ("frequencies wrong by a half downwards", ratio("0.5"), true),
+    ];
+    for (what, key, lost) in cases {
+        // A wrong ratio is drawn around, but by 3 % only.
+        let set = &[key];
+        for scenario in [ekf(set), unscented(set)] {
+            let mut trace = Trace::new(Detail::Full);
+            Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
+            for topic in ["/estimator", "/attitude", "/torque"] {
+                let columns = trace.topic(topic).expect("a topic");
+                assert!(finite(columns), "{what}: {topic}");
+            }
+            let metrics = metrics(scenario);
+            let found = metrics.number("lock_lost_at_s").expect("a metric");
+            assert_eq!(metrics.number("lock_lost"), Some(f64::from(u8::from(lost))), "{what}: {metrics:?}");
+            assert_eq!(found.is_nan(), !lost, "{what}: {found}");
+        }
+    }
 }
 
 /// A body in a loop of a PD law, with a filter that knows its frequencies or not.

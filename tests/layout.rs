@@ -57,5 +57,31 @@ fn every_path_is_a_field_of_a_log() {
     check("relay-adaptive", "--set duration=1200", include_str!("../scenarios/layouts/relay.json"));
     check("iss-manoeuvre", "--set duration=20", include_str!("../scenarios/layouts/spatial.json"));
     check("rotation-robust", "--set duration=20", include_str!("../scenarios/layouts/rotation.json"));
+    let rotor = "--set actuator.wheel.rotor={inertia=1e-4}";
+    check(
+        "wheel-ekf",
+        &format!("--set duration=20 {rotor}"),
+        include_str!("../scenarios/layouts/wheel.json"),
+    );
     check("rotation-nonlinear", "--set duration=13", include_str!("../scenarios/layouts/rotation.json"));
+}
+
+#[test]
+fn a_log_holds_the_layout_of_its_kind() {
+    let dir = Dir::with(&["wheel-ekf", "wheel-fast-mode", "rotation-sine", "relay-fixed"]);
+    let layouts = [
+        ("wheel-ekf", include_str!("../scenarios/layouts/wheel.json")),
+        ("wheel-fast-mode", include_str!("../scenarios/layouts/wheel.json")),
+        ("rotation-sine", include_str!("../scenarios/layouts/rotation.json")),
+        ("relay-fixed", include_str!("../scenarios/layouts/relay.json")),
+    ];
+    for (name, layout) in layouts {
+        dir.run(&format!("simulate {name}.toml --set duration=1")).exits(0);
+        let bytes = dir.read(&format!("{name}.mcap"));
+        let summary = mcap::Summary::read(&bytes).expect("whole").expect("a summary");
+        let held = summary.attachment_indexes.iter().any(|index| {
+            mcap::read::attachment(&bytes, index).expect("whole").data.as_ref() == layout.as_bytes()
+        });
+        assert!(held, "{name}");
+    }
 }

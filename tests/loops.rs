@@ -359,9 +359,10 @@ fn the_command_tells_regions_schedules_and_maps() {
     assert!((rows[1]["midpoint"].as_f64().expect("a gain") - 0.1).abs() < 1e-9);
     dir.run(&format!("tune fitted.toml {few}")).exits(0).says(&["rad/s", "0.2000", "1.000", "180.3"]);
     // The schedule is one that a scenario takes.
+    let known = "[sensor.sampled]\nperiod = 0.3\n[estimator.truth]\n";
     let schedule =
         dir.run(&format!("tune fitted.toml --schedule {few}")).exits(0).prints(&["[law.pd.extra]"]);
-    let scheduled = Scenario::parse("scheduled.toml", &format!("{FITTED}{schedule}")).expect("valid");
+    let scheduled = Scenario::parse("scheduled.toml", &format!("{FITTED}{known}{schedule}")).expect("valid");
     let law = Loop::of(&scheduled).expect("a loop").1;
     assert!((law.extra_gain(0.2) - 0.1).abs() < 1e-9 && (law.extra_gain(1.0) - 1.4).abs() < 1e-9);
     let sure =

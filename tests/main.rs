@@ -29,3 +29,4 @@ mod study;
 mod util;
 mod waveforms;
 mod wheel;
+mod wheel_figures;

@@ -123,7 +123,7 @@ fn filters(c: &mut Criterion) {
             b.iter(|| {
                 sample += 1.0;
                 filter.predict(black_box(1e-6 * libm::cos(0.03 * sample)));
-                filter.update(black_box(0.01 + 2e-3 * libm::cos(0.09 * sample)), 0.0)
+                filter.update(Some((black_box(0.01 + 2e-3 * libm::cos(0.09 * sample)), 0.0)))
             });
         });
     }

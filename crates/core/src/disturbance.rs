@@ -1,9 +1,10 @@
-//! Disturbance torques: constant from one time to another.
+//! Disturbance torques from one time to another: constant, and random.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Finite, NonNegative};
+use crate::random::Stream;
 use crate::time::{Instant, Span};
 
 /// A disturbance torque.
@@ -11,7 +12,14 @@ use crate::time::{Instant, Span};
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
     /// Torque (N m).
+    #[serde(default)]
     pub torque: Finite,
+    /// Spectral density of a white noise in the torque beside it ((N m)² s): each draw is held for `period`.
+    #[serde(default)]
+    pub noise: NonNegative,
+    /// How long a draw of the noise is held (s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<Span>,
     /// When it begins (s).
     #[serde(default)]
     pub from: NonNegative,
@@ -26,10 +34,48 @@ impl Disturbance {
         [Some(self.from), self.to].into_iter().flatten().map(at)
     }
 
+    /// Whether it acts at an instant.
+    fn acts(&self, now: Instant) -> bool {
+        at(self.from) <= now && self.to.is_none_or(|to| now < at(to))
+    }
+}
+
+/// A disturbance at work.
+#[derive(Clone, Debug)]
+pub struct Disturbing {
+    what: Disturbance,
+    draws: Stream,
+    /// The draw that is held (N m), and when the next is due.
+    drawn: f64,
+    next: Option<Instant>,
+}
+
+impl Disturbing {
+    /// A disturbance before its start, with its own stream of draws.
+    pub fn new(disturbance: &Disturbance, draws: Stream) -> Self {
+        let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
+        Self { next: noisy.then(|| at(disturbance.from)), what: disturbance.clone(), draws, drawn: 0.0 }
+    }
+
+    /// When the next draw is due.
+    pub fn due(&self) -> Option<Instant> {
+        self.next
+    }
+
+    /// Draws the noise anew if that is due.
+    pub fn serve(&mut self, now: Instant) {
+        let Some(period) = self.what.period else { return };
+        while let Some(next) = self.next.filter(|next| *next <= now) {
+            // Of the power of white noise, a draw that is held has what falls into its period.
+            self.drawn = libm::sqrt(self.what.noise.get() / period.seconds()) * self.draws.normal();
+            let next = next + period;
+            self.next = self.what.to.is_none_or(|to| next < at(to)).then_some(next);
+        }
+    }
+
     /// The torque at an instant (N m), right-continuous.
     pub fn torque(&self, now: Instant) -> f64 {
-        let acts = at(self.from) <= now && self.to.is_none_or(|to| now < at(to));
-        if acts { self.torque.get() } else { 0.0 }
+        if self.what.acts(now) { self.what.torque.get() + self.drawn } else { 0.0 }
     }
 }
 

@@ -125,7 +125,8 @@ impl Axis {
         let power = 10_f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|nice| nice * power).into_iter().find(|step| *step >= rough);
         let step = step.unwrap_or(10.0 * power);
-        let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+        // A tick at an end of the range may lie a rounding beyond it.
+        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
         // A little tolerance: the logarithm of a power of ten may be rounded.
         let decimals = (-1e-9 - step.log10()).ceil().clamp(0.0, 12.0) as usize;
         Ticks {

@@ -12,8 +12,9 @@ use plotters::style::{
     Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle, WHITE,
 };
 
+use super::area::polygons;
 use super::line::{Point, Window, pieces, thin};
-use super::{Figure, Layer, Panel, Shape, colour};
+use super::{Figure, Layer, Panel, Shape, bar, colour};
 
 /// Width of every figure (px).
 const WIDTH: u32 = 800;
@@ -32,8 +33,8 @@ const LEGEND: u32 = 22;
 const COLUMNS: u32 = 2 * ACROSS;
 const GRID: RGBColor = RGBColor(225, 225, 225);
 
-type Error = DrawingAreaErrorKind<io::Error>;
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub type Error = DrawingAreaErrorKind<io::Error>;
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// The figure as SVG.
 pub fn svg(figure: &Figure) -> Result<String, Error> {
@@ -48,6 +49,10 @@ pub fn svg(figure: &Figure) -> Result<String, Error> {
         let mut rest = body;
         for panel in &figure.panels {
             let (area, below) = rest.split_vertically(total_height(panel, figure.panel_height) * UNITS);
+            let (key, area) = area.split_vertically(bar_height(panel) * UNITS);
+            if let Some(bar) = &panel.bar {
+                bar::draw(&key, bar, LEFT)?;
+            }
             draw_legend(&area, panel)?;
             draw_panel(&area, panel, figure.panel_height)?;
             rest = below;
@@ -62,7 +67,11 @@ pub fn svg(figure: &Figure) -> Result<String, Error> {
 
 /// The height of a panel with all that is around its plot (px).
 fn total_height(panel: &Panel, plot: u32) -> u32 {
-    LEGEND + plot + NUMBERS + if panel.x.name.is_empty() { 0 } else { NAME }
+    bar_height(panel) + LEGEND + plot + NUMBERS + if panel.x.name.is_empty() { 0 } else { NAME }
+}
+
+fn bar_height(panel: &Panel) -> u32 {
+    if panel.bar.is_some() { bar::HEIGHT } else { 0 }
 }
 
 /// A panel's plot: a window of the plane, in the places that values have on the axes, on a rectangle of the backend.
@@ -92,6 +101,12 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, height: u32) -> Result<(), Error> 
                 for piece in pieces(&points, &plot.window) {
                     let piece = thin(&piece, &plot.window, COLUMNS).into_iter().map(|p| plot.place(p));
                     draw_line(area, layer, piece.collect())?;
+                }
+            }
+            Shape::Area(_) => {
+                for polygon in polygons(&points, &plot.window, ACROSS) {
+                    let corners: Vec<_> = polygon.into_iter().map(|p| plot.place(p)).collect();
+                    area.draw(&Polygon::new(corners, layer.style()))?;
                 }
             }
             _ => {
@@ -149,6 +164,11 @@ fn draw_legend(area: &Area<'_>, panel: &Panel) -> Result<(), Error> {
         let (from, to) = (at(left, middle), at(left + 18, middle));
         match layer.shape {
             Shape::Line(_) | Shape::Dashes => draw_line(area, layer, vec![from, to])?,
+            Shape::Area(_) => {
+                let [low, high] = [middle + 5, middle - 5];
+                let corners = [at(left, low), at(left + 18, low), at(left + 18, high), at(left, high)];
+                area.draw(&Polygon::new(corners, layer.style()))?;
+            }
             _ => draw_mark(area, layer, at(left + 9, middle))?,
         }
         area.draw_text(&layer.name, &text(11.0, HPos::Left, VPos::Center), at(left + 23, middle))?;
@@ -174,6 +194,7 @@ impl Layer {
         match self.shape {
             Shape::Line(width) => stroke(self.colour, width),
             Shape::Dashes => stroke(self.colour, 1.0),
+            Shape::Area(opacity) => self.colour.mix(opacity).filled(),
             _ => self.colour.filled(),
         }
     }
@@ -184,13 +205,13 @@ fn stroke(colour: RGBColor, width: f64) -> ShapeStyle {
 }
 
 /// Black text of this size (px).
-fn text(size: f64, h: HPos, v: VPos) -> TextStyle<'static> {
+pub fn text(size: f64, h: HPos, v: VPos) -> TextStyle<'static> {
     // The backend's sizes are 1.24 times those of SVG.
     let size = 1.24 * size * f64::from(UNITS);
     TextStyle::from(FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal)).pos(Pos::new(h, v))
 }
 
 /// A place of pixels in the backend's coordinates.
-fn at(x: u32, y: u32) -> (i32, i32) {
+pub fn at(x: u32, y: u32) -> (i32, i32) {
     ((x * UNITS) as i32, (y * UNITS) as i32)
 }

@@ -83,7 +83,7 @@ pub fn thin(points: &[Point], window: &Window, pixels: u32) -> Vec<Point> {
 }
 
 /// Leaves out points less than a pixel from the last that is kept.
-fn drop_close(points: &[Point], (width, height): (f64, f64), pixels: u32) -> Vec<Point> {
+pub fn drop_close(points: &[Point], (width, height): (f64, f64), pixels: u32) -> Vec<Point> {
     let far = |a: &Point, b: &Point| {
         let (dx, dy) = ((a.0 - b.0) / width, (a.1 - b.1) / height);
         dx.hypot(dy) * f64::from(pixels) >= 1.0

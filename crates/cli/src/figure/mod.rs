@@ -1,6 +1,9 @@
 //! Figures: panels of lines and marks over axes.
 
+mod area;
 mod axis;
+mod bar;
+mod contour;
 mod draw;
 mod file;
 mod image;
@@ -8,7 +11,10 @@ mod line;
 
 use plotters::style::RGBColor;
 
+pub use area::band;
 pub use axis::{Axis, name_and_unit, round_to_nice};
+pub use bar::Bar;
+pub use contour::Field;
 pub use file::{Format, save};
 pub use line::{Point, steps};
 
@@ -44,6 +50,8 @@ pub struct Panel {
     pub y: Axis,
     /// What is drawn, the lowest first.
     pub layers: Vec<Layer>,
+    /// What the colours of a map stand for.
+    pub bar: Option<Bar>,
 }
 
 /// What is drawn in one go.
@@ -66,6 +74,8 @@ pub enum Shape {
     Line(f64),
     /// A dashed line.
     Dashes,
+    /// The area within the points, with this opacity: a closed polygon between gaps.
+    Area(f64),
     /// Discs at the points.
     Disc,
     /// Triangles at the points.
@@ -80,6 +90,13 @@ impl Figure {
     /// The figure as SVG.
     pub fn svg(&self) -> Result<String, String> {
         draw::svg(self).map_err(|error| error.to_string())
+    }
+}
+
+impl Panel {
+    /// A panel of layers.
+    pub fn new(x: Axis, y: Axis, layers: Vec<Layer>) -> Self {
+        Self { x, y, layers, bar: None }
     }
 }
 

@@ -120,7 +120,7 @@ impl Family<'_> {
         };
         let layers = below.into_iter().chain(self.members.iter().zip(lines).map(layer)).collect();
         let title = format!("{}: {what}", self.name);
-        Figure { title, panels: vec![Panel { x, y, layers }], panel_height: 340 }
+        Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 
     /// A line where the manoeuvre ends.

@@ -1,32 +1,86 @@
-//! Figure `angle`: the hub's angle over the run with its goal, and how far it is from it.
+//! Figure `angle`: the hub's angle over the run with its goal, how far it is from it, and when it has settled.
 
-use super::story::{Motion, Story};
+use super::motion::Motion;
+use super::story::Story;
 use super::{arrival, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+
+/// What counts as settled if a scenario does not say: a part of the distance when the goal begins.
+const PART: f64 = 0.05;
+/// The second panel of a body that is brought to angle 0 shows so many bands to each side.
+const BANDS: f64 = 4.0;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let over_time =
         |values: &[f64]| -> Vec<Point> { motion.time.iter().copied().zip(values.iter().copied()).collect() };
     let x = time(0.0..story.end);
     let error: Vec<f64> = motion.angle.iter().zip(&motion.goal).map(|(angle, goal)| angle - goal).collect();
-    let panel = |x: Axis, y: Axis, layers: Vec<Layer>| {
-        let layers = arrival(story, &y).into_iter().chain(layers).collect();
-        Panel { x, y, layers }
+    let settled = Settled::of(story, &motion.time, &error);
+    let marks = |y: &Axis| settled.iter().flat_map(|settled| settled.layers(story, y)).collect::<Vec<_>>();
+    let panels = if story.scenario.plan.is_some() {
+        let whole = Axis::around("angle", "rad", motion.angle.iter().chain(&motion.goal).copied());
+        let beyond = Axis::around("beyond the goal", "rad", error.iter().copied());
+        let mut above: Vec<Layer> = arrival(story, &whole).into_iter().collect();
+        above.extend([
+            Layer::new("goal of a rigid body", colour::ORANGE, Shape::Line(1.2), over_time(&motion.goal)),
+            Layer::new("hub", colour::BLACK, Shape::Line(1.4), over_time(&motion.angle)),
+        ]);
+        let mut below: Vec<Layer> = arrival(story, &beyond).into_iter().chain(marks(&beyond)).collect();
+        below.push(Layer::new("", colour::BLUE, Shape::Line(1.2), over_time(&error)));
+        vec![Panel::new(x.unnamed(), whole, above), Panel::new(x, beyond, below)]
+    } else {
+        let whole = Axis::around("angle", "rad", motion.angle.iter().copied());
+        let near = settled.as_ref().map(|settled| BANDS * settled.band);
+        let near = near.map(|half| Axis::exact("angle", "rad", -half..half));
+        let panel = |x: Axis, y: Axis, named: bool| {
+            let mut layers = marks(&y);
+            layers.push(Layer::new("angle", colour::BLACK, Shape::Line(1.2), over_time(&motion.angle)));
+            for layer in layers.iter_mut().filter(|_| !named) {
+                layer.name.clear();
+            }
+            Panel::new(x, y, layers)
+        };
+        match near {
+            Some(near) => vec![panel(x.unnamed(), whole, true), panel(x, near, false)],
+            None => vec![panel(x, whole, true)],
+        }
     };
-    let panels = vec![
-        panel(
-            x.unnamed(),
-            Axis::around("angle", "rad", motion.angle.iter().chain(&motion.goal).copied()),
-            vec![
-                Layer::new("goal of a rigid body", colour::ORANGE, Shape::Line(1.2), over_time(&motion.goal)),
-                Layer::new("hub", colour::BLACK, Shape::Line(1.4), over_time(&motion.angle)),
-            ],
-        ),
-        panel(
-            x,
-            Axis::around("beyond the goal", "rad", error.iter().copied()),
-            vec![Layer::new("", colour::BLUE, Shape::Line(1.2), over_time(&error))],
-        ),
-    ];
     Figure { title: title(story, "angle"), panels, panel_height: 220 }
+}
+
+/// How the distance from the goal dies away, as the metric `settling_time_s` tells it.
+struct Settled {
+    /// What counts as settled (rad).
+    band: f64,
+    /// When the goal begins (s).
+    from: f64,
+    /// The last time outside the band (s); none if the run ends outside it.
+    at: Option<f64>,
+}
+
+impl Settled {
+    /// None if no band is given after a manoeuvre, which may end anywhere near its goal, or if there is no motion.
+    fn of(story: &Story, times: &[f64], error: &[f64]) -> Option<Self> {
+        let from = story.scenario.plan.as_ref().map_or(0.0, |plan| plan.time);
+        let given = story.scenario.reference.band.map(flexsc_core::quantity::Positive::get);
+        let part = if from > 0.0 { None } else { error.first().map(|first| PART * first.abs()) };
+        let band = given.or(part).filter(|band| *band > 0.0)?;
+        let outside = |(time, error): &(&f64, &f64)| **time >= from - 1e-9 && error.abs() > band;
+        let last = times.iter().zip(error).rfind(outside).map_or(from, |(time, _)| *time);
+        let at = times.last().filter(|end| last < **end).map(|_| last);
+        Some(Self { band, from, at })
+    }
+
+    fn layers(&self, story: &Story, y: &Axis) -> Vec<Layer> {
+        let level = |height: f64| [(self.from, height), (story.end, height)];
+        let width = format!("within ±{} mrad", super::short(1e3 * self.band));
+        let within = band(&level(-self.band), &level(self.band));
+        let mut layers = vec![Layer::new(&width, colour::GREEN, Shape::Area(0.25), within)];
+        if let Some(at) = self.at {
+            let line = vec![(at, y.range.start), (at, y.range.end)];
+            let name = format!("settled at {at:.1} s");
+            layers.push(Layer::new(&name, colour::VERMILLION, Shape::Dashes, line));
+        }
+        layers
+    }
 }

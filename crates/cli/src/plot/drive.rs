@@ -1,6 +1,9 @@
 //! Figure `torque` of a rotation: what was planned, what the actuator made of it, the law's part and disturbances.
 
-use super::story::{Motion, Story};
+use flexsc_core::actuator::Actuator;
+
+use super::motion::Motion;
+use super::story::Story;
 use super::{arrival, time, title};
 use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
@@ -13,14 +16,16 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let x = time(0.0..story.end);
     let executed = applied.iter().zip(planned.iter().zip(feedback)).any(|(a, (p, f))| *a != p + f);
     let name = if unit == "rad/s²" { "acceleration" } else { "torque" };
-    let panel = |x: Axis, name: &str, series: &[(&str, plotters::style::RGBColor, &[f64])]| {
-        let all = series.iter().flat_map(|(.., values)| values.iter().copied());
-        let y = Axis::around(name, unit, all);
-        let lines = series
-            .iter()
-            .map(|(name, colour, values)| Layer::new(name, *colour, Shape::Line(1.2), over_time(values)));
-        Panel { x, layers: arrival(story, &y).into_iter().chain(lines).collect(), y }
-    };
+    let panel =
+        |x: Axis, name: &str, unit: &'static str, series: &[(&str, plotters::style::RGBColor, &[f64])]| {
+            let all = series.iter().flat_map(|(.., values)| values.iter().copied());
+            let y = Axis::around(name, unit, all);
+            let lines = series
+                .iter()
+                .map(|(name, colour, values)| Layer::new(name, *colour, Shape::Line(1.2), over_time(values)));
+            let layers = arrival(story, &y).into_iter().chain(lines).collect();
+            Panel::new(x, y, layers)
+        };
     let mut main: Vec<(&str, _, &[f64])> = Vec::new();
     if executed {
         main.push(("executed", colour::SKY, applied));
@@ -33,10 +38,18 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     if acts(feedback) {
         rest.push(("feedback", colour::BLUE, feedback));
     }
+    let wheel = matches!(story.scenario.actuator, Actuator::Wheel(_));
     let panels = match (rest.is_empty(), executed || acts(planned)) {
-        (true, _) => vec![panel(x, name, &main)],
-        (false, false) => vec![panel(x, name, &rest)],
-        (false, true) => vec![panel(x.unnamed(), name, &main), panel(x, name, &rest)],
+        _ if wheel => {
+            // A wheel's command has a unit of its own, and no manoeuvre is planned for it.
+            let mut on_body: Vec<(&str, _, &[f64])> = vec![("of the wheel", colour::BLACK, applied)];
+            on_body.extend(rest.iter().filter(|(name, ..)| *name == "disturbance").copied());
+            let command = [("command", colour::BLUE, feedback.as_slice())];
+            vec![panel(x.unnamed(), name, unit, &on_body), panel(x, "command of the law", "", &command)]
+        }
+        (true, _) => vec![panel(x, name, unit, &main)],
+        (false, false) => vec![panel(x, name, unit, &rest)],
+        (false, true) => vec![panel(x.unnamed(), name, unit, &main), panel(x, name, unit, &rest)],
     };
     let height = if panels.len() == 1 { 300 } else { 200 };
     Figure { title: title(story, name), panels, panel_height: height }

@@ -1,20 +1,21 @@
 //! Figure `envelope`: the envelope of the elastic modes over the run with its window means, and the elastic angle
 //! within it at the end (figures 5v and 5g of seed paper 1).
 
-use super::story::{Mean, Motion, Story};
+use super::motion::Motion;
+use super::story::{Mean, Story};
 use super::{swings, time, title};
 use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let all = motion.envelope.iter().map(|(_, value)| *value);
-    let whole = Panel {
-        x: time(0.0..story.end),
-        y: Axis::from_zero("envelope a", "rad", all),
-        layers: vec![
+    let whole = Panel::new(
+        time(0.0..story.end),
+        Axis::from_zero("envelope a", "rad", all),
+        vec![
             Layer::new("envelope", colour::SKY, Shape::Line(0.6), motion.envelope.clone()),
             Layer::new("window means", colour::VERMILLION, Shape::Line(2.0), means(&story.means)),
         ],
-    };
+    );
     let shown = swings(story);
     let bound = |sign: f64| -> Vec<Point> {
         let within = motion.envelope.iter().filter(|(time, _)| *time >= shown.start);
@@ -24,15 +25,16 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let elastic: Vec<Point> = elastic.filter(|(time, _)| *time >= shown.start).collect();
     let (upper, lower) = (bound(1.0), bound(-1.0));
     let values = upper.iter().chain(&lower).chain(&elastic).map(|(_, value)| *value);
-    let end = Panel {
-        y: Axis::around("elastic angle", "rad", values),
-        x: time(shown),
-        layers: vec![
+    let y = Axis::around("elastic angle", "rad", values);
+    let end = Panel::new(
+        time(shown),
+        y,
+        vec![
             Layer::new("± envelope", colour::ORANGE, Shape::Line(1.2), upper),
             Layer::new("", colour::ORANGE, Shape::Line(1.2), lower),
             Layer::new("elastic angle", colour::BLUE, Shape::Line(1.2), elastic),
         ],
-    };
+    );
     let what = "envelope of the elastic modes";
     Figure { title: title(story, what), panels: vec![whole, end], panel_height: 220 }
 }

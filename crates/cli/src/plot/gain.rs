@@ -24,12 +24,12 @@ pub fn figure(story: &Story) -> Figure {
     let mut layers = vec![Layer::new("k_t", colour::BLACK, Shape::Line(1.2), line)];
     let marks = kinds.map(|(decision, colour, shape)| Layer::new(decision, colour, shape, decided(decision)));
     layers.extend(marks.into_iter().filter(|layer| !layer.points.is_empty()));
-    let gain = Panel { x: x.unnamed(), y, layers };
+    let gain = Panel::new(x.unnamed(), y, layers);
     let all = story.means.iter().map(|mean| mean.value);
-    let means = Panel {
+    let means = Panel::new(
         x,
-        y: Axis::from_zero("mean envelope", "rad", all),
-        layers: vec![Layer::new("window means", colour::BLUE, Shape::Line(1.6), means(&story.means))],
-    };
+        Axis::from_zero("mean envelope", "rad", all),
+        vec![Layer::new("window means", colour::BLUE, Shape::Line(1.6), means(&story.means))],
+    );
     Figure { title: title(story, "adaptation"), panels: vec![gain, means], panel_height: 220 }
 }

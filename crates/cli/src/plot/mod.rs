@@ -1,26 +1,35 @@
 //! `flexsc plot`: the figures of a log, as SVG and PNG.
 
 mod angle;
+mod consistency;
 mod drive;
 mod envelope;
+mod estimate;
+mod extra;
+mod frequency;
 mod gain;
+mod lock;
 mod modes;
+mod motion;
 mod outputs;
 mod phase_plane;
 mod spatial;
 mod story;
 mod torque;
+mod wheel;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use flexsc_core::estimator::Estimator;
 use flexsc_core::record::Log;
 
 use crate::failure::Failure;
 use crate::figure::{Axis, Figure, Format, Layer, Shape, colour, round_to_nice, save};
+use motion::Motion;
 use spatial::Cycles;
-use story::{Motion, Story};
+use story::Story;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -44,7 +53,7 @@ enum What {
     PhasePlane,
     /// Torque: of a law that switches at the end of the run, else over all of it
     Torque,
-    /// Angle of the hub with its goal, and the distance between them
+    /// Angle of the hub with its goal, the distance between them, and when it has settled
     Angle,
     /// Each observed coordinate
     Outputs,
@@ -62,6 +71,16 @@ enum What {
     Energy,
     /// Of a spatial body: for how long the jets fire
     Jets,
+    /// Speed and momentum of the flywheel, with its limits
+    Wheel,
+    /// Frequency of the dominant mode as a filter estimates it, and what it really is
+    Frequency,
+    /// Displacement of the dominant mode as a filter estimates it, and what it really is
+    Estimate,
+    /// Whether a filter knows how large its errors are: NIS and NEES with their 95 % bands
+    Consistency,
+    /// Gain of the extra loop, and the frequency that it follows
+    Extra,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -78,15 +97,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let chosen = if args.what.is_empty() { &there } else { &args.what };
-    let cycles = if story.scenario.spatial.is_some() {
-        Cycles::read(&story, &log, &args.log)?
-    } else {
-        Cycles::default()
-    };
-    let moving = [What::PhasePlane, What::Envelope, What::Modes].iter().any(|what| chosen.contains(what));
-    let motion = if story.scenario.spatial.is_some() {
+    let any = |of: &[What]| of.iter().any(|what| chosen.contains(what));
+    let moving = any(&[What::PhasePlane, What::Envelope, What::Modes]);
+    let all = any(&[What::Wheel, What::Frequency, What::Estimate, What::Consistency, What::Extra]);
+    let is_spatial = story.scenario.spatial.is_some();
+    let cycles = if is_spatial { Cycles::read(&story, &log, &args.log)? } else { Cycles::default() };
+    let motion = if is_spatial {
         Motion::default()
-    } else if !story.switches() {
+    } else if all || !story.switches() {
         story.motion(&log, &args.log, 0.0, 0.0)?
     } else if moving {
         let late = phase_plane::late(&story).min(swings(&story).start);
@@ -117,6 +135,11 @@ impl What {
             Self::Gain => !story.steps.is_empty(),
             Self::Modes => !story.scenario.model.modes.is_empty(),
             Self::Pointing | Self::Rates | Self::Energy | Self::Jets => spatial,
+            Self::Wheel => wheel::rotor(story).is_some(),
+            Self::Frequency | Self::Estimate | Self::Consistency => {
+                story.scenario.estimator.as_ref().is_some_and(Estimator::filters)
+            }
+            Self::Extra => extra::of(story).is_some(),
         }
     }
 
@@ -134,6 +157,11 @@ impl What {
             Self::Rates => spatial::rates(story, cycles),
             Self::Energy => spatial::energy(story, cycles),
             Self::Jets => spatial::jets(story, cycles),
+            Self::Wheel => wheel::figure(story, motion),
+            Self::Frequency => frequency::figure(story, motion),
+            Self::Estimate => estimate::figure(story, motion),
+            Self::Consistency => consistency::figure(story, motion),
+            Self::Extra => extra::figure(story, motion),
         }
     }
 

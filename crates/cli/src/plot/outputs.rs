@@ -1,6 +1,7 @@
 //! Figure `outputs`: each observed coordinate over the run.
 
-use super::story::{Motion, Story};
+use super::motion::Motion;
+use super::story::Story;
 use super::{arrival, time, title};
 use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, name_and_unit};
 
@@ -16,11 +17,9 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         let y = Axis::around(&name, unit, values.iter().copied());
         let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
         let line = Layer::new("", colour::BLUE, Shape::Line(1.2), line);
-        Panel {
-            x: if index + 1 == motion.outputs.len() { x } else { x.unnamed() },
-            layers: arrival(story, &y).into_iter().chain([line]).collect(),
-            y,
-        }
+        let x = if index + 1 == motion.outputs.len() { x } else { x.unnamed() };
+        let layers = arrival(story, &y).into_iter().chain([line]).collect();
+        Panel::new(x, y, layers)
     };
     let panels = motion.outputs.iter().zip(outputs).enumerate().skip(skipped).map(panel).collect();
     let what = if skipped > 0 {

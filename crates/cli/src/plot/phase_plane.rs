@@ -2,7 +2,8 @@
 
 use flexsc_core::law::{Law, Relay, Sides};
 
-use super::story::{Motion, Story, Switching};
+use super::motion::Motion;
+use super::story::{Story, Switching};
 use super::title;
 use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
@@ -65,5 +66,5 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         Layer::new("switching by guard", colour::VERMILLION, Shape::Disc, points(false)),
         Layer::new("by timeout", colour::BLUE, Shape::Diamond, points(true)),
     ]);
-    Figure { title: title(story, "phase plane"), panels: vec![Panel { x, y, layers }], panel_height: 480 }
+    Figure { title: title(story, "phase plane"), panels: vec![Panel::new(x, y, layers)], panel_height: 480 }
 }

@@ -57,7 +57,7 @@ fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>
         let (x, layers) = (time(0.0..story.end), lines(axis));
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
         let y = Axis::around(name, unit, values.collect::<Vec<_>>());
-        Panel { x: if axis == 2 { x } else { x.unnamed() }, y, layers }
+        Panel { x: if axis == 2 { x } else { x.unnamed() }, y, layers, bar: None }
     };
     AXES.iter().enumerate().map(panel).collect()
 }
@@ -97,6 +97,7 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
         x,
         y: Axis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
         layers: vec![Layer::new("", colour::BLUE, Shape::Line(1.2), points)],
+        bar: None,
     };
     let x = time(0.0..story.end);
     let panels = vec![panel(x.unnamed(), "elastic energy", "J", elastic), panel(x, "propellant", "kg", fuel)];

@@ -1,12 +1,13 @@
-//! The story of a run that figures tell: read from its log, and its motion, where the log has none, by running
-//! the scenario within the log again.
+//! The story of a run that figures tell: the events of its log, and its motion, by running the scenario within the log
+//! again where the log has none.
 
 use std::path::Path;
 
-use flexsc_core::record::{Column, Columns, Log, Record, RecordError, Sample};
+use flexsc_core::record::{Column, Columns, Log};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
+use super::motion::{Motion, Repeat};
 use crate::failure::Failure;
 
 /// A run as its log tells it.
@@ -54,26 +55,6 @@ pub struct Step {
     pub gain: f64,
 }
 
-/// The motion of a run. All but the envelope may be left out where no figure shows it.
-#[derive(Default)]
-pub struct Motion {
-    pub time: Vec<f64>,
-    pub angle: Vec<f64>,
-    pub rate: Vec<f64>,
-    /// Sum of the modes' displacements.
-    pub elastic: Vec<f64>,
-    /// Displacements of each mode.
-    pub modes: Vec<Vec<f64>>,
-    /// Where the hub shall be; empty without a manoeuvre or a PD law.
-    pub goal: Vec<f64>,
-    /// Torques: planned, of the law, of the actuator, disturbing; each empty without a manoeuvre or a PD law.
-    pub torques: [Vec<f64>; 4],
-    /// Values of each observed coordinate.
-    pub outputs: Vec<Vec<f64>>,
-    /// Times and values of the total envelope; empty without an observer.
-    pub envelope: Vec<(f64, f64)>,
-}
-
 impl Story {
     /// Reads the events of a log.
     pub fn read(log: &Log, path: &Path) -> Result<Self, Failure> {
@@ -106,9 +87,9 @@ impl Story {
     /// motion up to `early` and from `late` on only, and the envelope always.
     pub fn motion(&self, log: &Log, path: &Path, early: f64, late: f64) -> Result<Motion, Failure> {
         if log.topics().iter().any(|topic| topic == "/attitude") {
-            return read_motion(log);
+            return Motion::read(log);
         }
-        let mut repeat = Repeat { motion: Motion::default(), early, late, switchings: Vec::new() };
+        let mut repeat = Repeat::new(early, late);
         // The end of a log that was cut off is rounded, and a switching may lie on it.
         let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
         Simulation::new(&self.scenario, self.run)
@@ -163,13 +144,16 @@ pub fn unusable(path: &Path, why: String) -> Failure {
 }
 
 /// The rows of some topics; none of one that the log does not have.
-fn topics<const N: usize>(log: &Log, names: [&str; N]) -> Result<[Columns; N], Failure> {
+pub fn topics<const N: usize>(log: &Log, names: [&str; N]) -> Result<[Columns; N], Failure> {
     let mut tables = log.tables(&names)?.into_iter();
     Ok(names.map(|_| tables.next().flatten().unwrap_or_default()))
 }
 
 /// The doubles of some columns, row by row.
-fn rows<'a, const N: usize>(columns: &'a Columns, names: [&str; N]) -> impl Iterator<Item = [f64; N]> + 'a {
+pub fn rows<'a, const N: usize>(
+    columns: &'a Columns,
+    names: [&str; N],
+) -> impl Iterator<Item = [f64; N]> + 'a {
     let columns = names.map(|name| columns.numbers(name).unwrap_or_default());
     let shortest = columns.iter().map(|column| column.len()).min().unwrap_or(0);
     (0..shortest).map(move |row| columns.map(|column| column[row]))
@@ -193,84 +177,4 @@ fn switchings(columns: &Columns) -> Vec<Switching> {
         rate,
     };
     numbers.zip(words).map(switching).collect()
-}
-
-fn read_motion(log: &Log) -> Result<Motion, Failure> {
-    let [attitude, rate, modes, envelope] = topics(log, ["/attitude", "/rate", "/modes", "/envelope"])?;
-    let [goal, torque, outputs] = topics(log, ["/goal", "/torque", "/outputs"])?;
-    let column = |columns: &Columns, name: &str| columns.numbers(name).unwrap_or_default().to_vec();
-    Ok(Motion {
-        time: column(&attitude, "time_s"),
-        angle: column(&attitude, "angle_rad"),
-        rate: column(&rate, "rate_rad_s"),
-        elastic: column(&modes, "elastic_rad"),
-        modes: inner(&modes, "modes", "displacement_rad"),
-        goal: column(&goal, "angle_rad"),
-        torques: ["feedforward_nm", "feedback_nm", "applied_nm", "disturbance_nm"]
-            .map(|name| column(&torque, name)),
-        outputs: inner(&outputs, "outputs", "value"),
-        envelope: rows(&envelope, ["time_s", "envelope_rad"]).map(|[time, value]| (time, value)).collect(),
-    })
-}
-
-/// A column of the rows within each row, one vector for each place in a row.
-fn inner(columns: &Columns, rows: &str, name: &str) -> Vec<Vec<f64>> {
-    let Some(Column::Rows(counts, inner)) = columns.get(rows) else { return Vec::new() };
-    let count = counts.first().map_or(0, |count| *count as usize);
-    let values = inner.numbers(name).unwrap_or_default();
-    (0..count).map(|place| values.iter().skip(place).step_by(count).copied().collect()).collect()
-}
-
-/// Keeps the motion of a run that is repeated.
-struct Repeat {
-    motion: Motion,
-    early: f64,
-    late: f64,
-    /// Times of the switchings, to compare with the log's.
-    switchings: Vec<f64>,
-}
-
-impl Record for Repeat {
-    fn dense(&self) -> bool {
-        true
-    }
-
-    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        let time = now.seconds();
-        match sample {
-            Sample::Switching(command, _) => self.switchings.push(command.time_s),
-            Sample::Motion(motion) => {
-                let kept = &mut self.motion;
-                kept.envelope.extend(motion.envelope.as_ref().map(|envelope| (time, envelope.envelope_rad)));
-                if time > self.early && time < self.late {
-                    return Ok(());
-                }
-                kept.time.push(time);
-                kept.angle.push(motion.attitude.angle_rad);
-                kept.rate.push(motion.rate.rate_rad_s);
-                kept.elastic.push(motion.modes.elastic_rad);
-                extend(&mut kept.modes, motion.modes.modes.iter().map(|mode| mode.displacement_rad));
-                let outputs = motion.outputs.iter().flat_map(|outputs| &outputs.outputs);
-                extend(&mut kept.outputs, outputs.map(|output| output.value));
-                if let Some((goal, torque)) = &motion.drive {
-                    kept.goal.push(goal.angle_rad);
-                    let now =
-                        [torque.feedforward_nm, torque.feedback_nm, torque.applied_nm, torque.disturbance_nm];
-                    kept.torques.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
-                }
-            }
-            _ => {}
-        }
-        Ok(())
-    }
-}
-
-/// Appends a row to columns, which are made with the first row.
-fn extend(columns: &mut Vec<Vec<f64>>, row: impl Iterator<Item = f64>) {
-    for (index, value) in row.enumerate() {
-        if index == columns.len() {
-            columns.push(Vec::new());
-        }
-        columns[index].push(value);
-    }
 }

@@ -34,7 +34,7 @@ pub fn figure(story: &Story) -> Figure {
             Layer::new(legend("switching by guard"), colour::VERMILLION, Shape::Disc, marks(false)),
             Layer::new(legend("by timeout"), colour::BLUE, Shape::Diamond, marks(true)),
         ];
-        Panel { x, y: Axis::exact(name, unit, -most..most), layers }
+        Panel::new(x, Axis::exact(name, unit, -most..most), layers)
     };
     let title = title(story, "torque");
     if weak > 0.0 {

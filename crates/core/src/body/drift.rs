@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Finite, NonNegative, Positive};
 
+/// Terms of a Taylor series.
+pub const SERIES: usize = 21;
+
 /// A profile of the ratio over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -101,6 +104,24 @@ impl Profile {
         }
     }
 
+    /// The Taylor series of the ratio at a time (s), of what comes after at a kink, and how many of its terms are not 0.
+    pub fn series(&self, t: f64, terms: &mut [f64; SERIES]) -> usize {
+        // A kink may be a last bit after its rounded time.
+        let after = t * (1.0 + 4.0 * f64::EPSILON) + 1e-14;
+        (terms[0], terms[1]) = (self.ratio(t), self.slope(after));
+        let Self::Sinusoid(s) = self else { return if terms[1] == 0.0 { 1 } else { 2 } };
+        let rate = std::f64::consts::TAU / s.period.get();
+        let (sin, cos) = libm::sincos(rate * (t + s.phase.get()));
+        // The derivatives of the cosine go round.
+        let round = [cos, -sin, -cos, sin];
+        let mut scale = s.amplitude.get();
+        for (n, term) in terms.iter_mut().enumerate().skip(1) {
+            scale *= rate / n as f64;
+            *term = scale * round[n % 4];
+        }
+        SERIES
+    }
+
     /// The times (s) at which the slope jumps.
     pub fn kinks(&self) -> Vec<f64> {
         match self {
@@ -135,6 +156,22 @@ impl Drift {
         match self {
             Self::Common(profile) => profile.slope(t),
             Self::Each(profiles) => profiles.get(mode).map_or(0.0, |profile| profile.slope(t)),
+        }
+    }
+
+    /// The Taylor series of a mode's ratio at a time (s), and how many of its terms are not 0.
+    pub fn series(&self, mode: usize, t: f64, terms: &mut [f64; SERIES]) -> usize {
+        match self {
+            Self::Common(profile) => profile.series(t, terms),
+            Self::Each(profiles) => profiles.get(mode).map_or(1, |profile| profile.series(t, terms)),
+        }
+    }
+
+    /// How many ratios differ: one of all modes, or one of each.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Common(_) => 1,
+            Self::Each(profiles) => profiles.len(),
         }
     }
 

@@ -64,7 +64,7 @@ impl Filter {
         self.nees += estimate.nees;
         self.square += error * error;
         self.largest = self.largest.max(error);
-        if estimate.nis.is_finite() {
+        if estimate.measured == 1 {
             let [low, high] = INSIDE[self.measurements - 1];
             self.count.1 += 1;
             self.nis += estimate.nis;

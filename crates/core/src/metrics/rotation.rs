@@ -3,9 +3,10 @@
 use super::{
     ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, OUTPUT_RESIDUALS,
     OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_FEEDBACK, PEAK_OUTPUTS, PEAK_TORQUE, RESIDUAL_ENERGY,
-    SETTLING_TIME, Told, Value,
+    SETTLING_TIME, SPECTRAL_RADIUS, Told, Value,
 };
-use crate::law::Goal;
+use crate::analysis::sampled_loop::{Held, Loop};
+use crate::law::{Goal, Law};
 use crate::quantity::Positive;
 use crate::record::{Arrival, Motion, Record, RecordError, Sample};
 use crate::scenario::Scenario;
@@ -13,6 +14,8 @@ use crate::time::Instant;
 
 /// What is late in a run (s).
 const LATE: f64 = 5.0;
+/// Frequencies of a drift at which its loop is judged, besides its kinks and its end.
+const DRIFTING: u32 = 8;
 /// What counts as settled, as a part of the distance when the goal begins.
 const PART: f64 = 0.05;
 
@@ -29,6 +32,8 @@ pub struct Rotation {
     /// Largest distances from the goal: after the manoeuvre, and late (rad).
     error: (f64, f64),
     settling: Settling,
+    /// Of a sampled loop, its spectral radius.
+    radius: Option<f64>,
     /// Of each output, the largest absolute value, and the ranges after the manoeuvre and late.
     outputs: Vec<(f64, Range, Range)>,
 }
@@ -89,6 +94,24 @@ impl Range {
     }
 }
 
+/// The largest spectral radius of the loop over the frequencies that the run comes to; NaN of what is no such loop.
+fn spectral_radius(scenario: &Scenario) -> f64 {
+    let Ok((sampled, law)) = Loop::of(scenario) else { return f64::NAN };
+    let end = scenario.duration.seconds();
+    let modes = 0..sampled.body.modes.len();
+    let at = |t: f64| {
+        let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+        let ratios: Vec<f64> = modes.clone().map(ratio).collect();
+        let gain = law.extra_gain(sampled.frequency() * ratios[sampled.dominant]);
+        Held::new(&sampled, &ratios).closed(gain).spectral_radius()
+    };
+    let drifting = scenario.drift.iter().flat_map(|drift| {
+        let even = (0..DRIFTING).map(|index| end * f64::from(index) / f64::from(DRIFTING));
+        drift.kinks().into_iter().filter(move |kink| *kink < end).chain(even)
+    });
+    drifting.chain([end]).map(at).fold(f64::NAN, f64::max)
+}
+
 impl Rotation {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
@@ -100,6 +123,7 @@ impl Rotation {
             torque: (0.0, 0.0),
             error: (f64::NAN, f64::NAN),
             settling: Settling::new(scenario.reference.band.map_or(f64::NAN, Positive::get)),
+            radius: matches!(scenario.law, Law::Pd(_)).then(|| spectral_radius(scenario)),
             outputs: vec![(0.0, Range::EMPTY, Range::EMPTY); scenario.model.outputs.len()],
         }
     }
@@ -132,6 +156,7 @@ impl Rotation {
             (&OUTPUT_SWINGS, outputs(|output| output.1.swing())),
             (&OUTPUT_SWINGS_LATE, outputs(|output| output.2.swing())),
         ]);
+        metrics.extend(self.radius.map(|radius| (&SPECTRAL_RADIUS, Value::Number(radius))));
         metrics
     }
 

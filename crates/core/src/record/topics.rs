@@ -209,10 +209,12 @@ rows! {
         ratio_rate_sd_1_s: f64,
         /// Each mode.
         modes: Vec<ModeEstimate>,
-        /// Measured angle less the predicted one (rad).
+        /// Measured angle less the predicted one (rad); 0 if the sample was dropped.
         innovation_rad: f64,
-        /// Normalised innovation squared, summed over the measurements; NaN if the sample was dropped.
+        /// Normalised innovation squared, summed over the measurements; 0 if the sample was dropped.
         nis: f64,
+        /// 1 if the sample was used, 0 if there was none or it was dropped.
+        measured: u64,
         /// Normalised estimation error squared against the true state: of an honest filter about the number of states.
         nees: f64,
         /// 1 while the dominant mode moves too little for its frequency to be learnt.

@@ -10,6 +10,7 @@ use crate::document::key;
 use crate::estimator::{Estimator, Form};
 use crate::law::{Extra, Law};
 use crate::quantity::{Finite, NonNegative, Positive};
+use crate::sensor::Outage;
 
 impl Scenario {
     /// The first key that does not fit the others, and what is wrong with it.
@@ -122,6 +123,12 @@ impl Scenario {
                 }
             }
         }
+        let blind = self.estimator.as_ref().is_none_or(|estimator| estimator.envelope().is_some());
+        if matches!(&self.law, Law::Pd(pd) if pd.extra.is_some()) && blind {
+            let why = "feeds back the dominant mode, which an `[estimator]` that acts at samples (`truth`, `kalman`, \
+                       `extended_kalman`, `unscented_kalman`) tells, and there is none";
+            return at("law.pd.extra", why.to_owned());
+        }
         if let Law::Pd(pd) = &self.law
             && let Some(Extra::Schedule(points)) = &pd.extra
         {
@@ -168,6 +175,16 @@ impl Scenario {
                 &format!("disturbance[{index}].to"),
                 format!("must be later than `from`, {from} s, got {to}"),
             );
+        }
+        let heldless = |d: &Disturbance| d.noise.get() > 0.0 && d.period.is_none();
+        if let Some(index) = self.disturbance.iter().position(heldless) {
+            let why = "must be given: how long (s) each draw of the noise is held".to_owned();
+            return at(&format!("disturbance[{index}].period"), why);
+        }
+        let unordered = |outage: Outage| outage.to.is_some_and(|to| outage.from >= to);
+        if let Some(index) = self.sensor.faults().iter().position(|fault| unordered(fault.outage())) {
+            let why = "must have `from` before `to`".to_owned();
+            return at(&format!("sensor.sampled.faults[{index}]"), why);
         }
         if let Actuator::Thrusters(thrusters) = &self.actuator {
             let (period, minimum) = (thrusters.period.seconds(), thrusters.minimum_on.get());

@@ -289,6 +289,10 @@ impl Scenario {
             include_str!("../../../../scenarios/layouts/spatial.json")
         } else if self.law.switches() {
             include_str!("../../../../scenarios/layouts/relay.json")
+        } else if matches!(self.actuator, Actuator::Wheel(_))
+            || (matches!(self.law, Law::Pd(_)) && self.manoeuvre.is_none())
+        {
+            include_str!("../../../../scenarios/layouts/wheel.json")
         } else {
             include_str!("../../../../scenarios/layouts/rotation.json")
         })

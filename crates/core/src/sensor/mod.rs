@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::random::Stream;
-use crate::time::Span;
+use crate::time::{Instant, Span};
 
 pub use gyro::{Gyro, Readout};
 
@@ -43,6 +43,54 @@ pub struct Sampled {
     /// difference of the last two angles over the period.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_noise: Option<Positive>,
+    /// Times at which the sensor fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
+}
+
+/// A failure of the sensor, gyro included.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Fault {
+    /// It repeats the last measurement before the failure.
+    Stuck(Outage),
+    /// It gives no number.
+    Silent(Outage),
+}
+
+/// How long a failure lasts.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Outage {
+    /// When it begins (s).
+    pub from: NonNegative,
+    /// When it ends (s); left out, with the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<NonNegative>,
+}
+
+impl Fault {
+    /// How long it lasts.
+    pub fn outage(&self) -> Outage {
+        let (Self::Stuck(outage) | Self::Silent(outage)) = self;
+        *outage
+    }
+}
+
+impl Outage {
+    fn lasts(self, now: Instant) -> bool {
+        let at = |time: NonNegative| Instant::START + Span::from_seconds(time.get());
+        at(self.from) <= now && self.to.is_none_or(|to| now < at(to))
+    }
+}
+
+/// A measurement: the angle (rad) and the rate of a gyro, if there is one (rad/s).
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// Angle (rad).
+    pub angle: f64,
+    /// Rate (rad/s).
+    pub rate: Option<f64>,
 }
 
 impl Sensor {
@@ -68,16 +116,30 @@ impl Sensor {
         libm::sqrt(noise.get() * noise.get() + resolution.get() * resolution.get() / 12.0)
     }
 
-    /// The gyro's measurement of a true rate (rad/s), if there is a gyro.
-    pub fn measure_rate(&self, rate: f64, noise: &mut Stream) -> Option<f64> {
-        self.rate_noise().map(|sd| rate + sd * noise.normal())
+    /// The failures of a sampled sensor.
+    pub fn faults(&self) -> &[Fault] {
+        match self {
+            Self::Continuous | Self::Gyro(_) => &[],
+            Self::Sampled(sampled) => &sampled.faults,
+        }
     }
 
-    /// The measurement of a true angle (rad).
-    pub fn measure(&self, angle: f64, noise: &mut Stream) -> f64 {
-        match self {
-            Self::Continuous | Self::Gyro(_) => angle,
-            Self::Sampled(sampled) => sampled.measure(angle, noise),
+    /// The measurement of a true angle (rad) and rate (rad/s) after the last one; none from a sensor that is silent.
+    pub fn measure(
+        &self,
+        now: Instant,
+        (angle, rate): (f64, f64),
+        last: Option<Measurement>,
+        noise: &mut Stream,
+    ) -> Option<Measurement> {
+        let Self::Sampled(sampled) = self else { return Some(Measurement { angle, rate: None }) };
+        // Draws are made in a failure too: those after it do not depend on it.
+        let angle = sampled.measure(angle, noise);
+        let rate = self.rate_noise().map(|sd| rate + sd * noise.normal());
+        match sampled.faults.iter().find(|fault| fault.outage().lasts(now)) {
+            None => Some(Measurement { angle, rate }),
+            Some(Fault::Stuck(_)) => Some(last.unwrap_or(Measurement { angle, rate })),
+            Some(Fault::Silent(_)) => None,
         }
     }
 }

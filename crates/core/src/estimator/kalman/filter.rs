@@ -67,13 +67,15 @@ pub struct Filter {
     broken: bool,
     mode: usize,
     gated: bool,
+    /// For how long (s).
+    gated_for: f64,
     trusted: Dominant,
 }
 
 /// What a sample told the filter.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Told {
-    /// Measured angle less the predicted one (rad).
+    /// Measured angle less the predicted one (rad); 0 if the sample was dropped.
     pub innovation: f64,
     /// Normalised innovation squared, summed over the measurements; none if the sample was dropped.
     pub nis: Option<f64>,
@@ -95,6 +97,7 @@ impl Filter {
             broken: false,
             mode: 0,
             gated: false,
+            gated_for: 0.0,
             trusted: Dominant::default(),
             tuning,
         };
@@ -187,26 +190,27 @@ impl Filter {
         }
     }
 
-    /// Updates the state by the measured angle (rad) and, of a filter with a gyro, the measured rate (rad/s).
-    pub fn update(&mut self, angle: f64, rate: f64) -> Told {
-        let innovation = angle - self.seen(0);
+    /// Updates the state by the measured angle (rad) and, of a filter with a gyro, the measured rate (rad/s); by nothing
+    /// if there is no measurement.
+    pub fn update(&mut self, measured: Option<(f64, f64)>) -> Told {
         self.keep();
         let gated = self.is_still();
-        let mut nis = self.learn(0, angle, self.tuning.angle_noise, gated);
-        if let Some(noise) = self.tuning.rate_noise {
-            nis = nis.and_then(|nis| Some(nis + self.learn(1, rate, noise, gated)?));
-        }
+        let innovation = measured.map_or(0.0, |(angle, _)| angle - self.seen(0));
+        let mut nis = measured.and_then(|(angle, rate)| {
+            let nis = self.learn(0, angle, self.tuning.angle_noise, gated)?;
+            let Some(noise) = self.tuning.rate_noise else { return Some(nis) };
+            Some(nis + self.learn(1, rate, noise, gated)?)
+        });
         if nis.is_none() || !self.is_sound() {
             self.restore();
             nis = None;
         }
-        self.gated = gated;
+        self.rest(gated);
         self.lock.take(nis);
         self.hold_ratios();
         self.choose_mode();
         self.trust();
-        let innovation = if innovation.is_finite() { innovation } else { f64::NAN };
-        Told { innovation, nis }
+        Told { innovation: if nis.is_some() { innovation } else { 0.0 }, nis }
     }
 
     fn keep(&mut self) {
@@ -268,6 +272,22 @@ impl Filter {
             && self.amplitude(self.mode).0 < self.tuning.gate
     }
 
+    /// Whether the dominant mode is too still from this sample on. After a whole period of it the ratios are taken to stand
+    /// still, too: nothing tells how far their rates would carry them. That they may move stays in the covariance.
+    fn rest(&mut self, gated: bool) {
+        self.gated = gated;
+        let before = self.gated_for;
+        self.gated_for = if gated { before + self.tuning.period } else { 0.0 };
+        let model = &self.tuning.model;
+        let whole = std::f64::consts::TAU / model.frequency(self.mode, self.mean.as_slice());
+        if before < whole && self.gated_for >= whole {
+            for rate in (model.motion() + 1..model.order()).step_by(2) {
+                self.covariance[(rate, rate)] += self.mean[rate] * self.mean[rate];
+                self.mean[rate] = 0.0;
+            }
+        }
+    }
+
     /// Keeps the ratios within their bounds: one that reaches them has lost the body.
     fn hold_ratios(&mut self) {
         let [low, high] = self.tuning.bounds;
@@ -312,12 +332,13 @@ impl Filter {
         terms.sum::<f64>().max(0.0)
     }
 
-    /// Normalised squared error of the estimate against a true state of the same components, which has the state's order as its mean. NaN if the
-    /// covariance has no inverse.
+    /// Normalised squared error of the estimate against a true state of the same components, whose mean is the state's
+    /// order if the filter is honest. It is at most 10^12, also where the covariance has no inverse.
     pub fn nees(&self, truth: &[f64]) -> f64 {
         let error = DVector::from_row_slice(truth) - &self.mean;
         let root = Cholesky::new(self.covariance.clone());
-        root.map_or(f64::NAN, |root| error.dot(&root.solve(&error)))
+        let nees = root.map_or(f64::INFINITY, |root| error.dot(&root.solve(&error)));
+        if nees <= FARTHEST * FARTHEST { nees } else { FARTHEST * FARTHEST }
     }
 
     fn most_excitable(&self) -> usize {

@@ -1,11 +1,12 @@
-//! Whether a filter follows the body: its innovations, squared and weighed, stay in their chi-square band.
+//! Whether a filter follows the body: its innovations, squared and weighed, are about what it expects.
 
 /// Samples over which the innovations are judged.
 const WINDOW: usize = 50;
-/// How far above its mean the sum over the window lies for the filter to be lost, and to follow again, in standard
-/// deviations of a normal. By chance one window in 10^9 lies above the first.
-const LOST: f64 = 6.0;
-const FOUND: f64 = 3.0;
+/// Above so many times its mean, the sum over the window tells that the filter has lost the body. A body that leaves the
+/// ramp of its frequencies brings three or four times the mean for a while, and the estimate is still of use.
+const LOST: f64 = 10.0;
+/// Below so many standard deviations of a normal above the mean, it follows again.
+const FOUND: f64 = 6.0;
 
 /// The innovations of late.
 #[derive(Clone, Debug)]
@@ -31,7 +32,7 @@ impl Lock {
         Self {
             recent: Vec::with_capacity(WINDOW),
             next: 0,
-            bounds: [quantile(LOST), quantile(FOUND)],
+            bounds: [LOST * degrees, quantile(FOUND)],
             lost: false,
         }
     }

@@ -55,7 +55,7 @@ fn extended_filter_of_known_ratios_is_the_linear_one() {
             let (moment, angle) = course(sample);
             linear.predict(moment);
             other.predict(moment);
-            let (a, b) = (linear.update(angle, 0.0), other.update(angle, 0.0));
+            let (a, b) = (linear.update(Some((angle, 0.0))), other.update(Some((angle, 0.0))));
             assert!((a.innovation - b.innovation).abs() < 1e-9, "{kind} {sample}: {a:?} {b:?}");
         }
         let difference = (linear.mean() - other.mean().rows(0, 10)).amax();
@@ -81,7 +81,7 @@ fn unscented_and_extended_filter_agree_where_little_is_unknown() {
         // What the filters expect, and a little of a surprise.
         let seen = |first: usize| extended.mean().iter().take(10).skip(first).step_by(2).sum::<f64>();
         let (angle, rate) = (seen(0) + 1e-6, seen(1) - 1e-7);
-        let (a, b) = (extended.update(angle, rate), unscented.update(angle, rate));
+        let (a, b) = (extended.update(Some((angle, rate))), unscented.update(Some((angle, rate))));
         assert!((a.innovation - b.innovation).abs() < 1e-10, "{sample}: {a:?} {b:?}");
     }
     let spread = extended.covariance().diagonal().map(f64::sqrt);
@@ -116,7 +116,7 @@ fn nonsense_is_never_passed_on() {
                 let mut filter = filter(kind, rate_noise);
                 for sample in 0..400 {
                     filter.predict(if sample == 9 { f64::NAN } else { course(sample).0 });
-                    let told = filter.update(angle(sample), angle(sample + 1));
+                    let told = filter.update(Some((angle(sample), angle(sample + 1))));
                     assert!(told.nis.is_none_or(f64::is_finite), "{kind} {name} {sample}");
                     let (belief, mode) = (filter.dominant(), filter.mode());
                     let numbers = [
@@ -150,7 +150,7 @@ fn a_still_mode_teaches_no_frequency() {
         let mut noise = Seed { scenario: 4, run: 0 }.stream("sensor");
         for _ in 0..600 {
             filter.predict(0.0);
-            filter.update(0.06 + 1e-5 * noise.normal(), 0.0);
+            filter.update(Some((0.06 + 1e-5 * noise.normal(), 0.0)));
         }
         filter
     };
@@ -179,7 +179,7 @@ fn dominant_mode_is_the_most_excitable_or_the_largest() {
         for sample in 0..300 {
             let t = 0.3 * f64::from(sample);
             filter.predict(0.0);
-            filter.update(0.06 + 2e-3 * libm::sin(0.8 * t), 0.0);
+            filter.update(Some((0.06 + 2e-3 * libm::sin(0.8 * t), 0.0)));
         }
         assert_eq!(filter.mode(), mode, "{ranking}");
         let (amplitude, sd) = filter.amplitude(1);

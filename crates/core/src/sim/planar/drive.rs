@@ -5,10 +5,11 @@ use std::sync::Arc as Shared;
 
 use crate::actuator::{Actuator, Opposes, Pulse, Wheel};
 use crate::body::{Drift, Forced, Input};
-use crate::disturbance::Disturbance;
+use crate::disturbance::{Disturbance, Disturbing};
 use crate::law::Goal;
 use crate::manoeuvre::Waveform;
 use crate::quantity::Positive;
+use crate::random::Seed;
 use crate::record;
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
@@ -23,7 +24,7 @@ pub struct Drive {
     inertia: f64,
     /// Whether the law is one that switches.
     switching: bool,
-    disturbances: Vec<Disturbance>,
+    disturbances: Vec<Disturbing>,
     /// The instants, latest first, at which the waveform breaks, a disturbance changes or the drift has a kink.
     edges: Vec<Instant>,
     actuator: Actuator,
@@ -41,7 +42,7 @@ pub struct Drive {
 
 impl Drive {
     /// The drive of a scenario, before its start.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &Scenario, seed: Seed) -> Self {
         let waveform = scenario.plan.as_ref().map(|plan| Shared::new(plan.waveform.clone()));
         let breaks = waveform.iter().flat_map(|w| w.breaks()).map(|t| Instant::START + Span::from_seconds(t));
         let kinks = scenario.drift.iter().flat_map(Drift::kinks);
@@ -56,7 +57,12 @@ impl Drive {
             from: (scenario.model.angle.get(), scenario.model.rate.get()),
             inertia: scenario.planned_for().commanded_inertia(),
             switching: scenario.law.switches(),
-            disturbances: scenario.disturbance.clone(),
+            disturbances: scenario
+                .disturbance
+                .iter()
+                .enumerate()
+                .map(|(index, of)| Disturbing::new(of, seed.stream(&format!("disturbance {index}"))))
+                .collect(),
             edges,
             next_period: scenario.actuator.period().map(|_| Instant::START),
             actuator: scenario.actuator.clone(),
@@ -72,7 +78,8 @@ impl Drive {
     pub fn due(&self) -> Option<Instant> {
         let pulse = self.pulse.map(|pulse| if self.held == 0.0 { pulse.from } else { pulse.to });
         let delayed = self.delayed.front().map(|(at, _)| *at);
-        [self.edges.last().copied(), self.next_period, pulse, delayed].into_iter().flatten().min()
+        let drawn = self.disturbances.iter().filter_map(Disturbing::due).min();
+        [self.edges.last().copied(), self.next_period, pulse, delayed, drawn].into_iter().flatten().min()
     }
 
     /// Takes over what the law holds from now on, of a body that turns at this rigid rate (rad/s).
@@ -113,6 +120,7 @@ impl Drive {
         while self.edges.last().is_some_and(|edge| *edge <= now) {
             self.edges.pop();
         }
+        self.disturbances.iter_mut().for_each(|disturbance| disturbance.serve(now));
         if self.next_period == Some(now) {
             self.begin_period(now);
         }

@@ -17,7 +17,7 @@ use crate::law::{Cause, Goal, Hold, Law};
 use crate::random::{Seed, Stream};
 use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
 use crate::scenario::Scenario;
-use crate::sensor::Sensor;
+use crate::sensor::{Measurement, Sensor};
 use crate::time::{Instant, Span};
 
 use arrival::Arrival;
@@ -37,6 +37,8 @@ pub struct PlanarRun {
     body: Plant,
     sensor: Sensor,
     noise: Stream,
+    /// The last measurement.
+    measured: Option<Measurement>,
     watch: Option<Watch>,
     track: Option<Track>,
     law: Law,
@@ -67,10 +69,11 @@ impl PlanarRun {
             body: Plant::new(scenario),
             sensor: scenario.sensor.clone(),
             noise: seed.stream("sensor"),
+            measured: None,
             watch: Watch::new(scenario, seed),
             track: Track::new(scenario, seed),
             law: scenario.law.clone(),
-            drive: Drive::new(scenario),
+            drive: Drive::new(scenario, seed),
             arrival: Arrival::new(scenario),
             goal: scenario.goal(),
             belief: Belief { gain: scenario.law.gain(), ..Belief::default() },
@@ -118,9 +121,11 @@ impl PlanarRun {
     fn begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         self.begun = true;
         let sight = self.view()?;
-        self.belief.angle = self.sensor.measure(sight.angle, &mut self.noise);
-        self.belief.rate = self.sensor.measure_rate(sight.rate, &mut self.noise).unwrap_or(sight.rate);
-        self.estimate(record)?;
+        let measured = self.sensor.measure(self.now, (sight.angle, sight.rate), None, &mut self.noise);
+        self.measured = measured;
+        self.belief.angle = measured.map_or(0.0, |measured| measured.angle);
+        self.belief.rate = measured.map_or(0.0, |measured| measured.rate.unwrap_or(sight.rate));
+        self.estimate(measured.is_some(), record)?;
         self.hold = self.law.decide(self.now, Cause::Start, &self.goal, &self.belief);
         let rigid_rate = self.body.state().rigid_rate;
         self.drive.command(self.now, self.hold.torque, rigid_rate);
@@ -187,19 +192,24 @@ impl PlanarRun {
     fn sample(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         let Some(period) = self.sensor.period() else { return Ok(()) };
         let sight = self.view()?;
-        let angle = self.sensor.measure(sight.angle, &mut self.noise);
-        let difference = (angle - self.belief.angle) / period.seconds();
-        self.belief.rate = self.sensor.measure_rate(sight.rate, &mut self.noise).unwrap_or(difference);
-        self.belief.angle = angle;
+        let before = self.measured;
+        let measured = self.sensor.measure(self.now, (sight.angle, sight.rate), before, &mut self.noise);
+        // Without a measurement the belief stays what it was.
+        if let Some(measured) = measured {
+            let difference = (measured.angle - self.belief.angle) / period.seconds();
+            self.belief.rate = measured.rate.unwrap_or(difference);
+            self.belief.angle = measured.angle;
+            self.measured = Some(measured);
+        }
         self.next_sample = Some(self.now + period);
-        self.estimate(record)?;
+        self.estimate(measured.is_some(), record)?;
         Ok(())
     }
 
-    /// Lets the estimator take the sample that was measured last.
-    fn estimate(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
+    /// Lets the estimator take the sample that was measured last, if there was one.
+    fn estimate(&mut self, measured: bool, record: &mut impl Record) -> Result<(), RecordError> {
         let Self { track, body, belief, now, .. } = self;
-        track.as_mut().map_or(Ok(()), |track| track.sample(*now, body.state(), belief, record))
+        track.as_mut().map_or(Ok(()), |track| track.sample(*now, body.state(), belief, measured, record))
     }
 
     fn decide(&mut self, cause: Cause, record: &mut impl Record) -> Result<(), SimulationError> {

@@ -79,12 +79,13 @@ impl Track {
         (self.moment, self.since) = (moment, now);
     }
 
-    /// Takes a sample of the body in its true state: the belief follows.
+    /// Takes a sample of the body in its true state, of which the sensor measured something or not: the belief follows.
     pub fn sample(
         &mut self,
         now: Instant,
         state: &State,
         belief: &mut Belief,
+        measured: bool,
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
         self.command(now, self.moment);
@@ -100,7 +101,8 @@ impl Track {
                 if let Some(period) = period {
                     filter.predict(impulse / period);
                 }
-                let told = filter.update(belief.angle, belief.rate);
+                let seen = measured.then_some((belief.angle, belief.rate));
+                let told = filter.update(seen);
                 belief.dominant = filter.dominant();
                 told
             }
@@ -166,7 +168,8 @@ impl Track {
             ratio_rate_sd_1_s: sd(1),
             modes: modes.collect(),
             innovation_rad: told.innovation,
-            nis: told.nis.unwrap_or(f64::NAN),
+            nis: told.nis.unwrap_or(0.0),
+            measured: u64::from(told.nis.is_some()),
             nees: filter.nees(&truth),
             gated: u64::from(filter.is_gated()),
             lock: u64::from(!filter.is_lost()),

@@ -1,5 +1,7 @@
 //! `flexsc map`: stability and settling over the frequency of the dominant mode and the period of the samples.
 
+mod figure;
+
 use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
@@ -8,6 +10,7 @@ use flexsc_core::analysis::sampled_loop::{Cell, map};
 use serde_json::json;
 
 use crate::failure::Failure;
+use crate::figure::Format;
 use crate::grid::Even;
 use crate::tune::{Settled, sampled};
 use crate::{print, say, scenario};
@@ -30,6 +33,12 @@ pub struct Args {
     /// CSV file to write; left out, the table is printed
     #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     output: Option<PathBuf>,
+    /// Draw the map of the spectral radius into this directory, made if it is not there
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Form of the figure
+    #[arg(long, value_enum, default_value = "both", requires = "figures")]
+    format: Format,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -39,6 +48,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (Even(frequencies), Even(periods)) = (&args.frequency, &args.period);
     let gain = |frequency: f64| args.gain.unwrap_or_else(|| law.extra_gain(frequency));
     let cells = map(&of, frequencies, periods, args.settled.scaling(), gain, window);
+    if let Some(directory) = &args.figures {
+        figure::save(&scenario.name, &cells, (of.frequency(), of.period), directory, args.format)?;
+    }
     if args.scenario.json {
         return print(format!("{}\n", json!({"scenario": scenario.name, "rows": cells})).as_bytes());
     }

@@ -1,17 +1,22 @@
 //! `flexsc tune`: the gains of the extra loop that do, and a schedule of the best ones.
 
-use std::io::Write;
+mod figures;
+mod table;
+
+use std::path::PathBuf;
 
 use flexsc_core::ScenarioError;
 use flexsc_core::analysis::sampled_loop::{
-    Doubt, Gains, Goal, Loop, Region, Robust, Scaling, Search, Window, midpoints, regions, robust,
+    Doubt, Goal, Loop, Region, Robust, Scaling, Search, Window, midpoints, regions, robust,
 };
 use flexsc_core::law::Pd;
 use serde_json::json;
 
 use crate::failure::Failure;
+use crate::figure::Format;
 use crate::grid::{Even, Stepped};
-use crate::{print, say, scenario};
+use crate::{print, scenario};
+use figures::Tuned;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -47,6 +52,13 @@ pub struct Args {
     /// Print the schedule as `[law.pd.extra]` of a scenario
     #[arg(long, conflicts_with = "json")]
     schedule: bool,
+    /// Draw the region of the gains and the settling times, with --robust its gains too, into this directory, made if it is
+    /// not there
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Form of the figures
+    #[arg(long, value_enum, default_value = "both", requires = "figures")]
+    format: Format,
 }
 
 /// What counts as settled, and which modes follow.
@@ -112,15 +124,22 @@ fn part(name: &str, value: f64) -> Result<(), Failure> {
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.scenario.load()?;
-    let (of, _) = sampled(&scenario)?;
+    let (of, law) = sampled(&scenario)?;
     let (window, scaling) = (args.settled.window(&of, &scenario.name)?, args.settled.scaling());
     positive("--limit", args.limit)?;
     let own = || Even::new(of.frequency() / 6.0, of.frequency() * 4.0 / 3.0, 36);
     let Even(frequencies) = args.frequency.clone().unwrap_or_else(own);
     let Stepped(gains) = args.gain;
+    let found = || regions(&of, &frequencies, scaling, gains, window, args.limit);
+    let draw = |regions: &[Region], robust: Option<(&[Robust], f64)>| {
+        let Some(directory) = &args.figures else { return Ok(()) };
+        let (name, own, limit) = (&scenario.name, law.extra.as_ref(), args.limit);
+        figures::save(&Tuned { name, own, gains, limit, regions, robust }, directory, args.format)
+    };
     let Some(off) = args.robust else {
-        let found = regions(&of, &frequencies, scaling, gains, window, args.limit);
-        let told = || tell(&scenario.name, args.limit, gains, &found);
+        let found = found();
+        draw(&found, None)?;
+        let told = || table::tell(&scenario.name, args.limit, gains, &found);
         return out(args, &scenario.name, &midpoints(&found), &json!(found), told);
     };
     part("--robust", off)?;
@@ -141,9 +160,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         quantile: args.quantile,
         margin: args.margin,
     };
-    let found = robust(&of, &frequencies, search);
-    let schedule: Vec<_> = found.iter().filter_map(|r| Some((r.frequency_rad_s, r.gain?))).collect();
-    out(args, &scenario.name, &schedule, &json!(found), || tell_robust(&scenario.name, off, &found))
+    let gains = robust(&of, &frequencies, search);
+    if args.figures.is_some() {
+        draw(&found(), Some((&gains, off)))?;
+    }
+    let schedule: Vec<_> = gains.iter().filter_map(|r| Some((r.frequency_rad_s, r.gain?))).collect();
+    out(args, &scenario.name, &schedule, &json!(gains), || table::tell_robust(&scenario.name, off, &gains))
 }
 
 fn out(
@@ -168,63 +190,4 @@ fn out(
     }
     tell();
     Ok(())
-}
-
-fn cell(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "none".to_owned(), |value| format!("{value:.digits$}"))
-}
-
-fn tell(name: &str, limit: f64, gains: Gains, found: &[Region]) {
-    let Gains { low, high, step } = gains;
-    say!(
-        "{name}   gains of the extra loop that are stable and settle in {limit} s, of {low} to {high} by {step}"
-    );
-    say!(
-        "  {:>10}{:>10}{:>10}{:>10}{:>12}{:>12}{:>14}",
-        "frequency",
-        "lowest",
-        "highest",
-        "middle",
-        "settling",
-        "radius",
-        "without"
-    );
-    say!("  {:>10}{:>10}{:>10}{:>10}{:>12}{:>12}{:>14}", "rad/s", "", "", "", "s", "", "s");
-    for r in found {
-        say!(
-            "  {:>10.4}{:>10}{:>10}{:>10}{:>12}{:>12}{:>14}",
-            r.frequency_rad_s,
-            cell(r.gain.map(|gain| gain.0), 3),
-            cell(r.gain.map(|gain| gain.1), 3),
-            cell(r.midpoint, 3),
-            cell(r.settling_s, 1),
-            cell(r.spectral_radius, 7),
-            cell(r.settling_without_s, 1),
-        );
-    }
-}
-
-fn tell_robust(name: &str, off: f64, found: &[Robust]) {
-    say!("{name}   gains of the extra loop that settle soonest with the model off by {} %", off * 100.0);
-    say!(
-        "  {:>10}{:>10}{:>12}{:>14}{:>12}{:>14}",
-        "frequency",
-        "gain",
-        "settling",
-        "perturbed",
-        "radius",
-        "without"
-    );
-    say!("  {:>10}{:>10}{:>12}{:>14}{:>12}{:>14}", "rad/s", "", "s", "s", "", "s");
-    for r in found {
-        say!(
-            "  {:>10.4}{:>10}{:>12}{:>14}{:>12}{:>14}",
-            r.frequency_rad_s,
-            cell(r.gain, 3),
-            cell(r.settling_s, 1),
-            cell(r.settling_quantile_s, 1),
-            cell(r.spectral_radius, 7),
-            cell(r.settling_without_s, 1),
-        );
-    }
 }

@@ -1,0 +1,86 @@
+//! The map of the spectral radius over the frequency of the dominant mode and the period of the samples.
+
+use std::path::Path;
+
+use flexsc_core::analysis::sampled_loop::Cell;
+use plotters::style::RGBColor;
+
+use crate::failure::Failure;
+use crate::figure::{self, Axis, Bar, Field, Figure, Format, Layer, Panel, Point, Shape, colour};
+
+/// The values between the classes: finest near 1, where stability ends.
+const EDGES: [f64; 13] = [0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1.0, 1.001, 1.003, 1.01, 1.03, 1.1, 1.3];
+/// The colours of the classes: blue where the loop is stable, orange where it is not, darker farther from 1 (after Brewer).
+const COLOURS: [RGBColor; 14] = [
+    RGBColor(8, 69, 148),
+    RGBColor(33, 113, 181),
+    RGBColor(66, 146, 198),
+    RGBColor(107, 174, 214),
+    RGBColor(158, 202, 225),
+    RGBColor(198, 219, 239),
+    RGBColor(226, 235, 247),
+    RGBColor(254, 237, 222),
+    RGBColor(253, 208, 162),
+    RGBColor(253, 174, 107),
+    RGBColor(253, 141, 60),
+    RGBColor(241, 105, 19),
+    RGBColor(217, 72, 1),
+    RGBColor(140, 45, 4),
+];
+
+/// Draws the map into a directory: cells in rows of one frequency each, and where the scenario itself lies, frequency
+/// (rad/s) and period (s).
+pub fn save(name: &str, cells: &[Cell], own: Point, directory: &Path, format: Format) -> Result<(), Failure> {
+    figure::save(directory, format, &[()], |()| format!("{name}-map"), |()| figure(name, cells, own))
+}
+
+fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
+    let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
+    frequencies.dedup();
+    let periods = cells.iter().take(cells.len() / frequencies.len().max(1)).map(|cell| cell.period_s);
+    let radii: Vec<f64> = cells.iter().map(|cell| cell.spectral_radius).collect();
+    let ends = |values: &[f64]| values[0]..values[values.len() - 1];
+    let field = Field { y: periods.collect(), x: frequencies, values: radii };
+    let x = Axis::exact("frequency of the dominant mode, rad/s", "", ends(&field.x));
+    let y = Axis::exact("period of the samples, s", "", ends(&field.y));
+
+    // The classes that there are.
+    let class = |radius: f64| EDGES.iter().filter(|edge| radius >= **edge).count();
+    let number = |radius: &f64| if radius.is_nan() { f64::INFINITY } else { *radius };
+    let classes = || field.values.iter().map(number).map(class);
+    let (lowest, highest) = (classes().min().unwrap_or(0), classes().max().unwrap_or(0));
+    let mut layers = regions(&field, lowest, highest);
+    layers.push(Layer::new("limit of stability", colour::BLACK, Shape::Line(1.8), field.lines(1.0)));
+    layers.push(Layer::new("scenario", colour::BLACK, Shape::Diamond, vec![own]));
+    let bar = Bar {
+        name: "spectral radius".to_owned(),
+        colours: COLOURS[lowest..=highest].to_vec(),
+        edges: EDGES[lowest..highest].to_vec(),
+    };
+    let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
+    let title = format!("{name}: stability of the sampled loop");
+    Figure { title, panels: vec![panel], panel_height: 420 }
+}
+
+/// The map in colours. Curves of constant radius do not cross: drawn from the largest to the smallest, each is filled with
+/// the class just within it.
+fn regions(field: &Field, lowest: usize, highest: usize) -> Vec<Layer> {
+    let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| {
+        let end = |axis: &[f64], last: usize| axis[last * (axis.len() - 1)];
+        (end(&field.x, i), end(&field.y, j))
+    });
+    let mut rings: Vec<(f64, usize, usize, Vec<Point>)> = vec![(f64::INFINITY, 0, lowest, corners.to_vec())];
+    for above in lowest + 1..=highest {
+        for ring in field.rings(EDGES[above - 1]) {
+            let area = ring.area();
+            // Of two that coincide, the steeper class comes last.
+            let (class, order) = if area > 0.0 { (above, above) } else { (above - 1, EDGES.len() - above) };
+            rings.push((area.abs(), order, class, ring.points));
+        }
+    }
+    rings.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let layer = |(_, _, class, points): (f64, usize, usize, Vec<Point>)| {
+        Layer::new("", COLOURS[class], Shape::Area(1.0), points)
+    };
+    rings.into_iter().map(layer).collect()
+}

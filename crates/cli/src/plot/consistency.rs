@@ -1,0 +1,94 @@
+//! Figure `consistency`: whether a filter knows how large its errors are. The normalised innovation squared, over the number
+//! of measurements, and the normalised estimation error squared, over the number of states, are both about 1 if it does.
+
+use super::motion::{Estimate, Motion};
+use super::story::Story;
+use super::{lock, time, title};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+
+/// So many samples are averaged, as by the filter itself when it judges whether it follows the body.
+const WINDOW: usize = 50;
+/// Where a normal variable lies with a probability of 95 %, in standard deviations.
+const INSIDE: f64 = 1.959_963_984_540_054;
+/// Beyond this an axis has decades.
+const FAR: f64 = 10.0;
+
+pub fn figure(story: &Story, motion: &Motion) -> Figure {
+    let scenario = &story.scenario;
+    let measurements = 1 + usize::from(scenario.sensor.rate_noise().is_some());
+    let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.model.modes.len()));
+    let window = WINDOW.min(motion.estimates.len()).max(1);
+    let panel = |name: &str, ratio: fn(&Estimate) -> f64, degrees: usize, averaged: usize, named: bool| {
+        let values: Vec<Point> =
+            motion.estimates.iter().map(|e| (e.time, ratio(e) / degrees as f64)).collect();
+        let line = averages(&values, window);
+        let [low, high] = chi_square(degrees * averaged).map(|bound| bound / (degrees * averaged) as f64);
+        let shown = || line.iter().map(|point| point.1).chain([low, high]);
+        let far = shown().any(|value| value > FAR);
+        let y = if far { Axis::decades(name, "", shown()) } else { Axis::from_zero(name, "", shown()) };
+        let mut layers = lock::spans(motion, &y, named);
+        let level = |height: f64| [(0.0, height), (story.end, height)];
+        let of = if averaged == 1 { "one sample".to_owned() } else { format!("{averaged} samples") };
+        layers.extend([
+            Layer::new(
+                &format!("95 % of chi-square, {of}"),
+                colour::GREEN,
+                Shape::Area(0.2),
+                band(&level(low), &level(high)),
+            ),
+            Layer::new("", colour::GREY, Shape::Line(0.8), level(1.0).to_vec()),
+            Layer::new(&format!("mean of the last {window} samples"), colour::BLUE, Shape::Line(1.2), line),
+        ]);
+        Panel::new(time(0.0..story.end), y, layers)
+    };
+    // Innovations of an honest filter are independent from sample to sample. Errors are not: within a window they are nearly
+    // one draw.
+    let nis = panel("NIS / measurements", |e| e.nis, measurements, window, true);
+    let nees = panel("NEES / states", |e| e.nees, states.max(1), 1, false);
+    let panels = vec![Panel { x: nis.x.unnamed(), ..nis }, nees];
+    Figure { title: title(story, "consistency of the filter"), panels, panel_height: 200 }
+}
+
+/// Means over so many samples in a row, each at the last of them. A sample without a value counts in none.
+fn averages(values: &[Point], window: usize) -> Vec<Point> {
+    let mean = |row: &[Point]| {
+        let finite = || row.iter().map(|point| point.1).filter(|value| value.is_finite());
+        (row[row.len() - 1].0, finite().sum::<f64>() / finite().count() as f64)
+    };
+    values.windows(window).map(mean).collect()
+}
+
+/// Between these chi-square lies with a probability of 95 %. Wilson and Hilferty: the cube root of it over its degrees of
+/// freedom is about normal.
+fn chi_square(degrees: usize) -> [f64; 2] {
+    let degrees = degrees as f64;
+    let spread = 2.0 / (9.0 * degrees);
+    [-INSIDE, INSIDE].map(|deviations| degrees * (1.0 - spread + deviations * spread.sqrt()).powi(3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_are_those_of_chi_square() {
+        // scipy.stats.chi2.ppf([0.025, 0.975], n).
+        let exact = [
+            (12, [4.403_788_506_981_701_5, 23.336_664_158_645_34]),
+            (50, [32.357_363_695_658_655, 71.420_195_187_506_42]),
+            (100, [74.221_927_474_923_73, 129.561_197_185_836_6]),
+        ];
+        for (degrees, exact) in exact {
+            for (bound, exact) in chi_square(degrees).into_iter().zip(exact) {
+                assert!((bound / exact - 1.0).abs() < 5e-3, "{degrees}: {bound}");
+            }
+        }
+    }
+
+    #[test]
+    fn dropped_samples_do_not_count() {
+        let values = [(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, 5.0)];
+        assert_eq!(averages(&values, 3), [(2.0, 2.0), (3.0, 4.0)]);
+        assert!(averages(&[], 3).is_empty());
+    }
+}

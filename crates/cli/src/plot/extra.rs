@@ -1,0 +1,48 @@
+//! Figure `extra`: the gain of the extra loop over the run, and the frequency of the dominant mode that it follows.
+
+use flexsc_core::Scenario;
+use flexsc_core::law::{Extra, Law};
+
+use super::motion::Motion;
+use super::story::Story;
+use super::{lock, time, title};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+/// The extra loop of a scenario, if it has one.
+pub fn of(story: &Story) -> Option<&Extra> {
+    match &story.scenario.law {
+        Law::Pd(pd) => pd.extra.as_ref(),
+        Law::Relay(_) | Law::Open(_) | Law::PhasePlane(_) => None,
+    }
+}
+
+pub fn figure(story: &Story, motion: &Motion) -> Figure {
+    let read: Vec<Point> = if motion.estimates.is_empty() {
+        motion.time.iter().map(|t| (*t, frequency(&story.scenario, *t))).collect()
+    } else {
+        motion.estimates.iter().map(|estimate| (estimate.time, estimate.read_frequency)).collect()
+    };
+    let gain = |w: f64| of(story).map_or(0.0, |extra| extra.gain(w));
+    let gains: Vec<Point> = read.iter().map(|(t, w)| (*t, gain(*w))).collect();
+    let x = time(0.0..story.end);
+    let panel = |x: Axis, name: &str, line: Vec<Point>, named: bool| {
+        let y = Axis::around(name, "", line.iter().map(|point| point.1));
+        let mut layers = lock::spans(motion, &y, named);
+        layers.push(Layer::new("", colour::BLUE, Shape::Line(1.4), line));
+        Panel::new(x, y, layers)
+    };
+    let panels =
+        vec![panel(x.unnamed(), "gain k_d", gains, true), panel(x, "frequency read, rad/s", read, false)];
+    Figure { title: title(story, "extra loop"), panels, panel_height: 200 }
+}
+
+/// The natural frequency of the dominant mode (rad/s) that an ideal observer tells the law.
+fn frequency(scenario: &Scenario, t: f64) -> f64 {
+    let ratio = |mode: usize| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+    let modes = scenario.model.modes.iter().enumerate();
+    let now = modes.map(|(index, mode)| {
+        let ratio = ratio(index);
+        (mode.frequency.get() * ratio, mode.excitability().abs() / (ratio * ratio))
+    });
+    now.reduce(|best, mode| if mode.1 > best.1 { mode } else { best }).map_or(f64::NAN, |(w, _)| w)
+}

@@ -1,0 +1,32 @@
+//! Spans in which a filter learns no frequency because too little moves, or has lost the body, as shaded areas.
+
+use super::motion::{Estimate, Motion};
+use crate::figure::{Axis, Layer, Point, Shape, band, colour};
+
+/// The areas, over the whole height of a panel, in its legend or not.
+pub fn spans(motion: &Motion, y: &Axis, named: bool) -> Vec<Layer> {
+    let area = |name: &str, colour, is: fn(&Estimate) -> bool| {
+        let points = shaded(&motion.estimates, y, is);
+        (!points.is_empty())
+            .then(|| Layer::new(if named { name } else { "" }, colour, Shape::Area(0.2), points))
+    };
+    let gated = area("gated", colour::GREY, |estimate| estimate.gated);
+    let lost = area("lock lost", colour::VERMILLION, |estimate| estimate.lost);
+    gated.into_iter().chain(lost).collect()
+}
+
+/// A rectangle for each row of samples that are so, each up to the next sample.
+fn shaded(estimates: &[Estimate], y: &Axis, is: fn(&Estimate) -> bool) -> Vec<Point> {
+    let mut points = Vec::new();
+    let mut from = 0;
+    for alike in estimates.chunk_by(|a, b| is(a) == is(b)) {
+        let next = from + alike.len();
+        if is(&alike[0]) {
+            let end = estimates.get(next).unwrap_or(&alike[alike.len() - 1]).time;
+            let level = |height: f64| [(alike[0].time, height), (end, height)];
+            points.extend(band(&level(y.range.start), &level(y.range.end)));
+        }
+        from = next;
+    }
+    points
+}

@@ -1,0 +1,251 @@
+//! The motion of a run and what its filter made of each sample: of a full log, or of a run that is repeated.
+
+use flexsc_core::record::{self, Column, Columns, Log, Record, RecordError, Sample};
+use flexsc_core::time::Instant;
+
+use super::story::{rows, topics};
+use crate::failure::Failure;
+
+/// The motion of a run. All but the envelope and the estimates may be left out where no figure shows it.
+#[derive(Default)]
+pub struct Motion {
+    pub time: Vec<f64>,
+    pub angle: Vec<f64>,
+    pub rate: Vec<f64>,
+    /// Sum of the modes' displacements.
+    pub elastic: Vec<f64>,
+    /// Displacements of each mode, and their rates.
+    pub modes: Vec<Vec<f64>>,
+    pub mode_rates: Vec<Vec<f64>>,
+    /// Where the hub shall be; empty without a manoeuvre or a PD law.
+    pub goal: Vec<f64>,
+    /// Torques: planned, of the law, of the actuator, disturbing; each empty without a manoeuvre or a PD law.
+    pub torques: [Vec<f64>; 4],
+    /// Speed and momentum of the wheel; each empty without one that stores momentum.
+    pub wheel: [Vec<f64>; 2],
+    /// Values of each observed coordinate.
+    pub outputs: Vec<Vec<f64>>,
+    /// Times and values of the total envelope; empty without an observer.
+    pub envelope: Vec<(f64, f64)>,
+    /// What a filter made of each sample; empty without one.
+    pub estimates: Vec<Estimate>,
+}
+
+/// What a filter made of a sample, of the dominant mode.
+#[derive(Copy, Clone)]
+pub struct Estimate {
+    pub time: f64,
+    /// Index of the mode.
+    pub mode: usize,
+    /// Natural frequency as the law reads it, as the filter has it, its standard deviation, and what it really is (rad/s).
+    pub read_frequency: f64,
+    pub frequency: f64,
+    pub frequency_sd: f64,
+    pub true_frequency: f64,
+    /// Displacement as the law reads it (rad).
+    pub displacement: f64,
+    pub nis: f64,
+    pub nees: f64,
+    /// Whether the mode moves too little for its frequency to be learnt.
+    pub gated: bool,
+    /// Whether the filter has lost the body.
+    pub lost: bool,
+}
+
+impl Motion {
+    /// The motion in a full log.
+    pub fn read(log: &Log) -> Result<Self, Failure> {
+        let [attitude, rate, modes, envelope] = topics(log, ["/attitude", "/rate", "/modes", "/envelope"])?;
+        let [goal, torque, outputs] = topics(log, ["/goal", "/torque", "/outputs"])?;
+        let [wheel, estimator] = topics(log, ["/wheel", "/estimator"])?;
+        let column = |columns: &Columns, name: &str| columns.numbers(name).unwrap_or_default().to_vec();
+        Ok(Self {
+            time: column(&attitude, "time_s"),
+            angle: column(&attitude, "angle_rad"),
+            rate: column(&rate, "rate_rad_s"),
+            elastic: column(&modes, "elastic_rad"),
+            modes: inner(&modes, "modes", "displacement_rad"),
+            mode_rates: inner(&modes, "modes", "rate_rad_s"),
+            goal: column(&goal, "angle_rad"),
+            torques: ["feedforward_nm", "feedback_nm", "applied_nm", "disturbance_nm"]
+                .map(|name| column(&torque, name)),
+            wheel: ["speed_rad_s", "momentum_nm_s"].map(|name| column(&wheel, name)),
+            outputs: inner(&outputs, "outputs", "value"),
+            envelope: rows(&envelope, ["time_s", "envelope_rad"])
+                .map(|[time, value]| (time, value))
+                .collect(),
+            estimates: estimates(&estimator),
+        })
+    }
+
+    /// The displacement of a mode at a time, between two rows by the cubic that has their values and rates; NaN beyond the
+    /// rows.
+    pub fn displacement(&self, mode: usize, time: f64) -> f64 {
+        let (Some(x), Some(v)) = (self.modes.get(mode), self.mode_rates.get(mode)) else { return f64::NAN };
+        // A log counts time in whole nanoseconds.
+        let after = self.time.partition_point(|row| *row < time - 1e-9);
+        match (after, self.time.get(after)) {
+            (_, Some(row)) if *row <= time + 1e-9 => x[after],
+            (0, _) | (_, None) => f64::NAN,
+            (_, Some(row)) => {
+                let before = after - 1;
+                let h = row - self.time[before];
+                let p = (time - self.time[before]) / h;
+                let q = 1.0 - p;
+                let ends = q * q * (1.0 + 2.0 * p) * x[before] + p * p * (1.0 + 2.0 * q) * x[after];
+                ends + h * p * q * (q * v[before] - p * v[after])
+            }
+        }
+    }
+}
+
+fn estimates(columns: &Columns) -> Vec<Estimate> {
+    let counts = |name: &str| match columns.get(name) {
+        Some(Column::Counts(values)) => values.as_slice(),
+        _ => &[],
+    };
+    let (modes, gated, lock) = (counts("dominant"), counts("gated"), counts("lock"));
+    let own = inner(columns, "modes", "frequency_rad_s");
+    let names = [
+        "time_s",
+        "frequency_rad_s",
+        "frequency_sd_rad_s",
+        "true_frequency_rad_s",
+        "displacement_rad",
+        "nis",
+        "nees",
+    ];
+    let at = |of: &[u64], index: usize| of.get(index).copied().unwrap_or_default();
+    let row = |(index, numbers): (usize, [f64; 7])| {
+        let [time, read_frequency, frequency_sd, true_frequency, displacement, nis, nees] = numbers;
+        let mode = at(modes, index) as usize;
+        let frequency = own.get(mode).and_then(|of| of.get(index)).copied().unwrap_or(f64::NAN);
+        let (gated, lost) = (at(gated, index) != 0, at(lock, index) == 0);
+        Estimate {
+            time,
+            mode,
+            read_frequency,
+            frequency,
+            frequency_sd,
+            true_frequency,
+            displacement,
+            nis,
+            nees,
+            gated,
+            lost,
+        }
+    };
+    rows(columns, names).enumerate().map(row).collect()
+}
+
+/// A column of the rows within each row, one vector for each place in a row.
+fn inner(columns: &Columns, rows: &str, name: &str) -> Vec<Vec<f64>> {
+    let Some(Column::Rows(counts, inner)) = columns.get(rows) else { return Vec::new() };
+    let count = counts.first().map_or(0, |count| *count as usize);
+    let values = inner.numbers(name).unwrap_or_default();
+    (0..count).map(|place| values.iter().skip(place).step_by(count).copied().collect()).collect()
+}
+
+/// Keeps the motion of a run that is repeated: all of it, or that until `early` and from `late` on.
+pub struct Repeat {
+    pub motion: Motion,
+    early: f64,
+    late: f64,
+    /// Times of the switchings, to compare with the log's.
+    pub switchings: Vec<f64>,
+}
+
+impl Repeat {
+    pub fn new(early: f64, late: f64) -> Self {
+        Self { motion: Motion::default(), early, late, switchings: Vec::new() }
+    }
+
+    fn see(&mut self, time: f64, motion: &record::Motion) {
+        let kept = &mut self.motion;
+        kept.envelope.extend(motion.envelope.as_ref().map(|envelope| (time, envelope.envelope_rad)));
+        if time > self.early && time < self.late {
+            return;
+        }
+        kept.time.push(time);
+        kept.angle.push(motion.attitude.angle_rad);
+        kept.rate.push(motion.rate.rate_rad_s);
+        kept.elastic.push(motion.modes.elastic_rad);
+        extend(&mut kept.modes, motion.modes.modes.iter().map(|mode| mode.displacement_rad));
+        extend(&mut kept.mode_rates, motion.modes.modes.iter().map(|mode| mode.rate_rad_s));
+        let outputs = motion.outputs.iter().flat_map(|outputs| &outputs.outputs);
+        extend(&mut kept.outputs, outputs.map(|output| output.value));
+        if let Some((goal, torque)) = &motion.drive {
+            kept.goal.push(goal.angle_rad);
+            let now = [torque.feedforward_nm, torque.feedback_nm, torque.applied_nm, torque.disturbance_nm];
+            kept.torques.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
+        }
+        if let Some(wheel) = &motion.wheel {
+            kept.wheel[0].push(wheel.speed_rad_s);
+            kept.wheel[1].push(wheel.momentum_nm_s);
+        }
+    }
+}
+
+impl Record for Repeat {
+    fn dense(&self) -> bool {
+        true
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        match sample {
+            Sample::Switching(command, _) => self.switchings.push(command.time_s),
+            Sample::Motion(motion) => self.see(now.seconds(), motion),
+            Sample::Estimate(estimate) => self.motion.estimates.push(Estimate::of(now.seconds(), estimate)),
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+impl Estimate {
+    fn of(time: f64, row: &record::Estimate) -> Self {
+        let mode = row.dominant as usize;
+        Self {
+            time,
+            mode,
+            read_frequency: row.frequency_rad_s,
+            frequency: row.modes.get(mode).map_or(f64::NAN, |mode| mode.frequency_rad_s),
+            frequency_sd: row.frequency_sd_rad_s,
+            true_frequency: row.true_frequency_rad_s,
+            displacement: row.displacement_rad,
+            nis: row.nis,
+            nees: row.nees,
+            gated: row.gated != 0,
+            lost: row.lock == 0,
+        }
+    }
+}
+
+/// Appends a row to columns, which are made with the first row.
+fn extend(columns: &mut Vec<Vec<f64>>, row: impl Iterator<Item = f64>) {
+    for (index, value) in row.enumerate() {
+        if index == columns.len() {
+            columns.push(Vec::new());
+        }
+        columns[index].push(value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_displacement_is_exact_at_rows_and_cubic_between() {
+        let time: Vec<f64> = (0..20).map(f64::from).collect();
+        let modes = vec![time.iter().map(|t| (0.3 * t).sin()).collect()];
+        let mode_rates = vec![time.iter().map(|t| 0.3 * (0.3 * t).cos()).collect()];
+        let motion = Motion { time, modes, mode_rates, ..Motion::default() };
+        assert_eq!(motion.displacement(0, 7.0).to_bits(), motion.modes[0][7].to_bits());
+        for t in [0.2, 6.5, 18.9] {
+            assert!((motion.displacement(0, t) - (0.3 * t).sin()).abs() < 3e-5, "{t}");
+        }
+        assert!([-1.0, 19.5].iter().all(|t| motion.displacement(0, *t).is_nan()));
+        assert!(motion.displacement(1, 7.0).is_nan());
+    }
+}

@@ -1,0 +1,41 @@
+//! Figure `wheel`: speed and momentum of the flywheel with its limits.
+
+use flexsc_core::actuator::{Actuator, Rotor};
+
+use super::motion::Motion;
+use super::story::Story;
+use super::{time, title};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+/// The wheel of a scenario, if it has one that stores momentum.
+pub fn rotor(story: &Story) -> Option<&Rotor> {
+    match &story.scenario.actuator {
+        Actuator::Wheel(wheel) => wheel.rotor.as_ref(),
+        Actuator::Ideal | Actuator::Hold(_) | Actuator::Thrusters(_) | Actuator::Jets(_) => None,
+    }
+}
+
+pub fn figure(story: &Story, motion: &Motion) -> Figure {
+    let limit = rotor(story).and_then(|rotor| Some((rotor.speed_limit?.get(), rotor.inertia.get())));
+    let x = time(0.0..story.end);
+    let panel = |x: Axis, name: &str, unit: &'static str, values: &[f64], limit: Option<f64>| {
+        let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
+        let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
+        let y = Axis::around(name, unit, values.iter().chain(&limits).copied());
+        let level = |(index, height): (usize, &f64)| {
+            let name = if index == 0 { "limits" } else { "" };
+            Layer::new(name, colour::VERMILLION, Shape::Dashes, vec![(0.0, *height), (story.end, *height)])
+        };
+        let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
+        layers.push(Layer::new("", colour::BLACK, Shape::Line(1.2), line));
+        Panel::new(x, y, layers)
+    };
+    // On a body without inertia a momentum is a rate.
+    let momentum = if super::unit_of_torque(story) == "N m" { "N m s" } else { "rad/s" };
+    let [speeds, momenta] = &motion.wheel;
+    let panels = vec![
+        panel(x.unnamed(), "speed", "rad/s", speeds, limit.map(|(speed, _)| speed)),
+        panel(x, "momentum", momentum, momenta, limit.map(|(speed, inertia)| speed * inertia)),
+    ];
+    Figure { title: title(story, "flywheel"), panels, panel_height: 200 }
+}

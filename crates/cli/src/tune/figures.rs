@@ -1,0 +1,128 @@
+//! The figures of tuned gains over the frequency of the dominant mode: where they may lie (seed papers 3 and 5, figure 5),
+//! and how soon the loop settles with them.
+
+use std::path::Path;
+
+use flexsc_core::analysis::sampled_loop::{Gains, Region, Robust};
+use flexsc_core::law::Extra;
+
+use crate::failure::Failure;
+use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Point, Shape, band, colour};
+
+/// Settling times beyond so many limits are not shown.
+const BEYOND: f64 = 3.0;
+
+/// What is drawn.
+pub struct Tuned<'a> {
+    /// Name of the scenario.
+    pub name: &'a str,
+    /// Its extra loop, if it has one.
+    pub own: Option<&'a Extra>,
+    /// The gains that were tried.
+    pub gains: Gains,
+    /// The longest settling time of the region (s).
+    pub limit: f64,
+    /// The region at each frequency.
+    pub regions: &'a [Region],
+    /// The robust gains, and the part by which the model may be off; none if they were not asked for.
+    pub robust: Option<(&'a [Robust], f64)>,
+}
+
+/// A figure.
+#[derive(Copy, Clone)]
+enum What {
+    Region,
+    Settling,
+}
+
+/// Draws the figures into a directory.
+pub fn save(tuned: &Tuned, directory: &Path, format: Format) -> Result<(), Failure> {
+    let name = |what: &What| match what {
+        What::Region => format!("{}-tune-region", tuned.name),
+        What::Settling => format!("{}-tune-settling", tuned.name),
+    };
+    figure::save(directory, format, &[What::Region, What::Settling], name, |what| match what {
+        What::Region => tuned.region(),
+        What::Settling => tuned.settling(),
+    })
+}
+
+impl Tuned<'_> {
+    fn region(&self) -> Figure {
+        let line = |value: &dyn Fn(&Region) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
+        let lower = line(&|r| r.gain.map(|gain| gain.0));
+        let upper = line(&|r| r.gain.map(|gain| gain.1));
+        let middle = line(&|r| r.midpoint);
+        let own: Vec<Point> = self.own.into_iter().flat_map(|own| self.of(own)).collect();
+        let robust: Vec<Point> =
+            self.robust.map_or_else(Vec::new, |(of, _)| over(of, |r| r.frequency_rad_s, |r| r.gain));
+        let shown = [&lower, &upper, &own, &robust].into_iter().flatten().map(|point| point.1);
+        let y = Axis::around("gain k_d of the extra loop", "", shown.chain([0.0]));
+        let x = self.frequency();
+        let zero = vec![(x.range.start, 0.0), (x.range.end, 0.0)];
+        let within = format!("stable, settles within {} s", self.limit);
+        let mut layers = vec![
+            Layer::new(&within, colour::SKY, Shape::Area(0.35), band(&lower, &upper)),
+            Layer::new("", colour::GREY, Shape::Line(0.8), zero),
+            Layer::new("", colour::SKY, Shape::Line(1.0), lower),
+            Layer::new("", colour::SKY, Shape::Line(1.0), upper),
+        ];
+        let highest = self.gains.values().last().copied().unwrap_or(self.gains.high);
+        // Where the region ends only because no higher gain was tried, its middle tells little.
+        if self.regions.iter().any(|region| region.gain.is_some_and(|gain| gain.1 >= highest)) {
+            let level = vec![(x.range.start, highest), (x.range.end, highest)];
+            layers.push(Layer::new("highest gain tried", colour::GREY, Shape::Dashes, level));
+        }
+        layers.push(Layer::new("middle", colour::BLUE, Shape::Line(1.6), middle));
+        if !own.is_empty() {
+            layers.push(Layer::new("of the scenario", colour::BLACK, Shape::Dashes, own));
+        }
+        layers.push(Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), robust));
+        let title = format!("{}: gains of the extra loop", self.name);
+        Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
+    }
+
+    fn settling(&self) -> Figure {
+        let of = |value: &dyn Fn(&Region) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
+        let (middle, without) = (of(&|r| r.settling_s), of(&|r| r.settling_without_s));
+        let robust = |value: &dyn Fn(&Robust) -> Option<f64>| {
+            self.robust.map_or_else(Vec::new, |(rows, _)| over(rows, |r| r.frequency_rad_s, value))
+        };
+        let (nominal, worst) = (robust(&|r| r.settling_s), robust(&|r| r.settling_quantile_s));
+        let x = self.frequency();
+        let shown = [&middle, &without, &nominal, &worst].into_iter().flatten().map(|point| point.1);
+        let finite = shown.filter(|time| time.is_finite()).chain([self.limit]);
+        let times = finite.map(|time| time.min(BEYOND * self.limit));
+        let y = Axis::from_zero("settling time, s", "", times);
+        let level = vec![(x.range.start, self.limit), (x.range.end, self.limit)];
+        let layers = vec![
+            Layer::new("limit", colour::GREY, Shape::Dashes, level),
+            Layer::new("without the extra loop", colour::BLACK, Shape::Line(1.4), without),
+            Layer::new("middle of the region", colour::BLUE, Shape::Line(1.6), middle),
+            Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), nominal),
+            Layer::new("the same, perturbed", colour::VERMILLION, Shape::Dashes, worst),
+        ];
+        let title = format!("{}: settling time", self.name);
+        Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
+    }
+
+    fn robust_name(&self) -> String {
+        self.robust.map_or_else(String::new, |(_, off)| format!("robust against {} %", 100.0 * off))
+    }
+
+    fn frequency(&self) -> Axis {
+        let all = || self.regions.iter().map(|region| region.frequency_rad_s);
+        let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max));
+        Axis::exact("frequency of the dominant mode, rad/s", "", low..high)
+    }
+
+    /// The scenario's own gain at the frequencies.
+    fn of(&self, own: &Extra) -> Vec<Point> {
+        self.regions.iter().map(|region| (region.frequency_rad_s, own.gain(region.frequency_rad_s))).collect()
+    }
+}
+
+/// A value over the frequency, with gaps where there is none.
+fn over<T>(rows: &[T], frequency: impl Fn(&T) -> f64, value: impl Fn(&T) -> Option<f64>) -> Vec<Point> {
+    rows.iter().map(|row| (frequency(row), value(row).unwrap_or(f64::NAN))).collect()
+}

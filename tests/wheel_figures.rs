@@ -1,0 +1,276 @@
+//! The figures of wheels, filters and sampled loops: the right curves at the right places.
+
+use flexsc_core::record::Log;
+use resvg::usvg::roxmltree::{Document, Node};
+
+use crate::util::Dir;
+
+const BLUE: &str = "#0072B2";
+const SKY: &str = "#56B4E9";
+const VERMILLION: &str = "#D55E00";
+const BLACK: &str = "#000000";
+
+/// A point in the units of a figure's file.
+type Point = (f64, f64);
+
+/// A figure.
+struct Drawing(String);
+
+impl Drawing {
+    fn read(dir: &Dir, name: &str) -> Self {
+        Self(dir.text(&format!("figures/{name}.svg")))
+    }
+
+    /// Something of each element that has it.
+    fn each<T>(&self, of: impl Fn(&Node<'_, '_>) -> Option<T>) -> Vec<T> {
+        let document = Document::parse(&self.0).expect("well-formed XML");
+        document.descendants().filter_map(|node| of(&node)).collect()
+    }
+
+    fn texts(&self) -> Vec<String> {
+        self.each(|node| node.text().map(|text| text.trim().to_owned()))
+    }
+
+    #[track_caller]
+    fn shows(&self, words: &[&str]) {
+        let texts = self.texts();
+        for words in words {
+            assert!(texts.iter().any(|text| text == words), "no `{words}` in {texts:?}");
+        }
+    }
+
+    /// The points of all elements of a kind whose paint has a colour.
+    fn shapes(&self, kind: &str, paint: &str, colour: &str) -> Vec<Vec<Point>> {
+        self.each(|node| {
+            let is = node.has_tag_name(kind) && node.attribute(paint) == Some(colour);
+            is.then(|| points(node.attribute("points").unwrap_or_default()))
+        })
+    }
+
+    /// The line of a colour with the most points, the first of such.
+    fn line(&self, colour: &str) -> Vec<Point> {
+        let lines = self.shapes("polyline", "stroke", colour);
+        lines.into_iter().rev().max_by_key(Vec::len).expect("a line")
+    }
+
+    /// Where a number stands beside an axis.
+    fn number(&self, text: &str) -> Point {
+        let place = |node: &Node<'_, '_>| {
+            let is = node.has_tag_name("text") && node.text().map(str::trim) == Some(text);
+            let number = |name: &str| node.attribute(name)?.parse().ok();
+            is.then(|| Some((number("x")?, number("y")?)))?
+        };
+        self.each(place).first().copied().unwrap_or_else(|| panic!("no number {text}"))
+    }
+
+    /// The value at a height, by two numbers of the axis upwards of the first panel.
+    fn up(&self, y: f64, [low, high]: [&str; 2]) -> f64 {
+        let ([a, b], [from, to]) = ([low, high].map(|text| self.number(text).1), [low, high].map(value));
+        from + (to - from) * (y - a) / (b - a)
+    }
+
+    /// The value across, by two numbers of the axis to the right.
+    fn across(&self, x: f64, [low, high]: [&str; 2]) -> f64 {
+        let ([a, b], [from, to]) = ([low, high].map(|text| self.number(text).0), [low, high].map(value));
+        from + (to - from) * (x - a) / (b - a)
+    }
+}
+
+fn value(text: &str) -> f64 {
+    text.replace('−', "-").parse().expect("a number")
+}
+
+fn points(text: &str) -> Vec<Point> {
+    let point = |pair: &str| {
+        let (x, y) = pair.split_once(',').expect("a pair");
+        (value(x), value(y))
+    };
+    text.split_whitespace().map(point).collect()
+}
+
+#[track_caller]
+fn near(found: f64, exact: f64, tolerance: f64) {
+    assert!((found - exact).abs() <= tolerance, "{found} is not {exact}");
+}
+
+#[test]
+fn the_angle_is_drawn_with_its_band_and_when_it_has_settled() {
+    let dir = Dir::with(&["wheel-scheduled-gain", "wheel-slow-mode"]);
+    dir.run("simulate wheel-scheduled-gain.toml").exits(0);
+    dir.run("plot wheel-scheduled-gain.mcap --format svg -o figures").exits(0);
+    let names = ["angle", "extra", "modes", "torque"].map(|what| format!("wheel-scheduled-gain-{what}.svg"));
+    assert_eq!(dir.names("figures"), names);
+    let angle = Drawing::read(&dir, "wheel-scheduled-gain-angle");
+    angle.shows(&["angle, mrad", "time, s", "within ±3 mrad", "settled at 172.0 s"]);
+    let settled = angle.shapes("polyline", "stroke", VERMILLION);
+    let times: Vec<f64> = settled.iter().flatten().map(|(x, _)| angle.across(*x, ["0", "600"])).collect();
+    // One dash is the legend's.
+    assert!(times.iter().filter(|t| (*t - 172.0).abs() < 0.1).count() > 40, "{times:?}");
+    // 3 mrad up and down: a fifteenth of the way from 0 to 60 mrad and from 0 to -20 mrad.
+    let band = &angle.shapes("polygon", "fill", "#009E73")[1];
+    let heights = band.iter().map(|(_, y)| angle.up(*y, ["−20", "60"]));
+    near(heights.clone().fold(f64::INFINITY, f64::min), -3.0, 0.05);
+    near(heights.fold(f64::NEG_INFINITY, f64::max), 3.0, 0.05);
+
+    // A run that ends outside the band has not settled.
+    dir.run("simulate wheel-slow-mode.toml --set duration=100").exits(0);
+    dir.run("plot wheel-slow-mode.mcap --format svg --what angle -o figures").exits(0);
+    let texts = Drawing::read(&dir, "wheel-slow-mode-angle").texts();
+    assert!(!texts.iter().any(|text| text.contains("settled")), "{texts:?}");
+}
+
+#[test]
+fn the_extra_gain_follows_the_frequency() {
+    let dir = Dir::with(&["wheel-scheduled-gain"]);
+    dir.run("simulate wheel-scheduled-gain.toml --set duration=250").exits(0);
+    dir.run("plot wheel-scheduled-gain.mcap --format svg --what extra -o figures").exits(0);
+    let extra = Drawing::read(&dir, "wheel-scheduled-gain-extra");
+    extra.shows(&["gain k_d", "frequency read, rad/s"]);
+    // 0.3 rad/s at the start, 0.2 after 100 s, 0.1 from 200 s on: gains 1.4, 0.1 and -0.6.
+    let lines = extra.shapes("polyline", "stroke", BLUE);
+    let gain = lines.iter().find(|line| line.len() > 1).expect("a line");
+    for (t, k) in [(0.0, 1.4), (100.0, 0.1), (220.0, -0.6)] {
+        let at = gain.iter().min_by(|a, b| {
+            let off = |p: &Point| (extra.across(p.0, ["0", "200"]) - t).abs();
+            off(a).total_cmp(&off(b))
+        });
+        near(extra.up(at.expect("a point").1, ["−0.5", "1.0"]), k, 0.02);
+    }
+}
+
+#[test]
+fn filters_have_figures_from_events_and_from_full_logs() {
+    let draw = |detail: &str| {
+        let dir = Dir::with(&["wheel-ekf"]);
+        dir.run(&format!("simulate wheel-ekf.toml --log {detail}")).exits(0);
+        dir.run("plot wheel-ekf.mcap --format svg -o figures").exits(0);
+        dir
+    };
+    let (events, full) = (draw("events"), draw("full"));
+    let names = ["angle", "consistency", "estimate", "extra", "frequency", "modes", "torque"].map(|what| {
+        let name = format!("wheel-ekf-{what}");
+        assert!(Drawing::read(&events, &name).0 == Drawing::read(&full, &name).0, "{what}");
+        format!("{name}.svg")
+    });
+    assert_eq!(full.names("figures"), names);
+
+    let frequency = Drawing::read(&full, "wheel-ekf-frequency");
+    frequency.shows(&["± 2 standard deviations", "estimated", "true", "gated", "held for the law"]);
+    frequency.shows(&["frequency, rad/s", "error, mrad/s"]);
+    let log = Log::open(&full.path("wheel-ekf.mcap")).expect("a log");
+    let estimator = log.columns("/estimator").expect("a topic");
+    let column = |name: &str| estimator.numbers(name).expect("a column");
+    let lines = frequency.shapes("polyline", "stroke", BLUE);
+    let estimated = lines.iter().filter(|line| line.len() > 100).min_by(|a, b| a[0].1.total_cmp(&b[0].1));
+    let (x, y) = estimated.expect("a line")[0];
+    near(frequency.across(x, ["0", "600"]), 0.0, 0.1);
+    near(frequency.up(y, ["0.10", "0.30"]), column("frequency_rad_s")[0], 1e-3);
+    // The band is four standard deviations wide: at the start 2 x 2 x 3 % of 0.3 rad/s.
+    let band = &frequency.shapes("polygon", "fill", SKY)[1];
+    let first = band.iter().filter(|p| p.0 < x + 1.0).map(|p| frequency.up(p.1, ["0.10", "0.30"]));
+    let (low, high) = first.fold((1.0, 0.0), |(low, high): Point, f| (low.min(f), high.max(f)));
+    near(high - low, 4.0 * column("frequency_sd_rad_s")[0], 1e-3);
+
+    let consistency = Drawing::read(&full, "wheel-ekf-consistency");
+    consistency.shows(&["NIS / measurements", "NEES / states", "mean of the last 50 samples"]);
+    consistency.shows(&["95 % of chi-square, 50 samples", "95 % of chi-square, one sample"]);
+    // 50 samples of one measurement: 32.36 to 71.42.
+    let band = &consistency.shapes("polygon", "fill", "#009E73")[1];
+    let heights: Vec<f64> = band.iter().map(|p| consistency.up(p.1, ["0.5", "1.0"])).collect();
+    near(heights.iter().copied().fold(f64::INFINITY, f64::min), 0.6472, 5e-3);
+    near(heights.iter().copied().fold(0.0, f64::max), 1.4284, 5e-3);
+    // The last of them is the mean NIS of the last 50 samples.
+    let nis = column("nis");
+    let mean = nis[nis.len() - 50..].iter().sum::<f64>() / 50.0;
+    let line = consistency.shapes("polyline", "stroke", BLUE);
+    let line = line.iter().find(|line| line.len() > 100).expect("a line");
+    near(consistency.up(line[line.len() - 1].1, ["0.5", "1.0"]), mean, 5e-3);
+
+    // The error of the displacement is small beside the displacement.
+    let estimate = Drawing::read(&full, "wheel-ekf-estimate");
+    estimate.shows(&["displacement, mrad", "error, µrad", "estimated, as the law reads it", "true"]);
+}
+
+#[test]
+fn a_filter_that_has_lost_the_body_is_marked() {
+    let dir = Dir::with(&["wheel-ekf"]);
+    let wrong = "--set estimator.extended_kalman.ratio=0.5 --set estimator.extended_kalman.ratio_sd=0.001";
+    dir.run(&format!("simulate wheel-ekf.toml --set duration=100 {wrong}")).exits(0);
+    dir.run("plot wheel-ekf.mcap --format svg --what frequency,consistency -o figures").exits(0);
+    for what in ["frequency", "consistency"] {
+        let drawing = Drawing::read(&dir, &format!("wheel-ekf-{what}"));
+        drawing.shows(&["lock lost"]);
+        // In the legend and in both panels.
+        assert!(drawing.shapes("polygon", "fill", VERMILLION).len() >= 3, "{what}");
+    }
+}
+
+#[test]
+fn a_wheel_is_drawn_with_its_limits() {
+    let dir = Dir::with(&["wheel-fast-mode"]);
+    let rotor = "--set actuator.wheel.rotor={inertia=1e-4,speed=10.0,speed_limit=40.0}";
+    dir.run(&format!("simulate wheel-fast-mode.toml --set duration=60 {rotor}")).exits(0);
+    dir.run("plot wheel-fast-mode.mcap --format svg --what wheel -o figures").exits(0);
+    let wheel = Drawing::read(&dir, "wheel-fast-mode-wheel");
+    wheel.shows(&["speed, rad/s", "momentum, mrad/s", "limits"]);
+    let (_, start) = wheel.line(BLACK)[0];
+    near(wheel.up(start, ["−40", "−20"]), 10.0, 0.2);
+    let limits = wheel.shapes("polyline", "stroke", VERMILLION);
+    let highest = limits.iter().flatten().filter(|p| p.0 > 1000.0 && p.1 > 500.0).map(|p| p.1);
+    near(wheel.up(highest.fold(f64::INFINITY, f64::min), ["−40", "−20"]), 40.0, 0.2);
+    // A wheel without a rotor stores nothing.
+    dir.run("simulate wheel-fast-mode.toml --set duration=10").exits(0);
+    dir.run("plot wheel-fast-mode.mcap --what wheel,frequency")
+        .exits(2)
+        .says(&["it has torque, angle, modes"]);
+}
+
+#[test]
+fn tuned_gains_are_drawn() {
+    let dir = Dir::with(&["wheel-scheduled-gain"]);
+    let options = "--frequency 0.2:0.3:2 --gain -2:4:0.05 --robust 0.1 --figures figures --format svg --json";
+    dir.run(&format!("tune wheel-scheduled-gain.toml {options}")).exits(0);
+    let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
+    region.shows(&["gain k_d of the extra loop", "frequency of the dominant mode, rad/s", "middle"]);
+    region.shows(&["stable, settles within 200 s", "of the scenario", "robust against 10 %"]);
+    // From -0.8 to 1 at 0.2 rad/s, from -0.9 to 3.7 at 0.3 rad/s.
+    let corners = &region.shapes("polygon", "fill", SKY)[1];
+    let found: Vec<f64> = corners.iter().map(|p| region.up(p.1, ["−1.0", "3.0"])).collect();
+    for (found, exact) in found.iter().zip([-0.8, -0.9, 3.7, 1.0]) {
+        near(*found, exact, 0.02);
+    }
+    let middle = region.shapes("polyline", "stroke", BLUE);
+    // The first is the legend's.
+    near(region.up(middle[1][0].1, ["−1.0", "3.0"]), 0.1, 0.02);
+    let settling = Drawing::read(&dir, "wheel-scheduled-gain-tune-settling");
+    settling.shows(&["settling time, s", "limit", "without the extra loop", "the same, perturbed"]);
+    let without = settling.shapes("polyline", "stroke", BLACK);
+    near(settling.up(without[1][0].1, ["20", "160"]), 180.3, 0.5);
+
+    // A region that ends at the highest gain tells so, and without --robust there is no such gain.
+    dir.run("tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:0.1 --figures figures")
+        .exits(0)
+        .says(&["wheel-scheduled-gain-tune-region.png", "0.3000"]);
+    let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
+    region.shows(&["highest gain tried"]);
+    assert!(!region.texts().iter().any(|text| text.contains("robust")));
+}
+
+#[test]
+fn the_map_is_drawn_with_the_limit_of_stability() {
+    let dir = Dir::with(&["wheel-fast-mode"]);
+    let grid = "--frequency 0.05:0.35:31 --period 0.1:2:39";
+    dir.run(&format!("map wheel-fast-mode.toml {grid} --figures figures -o map.csv")).exits(0);
+    assert!(dir.read("figures/wheel-fast-mode-map.png").starts_with(b"\x89PNG\r\n\x1a\n"));
+    let map = Drawing::read(&dir, "wheel-fast-mode-map");
+    assert!(map.0.len() < 100_000, "{}", map.0.len());
+    map.shows(&["spectral radius", "limit of stability", "period of the samples, s", "0.999", "1.001"]);
+    // The longest periods: 1.75, 1.4, 1.1 and 0.75 s at 0.1, 0.15, 0.2 and 0.3 rad/s.
+    let limit = map.line(BLACK);
+    for (w, longest) in [(0.1, 1.75), (0.15, 1.4), (0.2, 1.1), (0.3, 0.75)] {
+        let off = |p: &&Point| (map.across(p.0, ["0.10", "0.30"]) - w).abs();
+        let at = limit.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a point");
+        near(map.up(at.1, ["0.4", "1.4"]), longest, 0.03);
+    }
+    dir.run(&format!("map wheel-fast-mode.toml {grid} --format svg")).exits(2);
+}
