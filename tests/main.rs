@@ -1,6 +1,7 @@
 //! All integration tests of flexsc, one binary.
 
 mod adaptation;
+mod adaptive;
 mod bad_manoeuvres;
 mod bad_scenarios;
 mod campaigns;
