@@ -195,12 +195,12 @@ fn modes_are_found_over_random_runs() {
 #[test]
 #[ignore = "100 runs a row, for people"]
 fn whole_table() {
-    println!("modes, Hz | off | converged | median, longest s | error of frequency, influence");
+    eprintln!("modes, Hz | off | converged | median, longest s | error of frequency, influence");
     for set in SETS {
         for off in OFF {
             let (converged, time, longest, [frequency, influence]) = row(set, off, 100);
             let modes: Vec<String> = set.0.iter().map(|(at, _)| at.to_string()).collect();
-            println!(
+            eprintln!(
                 "{} | {off} | {converged} | {time:.1} {longest:.1} | {frequency:.1e} {influence:.4}",
                 modes.join(" + ")
             );

@@ -7,6 +7,7 @@ mod bad_scenarios;
 mod campaigns;
 mod cli;
 mod cycles;
+mod damping;
 mod determinism;
 mod events;
 mod filters;

@@ -268,9 +268,12 @@ fn still_modes_teach_no_frequency() {
     assert!(drift(1e-12) > 0.03, "{}", drift(1e-12));
 }
 
+/// What a gyro says at a sample.
+type Measured = fn(usize) -> f64;
+
 #[test]
 fn nonsense_is_never_passed_on() {
-    let nonsense: [(&str, fn(usize) -> f64); 8] = [
+    let nonsense: [(&str, Measured); 8] = [
         ("NaN", |_| f64::NAN),
         ("infinite", |_| f64::INFINITY),
         ("huge", |_| 1e300),
@@ -317,66 +320,4 @@ fn nonsense_is_never_passed_on() {
         assert!(!(100..1200).contains(&cycle) || trusted, "{cycle}: {:?}", observer.residual());
         assert!(cycle < 1210 || !trusted, "{cycle}: {:?}", observer.residual());
     }
-}
-
-#[test]
-fn near_modes_become_one_tracker() {
-    let mode = |hertz: f64, influence: f64| Tracker { bounds: None, ..tracker(hertz, influence) };
-    let modes = [mode(0.6096, 1.6), mode(0.2476, 2.89), mode(0.6049, 1.4), mode(0.65, -0.2), mode(0.9, 0.1)];
-    let found = trackers(&modes, 0.08);
-    let hertz = |tracker: &Tracker| tracker.frequency.get() / (2.0 * PI);
-    // The pair first, 0.60741 Hz; then 0.65 Hz is within 8 % of it.
-    assert_eq!(found.len(), 3);
-    close(hertz(&found[0]), 0.2476, 1e-12);
-    let pair = (1.6 * 0.6096 + 1.4 * 0.6049) / 3.0;
-    close(hertz(&found[1]), (3.0 * pair + 2.8 * 0.65) / 5.8, 0.05);
-    close(found[1].influence[0].get(), 2.8, 1e-12);
-    assert_eq!(trackers(&modes, 0.0).len(), 5);
-    let two = dominant(found, 2);
-    assert!((hertz(&two[0]) - 0.2476).abs() < 1e-12 && two.len() == 2);
-    assert_eq!(inconsistency(&two, 2.0, 1, CYCLE), None);
-    let [first, second] = bounds(&two, 2.0, CYCLE)[..] else { panic!("two") };
-    assert_eq!(first[1], second[0]);
-    close(first[0], PI * 0.2476, 1e-12);
-}
-
-#[test]
-fn what_does_not_fit_is_refused() {
-    let hertz = |hertz: f64| Frequency::new(2.0 * PI * hertz).expect("a frequency");
-    let of = |low: f64, at: f64, high: f64| Tracker {
-        frequency: hertz(at),
-        bounds: Some([hertz(low), hertz(high)]),
-        ..tracker(at, 1.0)
-    };
-    let wrong = |trackers: &[Tracker], inputs| {
-        let (key, why) = Gradient::default().inconsistency(trackers, inputs, CYCLE).expect("wrong");
-        format!("{key} {why}")
-    };
-    for (found, expected) in [
-        (wrong(&[], 1), "trackers must have at least one mode to track, got none"),
-        (
-            wrong(&[of(0.1, 0.2, 0.3)], 2),
-            "trackers[0].influence must be one number for each of 2 inputs, got 1",
-        ),
-        (wrong(&[tracker(0.2, 0.0)], 1), "trackers[0].influence must not be 0 for every input: nothing"),
-        (wrong(&[of(0.3, 0.2, 0.1)], 1), "trackers[0].bounds must be [low, high] in this order, got"),
-        (wrong(&[of(0.1, 0.4, 0.3)], 1), "trackers[0].frequency must lie within the bounds"),
-        (wrong(&[of(0.1, 0.2, 2.6)], 1), "trackers[0].bounds must end below the Nyquist frequency of 15.7"),
-        (wrong(&[of(2.0, 2.6, 2.7)], 1), "trackers[0].frequency must be below the Nyquist frequency of 15.7"),
-        (
-            wrong(&[of(0.1, 0.2, 0.3), of(0.29, 0.4, 0.5)], 1),
-            "trackers[1].bounds must not overlap those of trackers[0]",
-        ),
-    ] {
-        assert!(found.starts_with(expected), "{found}");
-    }
-    let number = |value| crate::quantity::NonNegative::new(value).expect("0 or more");
-    let spec = Recurrence { influence_bounds: [2.0, 3.0].map(number), ..Recurrence::default() };
-    assert_eq!(spec.inconsistency(&tracker(0.2, 2.0), CYCLE).expect("wrong").0, "influence_bounds");
-    let spec = Gradient { damping: number(1.0), ..Gradient::default() };
-    assert_eq!(spec.inconsistency(&[tracker(0.2, 2.0)], 1, CYCLE).expect("wrong").0, "damping");
-    let unknown: Result<Gradient, _> = toml::from_str("damping = 0.01\nlg = 0.1");
-    assert!(unknown.is_err());
-    let known: Gradient = toml::from_str("damping = 0.01\nelastic_gain = 0.1").expect("known");
-    assert_eq!(known.damping, number(0.01));
 }

@@ -2,6 +2,7 @@
 //! normalised by their mean square (recursive prediction error method, L. Ljung; the tuning is ours).
 
 mod observer;
+mod parameter;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

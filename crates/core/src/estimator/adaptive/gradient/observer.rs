@@ -5,18 +5,13 @@ use super::super::residual::Residual;
 use super::super::tracker::{self, Tracker};
 use super::super::{Estimate, Observer, Pulse};
 use super::Gradient;
+use super::parameter::{Motion, Parameter};
 use crate::quantity::Fraction;
 
-/// What a sample weighs in the mean square of a sensitivity.
-const WEIGHT: f64 = 0.01;
-/// One sample alone makes the mean square at least this part of its own.
-const PEAK: f64 = 0.05;
 /// The largest step of ln w, and of an influence by its value at the start.
 const STEP: f64 = 0.02;
 /// An innovation of more than this is no measurement of a spacecraft (rad/s).
 const FARTHEST: f64 = 10.0;
-/// Beyond this no number is a motion; its square is still finite.
-const HUGE: f64 = 1e100;
 /// Gain of a mode that is alone, and of one among others.
 const ELASTIC_GAIN: [f64; 2] = [0.15, 0.1];
 
@@ -84,67 +79,6 @@ pub struct GradientObserver {
     residual: Residual,
 }
 
-/// A state of the channel, or its derivative by a parameter.
-#[derive(Clone, Debug, PartialEq)]
-struct Motion {
-    rate: f64,
-    phases: Vec<Phase>,
-}
-
-impl Motion {
-    /// The measured rate.
-    fn measured(&self) -> f64 {
-        self.rate + self.elastic()
-    }
-
-    fn elastic(&self) -> f64 {
-        self.phases.iter().map(|phase| phase[0]).sum()
-    }
-
-    /// Adds the gains times an innovation.
-    fn correct(&mut self, gains: [f64; 2], innovation: f64) {
-        self.rate += gains[0] * innovation;
-        for phase in &mut self.phases {
-            phase[0] += gains[1] * innovation;
-        }
-    }
-
-    fn is_sound(&self) -> bool {
-        self.rate.abs() < HUGE && self.phases.as_flattened().iter().all(|n| n.abs() < HUGE)
-    }
-
-    fn rest(&mut self) {
-        self.rate = 0.0;
-        self.phases.fill([0.0; 2]);
-    }
-}
-
-/// A parameter, and how the prediction depends on it.
-#[derive(Clone, Debug)]
-struct Parameter {
-    value: f64,
-    bounds: [f64; 2],
-    /// The largest step.
-    step: f64,
-    /// What is added to the mean square ((rad/s)²).
-    floor: f64,
-    /// Mean square of the prediction's derivative ((rad/s)²).
-    power: f64,
-    /// Derivative of the state by the parameter.
-    slope: Motion,
-}
-
-impl Parameter {
-    /// A step against an innovation.
-    fn learn(&mut self, sensitivity: f64, innovation: f64, rate: f64) {
-        let step = rate * sensitivity * innovation / (self.power + self.floor);
-        if step.is_finite() {
-            self.value =
-                (self.value + step.clamp(-self.step, self.step)).clamp(self.bounds[0], self.bounds[1]);
-        }
-    }
-}
-
 impl GradientObserver {
     /// Derivatives of the predicted measurement by the parameters (rad/s for each unit): ln w of each mode, then the
     /// influences of the inputs on the first mode, and so on.
@@ -208,16 +142,14 @@ impl GradientObserver {
 impl Observer for GradientObserver {
     fn update(&mut self, measured: f64) {
         let innovation = measured - self.motion.measured();
-        // What is not a number is dropped as well.
-        if !(innovation.abs() <= FARTHEST) {
+        if innovation.is_nan() || innovation.abs() > FARTHEST {
             self.residual.take(None, self.motion.elastic());
             return;
         }
         let modes = self.motion.phases.len();
         for (index, parameter) in self.parameters.iter_mut().enumerate() {
             let sensitivity = parameter.slope.measured();
-            let square = sensitivity * sensitivity;
-            parameter.power = (parameter.power + WEIGHT * (square - parameter.power)).max(PEAK * square);
+            parameter.weigh(sensitivity);
             let phase = self.motion.phases.get(index);
             let excited = phase.is_none_or(|phase| libm::hypot(phase[0], phase[1]) > self.gate);
             if index >= modes || excited {

@@ -86,7 +86,7 @@ impl Motion {
 }
 
 impl RecurrenceObserver {
-    fn sound<'a>(pulses: &'a [Pulse]) -> impl Iterator<Item = &'a Pulse> {
+    fn sound(pulses: &[Pulse]) -> impl Iterator<Item = &Pulse> {
         pulses.iter().filter(|pulse| pulse.input == 0 && pulse.is_sound())
     }
 
@@ -131,8 +131,7 @@ fn stepped(value: f64, step: f64, [low, high]: [f64; 2]) -> f64 {
 impl Observer for RecurrenceObserver {
     fn update(&mut self, measured: f64) {
         let innovation = measured - self.motion.rate - self.motion.elastic;
-        // What is not a number is dropped as well.
-        if !(innovation.abs() <= FARTHEST) {
+        if innovation.is_nan() || innovation.abs() > FARTHEST {
             self.motion.taken = 0.0;
             self.residual.take(None, self.motion.elastic);
             return;
