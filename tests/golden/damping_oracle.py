@@ -1,8 +1,8 @@
-"""Golden numbers of tests/damping.rs, by NumPy and SciPy: `python3 tests/golden/damping_oracle.py` prints them.
+"""Golden numbers of tests/damping.rs, by NumPy and SciPy: `python3 tests/golden/damping_oracle.py`.
 
-The limit of a delayed rate feedback comes from the rightmost characteristic roots, of the delay equation's generator on
-Chebyshev points, and from the delay equation itself by steps; the region of convergence from eigenvalues at random points;
-the decay to a threshold from an integration.
+The limit of a delayed rate feedback comes from the rightmost characteristic roots, of the delay equation's
+generator on Chebyshev points, and from the delay equation itself by steps; the region of convergence from
+eigenvalues at random points; the decay to a threshold from an integration.
 """
 
 import numpy as np
@@ -64,7 +64,7 @@ def frozen(hertz, weights, kappa, period=0.2, zeta=0.005):
 
 
 def area(w1, kappa, draws=400_000):
-    """The area of the region of convergence in (W2, W3), by eigenvalues at random points of a box; one of them is 1."""
+    """The area of the region of convergence in (W2, W3): eigenvalues at random points; one of them is 1."""
     rng = np.random.default_rng(1)
     low, high = np.array([-0.3, -4.5]), np.array([2.1, 6.5])
     points = rng.uniform(low, high, (draws, 2))

@@ -1,8 +1,8 @@
 """Golden numbers of the adaptive observers, by NumPy: `python3 tests/golden/observer_oracle.py` prints them.
 
-One channel with two modes and two groups of thrusters, each of which excites both modes, without noise: what the gradient
-observer of crates/core/src/estimator/adaptive identifies. Matrices are exponentials, derivatives by the frequency those of
-a matrix twice as large.
+One channel with two modes and two groups of thrusters, each of which excites both modes, without noise: what
+the gradient observer of crates/core/src/estimator/adaptive identifies. Matrices are exponentials, derivatives
+by the frequency are differences of the fourth order.
 """
 
 import numpy as np
@@ -75,7 +75,7 @@ def main():
             part, w = slice(1 + 2 * mode, 3 + 2 * mode), np.exp(log_w[mode])
             turn = expm(system(w) * CYCLE)
             next_state[part], next_slopes[part] = turn @ state[part], turn @ slopes[part]
-            turned = slope(lambda w, part=part: expm(system(w) * CYCLE) @ state[part], w)
+            turned = slope(lambda w, x=state[part]: expm(system(w) * CYCLE) @ x, w)
             next_slopes[part, mode] += turned
             next_truth[part] = expm(system(true[mode]) * CYCLE) @ truth[part]
             for group, size, begin, length in pulses:

@@ -38,7 +38,8 @@ def test_where_the_observer_converges() -> None:
     assert region["area"] == pytest.approx(1.347, rel=0.01)
     assert np.isnan(region["next_min"][2])
     for w2, low, high in zip(region["elastic"][:2], region["next_min"], region["next_max"], strict=False):
-        for w3, inside in ((low - 1e-4, False), (low + 1e-4, True), (high - 1e-4, True), (high + 1e-4, False)):
+        edges = ((low - 1e-4, False), (low + 1e-4, True), (high - 1e-4, True), (high + 1e-4, False))
+        for w3, inside in edges:
             assert (largest_root((0.05, w2, w3), 1.5) < 1.0) == inside, (w2, w3)
 
 
@@ -60,11 +61,11 @@ def test_what_tells_parameters_apart() -> None:
 
 
 def test_what_is_out_of_range() -> None:
-    with pytest.raises(ValueError, match="on_time must be above 0 and at most the period of 0.2 s, got 0.3"):
+    with pytest.raises(ValueError, match=r"on_time must be .* at most the period of 0\.2 s, got 0\.3"):
         relay_damping([1.0], 1e-6, on_time=0.3)
     with pytest.raises(ValueError, match="frequencies must be positive numbers, got 0"):
         relay_damping([0.0], 1e-6)
-    with pytest.raises(ValueError, match="frequency must be above 0 and below the Nyquist frequency of 15.7"):
+    with pytest.raises(ValueError, match=r"frequency must be .* below the Nyquist frequency of 15\.7"):
         observer_margin(16.0)
     with pytest.raises(ValueError, match="damping must be 0 or more and below 1, got 1"):
         observer_region(1.0, [0.2], damping=1.0)

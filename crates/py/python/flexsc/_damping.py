@@ -106,8 +106,8 @@ def observer_margin(
         damping: Damping ratio of the mode.
 
     Returns:
-        `gain_max`, up to which it converges, `gain_best`, with which it does soonest, `spectral_radius`, what a
-        sample then leaves of an error (NaN if none converges); `radii`, that for each of `kappas`.
+        `gain_max`, up to which it converges, `gain_best`, with which it does soonest, `spectral_radius`, what
+        a sample then leaves of an error (NaN if none converges); `radii`, that for each of `kappas`.
 
     Raises:
         ValueError: A number is out of its range.
