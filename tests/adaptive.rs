@@ -206,6 +206,13 @@ fn whole_table() {
             );
         }
     }
+    eprintln!("roll beside yaw thrusters, 100 runs: elastic rate off by a part, a frequency off by, median");
+    let runs: Vec<_> = (0..100).map(beside_yaw).collect();
+    for (inputs, name) in ["without them", "with them as an input"].into_iter().enumerate() {
+        let off = median(runs.iter().map(|run| run[inputs].0).collect());
+        let strayed = median(runs.iter().map(|run| run[inputs].1).collect());
+        eprintln!("{name} | {off:.3} | {strayed:.4}");
+    }
 }
 
 /// Ten cycles of every 65 under one sign, then under the other.
