@@ -1,12 +1,14 @@
 //! All integration tests of flexsc, one binary.
 
 mod adaptation;
+mod adaptive;
 mod bad_manoeuvres;
 mod bad_scenarios;
 mod bad_spatial;
 mod campaigns;
 mod cli;
 mod cycles;
+mod damping;
 mod determinism;
 mod events;
 mod filters;

@@ -7,6 +7,7 @@
 
 mod aside;
 mod columns;
+mod damping;
 mod error;
 mod sampled;
 
@@ -38,6 +39,8 @@ use error::{log_error, scenario_error, simulation_error};
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use super::damping::{observer_margin_json, observer_region_json, persistence, relay_damping_json};
     #[pymodule_export]
     use super::error::{LogError, ScenarioError, SimulationError};
     #[pymodule_export]

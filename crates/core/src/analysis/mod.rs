@@ -1,6 +1,7 @@
 //! What a scenario or a run means: integrals, limit cycles, stability.
 
 pub mod cycle;
+pub mod damping;
 pub mod elliptic;
 pub mod influence;
 pub mod modal;

@@ -1,5 +1,6 @@
 //! Estimators: they turn what was commanded and measured into beliefs.
 
+pub mod adaptive;
 mod envelope;
 pub mod kalman;
 mod rigid_rate;

@@ -18,8 +18,12 @@ __all__ = [
     "gain_regions_json",
     "main",
     "metrics_json",
+    "observer_margin_json",
+    "observer_region_json",
+    "persistence",
     "plan_json",
     "plan_torque",
+    "relay_damping_json",
     "rigid_cycles_json",
     "rivals_json",
     "robust_gains_json",
@@ -124,6 +128,19 @@ def stability_map_json(
     gain: float | None,
     settled: tuple[float | None, float, bool],
 ) -> str: ...
+def relay_damping_json(
+    frequencies: Sequence[float],
+    relay: tuple[float, float, float],
+    mode: tuple[float, float],
+    amplitudes: tuple[float, float],
+) -> str: ...
+def observer_region_json(
+    observer: tuple[tuple[float, float, float], float, float, float], kappa: float, elastic: Sequence[float]
+) -> str: ...
+def observer_margin_json(
+    observer: tuple[tuple[float, float, float], float, float, float], kappas: Sequence[float]
+) -> str: ...
+def persistence(sensitivities: npt.NDArray[np.float64]) -> float: ...
 def schema_json() -> str: ...
 def metrics_json() -> str: ...
 def main(args: Sequence[str]) -> int: ...
