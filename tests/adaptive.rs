@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use flexsc_core::estimator::adaptive::{
     Gradient, Observer, Oscillator, Phase, Pulse, Recurrence, Tracker, bounds, trackers,
 };
-use flexsc_core::quantity::{Finite, Fraction, Frequency, NonNegative};
+use flexsc_core::quantity::{Finite, Frequency, NonNegative};
 use flexsc_core::random::{Seed, Stream};
 
 const CYCLE: f64 = 0.2;
@@ -116,7 +116,7 @@ fn identify(modes: &[(f64, f64)], off: f64, rate: f64, run: u64) -> Found {
         mode(frequency / (2.0 * PI), &[influence], Some([low, high].map(|bound| bound / (2.0 * PI))))
     };
     let start: Vec<Tracker> = nominal.iter().zip(bounds(&nominal, 2.0, CYCLE)).map(starts).collect();
-    let spec = Gradient { rate: Fraction::new(rate).expect("a rate"), ..Gradient::default() };
+    let spec = Gradient { rate: NonNegative::new(rate).expect("a rate"), ..Gradient::default() };
     let mut observer = spec.observer(&start, &[1.0], CYCLE);
     let truth: Vec<(f64, Vec<f64>)> = modes.iter().map(|(at, influence)| (*at, vec![*influence])).collect();
     let mut channel = Channel::new(&truth, &[1.0]);

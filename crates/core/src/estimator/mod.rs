@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::Mode;
 use crate::quantity::{NonNegative, Positive};
 
+pub use adaptive::Adaptive;
 pub use envelope::{Envelope, Form, Observer};
 pub use kalman::{Drifting, Kalman};
 pub use rigid_rate::{RateFilter, RigidRate};
@@ -31,6 +32,8 @@ pub enum Estimator {
     UnscentedKalman(Drifting),
     /// The rigid rates of a spatial body.
     RigidRate(RigidRate),
+    /// The rigid rates and elastic modes of a spatial body, by adaptive observers.
+    Adaptive(Box<Adaptive>),
 }
 
 /// An ideal observer has nothing to set.
@@ -48,6 +51,7 @@ impl Estimator {
             Self::ExtendedKalman(_) => "extended_kalman",
             Self::UnscentedKalman(_) => "unscented_kalman",
             Self::RigidRate(_) => "rigid_rate",
+            Self::Adaptive(_) => "adaptive",
         }
     }
 
@@ -68,7 +72,7 @@ impl Estimator {
             | Self::Kalman(Kalman { modes, .. })
             | Self::ExtendedKalman(Drifting { modes, .. })
             | Self::UnscentedKalman(Drifting { modes, .. }) => modes.as_deref(),
-            Self::Truth(_) | Self::RigidRate(_) => None,
+            Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
         }
     }
 
@@ -78,14 +82,14 @@ impl Estimator {
             Self::Kalman(Kalman { angle_noise, .. })
             | Self::ExtendedKalman(Drifting { angle_noise, .. })
             | Self::UnscentedKalman(Drifting { angle_noise, .. }) => angle_noise.map(Positive::get),
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) => None,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
         }
     }
 
     /// How many states it estimates of a body with so many modes.
     pub fn states(&self, modes: usize) -> usize {
         match self {
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) => 0,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => 0,
             Self::Kalman(_) => 2 + 2 * modes,
             Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => {
                 2 + 2 * modes + 2 * filter.ratios.count(modes)
@@ -99,7 +103,7 @@ impl Estimator {
             Self::Kalman(Kalman { assess, .. })
             | Self::ExtendedKalman(Drifting { assess, .. })
             | Self::UnscentedKalman(Drifting { assess, .. }) => *assess,
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) => None,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
         };
         window.map_or([0.0, f64::INFINITY], |window| window.map(NonNegative::get))
     }

@@ -1,5 +1,6 @@
 //! Control laws: state machines that answer every event with a hold.
 
+mod damping;
 mod open;
 mod pd;
 mod phase_plane;
@@ -11,6 +12,7 @@ use crate::label::labels;
 use crate::one_of::one_of;
 use crate::time::Instant;
 
+pub use damping::{Damped, Damping, DampingGuards, DampingRelay};
 pub use open::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use phase_plane::{PhasePlane, PhasePlaneLaw, Target};

@@ -13,6 +13,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::damping::{Damped, Damping, DampingRelay};
 use super::{Control, Phase};
 use crate::actuator::Jets;
 use crate::belief::AxesBelief;
@@ -43,6 +44,9 @@ pub struct PhasePlane {
     /// Attitudes to turn to, in the order of their times; before the first it is the inertial one.
     #[serde(default)]
     pub targets: Vec<Target>,
+    /// What the jets do against elastic motion while they have nothing else to do; left out, nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<Damping>,
 }
 
 fn slope() -> Positive {
@@ -105,12 +109,28 @@ pub struct PhasePlaneLaw {
     /// Of plus and minus, about each axis (rad/s²).
     accelerations: [[f64; 2]; 3],
     firing: [bool; 3],
+    damping: Option<[DampingRelay; 3]>,
+    damped: [Damped; 3],
 }
 
 impl PhasePlaneLaw {
-    /// The law before its first cycle.
-    pub fn new(spec: &PhasePlane, jets: &Jets, accelerations: [[f64; 2]; 3]) -> Self {
-        Self { spec: spec.clone(), jets: jets.clone(), accelerations, firing: [false; 3] }
+    /// The law before its first cycle, with the thresholds of active damping (rad/s).
+    pub fn new(
+        spec: &PhasePlane,
+        jets: &Jets,
+        accelerations: [[f64; 2]; 3],
+        thresholds: [f64; 3],
+    ) -> Self {
+        let period = spec.period.seconds();
+        let relay = |damping| thresholds.map(|threshold| DampingRelay::new(damping, jets, period, threshold));
+        Self {
+            damping: spec.damping.as_ref().map(relay),
+            spec: spec.clone(),
+            jets: jets.clone(),
+            accelerations,
+            firing: [false; 3],
+            damped: [Damped::default(); 3],
+        }
     }
 
     /// The attitude to turn to at an instant.
@@ -118,20 +138,48 @@ impl PhasePlaneLaw {
         self.spec.target(now)
     }
 
-    /// How long the jets of each axis shall fire in a cycle (s), with the sign of the rate that they push to.
-    pub fn decide(&mut self, belief: &AxesBelief) -> [f64; 3] {
-        std::array::from_fn(|axis| self.relay(axis, belief))
+    /// How far ahead of a sample the law wants to know the elastic rates (s).
+    pub fn ahead(&self) -> f64 {
+        self.damping.as_ref().map_or(0.0, |[relay, ..]| relay.ahead())
     }
 
-    fn relay(&mut self, axis: usize, belief: &AxesBelief) -> f64 {
-        let Self { spec, jets, accelerations, firing } = self;
+    /// What active damping did in the last cycle.
+    pub fn damped(&self) -> &[Damped; 3] {
+        &self.damped
+    }
+
+    /// How long the jets of each axis shall fire in a cycle (s), with the sign of the rate that they push to.
+    pub fn decide(&mut self, belief: &AxesBelief) -> [f64; 3] {
+        std::array::from_fn(|axis| {
+            let excess = self.excess(axis, belief);
+            let on = self.relay(axis, excess);
+            let Some(damping) = &mut self.damping else { return on };
+            let switch_on = self.spec.switch_on.get();
+            let free = !self.firing[axis] && excess.abs() <= switch_on;
+            self.damped[axis] = damping[axis].decide(
+                &belief.elastic[axis],
+                [free, belief.trusted[axis]],
+                [excess, switch_on],
+                self.accelerations[axis],
+            );
+            on + self.damped[axis].on
+        })
+    }
+
+    /// How far the rigid rate is from where it should be (rad/s).
+    fn excess(&self, axis: usize, belief: &AxesBelief) -> f64 {
+        let Self { spec, accelerations, .. } = self;
         let [plus, minus] = accelerations[axis];
         let (limit, zone) = (spec.rate_limit.get(), spec.dead_zone.get());
         let slope = spec.slope.get().min(spec.braking.get() * plus.min(minus) / limit);
         let angle = belief.angle[axis];
         let outside = angle - angle.clamp(-zone, zone);
         let wanted = (-slope * outside).clamp(-limit, limit);
-        let excess = belief.rate[axis] + belief.queued[axis] - wanted;
+        belief.rate[axis] + belief.queued[axis] - wanted
+    }
+
+    fn relay(&mut self, axis: usize, excess: f64) -> f64 {
+        let Self { spec, jets, accelerations, firing, .. } = self;
         if excess.abs() > spec.switch_on.get() {
             firing[axis] = true;
         } else if excess.abs() < spec.switch_off.get() {
@@ -140,6 +188,7 @@ impl PhasePlaneLaw {
         if !firing[axis] {
             return 0.0;
         }
+        let [plus, minus] = accelerations[axis];
         let (sign, acceleration) = if excess > 0.0 { (-1.0, minus) } else { (1.0, plus) };
         let on = jets.on_time(excess.abs() / acceleration, spec.period.seconds());
         // What is too little for a pulse ends the firing.

@@ -4,6 +4,7 @@ mod filter;
 mod rotation;
 mod spatial;
 mod switchings;
+mod tracking;
 
 use serde_json::{Map, Value as Json, json};
 
@@ -15,6 +16,7 @@ use filter::Filter;
 use rotation::Rotation;
 use spatial::Spatial;
 use switchings::Switchings;
+use tracking::Tracked;
 
 /// What a metric means.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -137,6 +139,18 @@ metrics! {
         "Root mean square of the elastic part of the rates at the gyro, as a vector of three axes, over the cycles of the last 200 s";
     POINTING_END = "pointing_error_end_rad", "rad",
         "Length of the vector of angles beyond the target at the last cycle";
+    FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
+        "Natural frequency of each mode that an adaptive observer tracks, at the last cycle: about x, y and z, by frequency";
+    FREQUENCY_ERRORS = "frequency_estimate_errors", "",
+        "What they are off by, relative to the true ones";
+    INFLUENCE_ESTIMATES = "influence_estimates", "",
+        "Influence of the axis' own jets on each of these modes, at the last cycle";
+    INFLUENCE_ERRORS = "influence_estimate_errors", "",
+        "What they are off by, relative to the true ones";
+    TRACKING_ERROR = "elastic_rate_error_rms_rad_s", "rad/s",
+        "Root mean square of what the estimated elastic rates are off by, as a vector of three axes, over the cycles of the run";
+    DAMPING_CYCLES = "damping_cycles", "", "Cycles in which active damping commands a pulse about any axis";
+    DAMPING_PAUSES = "damping_pauses", "", "How often the watchdog began to keep active damping quiet";
 }
 
 /// A metric and its value.
@@ -210,6 +224,7 @@ impl Value {
 pub struct Gather {
     course: Course,
     filter: Option<Filter>,
+    tracked: Tracked,
 }
 
 /// What kind of run it is.
@@ -233,7 +248,7 @@ impl Gather {
         } else {
             Course::Rotation(Box::new(Rotation::new(scenario)))
         };
-        Self { course, filter: Filter::new(scenario) }
+        Self { course, filter: Filter::new(scenario), tracked: Tracked::default() }
     }
 
     /// The metrics of the run that has ended.
@@ -243,6 +258,7 @@ impl Gather {
             Course::Rotation(rotation) => rotation.finish(),
             Course::Spatial(spatial) => spatial.finish(),
         };
+        metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(Filter::finish));
         Metrics(metrics)
     }
@@ -266,8 +282,10 @@ impl Record for Gather {
             Course::Switchings(switchings) => switchings.record(now, sample),
             Course::Rotation(rotation) => rotation.record(now, sample),
             Course::Spatial(spatial) => {
-                if let Sample::Cycle(cycle) = sample {
-                    spatial.see(now, cycle);
+                match sample {
+                    Sample::Cycle(cycle) => spatial.see(now, cycle),
+                    Sample::Tracking(tracking) => self.tracked.see(tracking),
+                    _ => {}
                 }
                 Ok(())
             }

@@ -21,9 +21,9 @@ pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
 pub use recover::recover;
 pub use topics::{
-    Adaptation, Arrival, Attitude, AxisRate, Command, Energy, Envelope, Estimate, GoalMotion, Jets, Law,
+    Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion, Jets, Law,
     Metric, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs,
-    Params, Pointing, Rate, Rates, Residual, TOPICS, Torque, Trigger, Vibration, Vibrations, WheelMotion,
+    Params, Pointing, Rate, Rates, Residual, TOPICS, Torque, TrackedMode, Tracking, Trigger, Vibration, Vibrations, WheelMotion,
     WindowMean,
 };
 pub use trace::Trace;
@@ -49,6 +49,8 @@ pub enum Sample<'a> {
     Estimate(&'a Estimate),
     /// A cycle of a spatial loop began.
     Cycle(&'a Cycle),
+    /// What adaptive observers know after a cycle's sample.
+    Tracking(&'a Tracking),
     /// The motion of a spatial body at one instant, at each period of a dense record.
     SpatialMotion(&'a SpatialMotion),
 }
@@ -56,7 +58,14 @@ pub enum Sample<'a> {
 impl Sample<'_> {
     /// Whether only a dense record wants it.
     pub fn is_dense(self) -> bool {
-        matches!(self, Self::Motion(_) | Self::Law(_) | Self::Estimate(_) | Self::SpatialMotion(_))
+        matches!(
+            self,
+            Self::Motion(_)
+                | Self::Law(_)
+                | Self::Estimate(_)
+                | Self::Tracking(_)
+                | Self::SpatialMotion(_)
+        )
     }
 }
 
@@ -194,6 +203,7 @@ trait TakeRow {
             Sample::Adaptation(step) => self.take(now, step),
             Sample::Arrival(arrival) => self.take(now, arrival),
             Sample::Estimate(estimate) => self.take(now, estimate),
+            Sample::Tracking(tracking) => self.take(now, tracking),
             Sample::Cycle(Cycle { pulses: 0, .. }) => Ok(()),
             Sample::Cycle(cycle) => self.take(now, &cycle.jets),
             Sample::SpatialMotion(motion) => {

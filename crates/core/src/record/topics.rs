@@ -297,6 +297,55 @@ rows! {
         /// Propellant used until the end of these pulses, since the start of the run (kg).
         fuel_kg: f64,
     }
+    /// What an adaptive observer knows of the elastic motion about one axis, and what active damping does with it.
+    ChannelState {
+        /// Estimated elastic rate, all tracked modes together (rad/s).
+        elastic_rad_s: f64,
+        /// What it really is, all modes together (rad/s).
+        true_elastic_rad_s: f64,
+        /// Moving root mean square of the innovation, the measured rate less the predicted one (rad/s).
+        innovation_rms_rad_s: f64,
+        /// The same of the estimated elastic rate (rad/s).
+        elastic_rms_rad_s: f64,
+        /// 1 while the innovations are small enough for the estimate to be acted on.
+        trusted: u64,
+        /// Elastic rate that active damping acts on: predicted, of the modes that it may act on (rad/s).
+        acted_on_rad_s: f64,
+        /// Its threshold (rad/s).
+        threshold_rad_s: f64,
+        /// 1 since that rate was beyond the threshold, and until it is back.
+        latched: u64,
+        /// 1 while the watchdog keeps active damping quiet.
+        resting: u64,
+        /// Signed length of the pulse that active damping commands in this cycle (s).
+        damping_on_s: f64,
+    }
+    /// A mode that an adaptive observer tracks, with what is true of it.
+    TrackedMode {
+        /// The axis: 0, 1 or 2.
+        axis: u64,
+        /// Natural frequency (rad/s).
+        frequency_rad_s: f64,
+        /// What it really is (rad/s).
+        true_frequency_rad_s: f64,
+        /// Influence of the axis' own jets.
+        influence: f64,
+        /// What it really is.
+        true_influence: f64,
+        /// Elastic rate at the gyro (rad/s).
+        rate_rad_s: f64,
+        /// What it really is (rad/s).
+        true_rate_rad_s: f64,
+        /// Amplitude of the estimated elastic rate (rad/s).
+        amplitude_rad_s: f64,
+    }
+    /// What the adaptive observers of a spatial body know.
+    Tracking = "/tracking" {
+        /// About x, y and z.
+        channels: Vec<ChannelState>,
+        /// The modes that they track, axis by axis and by frequency.
+        trackers: Vec<TrackedMode>,
+    }
     /// One metric, or one element of it.
     Metric {
         /// Name, as `flexsc schema --metrics` explains it.

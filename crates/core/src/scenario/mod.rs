@@ -27,7 +27,7 @@ use crate::uncertain::Distribution;
 
 use epoch::nanoseconds_since_1970;
 
-pub use spatial::SpatialLoop;
+pub use spatial::{AxesEstimator, SpatialLoop};
 
 /// A scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

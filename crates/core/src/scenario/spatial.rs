@@ -3,8 +3,8 @@
 use super::Scenario;
 use crate::actuator::{Actuator, Group, Jets};
 use crate::body::{Body, Spatial};
-use crate::estimator::{Estimator, RigidRate};
-use crate::law::{Law, PhasePlane};
+use crate::estimator::{Estimator, RigidRate, adaptive};
+use crate::law::{Damping, Law, PhasePlane};
 use crate::sensor::{Gyro, Sensor};
 use crate::structure::Fault;
 
@@ -16,13 +16,24 @@ pub struct SpatialLoop {
     /// What is measured.
     pub gyro: Gyro,
     /// What is estimated; without it the law reads the gyro.
-    pub estimator: Option<RigidRate>,
+    pub estimator: Option<AxesEstimator>,
     /// What commands the jets.
     pub law: PhasePlane,
     /// What pushes.
     pub jets: Jets,
     /// What each group of jets does: for each axis, plus and minus.
     pub groups: [[Group; 2]; 3],
+    /// Elastic rates beyond which the law damps actively (rad/s).
+    pub thresholds: [f64; 3],
+}
+
+/// The estimators of a spatial body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AxesEstimator {
+    /// Rigid rates alone.
+    RigidRate(RigidRate),
+    /// Adaptive observers.
+    Adaptive(Box<adaptive::Plan>),
 }
 
 impl SpatialLoop {
@@ -43,13 +54,6 @@ impl SpatialLoop {
         };
         let Actuator::Jets(jets) = &scenario.actuator else {
             return refused("actuator", "must be `jets` for a `[body.spatial]`");
-        };
-        let estimator = match &scenario.estimator {
-            None => None,
-            Some(Estimator::RigidRate(estimator)) => Some(estimator.clone()),
-            Some(_) => {
-                return refused("estimator", "must be `rigid_rate` or left out for a `[body.spatial]`");
-            }
         };
         for (there, key) in [
             (scenario.adaptation.is_some(), "adaptation"),
@@ -89,6 +93,32 @@ impl SpatialLoop {
             return refused("actuator.jets.delay", &format!("must be 0 or 1 cycles, got {}", jets.delay));
         }
         let groups = jets.groups_on(body).map_err(within("actuator.jets"))?;
+        let estimator = match &scenario.estimator {
+            None => None,
+            Some(Estimator::RigidRate(estimator)) => Some(AxesEstimator::RigidRate(estimator.clone())),
+            Some(Estimator::Adaptive(spec)) => {
+                let plan = adaptive::Plan::of(spec, body, &gyro.point, &groups, period);
+                let fault = |(key, why): Fault| match key.as_str() {
+                    "" => ("estimator.adaptive".to_owned(), why),
+                    key => (format!("estimator.adaptive.{key}"), why),
+                };
+                Some(AxesEstimator::Adaptive(Box::new(plan.map_err(fault)?)))
+            }
+            Some(_) => {
+                let why = "must be `rigid_rate`, `adaptive` or left out for a `[body.spatial]`";
+                return refused("estimator", why);
+            }
+        };
+        let thresholds = match (&law.damping, &estimator) {
+            (None, _) => [0.0; 3],
+            (Some(damping), Some(AxesEstimator::Adaptive(plan))) => {
+                thresholds(damping, plan, &groups, f64::from(jets.delay) * period)
+            }
+            (Some(_), _) => {
+                let why = "acts on elastic rates, which an `[estimator.adaptive]` tells, and there is none";
+                return refused("law.phase_plane.damping", why);
+            }
+        };
         Ok(Some(Self {
             body: body.clone(),
             gyro: gyro.clone(),
@@ -96,8 +126,32 @@ impl SpatialLoop {
             law: law.clone(),
             jets: jets.clone(),
             groups,
+            thresholds,
         }))
     }
+}
+
+/// The thresholds of active damping about each axis, for the modes of the design and a delay (s).
+fn thresholds(
+    damping: &Damping,
+    plan: &adaptive::Plan,
+    groups: &[[Group; 2]; 3],
+    delay: f64,
+) -> [f64; 3] {
+    let ratio = match &plan.form {
+        adaptive::Form::Gradient(form) => form.damping.get(),
+        adaptive::Form::Recurrence(form) => form.damping.get(),
+    };
+    std::array::from_fn(|axis| {
+        let design = &plan.axes[axis];
+        let own = design.own(axis);
+        let mode = |mode: &adaptive::Merged| {
+            let influence = mode.tracker.influence.get(own).map_or(0.0, |influence| influence.get());
+            [mode.tracker.frequency.get(), influence.max(0.0) * groups[axis][0].acceleration]
+        };
+        let modes: Vec<_> = design.modes.iter().map(mode).collect();
+        damping.threshold(axis, &modes, plan.period, delay, ratio)
+    })
 }
 
 /// A part that only a spatial body can have, of a scenario with another.
@@ -110,6 +164,8 @@ fn planar_only(scenario: &Scenario) -> Option<Fault> {
         "actuator.jets"
     } else if matches!(scenario.estimator, Some(Estimator::RigidRate(_))) {
         "estimator.rigid_rate"
+    } else if matches!(scenario.estimator, Some(Estimator::Adaptive(_))) {
+        "estimator.adaptive"
     } else {
         return None;
     };

@@ -4,6 +4,9 @@
 //! excite. The natural frequencies and the influence of the thrusters on each mode are identified as the observer runs. Two
 //! forms: the recurrence of seed paper 4 (pages 41 to 46) and a recursive gradient with exact pulses.
 
+mod axes;
+mod channel;
+mod design;
 mod gradient;
 mod oscillator;
 mod recurrence;
@@ -12,11 +15,14 @@ mod residual;
 mod tests;
 mod tracker;
 
+pub use axes::{Adaptive, Form, Given};
+pub use channel::Channel;
+pub use design::{Design, Plan};
 pub use gradient::{Gradient, GradientObserver};
 pub use oscillator::{Oscillator, Phase};
 pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
 pub use residual::Residual;
-pub use tracker::{Tracker, bounds, dominant, inconsistency, trackers};
+pub use tracker::{Merged, Tracker, bounds, dominant, inconsistency, merged, trackers};
 
 /// A pulse of thrusters, as one that was executed or is about to be.
 #[derive(Copy, Clone, Debug, PartialEq)]

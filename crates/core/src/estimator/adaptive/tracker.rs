@@ -43,17 +43,36 @@ impl Tracker {
     }
 }
 
+/// A tracker, and the modes that it stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Merged {
+    /// The modes as one.
+    pub tracker: Tracker,
+    /// Their indices.
+    pub modes: Vec<usize>,
+}
+
 /// The trackers of a channel's modes, by frequency: two nearer to each other than a ratio, such as 0.08, cannot be told
 /// apart and become one. The nearest are merged first. Bounds are not kept.
-pub fn trackers(modes: &[Tracker], merge: f64) -> Vec<Tracker> {
-    let mut trackers: Vec<Tracker> =
-        modes.iter().map(|mode| Tracker { bounds: None, ..mode.clone() }).collect();
-    sort(&mut trackers);
-    while let Some(index) = nearest(&trackers, merge) {
-        let above = trackers.remove(index + 1);
-        trackers[index] = trackers[index].merged(&above);
+pub fn merged(modes: &[Tracker], merge: f64) -> Vec<Merged> {
+    let alone = |(index, mode): (usize, &Tracker)| Merged {
+        tracker: Tracker { bounds: None, ..mode.clone() },
+        modes: vec![index],
+    };
+    let mut merged: Vec<Merged> = modes.iter().enumerate().map(alone).collect();
+    merged.sort_by(|a, b| a.tracker.frequency.get().total_cmp(&b.tracker.frequency.get()));
+    while let Some(index) = nearest(&merged, merge) {
+        let above = merged.remove(index + 1);
+        let below = &mut merged[index];
+        below.tracker = below.tracker.merged(&above.tracker);
+        below.modes.extend(above.modes);
     }
-    trackers
+    merged
+}
+
+/// The same without the modes' indices.
+pub fn trackers(modes: &[Tracker], merge: f64) -> Vec<Tracker> {
+    merged(modes, merge).into_iter().map(|merged| merged.tracker).collect()
 }
 
 /// So many of the trackers with the greatest strength, by frequency: an observer follows one or two.
@@ -69,9 +88,10 @@ fn sort(trackers: &mut [Tracker]) {
 }
 
 /// The first of the nearest pair within a ratio.
-fn nearest(trackers: &[Tracker], merge: f64) -> Option<usize> {
-    let ratio = |index: usize| trackers[index + 1].frequency.get() / trackers[index].frequency.get() - 1.0;
-    let pairs = (0..trackers.len().saturating_sub(1)).filter(|&index| ratio(index) < merge);
+fn nearest(merged: &[Merged], merge: f64) -> Option<usize> {
+    let at = |index: usize| merged[index].tracker.frequency.get();
+    let ratio = |index: usize| at(index + 1) / at(index) - 1.0;
+    let pairs = (0..merged.len().saturating_sub(1)).filter(|&index| ratio(index) < merge);
     pairs.min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))
 }
 

@@ -2,6 +2,7 @@
 
 use crate::actuator::Group;
 use crate::body::spatial::Vector;
+use crate::estimator::adaptive::Pulse;
 use crate::scenario::SpatialLoop;
 use crate::time::{Instant, Span};
 
@@ -64,6 +65,26 @@ impl JetsAtWork {
     /// Changes of the rigid rates by the pulses that wait for the cycle that begins (rad/s).
     pub fn queued(&self) -> [f64; 3] {
         self.changes(self.waiting)
+    }
+
+    /// The pulses of this cycle.
+    pub fn pulses(&self) -> Vec<Pulse> {
+        self.as_pulses(self.executed)
+    }
+
+    /// The pulses that wait for the cycle that begins.
+    pub fn pulses_waiting(&self) -> Vec<Pulse> {
+        self.as_pulses(self.waiting)
+    }
+
+    fn as_pulses(&self, on: [f64; 3]) -> Vec<Pulse> {
+        let pulse = |axis: usize| Pulse {
+            input: axis,
+            acceleration: on[axis].signum() * self.group(axis, on[axis]).acceleration,
+            start: 0.0,
+            duration: on[axis].abs(),
+        };
+        (0..3).filter(|axis| on[*axis] != 0.0).map(pulse).collect()
     }
 
     /// Begins a cycle with new commands: signed on-times about each axis (s). Returns those that are executed in it.

@@ -6,20 +6,43 @@
 
 mod jets;
 mod plant;
+mod tracking;
 
 use super::SimulationError;
 use crate::belief::AxesBelief;
 use crate::body::spatial::{SpatialState, Vector, beyond};
-use crate::estimator::{RateFilter, RigidRate};
+use crate::estimator::RateFilter;
 use crate::law::PhasePlaneLaw;
 use crate::random::Seed;
 use crate::record::{AxisRate, Cycle, Jets, Rates, Record, Sample, SpatialMotion};
-use crate::scenario::{Scenario, SpatialLoop};
+use crate::scenario::{AxesEstimator, Scenario, SpatialLoop};
 use crate::sensor::Readout;
 use crate::time::{Instant, Span};
 
 use jets::JetsAtWork;
 use plant::Plant;
+use tracking::Observers;
+
+/// What estimates.
+#[derive(Clone, Debug)]
+enum Estimation {
+    /// Nothing: the law reads the gyro.
+    None,
+    /// A filter of the rigid rates.
+    Rigid(RateFilter),
+    /// Adaptive observers.
+    Adaptive(Box<Observers>),
+}
+
+impl Estimation {
+    fn new(spatial: &SpatialLoop) -> Self {
+        match &spatial.estimator {
+            None => Self::None,
+            Some(AxesEstimator::RigidRate(estimator)) => Self::Rigid(estimator.filter()),
+            Some(AxesEstimator::Adaptive(plan)) => Self::Adaptive(Box::new(Observers::new(plan))),
+        }
+    }
+}
 
 /// All that moves in a run of a spatial body.
 #[derive(Clone, Debug)]
@@ -27,7 +50,7 @@ pub struct SpatialRun {
     end: Instant,
     body: Plant,
     gyro: Readout,
-    estimator: Option<RateFilter>,
+    estimator: Estimation,
     law: PhasePlaneLaw,
     jets: JetsAtWork,
     belief: AxesBelief,
@@ -48,8 +71,8 @@ impl SpatialRun {
             end: Instant::START + scenario.duration,
             body: Plant::new(spatial),
             gyro: spatial.gyro.readout(Seed { scenario: scenario.seed, run }),
-            estimator: spatial.estimator.as_ref().map(RigidRate::filter),
-            law: PhasePlaneLaw::new(&spatial.law, &spatial.jets, jets.accelerations()),
+            estimator: Estimation::new(spatial),
+            law: PhasePlaneLaw::new(&spatial.law, &spatial.jets, jets.accelerations(), spatial.thresholds),
             jets,
             belief: AxesBelief::default(),
             measured: [0.0; 3],
@@ -101,14 +124,17 @@ impl SpatialRun {
         }
         let (rigid, elastic) = self.body.rates();
         self.measured = self.gyro.measure((rigid + elastic).into());
-        self.belief = AxesBelief {
-            angle: self.error(now),
-            rate: match &mut self.estimator {
-                None => self.measured,
-                Some(filter) => filter.step(self.measured, self.jets.pushed()),
-            },
-            queued: self.jets.queued(),
+        let rate = match &mut self.estimator {
+            Estimation::None => self.measured,
+            Estimation::Rigid(filter) => filter.step(self.measured, self.jets.pushed()),
+            Estimation::Adaptive(observers) => observers.update(self.measured),
         };
+        self.belief.angle = self.error(now);
+        self.belief.rate = rate;
+        self.belief.queued = self.jets.queued();
+        if let Estimation::Adaptive(observers) = &self.estimator {
+            observers.tell(&mut self.belief, self.law.ahead(), &self.jets.pulses_waiting());
+        }
         let [roll_on_s, pitch_on_s, yaw_on_s] = self.jets.begin(now, self.law.decide(&self.belief));
         let pulses = [roll_on_s, pitch_on_s, yaw_on_s].into_iter().filter(|on| *on != 0.0).count();
         let cycle = Cycle {
@@ -120,6 +146,11 @@ impl SpatialRun {
             error_rad: self.belief.angle,
         };
         record.record(now, Sample::Cycle(&cycle))?;
+        if let Estimation::Adaptive(observers) = &mut self.estimator {
+            let tracking = observers.tracking(&self.body.modal_rates(), self.law.damped());
+            record.record(now, Sample::Tracking(&tracking))?;
+            observers.advance(&self.jets.pulses());
+        }
         self.next_cycle = now + self.period;
         Ok(())
     }

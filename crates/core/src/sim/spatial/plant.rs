@@ -69,6 +69,11 @@ impl Plant {
         (self.rigid.rate(&self.state.turn), self.elastic.rate_at(&self.gyro, &self.state.modes))
     }
 
+    /// Rates of the modes (m sqrt(kg)/s) at the instant seen last.
+    pub fn modal_rates(&self) -> Vec<f64> {
+        self.elastic.rates(&self.state.modes).collect()
+    }
+
     /// Energy of the elastic modes at the instant seen last (J).
     pub fn elastic_energy(&self) -> f64 {
         self.elastic.energies(&self.state.modes).sum()

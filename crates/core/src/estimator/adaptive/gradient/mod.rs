@@ -23,8 +23,8 @@ pub struct Gradient {
     /// Gain of each elastic rate; left out, 0.15 for one mode and 0.1 for several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elastic_gain: Option<Fraction>,
-    /// Rate of the identification. Sufficient for its convergence: below 0.05 over the number of modes.
-    pub rate: Fraction,
+    /// Rate of the identification, 0 for none. Sufficient for its convergence: below 0.05 over the number of modes.
+    pub rate: NonNegative,
     /// While a mode's elastic rate is below this amplitude (rad/s), its frequency learns nothing.
     pub gate: Positive,
     /// Between which multiples of its value at the start an influence is looked for.
@@ -42,7 +42,7 @@ impl Default for Gradient {
             damping: from_zero(0.005),
             rigid_gain: fraction(0.03),
             elastic_gain: None,
-            rate: fraction(0.02),
+            rate: from_zero(0.02),
             gate: positive(5e-6),
             influence_bounds: [0.2, 5.0].map(from_zero),
             reach: positive(2.0),
