@@ -31,7 +31,7 @@ const CASES: &[Case] = &[
     ("switch_off = 1.0", "switch_off = 1.0\nbraking = 1.0", 18, &["`law.phase_plane.braking`", "must be a number between 0 and 1, got 1"]),
     ("switch_off = 1.0", "switch_off = 1.0\ntargets = [{ from = 5 }, { from = 5 }]", 18, &["`law.phase_plane.targets[1].from` must be later than the one before, got 5"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[estimator.rigid_rate]\ncorrection = 1.0", 19, &["`estimator.rigid_rate.correction`", "must be a number between 0 and 1, got 1"]),
-    ("switch_off = 1.0", "switch_off = 1.0\n[estimator.truth]", 18, &["`estimator` must be `rigid_rate` or left out for a `[body.spatial]`"]),
+    ("switch_off = 1.0", "switch_off = 1.0\n[estimator.truth]", 18, &["`estimator` must be `rigid_rate`, `adaptive` or left out for a `[body.spatial]`"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[manoeuvre]\nangle = 1.0\ntime = 10.0\ncommand = { bang_bang = {} }", 18, &["`manoeuvre` is for bodies with one angle", "its law has `targets`"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[[disturbance]]\ntorque = 1.0", 18, &["`disturbance` is for bodies with one angle", "`body.spatial.disturbance`"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[drift.common]\nsinusoid = { amplitude = 0.1, period = 10.0 }", 18, &["`drift` is for bodies with one angle"]),

@@ -21,8 +21,8 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-adaptive", "", "/adaptation", 0x6fc9_7027_b350_262f),
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
-        ("iss-manoeuvre", " --runs 5:6", "/jets", 0xbc8b_d593_5234_1614),
-        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x2935_cc16_a9ac_85dc),
+        ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0xbc8b_d593_5234_1614),
+        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0x2935_cc16_a9ac_85dc),
     ];
     for (name, runs, topic, expected) in runs {
         let dir = Dir::with(&[name]);

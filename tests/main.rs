@@ -1,5 +1,6 @@
 //! All integration tests of flexsc, one binary.
 
+mod active_damping;
 mod adaptation;
 mod adaptive;
 mod bad_manoeuvres;

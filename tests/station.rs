@@ -40,7 +40,7 @@ fn last(trace: &Trace, topic: &str, name: &str) -> f64 {
 fn the_manoeuvre_is_that_of_another_program() {
     let quiet =
         [("sensor.gyro.noise", "[0, 0, 0]"), ("sensor.gyro.resolution", "[0, 0, 0]"), ("log.period", "700")];
-    let study = scenario("iss-manoeuvre", &quiet);
+    let study = scenario("iss-manoeuvre-off", &quiet);
     let metrics = metrics(study.clone());
     assert_eq!(metrics.number("firings"), Some(348.0));
     close(metrics.number("fuel_kg").expect("fuel"), 3.417_182_331_490_496_8, 1e-13);
@@ -76,7 +76,7 @@ fn the_manoeuvre_is_that_of_another_program() {
 /// Two modes, 5.956 and 0.518 J, decay as exp(-2 zeta w t) each, and swing a little about that.
 #[test]
 fn the_station_rings_down_by_its_structure_alone() {
-    let metrics = metrics(scenario("iss-ringdown", &[]));
+    let metrics = metrics(scenario("iss-ringdown-off", &[]));
     let number = |name: &str| metrics.number(name).expect("a number");
     close(number("elastic_energy_peak_j"), 6.474, 1e-3);
     close(number("energy_below_10pct_at_s"), 143.0, 0.01);
@@ -86,7 +86,7 @@ fn the_station_rings_down_by_its_structure_alone() {
 
 #[test]
 fn the_manoeuvre_uses_the_propellant_that_it_should() {
-    let metrics = metrics(scenario("iss-manoeuvre", &[]));
+    let metrics = metrics(scenario("iss-manoeuvre-off", &[]));
     let number = |name: &str| metrics.number(name).expect("a number");
     close(number("fuel_kg"), 3.4, 0.15);
     // It hangs on when the burns of yaw begin and end: 0.88 to 0.97 J with an observer of the modes.
@@ -97,7 +97,7 @@ fn the_manoeuvre_uses_the_propellant_that_it_should() {
 /// Looking at a run does not change it, not even between the ends of its pulses.
 #[test]
 fn dense_records_change_nothing() {
-    let study = scenario("iss-manoeuvre", &[("log.period", "0.073"), ("duration", "60")]);
+    let study = scenario("iss-manoeuvre-off", &[("log.period", "0.073"), ("duration", "60")]);
     let mut dense = (Trace::new(Detail::Full), Gather::new(&study));
     Simulation::new(&study, 0).run(&mut dense).expect("a run");
     assert_eq!(dense.1.finish(&study).to_json(), metrics(study.clone()).to_json());
@@ -212,7 +212,7 @@ fn pulses_act_where_and_as_long_as_they_are_told() {
 /// Nothing of a pulse that is too short, whole quanta of a longer one, and never more than the cycle.
 #[test]
 fn pulses_have_a_least_length_and_a_quantum() {
-    let study = scenario("iss-manoeuvre", &[]);
+    let study = scenario("iss-manoeuvre-off", &[]);
     let jets = &study.spatial.as_ref().expect("a spatial loop").jets;
     for (asked, given) in [(0.044, 0.0), (0.046, 0.05), (0.123, 0.12), (0.127, 0.13), (0.3, 0.2)] {
         assert!((jets.on_time(asked, 0.2) - given).abs() < 1e-15, "{asked}");
@@ -221,8 +221,8 @@ fn pulses_have_a_least_length_and_a_quantum() {
 
 #[test]
 fn campaigns_are_the_same_on_any_number_of_threads() {
-    let dir = Dir::with(&["iss-manoeuvre"]);
-    let text = dir.text("iss-manoeuvre.toml");
+    let dir = Dir::with(&["iss-manoeuvre-off"]);
+    let text = dir.text("iss-manoeuvre-off.toml");
     dir.write(
         "study.toml",
         format!("{text}\n[uncertain]\n\"body.spatial.modes[3].frequency\" = {{ relative_uniform = 0.2 }}\n"),
@@ -238,31 +238,31 @@ fn campaigns_are_the_same_on_any_number_of_threads() {
 
 #[test]
 fn the_command_knows_spatial_bodies() {
-    let dir = Dir::with(&["iss-manoeuvre"]);
-    let ran = dir.run("simulate iss-manoeuvre.toml --set duration=60 --log full").exits(0);
-    ran.says(&["iss-manoeuvre   60 s, 12 modes", "kg of propellant", "elastic        at most", "log "]);
-    let rows = dir.run("export iss-manoeuvre.mcap --topic /jets").exits(0);
+    let dir = Dir::with(&["iss-manoeuvre-off"]);
+    let ran = dir.run("simulate iss-manoeuvre-off.toml --set duration=60 --log full").exits(0);
+    ran.says(&["iss-manoeuvre-off   60 s, 12 modes", "kg of propellant", "elastic        at most", "log "]);
+    let rows = dir.run("export iss-manoeuvre-off.mcap --topic /jets").exits(0);
     rows.prints(&["time_s,roll_on_s,pitch_on_s,yaw_on_s,fuel_kg"]);
-    let modes = dir.run("modes iss-manoeuvre.toml --json").exits(0).json();
+    let modes = dir.run("modes iss-manoeuvre-off.toml --json").exits(0).json();
     close(modes["influences"][2][3].as_f64().expect("a number"), 2.89, 0.01);
     close(modes["accelerations_rad_s2"][0][0].as_f64().expect("a number"), 8.40e-6, 0.001);
-    dir.run("modes iss-manoeuvre.toml").exits(0).says(&["12 modes", "influence"]);
-    dir.run("plot iss-manoeuvre.mcap --format svg -o figures").exits(0);
-    let figures = ["energy", "jets", "pointing", "rates"].map(|what| format!("iss-manoeuvre-{what}.svg"));
+    dir.run("modes iss-manoeuvre-off.toml").exits(0).says(&["12 modes", "influence"]);
+    dir.run("plot iss-manoeuvre-off.mcap --format svg -o figures").exits(0);
+    let figures = ["energy", "jets", "pointing", "rates"].map(|what| format!("iss-manoeuvre-off-{what}.svg"));
     assert_eq!(dir.names("figures"), figures);
-    dir.run("plot iss-manoeuvre.mcap --what angle")
+    dir.run("plot iss-manoeuvre-off.mcap --what angle")
         .exits(2)
         .says(&["no figure `angle`", "has pointing, rates"]);
     // The log repeats alone.
-    let scenario = dir.run("log scenario iss-manoeuvre.mcap").exits(0).out;
+    let scenario = dir.run("log scenario iss-manoeuvre-off.mcap").exits(0).out;
     dir.write("again.toml", scenario);
     dir.run("simulate again.toml -o again --log full").exits(0);
-    assert!(dir.read("again/iss-manoeuvre.mcap") == dir.read("iss-manoeuvre.mcap"));
+    assert!(dir.read("again/iss-manoeuvre-off.mcap") == dir.read("iss-manoeuvre-off.mcap"));
     for verb in [
-        "cycle iss-manoeuvre.toml",
-        "plan iss-manoeuvre.toml",
-        "tune iss-manoeuvre.toml --frequency 0.1:0.3:3",
-        "map iss-manoeuvre.toml --frequency 0.1:0.3:3 --period 0.1:0.3:3",
+        "cycle iss-manoeuvre-off.toml",
+        "plan iss-manoeuvre-off.toml",
+        "tune iss-manoeuvre-off.toml --frequency 0.1:0.3:3",
+        "map iss-manoeuvre-off.toml --frequency 0.1:0.3:3 --period 0.1:0.3:3",
     ] {
         dir.run(verb).exits(2).says(&["body.spatial: turns about three axes", "one angle"]);
     }

@@ -1,7 +1,7 @@
 """Golden numbers of tests/spatial.rs: `python3 tests/golden/station_oracle.py` prints them.
 
 Modes by SciPy's matrix exponential, tumbling by Taylor series of 30 digits (mpmath), and the whole loop of
-scenarios/iss-manoeuvre.toml without noise by Runge-Kutta steps of 0.01 s, on which all pulses begin and end.
+scenarios/iss-manoeuvre-off.toml without noise by Runge-Kutta steps of 0.01 s, on which all pulses begin and end.
 It takes about a minute.
 """
 
@@ -72,7 +72,7 @@ def quaternion(roll, pitch, yaw):
 
 
 def station():
-    path = pathlib.Path(__file__).parents[2] / "scenarios" / "iss-manoeuvre.toml"
+    path = pathlib.Path(__file__).parents[2] / "scenarios" / "iss-manoeuvre-off.toml"
     study = tomllib.loads(path.read_text())
     body, law, jets = study["body"]["spatial"], study["law"]["phase_plane"], study["actuator"]["jets"]
     inertia = np.array(body["inertia"])

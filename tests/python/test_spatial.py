@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 
 def test_a_run_has_columns_of_three_axes() -> None:
-    scenario = shipped("iss-manoeuvre").with_("duration", 60.0)
+    scenario = shipped("iss-manoeuvre-off").with_("duration", 60.0)
     run = scenario.simulate(log="full")
     rows = len(run["pointing"]["time_s"])
     assert rows == 601
@@ -24,7 +24,7 @@ def test_a_run_has_columns_of_three_axes() -> None:
 
 
 def test_modes_and_what_is_not_for_spatial_bodies() -> None:
-    scenario = shipped("iss-manoeuvre")
+    scenario = shipped("iss-manoeuvre-off")
     modes = scenario.modes
     assert modes["influence"].shape == (12, 3)
     assert modes["influence"][3, 2] == pytest.approx(2.89, rel=0.01)
@@ -36,7 +36,7 @@ def test_modes_and_what_is_not_for_spatial_bodies() -> None:
 
 
 def test_a_ring_down_is_that_of_another_integrator() -> None:
-    scenario = shipped("iss-ringdown").with_({"duration": 30.0, "log.period": 3.0})
+    scenario = shipped("iss-ringdown-off").with_({"duration": 30.0, "log.period": 3.0})
     seen = scenario.simulate(log="full")["vibrations"]["modes.displacement"]
     body = scenario.to_dict()["body"]["spatial"]
     for index in (3, 4):

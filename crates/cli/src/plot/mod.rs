@@ -23,6 +23,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use flexsc_core::estimator::Estimator;
+use flexsc_core::law::Law;
 use flexsc_core::record::Log;
 
 use crate::failure::Failure;
@@ -71,6 +72,10 @@ enum What {
     Energy,
     /// Of a spatial body: for how long the jets fire
     Jets,
+    /// Of a spatial body: natural frequencies as adaptive observers estimate them, and as they are
+    Tracking,
+    /// Of a spatial body: elastic rates that active damping acts on, its thresholds, and its pulses
+    Damping,
     /// Speed and momentum of the flywheel, with its limits
     Wheel,
     /// Frequency of the dominant mode as a filter estimates it, and what it really is
@@ -135,6 +140,10 @@ impl What {
             Self::Gain => !story.steps.is_empty(),
             Self::Modes => !story.scenario.model.modes.is_empty(),
             Self::Pointing | Self::Rates | Self::Energy | Self::Jets => spatial,
+            Self::Tracking => matches!(story.scenario.estimator, Some(Estimator::Adaptive(_))),
+            Self::Damping => {
+                matches!(&story.scenario.law, Law::PhasePlane(law) if law.damping.is_some())
+            }
             Self::Wheel => wheel::rotor(story).is_some(),
             Self::Frequency | Self::Estimate | Self::Consistency => {
                 story.scenario.estimator.as_ref().is_some_and(Estimator::filters)
@@ -157,6 +166,8 @@ impl What {
             Self::Rates => spatial::rates(story, cycles),
             Self::Energy => spatial::energy(story, cycles),
             Self::Jets => spatial::jets(story, cycles),
+            Self::Tracking => spatial::tracking(story, cycles),
+            Self::Damping => spatial::damping(story, cycles),
             Self::Wheel => wheel::figure(story, motion),
             Self::Frequency => frequency::figure(story, motion),
             Self::Estimate => estimate::figure(story, motion),

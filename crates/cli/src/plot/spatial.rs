@@ -1,10 +1,11 @@
-//! Figures of a spatial body: `pointing`, `rates`, `energy` and `jets`, from its run repeated.
+//! Figures of a spatial body: `pointing`, `rates`, `energy`, `jets`, and of its adaptive observers `tracking` and `damping`,
+//! from its run repeated.
 
 use std::path::Path;
 
 use flexsc_core::Simulation;
 use flexsc_core::body::spatial::AXES;
-use flexsc_core::record::{Cycle, Log, Record, RecordError, Sample};
+use flexsc_core::record::{ChannelState, Cycle, Log, Record, RecordError, Sample, TrackedMode, Tracking};
 use flexsc_core::time::{Instant, Span};
 
 use super::story::{Story, unusable};
@@ -14,7 +15,7 @@ use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 /// The cycles of a run.
 #[derive(Default)]
-pub struct Cycles(Vec<(f64, Cycle)>);
+pub struct Cycles(Vec<(f64, Cycle)>, Vec<(f64, Tracking)>);
 
 impl Cycles {
     /// The run of a log, repeated.
@@ -44,8 +45,10 @@ impl Cycles {
 
 impl Record for Cycles {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        if let Sample::Cycle(cycle) = sample {
-            self.0.push((now.seconds(), cycle.clone()));
+        match sample {
+            Sample::Cycle(cycle) => self.0.push((now.seconds(), cycle.clone())),
+            Sample::Tracking(tracking) => self.1.push((now.seconds(), tracking.clone())),
+            _ => {}
         }
         Ok(())
     }
@@ -114,5 +117,69 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
         title: title(story, "time to fire in each cycle, with the sign of the push"),
         panels: panels(story, "s", line),
         panel_height: 160,
+    }
+}
+
+/// Natural frequencies of the tracked modes as estimated, and as they are.
+pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
+    let lines = |axis: usize| {
+        let count = cycles.1.first().map_or(0, |(_, tracking)| tracking.trackers.len());
+        let of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
+            let hertz = |tracking: &Tracking| value(&tracking.trackers[mode]) / std::f64::consts::TAU;
+            cycles.1.iter().map(|(time, tracking)| (*time, hertz(tracking))).collect()
+        };
+        let mine =
+            |mode: &usize| cycles.1.first().is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64);
+        let mut layers = Vec::new();
+        for mode in (0..count).filter(mine) {
+            let name = |name| if axis == 0 && layers.is_empty() { name } else { "" };
+            let truth = Layer::new(
+                name("true"),
+                colour::BLACK,
+                Shape::Line(1.0),
+                of(mode, |of| of.true_frequency_rad_s),
+            );
+            let estimate = Layer::new(
+                name("estimated"),
+                colour::VERMILLION,
+                Shape::Line(1.2),
+                of(mode, |of| of.frequency_rad_s),
+            );
+            layers.extend([truth, estimate]);
+        }
+        layers
+    };
+    Figure {
+        title: title(story, "natural frequencies of the tracked modes"),
+        panels: panels(story, "Hz", lines),
+        panel_height: 180,
+    }
+}
+
+/// The elastic rates that active damping acts on, with its thresholds and its pulses.
+pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
+    let lines = |axis: usize| {
+        let of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
+            cycles.1.iter().map(|(time, tracking)| (*time, value(&tracking.channels[axis]))).collect()
+        };
+        let name = |name| if axis == 0 { name } else { "" };
+        let fires = |(_, tracking): &&(f64, Tracking)| tracking.channels[axis].damping_on_s != 0.0;
+        let fired = cycles.1.iter().filter(fires).map(|(time, t)| (*time, t.channels[axis].acted_on_rad_s));
+        vec![
+            Layer::new(
+                name("predicted elastic rate"),
+                colour::SKY,
+                Shape::Line(1.0),
+                of(|c| c.acted_on_rad_s),
+            ),
+            Layer::new(name("threshold"), colour::BLACK, Shape::Line(0.8), of(|c| c.threshold_rad_s)),
+            Layer::new("", colour::BLACK, Shape::Line(0.8), of(|c| -c.threshold_rad_s)),
+            Layer::new("", colour::VERMILLION, Shape::Disc, fired.collect()),
+        ]
+    };
+    Figure {
+        title: title(story, "elastic rates that active damping acts on; dots where it fires"),
+        panels: panels(story, "rad/s", lines),
+        panel_height: 180,
     }
 }

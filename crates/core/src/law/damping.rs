@@ -28,7 +28,7 @@ const CYCLES: f64 = 2.0;
 #[serde(deny_unknown_fields, default)]
 pub struct Damping {
     /// Elastic rates beyond which the jets push, about each axis (rad/s); left out, 1.5 times the amplitude of the limit
-    /// cycle that the delay makes, and at least what two whole cycles change.
+    /// cycle that the delay makes, and at least what two whole cycles change, of the mode that a long burn excites most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<[Positive; 3]>,
     /// Part of the threshold at which they end.
@@ -70,7 +70,7 @@ impl Default for DampingGuards {
 
 impl Damping {
     /// The threshold about an axis (rad/s) for modes of these frequencies (rad/s) and elastic accelerations a (rad/s²), in
-    /// cycles of a period (s), with a delay (s) and a damping ratio.
+    /// cycles of a period (s), with a delay (s) and a damping ratio: of the mode that a long burn excites most.
     pub fn threshold(&self, axis: usize, modes: &[[f64; 2]], period: f64, delay: f64, damping: f64) -> f64 {
         if let Some(given) = &self.threshold {
             return given[axis].get();
@@ -80,7 +80,8 @@ impl Damping {
             let cycle = border.map_or(0.0, |border| border.limit_cycle(*acceleration));
             (LIMIT_CYCLES * cycle).max(CYCLES * acceleration * period)
         };
-        modes.iter().map(of).fold(0.0, f64::max)
+        let excited = |[frequency, acceleration]: &[f64; 2]| acceleration / frequency;
+        modes.iter().max_by(|a, b| excited(a).total_cmp(&excited(b))).map_or(0.0, of)
     }
 }
 

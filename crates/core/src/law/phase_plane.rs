@@ -115,12 +115,7 @@ pub struct PhasePlaneLaw {
 
 impl PhasePlaneLaw {
     /// The law before its first cycle, with the thresholds of active damping (rad/s).
-    pub fn new(
-        spec: &PhasePlane,
-        jets: &Jets,
-        accelerations: [[f64; 2]; 3],
-        thresholds: [f64; 3],
-    ) -> Self {
+    pub fn new(spec: &PhasePlane, jets: &Jets, accelerations: [[f64; 2]; 3], thresholds: [f64; 3]) -> Self {
         let period = spec.period.seconds();
         let relay = |damping| thresholds.map(|threshold| DampingRelay::new(damping, jets, period, threshold));
         Self {

@@ -21,10 +21,10 @@ pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
 pub use recover::recover;
 pub use topics::{
-    Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion, Jets, Law,
-    Metric, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs,
-    Params, Pointing, Rate, Rates, Residual, TOPICS, Torque, TrackedMode, Tracking, Trigger, Vibration, Vibrations, WheelMotion,
-    WindowMean,
+    Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion,
+    Jets, Law, Metric, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName,
+    Outputs, Params, Pointing, Rate, Rates, Residual, TOPICS, Torque, TrackedMode, Tracking, Trigger,
+    Vibration, Vibrations, WheelMotion, WindowMean,
 };
 pub use trace::Trace;
 
@@ -60,11 +60,7 @@ impl Sample<'_> {
     pub fn is_dense(self) -> bool {
         matches!(
             self,
-            Self::Motion(_)
-                | Self::Law(_)
-                | Self::Estimate(_)
-                | Self::Tracking(_)
-                | Self::SpatialMotion(_)
+            Self::Motion(_) | Self::Law(_) | Self::Estimate(_) | Self::Tracking(_) | Self::SpatialMotion(_)
         )
     }
 }

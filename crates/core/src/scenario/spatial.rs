@@ -132,12 +132,7 @@ impl SpatialLoop {
 }
 
 /// The thresholds of active damping about each axis, for the modes of the design and a delay (s).
-fn thresholds(
-    damping: &Damping,
-    plan: &adaptive::Plan,
-    groups: &[[Group; 2]; 3],
-    delay: f64,
-) -> [f64; 3] {
+fn thresholds(damping: &Damping, plan: &adaptive::Plan, groups: &[[Group; 2]; 3], delay: f64) -> [f64; 3] {
     let ratio = match &plan.form {
         adaptive::Form::Gradient(form) => form.damping.get(),
         adaptive::Form::Recurrence(form) => form.damping.get(),

@@ -42,7 +42,9 @@ impl Plan {
         let channel = |axis: usize| {
             let design: &Design = &self.axes[axis];
             let observer = match (&self.form, design.start.first()) {
-                (Form::Recurrence(of), Some(tracker)) => Either::Recurrence(of.observer(tracker, self.period)),
+                (Form::Recurrence(of), Some(tracker)) => {
+                    Either::Recurrence(of.observer(tracker, self.period))
+                }
                 // Without a mode a recurrence is a rigid rate, as a gradient is.
                 (Form::Recurrence(_), None) => {
                     Either::Gradient(super::Gradient::default().observer(&[], &design.rigid, self.period))

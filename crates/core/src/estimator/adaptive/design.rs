@@ -82,8 +82,10 @@ impl Design {
         let sampled = |mode: &usize| body.modes[*mode].frequency.get() * period < std::f64::consts::PI;
         let there: Vec<usize> =
             (0..shapes.len()).filter(sampled).filter(|mode| influence(axis, *mode) != 0.0).collect();
-        let own: Vec<Tracker> =
-            there.iter().map(|mode| tracker(body.modes[*mode].frequency, vec![influence(axis, *mode)])).collect();
+        let own: Vec<Tracker> = there
+            .iter()
+            .map(|mode| tracker(body.modes[*mode].frequency, vec![influence(axis, *mode)]))
+            .collect();
         let mut all = merged(&own, spec.merge.get());
         for one in &mut all {
             for mode in &mut one.modes {
@@ -117,9 +119,10 @@ impl Design {
     }
 }
 
-/// So many of the modes that an input influences most, by frequency.
+/// So many of the modes that a long burn of an input excites most, by frequency: a step of the elastic acceleration a makes
+/// an elastic rate of a/w.
 fn strongest(all: &[Merged], input: usize, count: usize) -> Vec<Merged> {
-    let strength = |mode: &Merged| mode.tracker.influence[input].get().abs();
+    let strength = |mode: &Merged| mode.tracker.influence[input].get().abs() / mode.tracker.frequency.get();
     let mut modes = all.to_vec();
     modes.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
     modes.truncate(count);
@@ -137,7 +140,7 @@ fn nearest(all: &[Merged], trackers: &[Tracker]) -> Vec<Merged> {
     trackers.iter().map(of).collect()
 }
 
-/// The trackers with the errors of the start, within the bounds of the design.
+/// The trackers with the errors of the start, as far as the bounds of the design allow.
 fn started(
     spec: &Adaptive,
     form: &Form,
@@ -165,22 +168,20 @@ fn started(
     }
     let factor = |error: Finite| 1.0 + error.get();
     let bounds = bounds(designed, reach.get(), period);
+    let frequency = |value: f64, or: Frequency| {
+        Frequency::new(value.clamp(Frequency::SMALLEST, Frequency::LARGEST)).unwrap_or(or)
+    };
     let start = |(tracker, [low, high]): (&Tracker, [f64; 2])| {
-        let found = tracker.frequency.get() * factor(spec.frequency_error);
-        let frequency = Frequency::new(found).filter(|_| (low..=high).contains(&found));
-        let (Some(frequency), Some(low), Some(high)) = (frequency, Frequency::new(low), Frequency::new(high))
-        else {
-            let why = format!(
-                "must leave {} within the bounds of the design, [{low}, {high}] rad/s, got {found} rad/s about {}",
-                tracker.frequency.get(),
-                AXES[axis]
-            );
-            return Err(("frequency_error".to_owned(), why));
-        };
+        let known = tracker.frequency;
         let influence = tracker.influence.iter().map(|influence| {
             Finite::new(influence.get() * factor(spec.influence_error)).unwrap_or(*influence)
         });
-        Ok(Tracker { frequency, influence: influence.collect(), bounds: Some([low, high]) })
+        Tracker {
+            // Beyond its bounds it would be taken for another mode.
+            frequency: frequency((known.get() * factor(spec.frequency_error)).clamp(low, high), known),
+            influence: influence.collect(),
+            bounds: Some([low, high].map(|bound| frequency(bound, known))),
+        }
     };
-    designed.iter().zip(bounds).map(start).collect()
+    Ok(designed.iter().zip(bounds).map(start).collect())
 }
