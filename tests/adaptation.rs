@@ -1,6 +1,6 @@
 //! The random search against an independent one: draw for draw, and over many seeds.
 
-use flexsc_core::Simulation;
+use flexsc_core::PlanarRun;
 use flexsc_core::adaptation::{Adaptation, Decision, Search, Step};
 use flexsc_core::campaign::Campaign;
 use flexsc_core::time::{Instant, Span};
@@ -30,7 +30,7 @@ fn search_freezes_where_an_independent_one_does() {
         };
         let mut search = Search::new(constants, 0.31);
         let mut draws = SplitMix(seed);
-        let mut simulation = Simulation::new(&scenario, 0);
+        let mut simulation = PlanarRun::new(&scenario, 0);
         let mut last = None;
         for window in 1..=40 {
             let now = Instant::START + Span::from_seconds(500.0 * f64::from(window));

@@ -55,6 +55,7 @@ fn check(scenario: &str, options: &str, layout: &str) {
 #[test]
 fn every_path_is_a_field_of_a_log() {
     check("relay-adaptive", "--set duration=1200", include_str!("../scenarios/layouts/relay.json"));
+    check("iss-manoeuvre", "--set duration=20", include_str!("../scenarios/layouts/spatial.json"));
     check("rotation-robust", "--set duration=20", include_str!("../scenarios/layouts/rotation.json"));
     let rotor = "--set actuator.wheel.rotor={inertia=1e-4}";
     check(

@@ -1,11 +1,15 @@
 //! All integration tests of flexsc, one binary.
 
+mod active_damping;
 mod adaptation;
+mod adaptive;
 mod bad_manoeuvres;
 mod bad_scenarios;
+mod bad_spatial;
 mod campaigns;
 mod cli;
 mod cycles;
+mod damping;
 mod determinism;
 mod events;
 mod filters;
@@ -20,6 +24,8 @@ mod relay;
 mod rivals;
 mod rotation;
 mod spacecraft;
+mod spatial;
+mod station;
 mod stops;
 mod structure;
 mod study;

@@ -18,7 +18,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Failure> {
     for path in &args.scenarios {
         let scenario = Scenario::load(path)?;
-        let modes = scenario.model.modes.len();
+        let modes = scenario.mode_count();
         say!("{}: accepted: {} s, {modes} modes", path.display(), scenario.duration.seconds());
     }
     Ok(())

@@ -15,6 +15,7 @@ const NEAREST: usize = 3;
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.load()?;
+    let body = scenario.one_angle()?;
     let Law::Relay(law) = &scenario.law else {
         return Err(Failure::Arguments(format!(
             "{}: limit cycles are those of a law `relay`",
@@ -22,8 +23,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         )));
     };
     let k_t = law.k_t.get();
-    let cycles = cycles(law, &scenario.model, k_t);
-    let resonances = resonances(law, &scenario.model);
+    let cycles = cycles(law, body, k_t);
+    let resonances = resonances(law, body);
     if args.json {
         let object = json!({
             "scenario": scenario.name,

@@ -3,6 +3,7 @@
 mod campaign;
 mod check;
 mod cycle;
+mod damping;
 mod export;
 mod failure;
 mod figure;
@@ -53,6 +54,8 @@ enum Verb {
     Tune(tune::Args),
     /// Map the stability of a sampled loop over the dominant mode's frequency and the sampling period
     Map(map::Args),
+    /// Tell what a relay of thrusters does to elastic modes: what it damps, how fast, and where a delay makes it swing
+    Damping(damping::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
     /// Print a topic of a log as a table
@@ -89,6 +92,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Plan(args) => plan::run(&args),
         Verb::Tune(args) => tune::run(&args),
         Verb::Map(args) => map::run(&args),
+        Verb::Damping(args) => damping::run(&args),
         Verb::Plot(args) => plot::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),

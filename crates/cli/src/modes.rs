@@ -2,9 +2,12 @@
 
 use std::io::Write;
 
+use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::body::Drive;
-use serde_json::json;
+use flexsc_core::body::spatial::AXES;
+use flexsc_core::scenario::SpatialLoop;
+use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
 use crate::scenario::Args;
@@ -13,17 +16,56 @@ use crate::{print, say};
 /// The largest number of modes for which the weights of outputs are printed beside each other.
 const WEIGHTS: usize = 12;
 
+/// Prints a table as one JSON object.
+fn print_json(name: &str, table: Json) -> Result<(), Failure> {
+    let mut object = json!({ "scenario": name });
+    if let (Some(object), Json::Object(table)) = (object.as_object_mut(), table) {
+        object.extend(table);
+    }
+    print(format!("{object}\n").as_bytes())
+}
+
+/// The modes of a spatial body, and what its jets do to them.
+fn spatial(name: &str, of: &SpatialLoop, as_json: bool) -> Result<(), Failure> {
+    let modes = Influences::of(of);
+    if as_json {
+        return print_json(name, json!(modes));
+    }
+    say!("{name}   {} modes", modes.dampings.len());
+    for (axis, [plus, minus]) in AXES.iter().zip(modes.accelerations_rad_s2) {
+        say!("  jets, {axis:<8} {plus:+.4e} {:+.4e} rad/s²", -minus);
+    }
+    say!("  influence: elastic rate at the gyro for each rigid rate that the jets give about the same axis");
+    say!(
+        "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>12}{:>12}",
+        "mode",
+        "rad/s",
+        "s",
+        "damping",
+        AXES[0],
+        AXES[1],
+        AXES[2]
+    );
+    for index in 0..modes.dampings.len() {
+        let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| modes.influences[axis][index]);
+        say!(
+            "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{roll:>12.5}{pitch:>12.5}{yaw:>12.5}",
+            modes.frequencies_rad_s[index],
+            modes.periods_s[index],
+            modes.dampings[index],
+        );
+    }
+    Ok(())
+}
+
 pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.load()?;
+    if let Some(loop_of) = &scenario.spatial {
+        return spatial(&scenario.name, loop_of, args.json);
+    }
     let modal = Modal::of(&scenario.model);
     if args.json {
-        let mut object = json!({ "scenario": scenario.name });
-        if let (Some(object), Ok(serde_json::Value::Object(table))) =
-            (object.as_object_mut(), serde_json::to_value(&modal))
-        {
-            object.extend(table);
-        }
-        return print(format!("{object}\n").as_bytes());
+        return print_json(&scenario.name, json!(modal));
     }
     let hub = match modal.drive {
         Drive::Torque => "free",

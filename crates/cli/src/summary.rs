@@ -11,15 +11,51 @@ use crate::say;
 
 /// Tells what a run came to; it took so many seconds of the wall's clock.
 pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
-    let (duration, modes) = (scenario.duration.seconds(), scenario.model.modes.len());
+    let (duration, modes) = (scenario.duration.seconds(), scenario.mode_count());
     let head = format!("{}   {duration} s, {modes} modes", scenario.name);
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
-    if scenario.law.switches() {
+    if scenario.spatial.is_some() {
+        say!("{head}, {:.1} ms", took * 1e3);
+        spatial(metrics);
+    } else if scenario.law.switches() {
         say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
         switchings(scenario, metrics);
     } else {
         say!("{head}, {:.1} ms", took * 1e3);
         rotation(scenario, metrics);
+    }
+}
+
+/// Propellant, elastic energy and pointing of a spatial body.
+fn spatial(metrics: &Metrics) {
+    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    say!(
+        "  jets           {:.3} kg of propellant, {} pulses in {} cycles",
+        number("fuel_kg"),
+        number("firings"),
+        number("firing_cycles"),
+    );
+    let below = |name: &str, part: &str| match number(name) {
+        time if time.is_finite() => format!(", below {part} of the first at {time:.1} s"),
+        _ => String::new(),
+    };
+    say!(
+        "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end",
+        number("elastic_energy_peak_j"),
+        below("energy_below_10pct_at_s", "10 %"),
+        below("energy_below_1pct_at_s", "1 %"),
+        number("elastic_energy_end_j"),
+    );
+    say!("  at the gyro    {:.3e} rad/s rms over the last 200 s", number("elastic_rate_rms_rad_s"));
+    say!("  pointing       {:.3e} rad from the target at the end", number("pointing_error_end_rad"));
+    if let Some(Value::Numbers(frequencies)) = metrics.get("frequency_estimates_hz") {
+        let found: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.4}")).collect();
+        say!(
+            "  modes          {} Hz as estimated; damped in {} cycles, paused {} times",
+            found.join(", "),
+            number("damping_cycles"),
+            number("damping_pauses"),
+        );
     }
 }
 

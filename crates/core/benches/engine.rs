@@ -230,6 +230,28 @@ fn sampled_loop(c: &mut Criterion) {
     group.finish();
 }
 
+/// The manoeuvre of the space station: 3500 cycles of its loop.
+fn station(c: &mut Criterion) {
+    let mut group = c.benchmark_group("station, 700 s");
+    group.sample_size(20);
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/iss-manoeuvre-off.toml");
+    let shipped = Scenario::load(path.as_ref()).expect("shipped");
+    for count in [12_usize, 135] {
+        let mut table = shipped.to_table();
+        let modes = table["body"]["spatial"]["modes"].as_array_mut().expect("modes");
+        for index in modes.len()..count {
+            let mut mode = modes[index % 12].clone();
+            mode.as_table_mut().expect("a mode")["frequency"] = (8.0 + 0.1 * index as f64).into();
+            modes.push(mode);
+        }
+        let scenario = scenario(&toml::to_string(&table).expect("TOML"));
+        group.bench_with_input(BenchmarkId::new("modes", count), &scenario, |b, scenario| {
+            b.iter(|| simulate(black_box(scenario), &mut ()));
+        });
+    }
+    group.finish();
+}
+
 fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
 }
@@ -237,6 +259,6 @@ fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    targets = run, modes, filters, log, structure, sampled_loop
+    targets = run, modes, filters, log, structure, sampled_loop, station
 }
 criterion_main!(benches);

@@ -13,6 +13,32 @@ pub struct Belief {
     pub dominant: Dominant,
 }
 
+/// What is believed of a spatial body, about its three axes: written by gyro and estimator, read by the law.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AxesBelief {
+    /// How far the attitude is beyond the goal (rad). The law knows it exactly: seed paper 4 has no error of it.
+    pub angle: [f64; 3],
+    /// Rigid rates (rad/s): the gyro's, or what an estimator makes of them.
+    pub rate: [f64; 3],
+    /// Changes of the rigid rates that are commanded, and not yet measured (rad/s).
+    pub queued: [f64; 3],
+    /// The elastic modes about each axis, at the time that the law wants to know them for.
+    pub elastic: [Vec<ElasticRate>; 3],
+    /// Whether they may be acted on.
+    pub trusted: [bool; 3],
+}
+
+/// What is believed of an elastic mode about one axis.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct ElasticRate {
+    /// Elastic rate (rad/s).
+    pub rate: f64,
+    /// Natural frequency (rad/s).
+    pub frequency: f64,
+    /// Jump of the elastic rate for each jump of the rigid rate that the jets of the axis give.
+    pub influence: f64,
+}
+
 /// The mode that a step of the torque excites most.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Dominant {

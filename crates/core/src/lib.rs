@@ -64,4 +64,4 @@ pub mod whole;
 
 pub use document::{Document, ScenarioError};
 pub use scenario::Scenario;
-pub use sim::{Simulation, SimulationError};
+pub use sim::{PlanarRun, Simulation, SimulationError, SpatialRun};

@@ -97,8 +97,15 @@ macro_rules! zero_by_default {
 zero_by_default!(Finite, NonNegative);
 
 impl Frequency {
+    /// The lowest (rad/s).
+    pub const SMALLEST: f64 = 1e-4;
     /// The highest (rad/s).
     pub const LARGEST: f64 = 1e3;
+}
+
+impl Fraction {
+    /// Exactly one half.
+    pub const HALF: Self = Self(0.5);
 }
 
 impl Positive {

@@ -70,6 +70,8 @@ impl Ticks {
 impl Instant {
     /// The start of every run.
     pub const START: Self = Self(Ticks { whole: 0, part: 0 });
+    /// Beyond the end of every run.
+    pub const END: Self = Self(Ticks { whole: i64::MAX, part: 0 });
 
     /// The instant in seconds, rounded to a double.
     pub fn seconds(self) -> f64 {

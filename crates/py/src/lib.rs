@@ -7,6 +7,7 @@
 
 mod aside;
 mod columns;
+mod damping;
 mod error;
 mod sampled;
 
@@ -14,6 +15,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::body::Planar;
@@ -37,6 +39,8 @@ use error::{log_error, scenario_error, simulation_error};
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use super::damping::{observer_margin_json, observer_region_json, persistence, relay_damping_json};
     #[pymodule_export]
     use super::error::{LogError, ScenarioError, SimulationError};
     #[pymodule_export]
@@ -138,11 +142,19 @@ impl Scenario {
 
     #[getter]
     fn mode_count(&self) -> usize {
-        self.inner.model.modes.len()
+        self.inner.mode_count()
+    }
+
+    #[getter]
+    fn spatial(&self) -> bool {
+        self.inner.spatial.is_some()
     }
 
     fn modes_json(&self) -> String {
-        json!(Modal::of(&self.inner.model)).to_string()
+        match &self.inner.spatial {
+            None => json!(Modal::of(&self.inner.model)).to_string(),
+            Some(spatial) => json!(Influences::of(spatial)).to_string(),
+        }
     }
 
     fn to_toml(&self) -> String {
@@ -236,7 +248,8 @@ fn campaign<'py>(
 
 #[pyfunction]
 fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
-    let (Law::Relay(law), body) = (&scenario.inner.law, &scenario.inner.model) else {
+    let body = scenario.inner.one_angle().map_err(scenario_error)?;
+    let Law::Relay(law) = &scenario.inner.law else {
         let why = format!("{}: limit cycles are those of a law `relay`", scenario.inner.name);
         return Err(PyValueError::new_err(why));
     };
@@ -246,7 +259,8 @@ fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
 
 /// The manoeuvre of a scenario, its plan and its body.
 fn planned(scenario: &Scenario) -> PyResult<(&Manoeuvre, &Plan, &Planar)> {
-    let flexsc_core::Scenario { manoeuvre, plan, model: body, .. } = &scenario.inner;
+    let body = scenario.inner.one_angle().map_err(scenario_error)?;
+    let flexsc_core::Scenario { manoeuvre, plan, .. } = &scenario.inner;
     match (manoeuvre, plan) {
         (Some(manoeuvre), Some(plan)) => Ok((manoeuvre, plan, body)),
         _ => Err(PyValueError::new_err(format!("{}: there is no manoeuvre to plan", scenario.inner.name))),

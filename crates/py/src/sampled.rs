@@ -30,7 +30,7 @@ fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(Loop, &Pd, Window
     Ok((of, law, window, if alone { Scaling::First } else { Scaling::All }))
 }
 
-fn all_positive(name: &str, values: &[f64]) -> PyResult<()> {
+pub fn all_positive(name: &str, values: &[f64]) -> PyResult<()> {
     match values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
         Some(value) => Err(PyValueError::new_err(format!("{name} must be positive numbers, got {value}"))),
         None => Ok(()),

@@ -46,7 +46,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.scenario.load()?;
-    let body = &scenario.model;
+    let body = scenario.one_angle()?;
     let (Some(manoeuvre), Some(plan)) = (&scenario.manoeuvre, &scenario.plan) else {
         return Err(Failure::Arguments(format!("{}: there is no `[manoeuvre]` to plan", scenario.name)));
     };

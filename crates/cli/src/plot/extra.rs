@@ -12,7 +12,7 @@ use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 pub fn of(story: &Story) -> Option<&Extra> {
     match &story.scenario.law {
         Law::Pd(pd) => pd.extra.as_ref(),
-        Law::Relay(_) | Law::Open(_) => None,
+        Law::Relay(_) | Law::Open(_) | Law::PhasePlane(_) => None,
     }
 }
 

@@ -13,6 +13,7 @@ mod modes;
 mod motion;
 mod outputs;
 mod phase_plane;
+mod spatial;
 mod story;
 mod torque;
 mod wheel;
@@ -22,11 +23,13 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use flexsc_core::estimator::Estimator;
+use flexsc_core::law::Law;
 use flexsc_core::record::Log;
 
 use crate::failure::Failure;
 use crate::figure::{Axis, Figure, Format, Layer, Shape, colour, round_to_nice, save};
 use motion::Motion;
+use spatial::Cycles;
 use story::Story;
 
 #[derive(clap::Args)]
@@ -61,6 +64,18 @@ enum What {
     Gain,
     /// Each elastic mode: under a law that switches at the end of the run, else over all of it
     Modes,
+    /// Of a spatial body: angles beyond the target
+    Pointing,
+    /// Of a spatial body: rates, rigid and at the gyro
+    Rates,
+    /// Of a spatial body: energy of the elastic modes, and propellant
+    Energy,
+    /// Of a spatial body: for how long the jets fire
+    Jets,
+    /// Of a spatial body: natural frequencies as adaptive observers estimate them, and as they are
+    Tracking,
+    /// Of a spatial body: elastic rates that active damping acts on, its thresholds, and its pulses
+    Damping,
     /// Speed and momentum of the flywheel, with its limits
     Wheel,
     /// Frequency of the dominant mode as a filter estimates it, and what it really is
@@ -90,7 +105,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let any = |of: &[What]| of.iter().any(|what| chosen.contains(what));
     let moving = any(&[What::PhasePlane, What::Envelope, What::Modes]);
     let all = any(&[What::Wheel, What::Frequency, What::Estimate, What::Consistency, What::Extra]);
-    let motion = if all || !story.switches() {
+    let is_spatial = story.scenario.spatial.is_some();
+    let cycles = if is_spatial { Cycles::read(&story, &log, &args.log)? } else { Cycles::default() };
+    let motion = if is_spatial {
+        Motion::default()
+    } else if all || !story.switches() {
         story.motion(&log, &args.log, 0.0, 0.0)?
     } else if moving {
         let late = phase_plane::late(&story).min(swings(&story).start);
@@ -103,22 +122,28 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let directory = args.out.as_deref().unwrap_or(beside);
     let name = args.log.file_stem().unwrap_or_default().to_string_lossy();
     let file = |what: &What| format!("{name}-{}", what.name());
-    save(directory, args.format, chosen, file, |what| what.figure(&story, &motion))
+    save(directory, args.format, chosen, file, |what| what.figure(&story, &motion, &cycles))
 }
 
 impl What {
     /// Whether a log has what the figure shows.
     fn is_in(self, story: &Story) -> bool {
+        let spatial = story.scenario.spatial.is_some();
         match self {
             Self::PhasePlane => story.switches(),
-            Self::Torque => true,
-            Self::Angle => !story.switches(),
+            Self::Torque => !spatial,
+            Self::Angle => !story.switches() && !spatial,
             Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
             Self::Envelope => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
             }
             Self::Gain => !story.steps.is_empty(),
             Self::Modes => !story.scenario.model.modes.is_empty(),
+            Self::Pointing | Self::Rates | Self::Energy | Self::Jets => spatial,
+            Self::Tracking => matches!(story.scenario.estimator, Some(Estimator::Adaptive(_))),
+            Self::Damping => {
+                matches!(&story.scenario.law, Law::PhasePlane(law) if law.damping.is_some())
+            }
             Self::Wheel => wheel::rotor(story).is_some(),
             Self::Frequency | Self::Estimate | Self::Consistency => {
                 story.scenario.estimator.as_ref().is_some_and(Estimator::filters)
@@ -127,7 +152,7 @@ impl What {
         }
     }
 
-    fn figure(self, story: &Story, motion: &Motion) -> Figure {
+    fn figure(self, story: &Story, motion: &Motion, cycles: &Cycles) -> Figure {
         match self {
             Self::PhasePlane => phase_plane::figure(story, motion),
             Self::Torque if story.switches() => torque::figure(story),
@@ -137,6 +162,12 @@ impl What {
             Self::Envelope => envelope::figure(story, motion),
             Self::Gain => gain::figure(story),
             Self::Modes => modes::figure(story, motion),
+            Self::Pointing => spatial::pointing(story, cycles),
+            Self::Rates => spatial::rates(story, cycles),
+            Self::Energy => spatial::energy(story, cycles),
+            Self::Jets => spatial::jets(story, cycles),
+            Self::Tracking => spatial::tracking(story, cycles),
+            Self::Damping => spatial::damping(story, cycles),
             Self::Wheel => wheel::figure(story, motion),
             Self::Frequency => frequency::figure(story, motion),
             Self::Estimate => estimate::figure(story, motion),

@@ -36,7 +36,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     };
     let relay = match &story.scenario.law {
         Law::Relay(relay) => Some(relay),
-        Law::Pd(_) | Law::Open(_) => None,
+        Law::Pd(_) | Law::Open(_) | Law::PhasePlane(_) => None,
     };
     let zone = relay.into_iter().flat_map(|relay| [-relay.dead_zone.get(), relay.dead_zone.get()]);
     let all = || first.iter().chain(&last).copied();

@@ -139,7 +139,7 @@ impl Story {
     }
 }
 
-fn unusable(path: &Path, why: String) -> Failure {
+pub fn unusable(path: &Path, why: String) -> Failure {
     Failure::Draw { path: path.to_owned(), why }
 }
 

@@ -11,7 +11,7 @@ use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 pub fn rotor(story: &Story) -> Option<&Rotor> {
     match &story.scenario.actuator {
         Actuator::Wheel(wheel) => wheel.rotor.as_ref(),
-        Actuator::Ideal | Actuator::Hold(_) | Actuator::Thrusters(_) => None,
+        Actuator::Ideal | Actuator::Hold(_) | Actuator::Thrusters(_) | Actuator::Jets(_) => None,
     }
 }
 

@@ -1,7 +1,9 @@
 //! What a scenario or a run means: integrals, limit cycles, stability.
 
 pub mod cycle;
+pub mod damping;
 pub mod elliptic;
+pub mod influence;
 pub mod modal;
 pub mod rigid_cycle;
 pub mod sampled_loop;

@@ -13,6 +13,7 @@ mod output;
 mod panels;
 mod planar;
 mod reduction;
+pub mod spatial;
 mod weights;
 mod wheeled;
 
@@ -35,6 +36,7 @@ pub use mode::Mode;
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
 pub use planar::{Arc, Drive, Planar};
+pub use spatial::Spatial;
 pub use weights::Weights;
 pub use wheeled::Coupling;
 
@@ -48,6 +50,8 @@ pub enum Body {
     Matrices(Matrices),
     /// A hub with panels of hinged sections.
     Panels(Panels),
+    /// Three axes, and modes with shapes at points of the structure.
+    Spatial(Spatial),
 }
 
 impl Body {
@@ -57,6 +61,7 @@ impl Body {
             Self::Planar(_) => "planar",
             Self::Matrices(_) => "matrices",
             Self::Panels(_) => "panels",
+            Self::Spatial(_) => "spatial",
         }
     }
 
@@ -68,7 +73,12 @@ impl Body {
         }
     }
 
-    /// The planar body that moves.
+    /// The body, if it is a spatial one.
+    pub fn spatial(&self) -> Option<&Spatial> {
+        if let Self::Spatial(spatial) = self { Some(spatial) } else { None }
+    }
+
+    /// The planar body that moves; of a spatial body, which is checked alone, one without modes.
     ///
     /// # Errors
     /// What is wrong with the body: a key within it, and why.
@@ -77,6 +87,7 @@ impl Body {
             Self::Planar(planar) => planar.clone(),
             Self::Matrices(matrices) => matrices.solve()?,
             Self::Panels(panels) => panels.solve()?,
+            Self::Spatial(spatial) => spatial.check().map(|()| Planar::default())?,
         };
         model.inconsistency().map_or(Ok(model), Err)
     }
@@ -85,7 +96,7 @@ impl Body {
     pub fn chain(&self, model: &Planar) -> Option<Chain> {
         match self {
             Self::Panels(panels) => panels.chain(model),
-            Self::Planar(_) | Self::Matrices(_) => None,
+            Self::Planar(_) | Self::Matrices(_) | Self::Spatial(_) => None,
         }
     }
 }

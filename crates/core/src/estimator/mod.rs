@@ -1,7 +1,9 @@
 //! Estimators: they turn what was commanded and measured into beliefs.
 
+pub mod adaptive;
 mod envelope;
 pub mod kalman;
+mod rigid_rate;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,8 +11,10 @@ use serde::{Deserialize, Serialize};
 use crate::body::Mode;
 use crate::quantity::{NonNegative, Positive};
 
+pub use adaptive::Adaptive;
 pub use envelope::{Envelope, Form, Observer};
 pub use kalman::{Drifting, Kalman};
+pub use rigid_rate::{RateFilter, RigidRate};
 
 /// The kinds of estimator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,6 +30,10 @@ pub enum Estimator {
     ExtendedKalman(Drifting),
     /// The same by an unscented Kalman filter.
     UnscentedKalman(Drifting),
+    /// The rigid rates of a spatial body.
+    RigidRate(RigidRate),
+    /// The rigid rates and elastic modes of a spatial body, by adaptive observers.
+    Adaptive(Box<Adaptive>),
 }
 
 /// An ideal observer has nothing to set.
@@ -42,6 +50,8 @@ impl Estimator {
             Self::Kalman(_) => "kalman",
             Self::ExtendedKalman(_) => "extended_kalman",
             Self::UnscentedKalman(_) => "unscented_kalman",
+            Self::RigidRate(_) => "rigid_rate",
+            Self::Adaptive(_) => "adaptive",
         }
     }
 
@@ -62,7 +72,7 @@ impl Estimator {
             | Self::Kalman(Kalman { modes, .. })
             | Self::ExtendedKalman(Drifting { modes, .. })
             | Self::UnscentedKalman(Drifting { modes, .. }) => modes.as_deref(),
-            Self::Truth(_) => None,
+            Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
         }
     }
 
@@ -72,14 +82,14 @@ impl Estimator {
             Self::Kalman(Kalman { angle_noise, .. })
             | Self::ExtendedKalman(Drifting { angle_noise, .. })
             | Self::UnscentedKalman(Drifting { angle_noise, .. }) => angle_noise.map(Positive::get),
-            Self::Envelope(_) | Self::Truth(_) => None,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
         }
     }
 
     /// How many states it estimates of a body with so many modes.
     pub fn states(&self, modes: usize) -> usize {
         match self {
-            Self::Envelope(_) | Self::Truth(_) => 0,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => 0,
             Self::Kalman(_) => 2 + 2 * modes,
             Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => {
                 2 + 2 * modes + 2 * filter.ratios.count(modes)
@@ -93,7 +103,7 @@ impl Estimator {
             Self::Kalman(Kalman { assess, .. })
             | Self::ExtendedKalman(Drifting { assess, .. })
             | Self::UnscentedKalman(Drifting { assess, .. }) => *assess,
-            Self::Envelope(_) | Self::Truth(_) => None,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
         };
         window.map_or([0.0, f64::INFINITY], |window| window.map(NonNegative::get))
     }

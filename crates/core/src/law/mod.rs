@@ -1,7 +1,9 @@
 //! Control laws: state machines that answer every event with a hold.
 
+mod damping;
 mod open;
 mod pd;
+mod phase_plane;
 mod relay;
 
 use crate::belief::Belief;
@@ -10,8 +12,10 @@ use crate::label::labels;
 use crate::one_of::one_of;
 use crate::time::Instant;
 
+pub use damping::{Damped, Damping, DampingGuards, DampingRelay};
 pub use open::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
+pub use phase_plane::{PhasePlane, PhasePlaneLaw, Target};
 pub use relay::{Relay, Sides};
 
 one_of! {
@@ -23,13 +27,17 @@ one_of! {
         Pd(Pd),
         /// None: what a scenario with a manoeuvre has by default.
         Open(Open),
+        /// Relays in the phase planes of three axes, with pulses of jets.
+        PhasePlane(PhasePlane),
     }
 }
 
 /// What every law does.
 pub trait Control {
-    /// Answers an event.
-    fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold;
+    /// Answers an event. A law of three axes leaves a body with one angle alone.
+    fn decide(&mut self, _now: Instant, _cause: Cause, _goal: &Goal, _belief: &Belief) -> Hold {
+        Hold::NONE
+    }
 
     /// The state that the law is in.
     fn state(&self) -> Phase;
@@ -120,6 +128,11 @@ pub struct Hold {
     pub until: Option<Instant>,
     /// Ask again when one of these trips.
     pub guards: Guards,
+}
+
+impl Hold {
+    /// No torque, for good.
+    pub const NONE: Self = Self { torque: 0.0, until: None, guards: Guards::NONE };
 }
 
 /// At most two guards.

@@ -3,9 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cause, Control, Goal, Guards, Hold, Phase};
-use crate::belief::Belief;
-use crate::time::Instant;
+use super::{Control, Phase};
 
 /// Open loop.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -13,10 +11,6 @@ use crate::time::Instant;
 pub struct Open {}
 
 impl Control for Open {
-    fn decide(&mut self, _: Instant, _: Cause, _: &Goal, _: &Belief) -> Hold {
-        Hold { torque: 0.0, until: None, guards: Guards::NONE }
-    }
-
     fn state(&self) -> Phase {
         Phase::Open
     }

@@ -13,7 +13,7 @@ mod phi;
 mod plan;
 mod planner;
 mod polynomial;
-mod quadrature;
+pub(crate) mod quadrature;
 mod report;
 mod residual;
 mod series;

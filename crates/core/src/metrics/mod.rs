@@ -2,7 +2,9 @@
 
 mod filter;
 mod rotation;
+mod spatial;
 mod switchings;
+mod tracking;
 
 use serde_json::{Map, Value as Json, json};
 
@@ -12,7 +14,9 @@ use crate::time::Instant;
 
 use filter::Filter;
 use rotation::Rotation;
+use spatial::Spatial;
 use switchings::Switchings;
+use tracking::Tracked;
 
 /// What a metric means.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -121,6 +125,32 @@ metrics! {
     FREQUENCY_ERROR_MAX = "frequency_error_max_rad_s", "rad/s", "Largest such error";
     LOCK_LOST = "lock_lost", "", "1 if the filter has lost the body at the end of the run, else 0";
     LOCK_LOST_AT = "lock_lost_at_s", "s", "When it lost it for good; null if it did not";
+    FUEL = "fuel_kg", "kg", "Propellant that the jets used";
+    FIRINGS = "firings", "", "Pulses of the jets, of all axes together";
+    FIRING_CYCLES = "firing_cycles", "", "Cycles of the law in which any jet fires";
+    ELASTIC_PEAK = "elastic_energy_peak_j", "J",
+        "Largest energy of motion and deformation of the elastic modes, at the starts of the law's cycles";
+    ELASTIC_END = "elastic_energy_end_j", "J", "The same at the last cycle";
+    BELOW_10 = "energy_below_10pct_at_s", "s",
+        "First cycle at which the elastic energy is below a tenth of that at the start; null if there is none";
+    BELOW_1 = "energy_below_1pct_at_s", "s",
+        "First cycle at which the elastic energy is below a hundredth of that at the start; null if there is none";
+    ELASTIC_RATE = "elastic_rate_rms_rad_s", "rad/s",
+        "Root mean square of the elastic part of the rates at the gyro, as a vector of three axes, over the cycles of the last 200 s";
+    POINTING_END = "pointing_error_end_rad", "rad",
+        "Length of the vector of angles beyond the target at the last cycle";
+    FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
+        "Natural frequency of each mode that an adaptive observer tracks, at the last cycle: about x, y and z, by frequency";
+    FREQUENCY_ERRORS = "frequency_estimate_errors", "",
+        "What they are off by, relative to the true ones";
+    INFLUENCE_ESTIMATES = "influence_estimates", "",
+        "Influence of the axis' own jets on each of these modes, at the last cycle";
+    INFLUENCE_ERRORS = "influence_estimate_errors", "",
+        "What they are off by, relative to the true ones";
+    TRACKING_ERROR = "elastic_rate_error_rms_rad_s", "rad/s",
+        "Root mean square of what the estimated elastic rates are off by, as a vector of three axes, over the cycles of the run";
+    DAMPING_CYCLES = "damping_cycles", "", "Cycles in which active damping commands a pulse about any axis";
+    DAMPING_PAUSES = "damping_pauses", "", "How often the watchdog began to keep active damping quiet";
 }
 
 /// A metric and its value.
@@ -194,6 +224,7 @@ impl Value {
 pub struct Gather {
     course: Course,
     filter: Option<Filter>,
+    tracked: Tracked,
 }
 
 /// What kind of run it is.
@@ -203,17 +234,21 @@ enum Course {
     Switchings(Box<Switchings>),
     /// Of a rotation, under a manoeuvre or a PD law.
     Rotation(Box<Rotation>),
+    /// Of a spatial body.
+    Spatial(Box<Spatial>),
 }
 
 impl Gather {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        let course = if scenario.law.switches() {
+        let course = if scenario.spatial.is_some() {
+            Course::Spatial(Box::new(Spatial::new(scenario)))
+        } else if scenario.law.switches() {
             Course::Switchings(Box::new(Switchings::new(scenario)))
         } else {
             Course::Rotation(Box::new(Rotation::new(scenario)))
         };
-        Self { course, filter: Filter::new(scenario) }
+        Self { course, filter: Filter::new(scenario), tracked: Tracked::default() }
     }
 
     /// The metrics of the run that has ended.
@@ -221,7 +256,9 @@ impl Gather {
         let mut metrics = match self.course {
             Course::Switchings(switchings) => switchings.finish(scenario),
             Course::Rotation(rotation) => rotation.finish(),
+            Course::Spatial(spatial) => spatial.finish(),
         };
+        metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(Filter::finish));
         Metrics(metrics)
     }
@@ -232,6 +269,7 @@ impl Record for Gather {
         let course = match &self.course {
             Course::Switchings(switchings) => switchings.dense(),
             Course::Rotation(rotation) => rotation.dense(),
+            Course::Spatial(_) => false,
         };
         course || self.filter.is_some()
     }
@@ -243,6 +281,14 @@ impl Record for Gather {
         match &mut self.course {
             Course::Switchings(switchings) => switchings.record(now, sample),
             Course::Rotation(rotation) => rotation.record(now, sample),
+            Course::Spatial(spatial) => {
+                match sample {
+                    Sample::Cycle(cycle) => spatial.see(now, cycle),
+                    Sample::Tracking(tracking) => self.tracked.see(tracking),
+                    _ => {}
+                }
+                Ok(())
+            }
         }
     }
 }

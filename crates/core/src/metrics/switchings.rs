@@ -170,7 +170,7 @@ impl Record for Switchings {
                     self.frozen_at = now.seconds();
                 }
             }
-            Sample::Arrival(_) | Sample::Estimate(_) | Sample::Motion(_) | Sample::Law(_) => {}
+            _ => {}
         }
         Ok(())
     }

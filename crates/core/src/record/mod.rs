@@ -21,9 +21,10 @@ pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
 pub use recover::recover;
 pub use topics::{
-    Adaptation, Arrival, Attitude, Command, Envelope, Estimate, GoalMotion, Law, Metric, Metrics,
-    ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Rate, Residual,
-    TOPICS, Torque, Trigger, WheelMotion, WindowMean,
+    Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion,
+    Jets, Law, Metric, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName,
+    Outputs, Params, Pointing, Rate, Rates, Residual, TOPICS, Torque, TrackedMode, Tracking, Trigger,
+    Vibration, Vibrations, WheelMotion, WindowMean,
 };
 pub use trace::Trace;
 
@@ -46,12 +47,21 @@ pub enum Sample<'a> {
     Arrival(&'a Arrival),
     /// A filter took a sample.
     Estimate(&'a Estimate),
+    /// A cycle of a spatial loop began.
+    Cycle(&'a Cycle),
+    /// What adaptive observers know after a cycle's sample.
+    Tracking(&'a Tracking),
+    /// The motion of a spatial body at one instant, at each period of a dense record.
+    SpatialMotion(&'a SpatialMotion),
 }
 
 impl Sample<'_> {
     /// Whether only a dense record wants it.
     pub fn is_dense(self) -> bool {
-        matches!(self, Self::Motion(_) | Self::Law(_) | Self::Estimate(_))
+        matches!(
+            self,
+            Self::Motion(_) | Self::Law(_) | Self::Estimate(_) | Self::Tracking(_) | Self::SpatialMotion(_)
+        )
     }
 }
 
@@ -72,6 +82,36 @@ pub struct Motion {
     pub wheel: Option<WheelMotion>,
     /// Envelope, if the scenario has an observer.
     pub envelope: Option<Envelope>,
+}
+
+/// A cycle of a spatial loop, after its law has decided.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// What the jets do in it.
+    pub jets: Jets,
+    /// How many pulses begin.
+    pub pulses: u64,
+    /// Energy of the elastic modes (J).
+    pub elastic_energy_j: f64,
+    /// Rigid rates (rad/s).
+    pub rigid_rate_rad_s: [f64; 3],
+    /// Elastic part of the rates at the gyro (rad/s).
+    pub elastic_rate_rad_s: [f64; 3],
+    /// Angles beyond the target (rad).
+    pub error_rad: [f64; 3],
+}
+
+/// The motion of a spatial body at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpatialMotion {
+    /// Attitude.
+    pub pointing: Pointing,
+    /// Rates.
+    pub rates: Rates,
+    /// Modes.
+    pub vibrations: Vibrations,
+    /// Energies.
+    pub energy: Energy,
 }
 
 /// An observer of a simulation.
@@ -159,6 +199,15 @@ trait TakeRow {
             Sample::Adaptation(step) => self.take(now, step),
             Sample::Arrival(arrival) => self.take(now, arrival),
             Sample::Estimate(estimate) => self.take(now, estimate),
+            Sample::Tracking(tracking) => self.take(now, tracking),
+            Sample::Cycle(Cycle { pulses: 0, .. }) => Ok(()),
+            Sample::Cycle(cycle) => self.take(now, &cycle.jets),
+            Sample::SpatialMotion(motion) => {
+                self.take(now, &motion.pointing)?;
+                self.take(now, &motion.rates)?;
+                self.take(now, &motion.vibrations)?;
+                self.take(now, &motion.energy)
+            }
             Sample::Motion(motion) => {
                 self.take(now, &motion.attitude)?;
                 self.take(now, &motion.rate)?;

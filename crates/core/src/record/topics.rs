@@ -222,6 +222,130 @@ rows! {
         /// 1 as long as the filter follows the body.
         lock: u64,
     }
+    /// The rates about one axis.
+    AxisRate {
+        /// Rate at the gyro, elastic part included (rad/s).
+        rate_rad_s: f64,
+        /// Rate of the body as if it were rigid (rad/s).
+        rigid_rad_s: f64,
+        /// Elastic part at the gyro (rad/s).
+        elastic_rad_s: f64,
+        /// What the gyro gave at the last cycle (rad/s).
+        measured_rad_s: f64,
+        /// Rigid rate that the law read at the last cycle (rad/s).
+        believed_rad_s: f64,
+    }
+    /// The rates of a spatial body, in its own axes.
+    Rates = "/rates" {
+        /// About x, y and z.
+        axes: Vec<AxisRate>,
+    }
+    /// The attitude of a spatial body.
+    Pointing = "/pointing" {
+        /// Real part of the quaternion that turns vectors of the body into inertial ones.
+        q_w: f64,
+        /// Its part along x.
+        q_x: f64,
+        /// Its part along y.
+        q_y: f64,
+        /// Its part along z.
+        q_z: f64,
+        /// Roll, the last of the rotations about z, y and x that make the attitude (rad).
+        roll_rad: f64,
+        /// Pitch, the second (rad).
+        pitch_rad: f64,
+        /// Yaw, the first (rad).
+        yaw_rad: f64,
+        /// Angle about the body's x beyond the target (rad).
+        roll_error_rad: f64,
+        /// Angle about the body's y beyond the target (rad).
+        pitch_error_rad: f64,
+        /// Angle about the body's z beyond the target (rad).
+        yaw_error_rad: f64,
+    }
+    /// One mass-normalised elastic mode.
+    Vibration {
+        /// Displacement (m sqrt(kg)).
+        displacement: f64,
+        /// Rate (m sqrt(kg)/s).
+        rate: f64,
+        /// Energy of motion and deformation (J).
+        energy_j: f64,
+    }
+    /// The elastic modes of a spatial body, in the order of the scenario.
+    Vibrations = "/vibrations" {
+        /// Each mode.
+        modes: Vec<Vibration>,
+    }
+    /// The energies of a spatial body.
+    Energy = "/energy" {
+        /// Of the rotation (J).
+        rotational_j: f64,
+        /// Of the elastic modes, of motion and deformation (J).
+        elastic_j: f64,
+        /// Absolute value of the angular momentum (N m s).
+        momentum_nm_s: f64,
+    }
+    /// A cycle in which jets fire: from its start on for these times, with the sign of the rate that they push to.
+    Jets = "/jets" {
+        /// About x (s).
+        roll_on_s: f64,
+        /// About y (s).
+        pitch_on_s: f64,
+        /// About z (s).
+        yaw_on_s: f64,
+        /// Propellant used until the end of these pulses, since the start of the run (kg).
+        fuel_kg: f64,
+    }
+    /// What an adaptive observer knows of the elastic motion about one axis, and what active damping does with it.
+    ChannelState {
+        /// Estimated elastic rate, all tracked modes together (rad/s).
+        elastic_rad_s: f64,
+        /// What it really is, all modes together (rad/s).
+        true_elastic_rad_s: f64,
+        /// Moving root mean square of the innovation, the measured rate less the predicted one (rad/s).
+        innovation_rms_rad_s: f64,
+        /// The same of the estimated elastic rate (rad/s).
+        elastic_rms_rad_s: f64,
+        /// 1 while the innovations are small enough for the estimate to be acted on.
+        trusted: u64,
+        /// Elastic rate that active damping acts on: predicted, of the modes that it may act on (rad/s).
+        acted_on_rad_s: f64,
+        /// Its threshold (rad/s).
+        threshold_rad_s: f64,
+        /// 1 since that rate was beyond the threshold, and until it is back.
+        latched: u64,
+        /// 1 while the watchdog keeps active damping quiet.
+        resting: u64,
+        /// Signed length of the pulse that active damping commands in this cycle (s).
+        damping_on_s: f64,
+    }
+    /// A mode that an adaptive observer tracks, with what is true of it.
+    TrackedMode {
+        /// The axis: 0, 1 or 2.
+        axis: u64,
+        /// Natural frequency (rad/s).
+        frequency_rad_s: f64,
+        /// What it really is (rad/s).
+        true_frequency_rad_s: f64,
+        /// Influence of the axis' own jets.
+        influence: f64,
+        /// What it really is.
+        true_influence: f64,
+        /// Elastic rate at the gyro (rad/s).
+        rate_rad_s: f64,
+        /// What it really is (rad/s).
+        true_rate_rad_s: f64,
+        /// Amplitude of the estimated elastic rate (rad/s).
+        amplitude_rad_s: f64,
+    }
+    /// What the adaptive observers of a spatial body know.
+    Tracking = "/tracking" {
+        /// About x, y and z.
+        channels: Vec<ChannelState>,
+        /// The modes that they track, axis by axis and by frequency.
+        trackers: Vec<TrackedMode>,
+    }
     /// One metric, or one element of it.
     Metric {
         /// Name, as `flexsc schema --metrics` explains it.

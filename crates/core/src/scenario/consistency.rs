@@ -33,19 +33,24 @@ impl Scenario {
             );
             return at("duration", why);
         }
+        // The parts of a spatial loop were found to fit each other when it was put together.
+        let parts = if self.spatial.is_some() { None } else { self.planar_inconsistency() };
+        parts.or_else(|| {
+            let mut table = self.to_table();
+            table.remove("uncertain");
+            self.uncertain.iter().find_map(|(key, distribution)| {
+                let why = distribution.problem(key::get(&table, key))?;
+                Some((format!("uncertain.\"{key}\""), why))
+            })
+        })
+    }
+
+    fn planar_inconsistency(&self) -> Option<(String, String)> {
         self.law_inconsistency()
             .or_else(|| self.coupling_inconsistency())
             .or_else(|| self.drive_inconsistency())
             .or_else(|| self.estimator_inconsistency())
             .or_else(|| self.adaptation_inconsistency())
-            .or_else(|| {
-                let mut table = self.to_table();
-                table.remove("uncertain");
-                self.uncertain.iter().find_map(|(key, distribution)| {
-                    let why = distribution.problem(key::get(&table, key))?;
-                    Some((format!("uncertain.\"{key}\""), why))
-                })
-            })
     }
 
     fn law_inconsistency(&self) -> Option<(String, String)> {
@@ -231,7 +236,7 @@ impl Scenario {
         modes.iter().enumerate().find(|(_, mode)| mode.damping.get() >= 1.0).map(|(index, mode)| {
             let why = format!("must be below 1 for a mode to have an envelope, got {}", mode.damping.get());
             match (&self.body, own) {
-                (Body::Matrices(_) | Body::Panels(_), None) => {
+                (Body::Matrices(_) | Body::Panels(_) | Body::Spatial(_), None) => {
                     (format!("body.{}.damping", self.body.kind()), why)
                 }
                 _ => (format!("{place}.modes[{index}].damping"), why),

@@ -2,6 +2,7 @@
 
 mod consistency;
 mod epoch;
+mod spatial;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,6 +27,8 @@ use crate::uncertain::Distribution;
 
 use epoch::nanoseconds_since_1970;
 
+pub use spatial::{AxesEstimator, SpatialLoop};
+
 /// A scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -47,7 +50,7 @@ pub struct Scenario {
     pub epoch: Option<Datetime>,
     /// What is controlled.
     pub body: Body,
-    /// The body with its modes, as it moves: solved from `body`.
+    /// The body with its modes, as it moves: solved from `body`. Of a spatial body it is empty: see `spatial`.
     #[serde(skip)]
     pub model: Planar,
     /// How the natural frequencies drift; left out, they do not.
@@ -89,6 +92,9 @@ pub struct Scenario {
     /// The exact chain, where the scenario asks for it.
     #[serde(skip)]
     pub chain: Option<Chain>,
+    /// The loop about three axes, where the body is a spatial one.
+    #[serde(skip)]
+    pub spatial: Option<SpatialLoop>,
 }
 
 /// What a full log holds.
@@ -173,11 +179,32 @@ impl Scenario {
             return Err(document.missing("law"));
         }
         let inconsistent = |(key, why): (String, String)| document.inconsistent(&key, &why);
+        scenario.spatial = SpatialLoop::of(&scenario).map_err(inconsistent)?;
         match scenario.inconsistency() {
             None => scenario.plan = scenario.planned().map_err(inconsistent)?,
             Some(problem) => return Err(inconsistent(problem)),
         }
         Ok(scenario)
+    }
+
+    /// The scenario's body of one angle, for what is an analysis of such bodies.
+    ///
+    /// # Errors
+    /// The body is a spatial one.
+    pub fn one_angle(&self) -> Result<&Planar, ScenarioError> {
+        match &self.spatial {
+            None => Ok(&self.model),
+            Some(_) => Err(ScenarioError::Key {
+                origin: self.name.clone(),
+                key: "body.spatial".to_owned(),
+                why: "turns about three axes, and this is done for bodies with one angle".to_owned(),
+            }),
+        }
+    }
+
+    /// How many elastic modes the body has.
+    pub fn mode_count(&self) -> usize {
+        self.spatial.as_ref().map_or(self.model.modes.len(), |spatial| spatial.body.modes.len())
     }
 
     /// The plan of the manoeuvre, if there is one.
@@ -258,7 +285,9 @@ impl Scenario {
 
     /// A viewer layout for logs of this kind of scenario.
     pub fn layout(&self) -> Option<&'static str> {
-        Some(if self.law.switches() {
+        Some(if self.spatial.is_some() {
+            include_str!("../../../../scenarios/layouts/spatial.json")
+        } else if self.law.switches() {
             include_str!("../../../../scenarios/layouts/relay.json")
         } else if matches!(self.actuator, Actuator::Wheel(_))
             || (matches!(self.law, Law::Pd(_)) && self.manoeuvre.is_none())

@@ -21,6 +21,7 @@ from typing import Any
 
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, sweep
+from flexsc._damping import observer_margin, observer_region, persistence, relay_damping
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
@@ -39,7 +40,11 @@ __all__ = [
     "campaign",
     "gain_region",
     "metrics",
+    "observer_margin",
+    "observer_region",
+    "persistence",
     "read_log",
+    "relay_damping",
     "rigid_cycles",
     "robust_gains",
     "schema",

@@ -87,10 +87,17 @@ class Scenario:
         torque), `excitability`, the gain over the squared frequency (s²), `effective_inertia`, the gain times
         the moment of inertia (kg m²), and `free_frequency` and `clamped_frequency` (rad/s), with the hub free
         and with the hub held; NaN where there is no such body.
+
+        Of a spatial body `frequency`, `period` and `damping`, and `influence` of shape (modes, 3): the jump
+        of the elastic rate at the gyro for each jump of the rigid rate that the jets give about x, y and z.
         """
         import numpy as np
 
         table = json.loads(self._native.modes_json())
+        if self._native.spatial:
+            names = {"frequency": "frequencies_rad_s", "period": "periods_s", "damping": "dampings"}
+            of_modes = {name: np.array(table[key], dtype=np.float64) for name, key in names.items()}
+            return of_modes | {"influence": np.array(table["influences"], dtype=np.float64).T}
         columns = {
             "frequency": table["frequencies_rad_s"],
             "period": table["periods_s"],
@@ -112,7 +119,7 @@ class Scenario:
         """The observed coordinates by name: weights of rigid angle and modes, of shape (1 + modes,)."""
         import numpy as np
 
-        outputs = json.loads(self._native.modes_json())["outputs"]
+        outputs = json.loads(self._native.modes_json()).get("outputs", [])
         return {o["name"]: np.array([o["rigid"], *o["weights"]], dtype=np.float64) for o in outputs}
 
     def to_dict(self) -> dict[str, Any]:

@@ -14,6 +14,12 @@ impl Loop {
     /// A key that has no place in such a loop, and why.
     pub fn of(scenario: &Scenario) -> Result<(Self, &Pd), (String, String)> {
         let refused = |key: &str, why: &str| Err((key.to_owned(), why.to_owned()));
+        if scenario.spatial.is_some() {
+            return refused(
+                "body.spatial",
+                "turns about three axes: the loop that is analysed has one angle",
+            );
+        }
         let Law::Pd(law) = &scenario.law else {
             return refused("law", "must be `pd`: the loop that is analysed is a sampled one");
         };
@@ -34,7 +40,7 @@ impl Loop {
                 let total = wheel.opposes == Opposes::BodyRate;
                 (Some(wheel), wheel.gain.get(), wheel.back_emf.get(), total, wheel.delay.get())
             }
-            Actuator::Hold(_) | Actuator::Thrusters(_) => {
+            Actuator::Hold(_) | Actuator::Thrusters(_) | Actuator::Jets(_) => {
                 return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop");
             }
         };

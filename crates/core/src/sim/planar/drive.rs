@@ -137,7 +137,7 @@ impl Drive {
         let (from, h) = (now.seconds(), period.seconds());
         let planned = self.waveform.as_ref().map_or(0.0, |waveform| waveform.impulse(from, from + h));
         match &self.actuator {
-            Actuator::Ideal | Actuator::Wheel(_) => {}
+            Actuator::Ideal | Actuator::Wheel(_) | Actuator::Jets(_) => {}
             Actuator::Hold(_) => self.held = self.feedback + planned / h,
             Actuator::Thrusters(thrusters) => {
                 self.held = 0.0;
@@ -199,7 +199,7 @@ impl Drive {
                     let felt = if wheel.opposes == Opposes::BodyRate { rate } else { rigid_rate };
                     self.held - wheel.back_emf.get() * felt
                 }
-                Actuator::Hold(_) | Actuator::Thrusters(_) => self.held,
+                Actuator::Hold(_) | Actuator::Thrusters(_) | Actuator::Jets(_) => self.held,
             },
             disturbance_nm: self.disturbance(now),
         }

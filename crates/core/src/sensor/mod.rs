@@ -1,4 +1,6 @@
-//! How the angle is measured: continuously and exactly, or sampled with noise and a resolution.
+//! How the angle is measured: continuously and exactly, or sampled with noise and a resolution; the rates of a spatial body.
+
+mod gyro;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::random::Stream;
 use crate::time::{Instant, Span};
+
+pub use gyro::{Gyro, Readout};
 
 /// The kinds of angle measurement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -16,6 +20,8 @@ pub enum Sensor {
     Continuous,
     /// A sample at each period, held until the next: guards are tested at samples.
     Sampled(Sampled),
+    /// The rates of a spatial body, in each cycle of its law.
+    Gyro(Gyro),
 }
 
 /// A sampled angle sensor.
@@ -91,7 +97,7 @@ impl Sensor {
     /// The period of the samples, if the sensor is sampled.
     pub fn period(&self) -> Option<Span> {
         match self {
-            Self::Continuous => None,
+            Self::Continuous | Self::Gyro(_) => None,
             Self::Sampled(sampled) => Some(sampled.period),
         }
     }
@@ -99,7 +105,7 @@ impl Sensor {
     /// Standard deviation of the gyro's rate (rad/s), if there is a gyro.
     pub fn rate_noise(&self) -> Option<f64> {
         match self {
-            Self::Continuous => None,
+            Self::Continuous | Self::Gyro(_) => None,
             Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
         }
     }
@@ -113,7 +119,7 @@ impl Sensor {
     /// The failures of a sampled sensor.
     pub fn faults(&self) -> &[Fault] {
         match self {
-            Self::Continuous => &[],
+            Self::Continuous | Self::Gyro(_) => &[],
             Self::Sampled(sampled) => &sampled.faults,
         }
     }

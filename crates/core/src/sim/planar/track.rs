@@ -55,7 +55,7 @@ impl Track {
         let draws = &mut seed.stream("prior");
         let filter = |filter| Eye::Filter(Box::new(filter));
         let eye = match scenario.estimator.as_ref()? {
-            Estimator::Envelope(_) => return None,
+            Estimator::Envelope(_) | Estimator::RigidRate(_) | Estimator::Adaptive(_) => return None,
             Estimator::Truth(_) => Eye::Ideal,
             Estimator::Kalman(spec) => filter(spec.filter(&setting, draws)),
             Estimator::ExtendedKalman(spec) => filter(spec.filter(&setting, Prediction::Extended, draws)),

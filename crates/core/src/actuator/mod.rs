@@ -1,10 +1,14 @@
 //! How a commanded torque is executed: as it is, through a zero-order hold, or by pulses of thrusters.
 
+mod jets;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::{Instant, Span};
+
+pub use jets::{Group, Groups, Jets, Pair, Thruster};
 
 /// The kinds of actuator.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -19,6 +23,8 @@ pub enum Actuator {
     Thrusters(Thrusters),
     /// A flywheel on a motor with back-EMF.
     Wheel(Wheel),
+    /// Thrusters of a spatial body.
+    Jets(Jets),
 }
 
 /// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
@@ -103,7 +109,7 @@ impl Actuator {
     /// The period in which the command is executed; none for an ideal actuator.
     pub fn period(&self) -> Option<Span> {
         match self {
-            Self::Ideal | Self::Wheel(_) => None,
+            Self::Ideal | Self::Wheel(_) | Self::Jets(_) => None,
             Self::Hold(hold) => Some(hold.period),
             Self::Thrusters(thrusters) => Some(thrusters.period),
         }

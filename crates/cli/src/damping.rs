@@ -1,0 +1,118 @@
+//! `flexsc damping`: what a relay of thrusters does to elastic modes, over their natural frequency.
+
+use std::f64::consts::PI;
+use std::io::Write;
+
+use flexsc_core::analysis::damping::{Damped, Relay, Study};
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::grid::Even;
+use crate::{print, say};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Natural frequencies of the modes (rad/s)
+    #[arg(long, value_name = "LO:HI:N")]
+    frequency: Even,
+    /// Elastic acceleration of a push: the thrusters' rigid one times their influence on the mode (rad/s²)
+    #[arg(long, value_name = "ACCELERATION")]
+    acceleration: f64,
+    /// Time from one sample to the next (s); 0 for a relay that reads and pushes all the time
+    #[arg(long, value_name = "TIME", default_value_t = 0.2)]
+    period: f64,
+    /// Time from a sample to the push that it decides (s)
+    #[arg(long, value_name = "TIME", default_value_t = 0.0)]
+    delay: f64,
+    /// How long a push lasts (s); left out, the whole period
+    #[arg(long, value_name = "TIME")]
+    on_time: Option<f64>,
+    /// Damping ratio of the modes
+    #[arg(long, value_name = "RATIO", default_value_t = 0.005)]
+    damping: f64,
+    /// Amplitude of the elastic rate at the start, to tell how long its decay takes (rad/s)
+    #[arg(long, value_name = "RATE")]
+    amplitude: Option<f64>,
+    /// Amplitude below which no thruster fires (rad/s)
+    #[arg(long, value_name = "RATE", default_value_t = 0.0, requires = "amplitude")]
+    threshold: f64,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let relay =
+        Relay { period: args.period, delay: args.delay, on_time: args.on_time.unwrap_or(args.period) };
+    let study = Study {
+        relay,
+        damping: args.damping,
+        acceleration: args.acceleration,
+        amplitude: args.amplitude.unwrap_or(0.0),
+        threshold: args.threshold,
+    };
+    if let Some((name, why)) = study.inconsistency() {
+        return Err(Failure::Arguments(format!("--{} {why}", name.replace('_', "-"))));
+    }
+    let Even(frequencies) = &args.frequency;
+    let mut rows = study.table(frequencies);
+    if args.amplitude.is_none() {
+        for row in &mut rows {
+            (row.decay_s, row.thrust_s) = (None, None);
+        }
+    }
+    let limit = relay.frequency_limit();
+    if args.json {
+        // What is infinite is null.
+        return print(format!("{}\n", json!({"frequency_limit_rad_s": limit, "rows": rows})).as_bytes());
+    }
+    tell(relay, limit, &rows);
+    Ok(())
+}
+
+fn tell(relay: Relay, limit: f64, rows: &[Damped]) {
+    let Relay { period, delay, on_time } = relay;
+    let damps = if limit.is_finite() {
+        format!("damps below {limit:.4} rad/s, {:.4} Hz", limit / (2.0 * PI))
+    } else {
+        "damps every frequency".to_owned()
+    };
+    if period > 0.0 {
+        say!("relay   a push of {on_time} s each {period} s, {delay} s after its sample: {damps}");
+    } else {
+        say!("relay   all the time, {delay} s late: {damps}");
+    }
+    let head = [
+        ["frequency", "rad/s"],
+        ["part", ""],
+        ["slope", "rad/s²"],
+        ["delay", "limit, s"],
+        ["gain", "limit, 1/s"],
+        ["cycle", "rad/s"],
+        ["at", "rad/s"],
+        ["decay", "s"],
+        ["thrust", "s"],
+    ];
+    for line in 0..2 {
+        let cells: Vec<String> = head.iter().map(|words| format!("{:>12}", words[line])).collect();
+        say!("{}", cells.concat());
+    }
+    for row in rows {
+        say!(
+            "{:>12.4}{:>12.4}{:>12.3e}{:>12.4}{:>12}{:>12}{:>12}{:>12}{:>12}",
+            row.frequency_rad_s,
+            row.phase_factor,
+            row.slope_rad_s2,
+            row.delay_limit_s,
+            cell(row.gain_limit_1_s, |gain| format!("{gain:.5}")),
+            cell(row.limit_cycle_rate_rad_s, |rate| format!("{rate:.3e}")),
+            cell(row.limit_cycle_frequency_rad_s, |frequency| format!("{frequency:.4}")),
+            cell(row.decay_s, |time| format!("{time:.2}")),
+            cell(row.thrust_s, |time| format!("{time:.2}")),
+        );
+    }
+}
+
+fn cell(value: Option<f64>, tell: impl Fn(f64) -> String) -> String {
+    value.map_or_else(|| "none".to_owned(), tell)
+}

@@ -1,0 +1,185 @@
+//! Figures of a spatial body: `pointing`, `rates`, `energy`, `jets`, and of its adaptive observers `tracking` and `damping`,
+//! from its run repeated.
+
+use std::path::Path;
+
+use flexsc_core::Simulation;
+use flexsc_core::body::spatial::AXES;
+use flexsc_core::record::{ChannelState, Cycle, Log, Record, RecordError, Sample, TrackedMode, Tracking};
+use flexsc_core::time::{Instant, Span};
+
+use super::story::{Story, unusable};
+use super::{time, title};
+use crate::failure::Failure;
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+/// The cycles of a run.
+#[derive(Default)]
+pub struct Cycles(Vec<(f64, Cycle)>, Vec<(f64, Tracking)>);
+
+impl Cycles {
+    /// The run of a log, repeated.
+    pub fn read(story: &Story, log: &Log, path: &Path) -> Result<Self, Failure> {
+        let mut cycles = Self::default();
+        // The end of a log that was cut off is rounded, and a cycle may lie on it.
+        let end = Span::from_seconds(story.end + 1e-9).min(story.scenario.duration);
+        Simulation::new(&story.scenario, story.run)
+            .run_until(Instant::START + end, &mut cycles)
+            .map_err(|source| Failure::Run { name: story.scenario.name.clone(), source })?;
+        let jets = log.tables(&["/jets"])?.pop().flatten().unwrap_or_default();
+        let logged = jets.numbers("fuel_kg").unwrap_or_default();
+        let fired = cycles.0.iter().filter(|(_, cycle)| cycle.pulses > 0);
+        if !fired.map(|(_, cycle)| cycle.jets.fuel_kg).take(logged.len()).eq(logged.iter().copied()) {
+            let version = log.metadata().get("version").map_or("another", String::as_str);
+            let own = env!("CARGO_PKG_VERSION");
+            let why = format!("flexsc {own} fires at other times than this log of version {version}");
+            return Err(unusable(path, why));
+        }
+        Ok(cycles)
+    }
+
+    fn over_time(&self, of: impl Fn(&Cycle) -> f64) -> Vec<Point> {
+        self.0.iter().map(|(time, cycle)| (*time, of(cycle))).collect()
+    }
+}
+
+impl Record for Cycles {
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        match sample {
+            Sample::Cycle(cycle) => self.0.push((now.seconds(), cycle.clone())),
+            Sample::Tracking(tracking) => self.1.push((now.seconds(), tracking.clone())),
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// A panel for each axis: its lines, by their names and colours.
+fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
+    let panel = |(axis, name): (usize, &&str)| {
+        let (x, layers) = (time(0.0..story.end), lines(axis));
+        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        let y = Axis::around(name, unit, values.collect::<Vec<_>>());
+        Panel { x: if axis == 2 { x } else { x.unnamed() }, y, layers, bar: None }
+    };
+    AXES.iter().enumerate().map(panel).collect()
+}
+
+/// Angles beyond the target.
+pub fn pointing(story: &Story, cycles: &Cycles) -> Figure {
+    let line = |axis: usize| {
+        let points = cycles.over_time(|cycle| cycle.error_rad[axis]);
+        vec![Layer::new("", colour::BLUE, Shape::Line(1.2), points)]
+    };
+    Figure {
+        title: title(story, "angles beyond the target"),
+        panels: panels(story, "rad", line),
+        panel_height: 160,
+    }
+}
+
+/// Rigid rates, and with their elastic part what a perfect gyro would see.
+pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
+    let lines = |axis: usize| {
+        let seen = cycles.over_time(|c| c.rigid_rate_rad_s[axis] + c.elastic_rate_rad_s[axis]);
+        let rigid = cycles.over_time(|c| c.rigid_rate_rad_s[axis]);
+        let name = |name| if axis == 0 { name } else { "" };
+        vec![
+            Layer::new(name("at the gyro"), colour::SKY, Shape::Line(1.0), seen),
+            Layer::new(name("rigid"), colour::BLACK, Shape::Line(1.2), rigid),
+        ]
+    };
+    Figure { title: title(story, "rates"), panels: panels(story, "rad/s", lines), panel_height: 160 }
+}
+
+/// Energy of the elastic modes, and the propellant.
+pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
+    let elastic = cycles.over_time(|cycle| cycle.elastic_energy_j);
+    let fuel = cycles.over_time(|cycle| cycle.jets.fuel_kg);
+    let panel = |x: Axis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
+        x,
+        y: Axis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
+        layers: vec![Layer::new("", colour::BLUE, Shape::Line(1.2), points)],
+        bar: None,
+    };
+    let x = time(0.0..story.end);
+    let panels = vec![panel(x.unnamed(), "elastic energy", "J", elastic), panel(x, "propellant", "kg", fuel)];
+    Figure { title: title(story, "elastic energy and propellant"), panels, panel_height: 220 }
+}
+
+/// For how long the jets fire in each cycle.
+pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
+    let line = |axis: usize| {
+        let on = |cycle: &Cycle| [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis];
+        vec![Layer::new("", colour::VERMILLION, Shape::Line(1.0), cycles.over_time(on))]
+    };
+    Figure {
+        title: title(story, "time to fire in each cycle, with the sign of the push"),
+        panels: panels(story, "s", line),
+        panel_height: 160,
+    }
+}
+
+/// Natural frequencies of the tracked modes as estimated, and as they are.
+pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
+    let lines = |axis: usize| {
+        let count = cycles.1.first().map_or(0, |(_, tracking)| tracking.trackers.len());
+        let of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
+            let hertz = |tracking: &Tracking| value(&tracking.trackers[mode]) / std::f64::consts::TAU;
+            cycles.1.iter().map(|(time, tracking)| (*time, hertz(tracking))).collect()
+        };
+        let mine =
+            |mode: &usize| cycles.1.first().is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64);
+        let mut layers = Vec::new();
+        for mode in (0..count).filter(mine) {
+            let name = |name| if axis == 0 && layers.is_empty() { name } else { "" };
+            let truth = Layer::new(
+                name("true"),
+                colour::BLACK,
+                Shape::Line(1.0),
+                of(mode, |of| of.true_frequency_rad_s),
+            );
+            let estimate = Layer::new(
+                name("estimated"),
+                colour::VERMILLION,
+                Shape::Line(1.2),
+                of(mode, |of| of.frequency_rad_s),
+            );
+            layers.extend([truth, estimate]);
+        }
+        layers
+    };
+    Figure {
+        title: title(story, "natural frequencies of the tracked modes"),
+        panels: panels(story, "Hz", lines),
+        panel_height: 180,
+    }
+}
+
+/// The elastic rates that active damping acts on, with its thresholds and its pulses.
+pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
+    let lines = |axis: usize| {
+        let of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
+            cycles.1.iter().map(|(time, tracking)| (*time, value(&tracking.channels[axis]))).collect()
+        };
+        let name = |name| if axis == 0 { name } else { "" };
+        let fires = |(_, tracking): &&(f64, Tracking)| tracking.channels[axis].damping_on_s != 0.0;
+        let fired = cycles.1.iter().filter(fires).map(|(time, t)| (*time, t.channels[axis].acted_on_rad_s));
+        vec![
+            Layer::new(
+                name("predicted elastic rate"),
+                colour::SKY,
+                Shape::Line(1.0),
+                of(|c| c.acted_on_rad_s),
+            ),
+            Layer::new(name("threshold"), colour::BLACK, Shape::Line(0.8), of(|c| c.threshold_rad_s)),
+            Layer::new("", colour::BLACK, Shape::Line(0.8), of(|c| -c.threshold_rad_s)),
+            Layer::new("", colour::VERMILLION, Shape::Disc, fired.collect()),
+        ]
+    };
+    Figure {
+        title: title(story, "elastic rates that active damping acts on; dots where it fires"),
+        panels: panels(story, "rad/s", lines),
+        panel_height: 180,
+    }
+}

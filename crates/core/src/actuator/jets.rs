@@ -1,0 +1,173 @@
+//! Jets: thrusters at points of a spatial body, in groups that turn it about one axis each, by pulses of given length.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::body::spatial::{AXES, Spatial, Vector, vector};
+use crate::quantity::{Finite, NonNegative, Positive};
+use crate::structure::Fault;
+
+/// Standard acceleration of free fall (m/s²), by which the specific impulse counts.
+const G_0: f64 = 9.806_65;
+
+/// Thrusters that are either on or off (seed paper 4).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Jets {
+    /// Shortest pulse (s).
+    #[serde(default)]
+    pub minimum_on: NonNegative,
+    /// Quantum of a pulse's length (s); 0 for none.
+    #[serde(default)]
+    pub quantum: NonNegative,
+    /// Specific impulse (s).
+    pub specific_impulse: Positive,
+    /// Whole cycles of the law from a command to its pulses: 0, or 1 where computing it takes a cycle.
+    #[serde(default)]
+    pub delay: u32,
+    /// The thrusters.
+    pub thrusters: Vec<Thruster>,
+    /// Which of them act together.
+    pub groups: Groups,
+}
+
+/// One thruster.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Thruster {
+    /// Name.
+    pub name: String,
+    /// The point of the structure to which it is fixed.
+    pub point: String,
+    /// Its nozzle from there (m).
+    #[serde(default)]
+    pub offset: [Finite; 3],
+    /// Direction of the force on the body, of length 1.
+    pub direction: [Finite; 3],
+    /// Thrust (N).
+    pub thrust: Positive,
+}
+
+/// The groups: for each axis, names of the thrusters that turn the body about it one way and the other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Groups {
+    /// About x.
+    pub roll: Pair,
+    /// About y.
+    pub pitch: Pair,
+    /// About z.
+    pub yaw: Pair,
+}
+
+/// The two groups of an axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pair {
+    /// Those that push to positive rates.
+    pub plus: Vec<String>,
+    /// Those that push to negative rates.
+    pub minus: Vec<String>,
+}
+
+/// What a group does while it is on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Torque about the centre of mass (N m).
+    pub torque: Vector,
+    /// Modal forces Q_i = sum f_i . F + phi_i . M (N/sqrt(kg)).
+    pub forces: Vec<f64>,
+    /// Propellant in a second (kg/s).
+    pub flow: f64,
+    /// Absolute acceleration about the group's own axis, m = |M_a|/J_aa (rad/s²).
+    pub acceleration: f64,
+}
+
+impl Jets {
+    /// The groups on a body: for each axis, plus and minus.
+    ///
+    /// # Errors
+    /// A key within the jets, and why.
+    pub fn groups_on(&self, body: &Spatial) -> Result<[[Group; 2]; 3], Fault> {
+        for (index, thruster) in self.thrusters.iter().enumerate() {
+            let refused = |key: &str, why: String| Err((format!("thrusters[{index}].{key}"), why));
+            let length = vector(&thruster.direction).norm();
+            if (length - 1.0).abs() > 1e-6 {
+                return refused("direction", format!("must have length 1, got {length}"));
+            }
+            if self.thrusters[..index].iter().any(|other| other.name == thruster.name) {
+                let why = format!("must differ from the other names, got `{}` again", thruster.name);
+                return refused("name", why);
+            }
+            if body.point(&thruster.point).is_none() {
+                let (points, found) = (body.point_names(), &thruster.point);
+                return refused(
+                    "point",
+                    format!("must be one of the body's points, {points}, got `{found}`"),
+                );
+            }
+        }
+        let Groups { roll, pitch, yaw } = &self.groups;
+        let mut groups = Vec::with_capacity(3);
+        for (axis, pair) in [roll, pitch, yaw].into_iter().enumerate() {
+            groups.push([
+                self.group(body, axis, "plus", 1.0, &pair.plus)?,
+                self.group(body, axis, "minus", -1.0, &pair.minus)?,
+            ]);
+        }
+        groups.try_into().map_err(|_| ("groups".to_owned(), "must be those of three axes".to_owned()))
+    }
+
+    fn group(
+        &self,
+        body: &Spatial,
+        axis: usize,
+        sign: &str,
+        sense: f64,
+        names: &[String],
+    ) -> Result<Group, Fault> {
+        let key = format!("groups.{}.{sign}", AXES[axis]);
+        let mut torque = Vector::zeros();
+        let mut forces = vec![0.0; body.modes.len()];
+        let mut thrust = 0.0;
+        for name in names {
+            let Some(thruster) = self.thrusters.iter().find(|thruster| thruster.name == *name) else {
+                let known: Vec<_> = self.thrusters.iter().map(|t| format!("`{}`", t.name)).collect();
+                let why = format!("must name thrusters, {}, got `{name}`", known.join(", "));
+                return Err((key, why));
+            };
+            let force = vector(&thruster.direction).normalize() * thruster.thrust.get();
+            let moment = vector(&thruster.offset).cross(&force);
+            torque += body.point(&thruster.point).unwrap_or_default().cross(&force) + moment;
+            thrust += thruster.thrust.get();
+            for (push, (translation, rotation)) in forces.iter_mut().zip(body.shapes(&thruster.point)) {
+                *push += translation.dot(&force) + rotation.dot(&moment);
+            }
+        }
+        if sense * torque[axis] <= 0.0 {
+            let (turns, [x, y, z]) = (AXES[axis], [torque.x, torque.y, torque.z]);
+            let why = format!("must give a torque to {sign} {turns}, got [{x}, {y}, {z}] N m");
+            return Err((key, why));
+        }
+        let acceleration = torque[axis].abs() / body.tensor()[(axis, axis)];
+        let flow = thrust / (self.specific_impulse.get() * G_0);
+        Ok(Group { torque, forces, flow, acceleration })
+    }
+
+    /// The length of the pulse that comes of a command (s): at most `most`, a multiple of the quantum, nothing of a
+    /// short one.
+    pub fn on_time(&self, command: f64, most: f64) -> f64 {
+        let (minimum, quantum) = (self.minimum_on.get(), self.quantum.get());
+        let mut on = command.min(most);
+        if quantum > 0.0 {
+            on = libm::round(on / quantum) * quantum;
+        }
+        if on > most {
+            most
+        } else if on < minimum {
+            0.0
+        } else {
+            on
+        }
+    }
+}

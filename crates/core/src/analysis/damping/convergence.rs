@@ -1,0 +1,107 @@
+//! When the recurrence observer converges, its regressor frozen: seed paper 4, pages 44 to 46.
+//!
+//! A constant elastic rate cannot be told from a rigid one: one eigenvalue is 1 whatever the weights. The others are the roots of
+//! z³ + a2 z² + a1 z + a0 with, by A = 2 exp(-zeta w T) cos(w_d T), B = exp(-2 zeta w T) and kappa = W4 |g|,
+//! a2 = kappa - A - 1 + W1 - (W3 - A W2), a1 = B + A - W1 A + (W3 - A W2) - B W2, a0 = B (W1 + W2 - 1).
+
+use serde::Serialize;
+
+/// Strips in which the area of a region is summed.
+const STRIPS: u32 = 20_000;
+
+/// A recurrence observer of one mode.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Convergence {
+    /// Natural frequency of the mode (rad/s).
+    pub frequency: f64,
+    /// Its damping ratio, below 1.
+    pub damping: f64,
+    /// Period of the samples (s).
+    pub period: f64,
+    /// W1, W2 and W3: what of an innovation the rigid rate and the elastic rate take, and what is taken off the next one.
+    pub weights: [f64; 3],
+}
+
+/// The edge of a region of convergence at one W2.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Edge {
+    /// W2.
+    pub elastic: f64,
+    /// The W3 between which the observer converges; none if no W3 does.
+    pub next: Option<(f64, f64)>,
+}
+
+impl Convergence {
+    /// The first number that is out of its range, by its name, and what is wrong with it.
+    pub fn inconsistency(&self) -> Option<(&'static str, String)> {
+        let Self { frequency, damping, period, weights } = *self;
+        if !(0.0..1.0).contains(&damping) {
+            return Some(("damping", format!("must be 0 or more and below 1, got {damping}")));
+        }
+        if !(period > 0.0 && period < 1e100) {
+            return Some(("period", format!("must be a positive number, got {period}")));
+        }
+        let nyquist = std::f64::consts::PI / period;
+        if !(frequency > 0.0 && frequency < nyquist) {
+            let why = format!(
+                "must be above 0 and below the Nyquist frequency of {nyquist} rad/s, got {frequency}"
+            );
+            return Some(("frequency", why));
+        }
+        let wrong = weights.into_iter().find(|weight| !(-1e3..1e3).contains(weight))?;
+        Some(("weights", format!("must be three numbers below 1000, got {wrong}")))
+    }
+
+    /// A and B.
+    pub fn recurrence(&self) -> (f64, f64) {
+        let Self { frequency, damping, period, .. } = self;
+        let turn = frequency * libm::sqrt((1.0 - damping) * (1.0 + damping)) * period;
+        let shrink = libm::exp(-damping * frequency * period);
+        (2.0 * shrink * libm::cos(turn), shrink * shrink)
+    }
+
+    /// a0, a1 and a2 for a kappa.
+    pub fn cubic(&self, kappa: f64) -> [f64; 3] {
+        let ((a, b), [w1, w2, w3]) = (self.recurrence(), self.weights);
+        let w3 = w3 - a * w2;
+        [b * (w1 + w2 - 1.0), b + a - w1 * a + w3 - b * w2, kappa - a - 1.0 + w1 - w3]
+    }
+
+    /// Whether the roots lie within the unit circle, by Jury's criterion.
+    pub fn converges(&self, kappa: f64) -> bool {
+        let [.., w3] = self.weights;
+        self.edge(kappa).is_some_and(|(low, high)| low < w3 && w3 < high)
+    }
+
+    /// The W3 between which the observer converges with its W1 and W2; none if no W3 does.
+    fn edge(&self, kappa: f64) -> Option<(f64, f64)> {
+        let [w1, w2, _] = self.weights;
+        let (a, b) = self.recurrence();
+        let [a0, a1, a2] = Self { weights: [w1, w2, 0.0], ..*self }.cubic(kappa);
+        // W3 adds to a1 and takes off a2: P(1) does not depend on it, -P(-1) and a0 a2 - a1 are linear in it.
+        if a0.abs() >= 1.0 || w1 * (1.0 - a + b) + kappa <= 0.0 {
+            return None;
+        }
+        let (middle, half) = ((a0 * a2 - a1) / (1.0 + a0), 1.0 - a0);
+        let low = (middle - half).max(-0.5 * (1.0 - a2 + a1 - a0));
+        let high = middle + half;
+        (low < high).then_some((low, high))
+    }
+
+    /// The region of convergence in the plane of W2 and W3 for a kappa: figure 2 of the paper, by its edges at these W2.
+    pub fn region(&self, kappa: f64, elastic: &[f64]) -> Vec<Edge> {
+        let [w1, _, w3] = self.weights;
+        let at = |&w2: &f64| Edge { elastic: w2, next: Self { weights: [w1, w2, w3], ..*self }.edge(kappa) };
+        elastic.iter().map(at).collect()
+    }
+
+    /// The area of that region.
+    pub fn area(&self, kappa: f64) -> f64 {
+        let (_, b) = self.recurrence();
+        // |a0| < 1.
+        let (from, width) = (1.0 - self.weights[0] - 1.0 / b, 2.0 / (b * f64::from(STRIPS)));
+        let middles: Vec<f64> = (0..STRIPS).map(|i| from + width * (f64::from(i) + 0.5)).collect();
+        let heights = self.region(kappa, &middles);
+        width * heights.iter().filter_map(|edge| edge.next).map(|(low, high)| high - low).sum::<f64>()
+    }
+}

@@ -1,0 +1,85 @@
+//! The decay of a mode under a relay: its amplitude over time, with and without a threshold. Ours.
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::manoeuvre::quadrature;
+
+/// The amplitude V of the elastic rate under a relay that pushes while V exceeds a threshold g:
+/// dV/dt = -r V - s sqrt(1 - (g/V)²).
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Decay {
+    /// Fall by the relay s (rad/s²): 2 a E/pi, negative where it feeds the mode.
+    pub slope: f64,
+    /// Decay rate of the mode itself r, zeta w (1/s).
+    pub rate: f64,
+}
+
+impl Decay {
+    /// A decay under an acceleration of which a part damps, a E (rad/s²), with the mode's own rate zeta w (1/s).
+    pub fn new(effective: f64, rate: f64) -> Self {
+        Self { slope: effective / FRAC_PI_2, rate }
+    }
+
+    /// Amplitude (rad/s) after a time (s) without a threshold, (V0 + s/r) exp(-r t) - s/r, and 0 once it is there.
+    pub fn amplitude(&self, start: f64, time: f64) -> f64 {
+        let turn = self.rate * time;
+        let mean = if turn > 0.0 { -libm::expm1(-turn) / turn } else { 1.0 };
+        (start * libm::exp(-turn) - self.slope * time * mean).max(0.0)
+    }
+
+    /// Amplitude (rad/s) after a time (s) with a threshold and no damping of the mode's own:
+    /// sqrt(V² - g²) = sqrt(V0² - g²) - s t, and g once it is there.
+    pub fn amplitude_above(&self, start: f64, threshold: f64, time: f64) -> f64 {
+        let left = libm::sqrt((start - threshold) * (start + threshold)) - self.slope * time;
+        libm::hypot(left.max(0.0), threshold)
+    }
+
+    /// Time (s) in which the amplitude falls from `start` to a threshold, also 0; none if it does not.
+    pub fn threshold_time(&self, start: f64, threshold: f64) -> Option<f64> {
+        if start <= threshold {
+            return Some(0.0);
+        }
+        let Self { slope, rate } = *self;
+        if slope <= 0.0 {
+            return None;
+        }
+        if threshold == 0.0 {
+            let ratio = rate * start / slope;
+            return Some(if ratio > 0.0 { libm::log1p(ratio) / rate } else { start / slope });
+        }
+        if rate == 0.0 {
+            return Some(libm::sqrt((start - threshold) * (start + threshold)) / slope);
+        }
+        Some(self.integral(start, threshold, |_| 1.0))
+    }
+
+    /// The integral of a function of V/g over the time from `start` to a threshold.
+    fn integral(&self, start: f64, threshold: f64, of: impl Fn(f64) -> f64) -> f64 {
+        // With V = g cosh u the integrand is smooth at the threshold.
+        let part = |_, u: f64| {
+            let (tanh, cosh) = (libm::tanh(u), libm::cosh(u));
+            of(cosh) * threshold * tanh / (self.rate * threshold + self.slope * tanh / cosh)
+        };
+        quadrature::integral(&[0.0, libm::acosh(start / threshold)], 0.5, part)
+    }
+
+    /// Part of the time under thrust at an amplitude: (2/pi) acos(g/V).
+    pub fn duty(amplitude: f64, threshold: f64) -> f64 {
+        if amplitude <= threshold { 0.0 } else { libm::acos(threshold / amplitude) / FRAC_PI_2 }
+    }
+
+    /// Time under thrust (s) until the threshold; none if the amplitude does not get there. Without damping of the mode's
+    /// own (2 g/(pi s)) (theta tan(theta) + ln cos(theta)) with cos(theta) = g/V0.
+    pub fn thrust_time(&self, start: f64, threshold: f64) -> Option<f64> {
+        let whole = self.threshold_time(start, threshold)?;
+        if threshold == 0.0 || start <= threshold {
+            return Some(whole);
+        }
+        if self.rate > 0.0 {
+            return Some(self.integral(start, threshold, |ratio| Self::duty(ratio, 1.0)));
+        }
+        let cos = threshold / start;
+        let angle = libm::acos(cos);
+        Some(threshold / (FRAC_PI_2 * self.slope) * (angle * libm::tan(angle) + libm::log(cos)))
+    }
+}

@@ -1,0 +1,111 @@
+//! When the recurrence observer converges, its regressor the oscillation that it is.
+//!
+//! Linear in the errors, each cycle is a matrix that depends on the phase of the elastic rate, and after a number of cycles
+//! that phase returns. Gains that the frozen regressor allows are too large by a factor of hundreds. Ours.
+
+use nalgebra::linalg::Schur;
+use nalgebra::{Matrix4, RowVector4};
+use serde::Serialize;
+
+use super::Convergence;
+
+/// The most cycles until the phase is taken to return.
+const LONGEST: u32 = 400;
+/// So much of a turn apart, two phases are the same.
+const SAME: f64 = 1e-9;
+/// The least gain that is tried, the greatest, and the ratio of one to the next.
+const GAINS: [f64; 3] = [1e-4, 10.0, 1.05];
+/// Sweeps after which the search for eigenvalues is given up.
+const SWEEPS: usize = 10_000;
+
+/// The gains of the identification that converge.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Margin {
+    /// The gain kappa up to which the observer converges.
+    pub gain_max: f64,
+    /// The gain with which it converges soonest.
+    pub gain_best: f64,
+    /// What a cycle leaves of an error with that gain.
+    pub spectral_radius: f64,
+}
+
+impl Convergence {
+    /// What a cycle leaves of an error in the long run, for W4 = kappa/V under an elastic rate V cos(w T n): below 1 it
+    /// converges. Infinite if the eigenvalues cannot be found.
+    pub fn spectral_radius(&self, kappa: f64) -> f64 {
+        let count = self.cycles();
+        let (mut product, mut scale) = (Matrix4::identity(), 0.0);
+        for cycle in 0..count {
+            product = self.cycle(kappa, cycle) * product;
+            let size = product.amax();
+            product /= size;
+            scale += libm::log(size);
+        }
+        if product.iter().any(|m| !m.is_finite()) {
+            return f64::INFINITY;
+        }
+        let Some(schur) = Schur::try_new(product, f64::EPSILON, SWEEPS) else { return f64::INFINITY };
+        let values = schur.complex_eigenvalues();
+        let largest = values.iter().map(|value| libm::hypot(value.re, value.im)).fold(0.0, f64::max);
+        libm::exp((libm::log(largest) + scale) / f64::from(count))
+    }
+
+    /// The gains that converge; none if the least that is tried does not.
+    pub fn margin(&self) -> Option<Margin> {
+        let [least, greatest, ratio] = GAINS;
+        let radius = |gain: f64| self.spectral_radius(gain);
+        let (mut low, mut best) = (least, (least, radius(least)));
+        if best.1 >= 1.0 {
+            return None;
+        }
+        let mut high = low;
+        while low < greatest {
+            high = low * ratio;
+            let found = radius(high);
+            if found >= 1.0 {
+                break;
+            }
+            if found < best.1 {
+                best = (high, found);
+            }
+            low = high;
+        }
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if radius(middle) < 1.0 { low = middle } else { high = middle }
+        }
+        let (mut from, mut to) = (best.0 / ratio, best.0 * ratio);
+        for _ in 0..40 {
+            let (left, right) = (from + (to - from) / 3.0, to - (to - from) / 3.0);
+            if radius(left) < radius(right) { to = right } else { from = left }
+        }
+        let gain_best = 0.5 * (from + to);
+        Some(Margin { gain_max: low, gain_best, spectral_radius: radius(gain_best) })
+    }
+
+    /// After how many cycles the phase returns, or as nearly as it gets.
+    fn cycles(&self) -> u32 {
+        let turn = self.frequency * self.period / (2.0 * std::f64::consts::PI);
+        let apart = |count: u32| {
+            let turns = turn * f64::from(count);
+            (turns - libm::round(turns)).abs()
+        };
+        let nearest = (1..=LONGEST).min_by(|&a, &b| apart(a).total_cmp(&apart(b))).unwrap_or(1);
+        (1..=LONGEST).find(|&count| apart(count) < SAME).unwrap_or(nearest)
+    }
+
+    /// One cycle of the errors: of the predicted rigid rate, of the predicted elastic rate, of the elastic rate one sample
+    /// before, and of A times V.
+    fn cycle(&self, kappa: f64, cycle: u32) -> Matrix4<f64> {
+        let ((a, b), [w1, w2, w3]) = (self.recurrence(), self.weights);
+        let step = self.frequency * self.period;
+        let phase = step * f64::from(cycle);
+        let (now, before) = (libm::cos(phase), libm::cos(phase - step));
+        let innovation = RowVector4::new(1.0, 1.0, 0.0, 0.0);
+        let turn = RowVector4::new(0.0, 0.0, 0.0, 1.0) - innovation * (kappa * before.signum());
+        let rigid = RowVector4::new(1.0, 0.0, 0.0, 0.0) - innovation * w1;
+        let elastic = RowVector4::new(0.0, 1.0, 0.0, 0.0) - innovation * w2;
+        let next = elastic * a + turn * now - RowVector4::new(0.0, 0.0, b, 0.0) + innovation * w3;
+        Matrix4::from_rows(&[rigid, next, elastic, turn])
+    }
+}

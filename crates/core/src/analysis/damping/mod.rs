@@ -1,0 +1,125 @@
+//! Active damping of an elastic mode by the spacecraft's own relay thrusters, in closed form.
+//!
+//! The thrusters push against the elastic rate g' that an observer tells: g'' + 2 zeta w g' + w² g = -a sign g', with
+//! a = mu m, the influence of the thrusters times their rigid acceleration (seed paper 4, page 48). Beside it, when the
+//! adaptive observer converges that tells it.
+
+mod convergence;
+mod decay;
+mod excitation;
+mod floquet;
+mod partition;
+mod phase_factor;
+
+use serde::Serialize;
+
+pub use convergence::{Convergence, Edge};
+pub use decay::Decay;
+pub use excitation::persistence;
+pub use floquet::Margin;
+pub use partition::{Partition, partition};
+
+/// When a relay reads the elastic rate and pushes against it.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Relay {
+    /// Time from one sample to the next (s); 0 for a relay that reads and pushes all the time.
+    pub period: f64,
+    /// Time from a sample to the push that it decides (s).
+    pub delay: f64,
+    /// How long a push lasts (s), at most the period.
+    pub on_time: f64,
+}
+
+/// A mode under a relay.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Damped {
+    /// Natural frequency (rad/s).
+    pub frequency_rad_s: f64,
+    /// Part of the push that damps: negative where it feeds the mode.
+    pub phase_factor: f64,
+    /// Fall of the amplitude of the elastic rate that the relay makes at any amplitude (rad/s²).
+    pub slope_rad_s2: f64,
+    /// The longest delay that still damps (s); negative where even none is too long.
+    pub delay_limit_s: f64,
+    /// The largest stable gain of a linear feedback of the rate with the mean delay (1/s); none without a delay.
+    pub gain_limit_1_s: Option<f64>,
+    /// Amplitude (rad/s) and frequency (rad/s) of the limit cycle in which the relay ends; none without a delay.
+    pub limit_cycle_rate_rad_s: Option<f64>,
+    /// See `limit_cycle_rate_rad_s`.
+    pub limit_cycle_frequency_rad_s: Option<f64>,
+    /// Time to bring the amplitude to the threshold (s); none where it does not get there.
+    pub decay_s: Option<f64>,
+    /// Time of that under thrust (s).
+    pub thrust_s: Option<f64>,
+}
+
+/// A relay against the modes of one damping ratio.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Study {
+    /// The relay.
+    pub relay: Relay,
+    /// Damping ratio of the modes.
+    pub damping: f64,
+    /// Elastic acceleration of a push, a (rad/s²).
+    pub acceleration: f64,
+    /// Amplitude of the elastic rate at the start (rad/s).
+    pub amplitude: f64,
+    /// Amplitude below which no thruster fires (rad/s).
+    pub threshold: f64,
+}
+
+impl Study {
+    /// The first number that is out of its range, by its name, and what is wrong with it.
+    pub fn inconsistency(&self) -> Option<(&'static str, String)> {
+        let Self { relay, damping, acceleration, amplitude, threshold } = *self;
+        let from_zero = [
+            ("period", relay.period),
+            ("delay", relay.delay),
+            ("on_time", relay.on_time),
+            ("amplitude", amplitude),
+            ("threshold", threshold),
+        ];
+        if let Some((name, value)) = from_zero.into_iter().find(|(_, value)| !(0.0..1e100).contains(value)) {
+            return Some((name, format!("must be a number of 0 or more, got {value}")));
+        }
+        if !(0.0..1.0).contains(&damping) {
+            return Some(("damping", format!("must be 0 or more and below 1, got {damping}")));
+        }
+        if !(acceleration > 0.0 && acceleration < 1e100) {
+            return Some(("acceleration", format!("must be a positive number, got {acceleration}")));
+        }
+        let Relay { period, on_time, .. } = relay;
+        if period > 0.0 && !(on_time > 0.0 && on_time <= period) {
+            return Some((
+                "on_time",
+                format!("must be above 0 and at most the period of {period} s, got {on_time}"),
+            ));
+        }
+        None
+    }
+
+    /// What the relay does to a mode of each of these natural frequencies (rad/s).
+    pub fn table(&self, frequencies: &[f64]) -> Vec<Damped> {
+        frequencies.iter().map(|frequency| self.mode(*frequency)).collect()
+    }
+
+    fn mode(&self, frequency: f64) -> Damped {
+        let Self { relay, damping, acceleration, amplitude, threshold } = *self;
+        let factor = relay.phase_factor(frequency);
+        let decay = Decay::new(acceleration * factor, damping * frequency);
+        let border = partition(frequency, relay.mean_delay(), damping);
+        let reached = decay.threshold_time(amplitude, threshold);
+        let thrust = decay.thrust_time(amplitude, threshold);
+        Damped {
+            frequency_rad_s: frequency,
+            phase_factor: factor,
+            slope_rad_s2: decay.slope,
+            delay_limit_s: relay.delay_limit(frequency),
+            gain_limit_1_s: border.map(|border| border.gain),
+            limit_cycle_rate_rad_s: border.map(|border| border.limit_cycle(acceleration * relay.duty())),
+            limit_cycle_frequency_rad_s: border.map(|border| border.frequency),
+            decay_s: reached,
+            thrust_s: thrust.map(|time| time * relay.duty()),
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Attitudes: unit quaternions, and the small angles between two of them.
+
+use std::borrow::Cow;
+
+use nalgebra::Quaternion;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::Vector;
+
+/// An attitude as a scenario writes it: a unit quaternion \[w, x, y, z\].
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Attitude(Quaternion<f64>);
+
+impl Attitude {
+    /// The quaternion, of length 1.
+    pub const fn get(self) -> Quaternion<f64> {
+        self.0
+    }
+}
+
+impl Default for Attitude {
+    /// The body's axes are the inertial ones.
+    fn default() -> Self {
+        Self(Quaternion::new(1.0, 0.0, 0.0, 0.0))
+    }
+}
+
+impl Serialize for Attitude {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        [self.0.w, self.0.i, self.0.j, self.0.k].serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Attitude {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let [w, x, y, z] = <[f64; 4]>::deserialize(deserializer)?;
+        let quaternion = Quaternion::new(w, x, y, z);
+        let length = quaternion.norm();
+        // Decimals are rounded; what is further off is no attitude.
+        if (length - 1.0).abs() <= 1e-6 {
+            // A quaternion that is read again stays what it is.
+            let near = (length - 1.0).abs() <= 4.0 * f64::EPSILON;
+            Ok(Self(if near { quaternion } else { quaternion / length }))
+        } else {
+            Err(serde::de::Error::custom(format!(
+                "must be a unit quaternion [w, x, y, z], got one of length {length}"
+            )))
+        }
+    }
+}
+
+impl JsonSchema for Attitude {
+    fn schema_name() -> Cow<'static, str> {
+        "Attitude".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        <[f64; 4]>::json_schema(generator)
+    }
+}
+
+/// The attitude that yaw, then pitch about the turned axis, then roll about the one turned twice make of the inertial
+/// one (rad; the sequence 3-2-1).
+pub fn turned(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
+    let about = |axis: usize, angle: f64| {
+        let (sin, cos) = libm::sincos(0.5 * angle);
+        let mut vector = Vector::zeros();
+        vector[axis] = sin;
+        Quaternion::from_parts(cos, vector)
+    };
+    about(2, yaw) * about(1, pitch) * about(0, roll)
+}
+
+/// Roll, pitch and yaw of an attitude (rad), in the same sequence.
+pub fn angles(q: &Quaternion<f64>) -> [f64; 3] {
+    let (w, x, y, z) = (q.w, q.i, q.j, q.k);
+    let sine = (2.0 * (w * y - z * x)).clamp(-1.0, 1.0);
+    [
+        libm::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+        libm::asin(sine),
+        libm::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+    ]
+}
+
+/// How far an attitude is turned beyond a goal: 2 vec(goal* o q), in the body's axes and on the shorter way (rad for
+/// small angles, exactly twice the sine of half the angle along its axis).
+pub fn beyond(goal: &Quaternion<f64>, q: &Quaternion<f64>) -> Vector {
+    let difference = goal.conjugate() * q;
+    difference.vector() * libm::copysign(2.0, difference.w)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_come_back_and_errors_are_small_rotations() {
+        let at = turned(0.3, -0.7, 2.1);
+        for (found, exact) in angles(&at).into_iter().zip([0.3, -0.7, 2.1]) {
+            assert!((found - exact).abs() < 1e-15, "{found} {exact}");
+        }
+        // Turned further by a small angle about the body's own y, whichever sign the quaternion has.
+        let further = at * turned(0.0, 1e-3, 0.0);
+        for q in [further, -further] {
+            let error = beyond(&at, &q);
+            assert!((error - Vector::new(0.0, 2.0 * libm::sin(5e-4), 0.0)).norm() < 1e-15, "{error}");
+        }
+        // Yaw first: a quarter turn brings the body's x to the inertial y.
+        let quarter = turned(0.0, 0.0, std::f64::consts::FRAC_PI_2);
+        let x = quarter * Quaternion::from_imag(Vector::x()) * quarter.conjugate();
+        assert!((x.vector() - Vector::y()).norm() < 1e-15);
+    }
+}

@@ -1,0 +1,50 @@
+//! The torque of the surroundings: a constant, and a part of the orbit's period.
+
+use std::f64::consts::TAU;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Vector, vector};
+use crate::quantity::{Finite, Positive};
+
+/// A torque in the body's axes, constant + amplitude sin(2 pi t/period + phase) about each.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Periodic {
+    /// Constant part (N m).
+    #[serde(default)]
+    pub constant: [Finite; 3],
+    /// Amplitude of the periodic part (N m).
+    #[serde(default)]
+    pub amplitude: [Finite; 3],
+    /// Its period (s): of a station in a low orbit about 5560 s.
+    #[serde(default = "orbit")]
+    pub period: Positive,
+    /// Its phase at the start (rad).
+    #[serde(default)]
+    pub phase: [Finite; 3],
+}
+
+fn orbit() -> Positive {
+    Positive::new(5560.0).unwrap_or(Positive::ONE)
+}
+
+impl Periodic {
+    /// The torque at a time since the start (N m).
+    pub fn at(&self, t: f64) -> Vector {
+        let turns = TAU * t / self.period.get();
+        let sine = |axis: usize| self.amplitude[axis].get() * libm::sin(turns + self.phase[axis].get());
+        vector(&self.constant) + Vector::from_fn(|axis, _| sine(axis))
+    }
+
+    /// No torque is larger (N m).
+    pub fn bound(&self) -> f64 {
+        vector(&self.constant).norm() + vector(&self.amplitude).norm()
+    }
+
+    /// How fast it changes (rad/s).
+    pub fn frequency(&self) -> f64 {
+        TAU / self.period.get()
+    }
+}

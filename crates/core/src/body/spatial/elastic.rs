@@ -1,0 +1,65 @@
+//! The elastic modes of a spatial body: their exact flow under constant modal forces, their energy, what a gyro sees.
+
+use super::{Spatial, SpatialMode, Vector};
+use crate::body::mode::Flow;
+use crate::body::{Mode, Phase};
+use crate::quantity::Finite;
+
+/// The flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
+#[derive(Clone, Debug)]
+pub struct Elastic {
+    flows: Vec<Flow>,
+    /// A span that comes again and again (s), and the transitions over it.
+    cycle: f64,
+    transitions: Vec<[f64; 4]>,
+}
+
+impl Elastic {
+    /// The modes of a body that is often moved on by `cycle` seconds.
+    pub fn new(body: &Spatial, cycle: f64) -> Self {
+        let flow =
+            |mode: &SpatialMode| Flow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping));
+        let flows: Vec<Flow> = body.modes.iter().map(flow).collect();
+        let transitions = flows.iter().map(|flow| flow.transition(cycle)).collect();
+        Self { flows, cycle, transitions }
+    }
+
+    /// The phases at the start.
+    pub fn start(body: &Spatial) -> Vec<Phase> {
+        let of = |mode: &SpatialMode| Phase {
+            displacement: mode.displacement.get(),
+            quadrature: mode.rate.get() / mode.frequency.get(),
+        };
+        body.modes.iter().map(of).collect()
+    }
+
+    /// Moves on by `h` seconds under constant modal forces (N/sqrt(kg), one for each mode; none at all if there are
+    /// none): a mode turns about the equilibrium f/w².
+    pub fn advance(&self, phases: &mut [Phase], forces: &[f64], h: f64) {
+        let whole = h == self.cycle;
+        for (index, (phase, flow)) in phases.iter_mut().zip(&self.flows).enumerate() {
+            let [a, b, c, d] = if whole { self.transitions[index] } else { flow.transition(h) };
+            let force = forces.get(index).copied().unwrap_or(0.0);
+            let centre = force / (flow.frequency * flow.frequency);
+            let (x, y) = (phase.displacement - centre, phase.quadrature);
+            *phase = Phase { displacement: centre + a * x + b * y, quadrature: c * x + d * y };
+        }
+    }
+
+    /// Rates q' of the modes (m sqrt(kg)/s).
+    pub fn rates<'a>(&'a self, phases: &'a [Phase]) -> impl Iterator<Item = f64> + 'a {
+        phases.iter().zip(&self.flows).map(|(phase, flow)| flow.frequency * phase.quadrature)
+    }
+
+    /// The elastic part of the rates at a point (rad/s), at which the modes turn by these rotations.
+    pub fn rate_at(&self, rotations: &[Vector], phases: &[Phase]) -> Vector {
+        self.rates(phases).zip(rotations).fold(Vector::zeros(), |sum, (rate, shape)| sum + shape * rate)
+    }
+
+    /// Energy of motion and deformation of each mode (J): (q'² + w² q²)/2.
+    pub fn energies<'a>(&'a self, phases: &'a [Phase]) -> impl Iterator<Item = f64> + 'a {
+        phases.iter().zip(&self.flows).map(|(Phase { displacement: x, quadrature: y }, flow)| {
+            0.5 * flow.frequency * flow.frequency * (x * x + y * y)
+        })
+    }
+}

@@ -1,0 +1,167 @@
+//! The spatial body: three axes, elastic modes with their shapes at named points of the structure.
+//!
+//! J w' + w x J w = M, Q' = 1/2 Q o (0, w), and q_i'' + 2 zeta_i w_i q_i' + w_i² q_i = sum_j f_i(r_j) . F_j + phi_i(r_j) . M_j
+//! (seed paper 4, equations (1) and (2)): mass-normalised modes, which the forces of the jets excite and which a gyro sees.
+//! The modes do not act back on the rigid motion. Q turns vectors of the body into inertial ones: v = Q o v_body o Q*.
+
+mod attitude;
+mod disturbance;
+mod elastic;
+mod rigid;
+mod state;
+
+use std::collections::BTreeMap;
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::quantity::{Finite, Frequency, NonNegative};
+use crate::structure::Fault;
+
+pub use attitude::{Attitude, angles, beyond, turned};
+pub use disturbance::Periodic;
+pub use elastic::Elastic;
+pub use rigid::{Rigid, Turn};
+pub use state::SpatialState;
+
+/// Three numbers along the body's axes x, y and z, about which it rolls, pitches and yaws.
+pub type Vector = nalgebra::Vector3<f64>;
+
+/// The names of rotations about the three axes, as in keys.
+pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
+
+/// A spatial body as a scenario describes it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Spatial {
+    /// Inertia tensor about the centre of mass (kg m²), row by row: symmetric, positive definite.
+    pub inertia: [[Finite; 3]; 3],
+    /// Attitude at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the body into inertial ones.
+    #[serde(default)]
+    pub attitude: Attitude,
+    /// Rates at the start (rad/s), in the body's axes.
+    #[serde(default)]
+    pub rate: [Finite; 3],
+    /// Named points of the structure, at which jets push and gyros look.
+    #[serde(default)]
+    pub points: Vec<NamedPoint>,
+    /// Elastic modes.
+    #[serde(default)]
+    pub modes: Vec<SpatialMode>,
+    /// A torque that the surroundings exert; left out, there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disturbance: Option<Periodic>,
+}
+
+/// A point of the structure.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NamedPoint {
+    /// Name.
+    pub name: String,
+    /// Position from the centre of mass (m).
+    #[serde(default)]
+    pub position: [Finite; 3],
+}
+
+/// A mass-normalised elastic mode.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpatialMode {
+    /// Natural frequency w (rad/s).
+    pub frequency: Frequency,
+    /// Damping ratio zeta: 0 undamped, 1 critical.
+    #[serde(default)]
+    pub damping: NonNegative,
+    /// Modal displacement at the start (m sqrt(kg)).
+    #[serde(default)]
+    pub displacement: Finite,
+    /// Its rate at the start (m sqrt(kg)/s).
+    #[serde(default)]
+    pub rate: Finite,
+    /// The mode's shape at each point, by the point's name.
+    #[serde(default)]
+    pub shapes: BTreeMap<String, Shape>,
+}
+
+/// The shape of a mode at a point.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Shape {
+    /// Displacement of the point for a unit of the mode (1/sqrt(kg)).
+    #[serde(default)]
+    pub translation: [Finite; 3],
+    /// Rotation at the point for a unit of the mode (rad/(m sqrt(kg))).
+    #[serde(default)]
+    pub rotation: [Finite; 3],
+}
+
+/// The vector of a scenario's numbers.
+pub fn vector(of: &[Finite; 3]) -> Vector {
+    Vector::new(of[0].get(), of[1].get(), of[2].get())
+}
+
+impl Spatial {
+    /// The inertia tensor (kg m²).
+    pub fn tensor(&self) -> Matrix3<f64> {
+        Matrix3::from_fn(|row, column| self.inertia[row][column].get())
+    }
+
+    /// The position of a point from the centre of mass (m), if there is a point of this name.
+    pub fn point(&self, name: &str) -> Option<Vector> {
+        self.points.iter().find(|point| point.name == name).map(|point| vector(&point.position))
+    }
+
+    /// The names of all points, for errors.
+    pub fn point_names(&self) -> String {
+        let names: Vec<_> = self.points.iter().map(|point| format!("`{}`", point.name)).collect();
+        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+    }
+
+    /// Translation (1/sqrt(kg)) and rotation (rad/(m sqrt(kg))) of each mode at a point.
+    pub fn shapes(&self, point: &str) -> Vec<(Vector, Vector)> {
+        let of = |mode: &SpatialMode| {
+            let shape = mode.shapes.get(point).copied().unwrap_or_default();
+            (vector(&shape.translation), vector(&shape.rotation))
+        };
+        self.modes.iter().map(of).collect()
+    }
+
+    /// What single values cannot show to be wrong.
+    ///
+    /// # Errors
+    /// A key within the body, and why.
+    pub fn check(&self) -> Result<(), Fault> {
+        let refused = |key: &str, why: String| Err((key.to_owned(), why));
+        let tensor = self.tensor();
+        if tensor != tensor.transpose() {
+            let rows = (0..3).flat_map(|row| (0..row).map(move |column| (row, column)));
+            let mut unlike = rows.filter(|at| tensor[*at] != tensor[(at.1, at.0)]);
+            let (row, column) = unlike.next().unwrap_or_default();
+            let (found, other) = (tensor[(row, column)], tensor[(column, row)]);
+            let why = format!("must be symmetric, got {found} and {other} across the diagonal");
+            return refused("inertia", why);
+        }
+        if tensor.cholesky().is_none() {
+            return refused("inertia", "must be positive definite".to_owned());
+        }
+        for (index, point) in self.points.iter().enumerate() {
+            if self.points[..index].iter().any(|other| other.name == point.name) {
+                let why = format!("must differ from the other names, got `{}` again", point.name);
+                return refused(&format!("points[{index}].name"), why);
+            }
+        }
+        for (index, mode) in self.modes.iter().enumerate() {
+            if let Some(name) = mode.shapes.keys().find(|name| self.point(name).is_none()) {
+                let key = format!("modes[{index}].shapes.{}", crate::document::key::bare_or_quoted(name));
+                return refused(&key, format!("must be one of the points, {}", self.point_names()));
+            }
+            if let Some(point) = self.points.iter().find(|point| !mode.shapes.contains_key(&point.name)) {
+                let why = format!("must tell the shape at each point, and `{}` is missing", point.name);
+                return refused(&format!("modes[{index}].shapes"), why);
+            }
+        }
+        Ok(())
+    }
+}

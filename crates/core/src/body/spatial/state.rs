@@ -1,0 +1,28 @@
+//! The state of a spatial body.
+
+use super::{Elastic, Rigid, Spatial, Turn, vector};
+use crate::body::Phase;
+
+/// Where a spatial body is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpatialState {
+    /// The rigid motion.
+    pub turn: Turn,
+    /// One phase for each elastic mode: displacement (m sqrt(kg)), and rate over natural frequency.
+    pub modes: Vec<Phase>,
+}
+
+impl SpatialState {
+    /// The state at the start of a run.
+    pub fn start(body: &Spatial, rigid: &Rigid) -> Self {
+        Self { turn: rigid.start(body.attitude.get(), vector(&body.rate)), modes: Elastic::start(body) }
+    }
+
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        let finite = |number: &f64| number.is_finite();
+        self.turn.attitude.coords.iter().all(finite)
+            && Rigid::momentum(&self.turn).iter().all(finite)
+            && self.modes.iter().all(|phase| finite(&phase.displacement) && finite(&phase.quadrature))
+    }
+}

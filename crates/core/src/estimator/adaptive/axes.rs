@@ -1,0 +1,144 @@
+//! Adaptive observers of a spatial body, one for each axis of its gyro, as a scenario describes them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Gradient, Recurrence, Tracker};
+use crate::quantity::{Finite, NonNegative};
+
+/// Modes nearer than this to each other cannot be told apart.
+const MERGE: f64 = 0.08;
+
+/// The rigid rates, and the dominant elastic modes that each axis of the gyro sees, with their parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Adaptive {
+    /// Form of the observers.
+    pub form: Form,
+    /// What they track; left out, the dominant modes of the body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trackers: Option<Given>,
+    /// How many modes of the body each axis tracks; left out, 2, and 1 in the form `recurrence`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<u32>,
+    /// Ratio of frequencies below which modes of the body are tracked as one.
+    pub merge: NonNegative,
+    /// Whether an axis knows what the jets of the others do to it; left out, it does in the form `gradient`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cross_axis: Option<bool>,
+    /// By which part the frequencies are off at the start.
+    pub frequency_error: Finite,
+    /// By which part the influences are off at the start.
+    pub influence_error: Finite,
+    /// Whether frequencies and influences are identified.
+    pub adapt: bool,
+}
+
+/// The forms of an observer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// Recursive gradient with exact pulses.
+    Gradient(Gradient),
+    /// The recurrence of seed paper 4.
+    Recurrence(Recurrence),
+}
+
+/// Modes to track about each axis. The influence has an element for each group of jets: roll, pitch, yaw, or the axis alone
+/// where `cross_axis` is false.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Given {
+    /// About x.
+    #[serde(default)]
+    pub roll: Vec<Tracker>,
+    /// About y.
+    #[serde(default)]
+    pub pitch: Vec<Tracker>,
+    /// About z.
+    #[serde(default)]
+    pub yaw: Vec<Tracker>,
+}
+
+impl Given {
+    /// The modes of each axis.
+    pub fn axes(&self) -> [&[Tracker]; 3] {
+        [&self.roll, &self.pitch, &self.yaw]
+    }
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Self::Gradient(Gradient::default())
+    }
+}
+
+impl Default for Adaptive {
+    fn default() -> Self {
+        Self {
+            form: Form::default(),
+            trackers: None,
+            count: None,
+            merge: NonNegative::new(MERGE).unwrap_or_default(),
+            cross_axis: None,
+            frequency_error: Finite::default(),
+            influence_error: Finite::default(),
+            adapt: true,
+        }
+    }
+}
+
+impl Adaptive {
+    /// Whether it is the recurrence.
+    fn recurs(&self) -> bool {
+        matches!(self.form, Form::Recurrence(_))
+    }
+
+    /// How many modes each axis tracks.
+    pub fn count(&self) -> usize {
+        self.count.map_or(if self.recurs() { 1 } else { 2 }, |count| count as usize)
+    }
+
+    /// Whether the jets of other axes are inputs of an axis.
+    pub fn crosses(&self) -> bool {
+        self.cross_axis.unwrap_or(!self.recurs())
+    }
+
+    /// Its form, with the identification at rest if it is not wanted.
+    pub fn working_form(&self) -> Form {
+        let mut form = self.form.clone();
+        if !self.adapt {
+            match &mut form {
+                Form::Gradient(gradient) => gradient.rate = NonNegative::default(),
+                Form::Recurrence(recurrence) => {
+                    recurrence.frequency_gain = NonNegative::default();
+                    recurrence.influence_gain = NonNegative::default();
+                }
+            }
+        }
+        form
+    }
+
+    /// What single values cannot show to be wrong: a key within the estimator, and why.
+    pub fn inconsistency(&self) -> Option<(String, String)> {
+        let at = |key: &str, why: String| Some((key.to_owned(), why));
+        for (key, error) in
+            [("frequency_error", self.frequency_error), ("influence_error", self.influence_error)]
+        {
+            if error.get() <= -1.0 {
+                return at(key, format!("must be above -1, got {}", error.get()));
+            }
+        }
+        if self.count() == 0 {
+            return at("count", "must be 1 or more, got 0".to_owned());
+        }
+        if self.recurs() && self.count() > 1 {
+            let why = format!("must be 1 in the form `recurrence`, got {}", self.count());
+            return at("count", why);
+        }
+        if self.recurs() && self.crosses() {
+            return at("cross_axis", "must be false in the form `recurrence`, got true".to_owned());
+        }
+        None
+    }
+}

@@ -1,0 +1,187 @@
+//! What the observer of one axis is built on: the modes of the design, where the observer starts, and what it is fed with.
+
+use super::{Adaptive, Form, Merged, Tracker, bounds, merged};
+use crate::actuator::Group;
+use crate::body::spatial::{AXES, Spatial, Vector};
+use crate::quantity::{Finite, Frequency};
+use crate::structure::Fault;
+
+/// The observers of all axes, as the scenario and its body make them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Form and settings of the observers.
+    pub form: Form,
+    /// Each axis.
+    pub axes: [Design; 3],
+    /// Period of the samples (s).
+    pub period: f64,
+}
+
+/// The observer of one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// What really is, by frequency.
+    pub modes: Vec<Merged>,
+    /// What the observer starts with.
+    pub start: Vec<Tracker>,
+    /// The axes whose groups of jets are its inputs, in their order.
+    pub inputs: Vec<usize>,
+    /// What each input adds to the rigid rate of this axis, for each unit that it adds to that of its own.
+    pub rigid: Vec<f64>,
+    /// Rotations of the body's modes about this axis at the gyro (rad/(m sqrt(kg))).
+    pub seen: Vec<f64>,
+}
+
+impl Plan {
+    /// The observers of a body seen at a point, with these groups of jets.
+    ///
+    /// # Errors
+    /// A key within the estimator, and why.
+    pub fn of(
+        spec: &Adaptive,
+        body: &Spatial,
+        point: &str,
+        groups: &[[Group; 2]; 3],
+        period: f64,
+    ) -> Result<Self, Fault> {
+        if let Some(fault) = spec.inconsistency() {
+            return Err(fault);
+        }
+        let form = spec.working_form();
+        let shapes: Vec<Vector> = body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect();
+        let axis = |axis: usize| Design::of(spec, &form, axis, body, &shapes, groups, period);
+        let axes = [axis(0)?, axis(1)?, axis(2)?];
+        if axes.iter().all(|design| design.start.is_empty()) {
+            return Err((String::new(), "must have a mode to track, and the gyro sees none".to_owned()));
+        }
+        Ok(Self { form, axes, period })
+    }
+}
+
+impl Design {
+    fn of(
+        spec: &Adaptive,
+        form: &Form,
+        axis: usize,
+        body: &Spatial,
+        shapes: &[Vector],
+        groups: &[[Group; 2]; 3],
+        period: f64,
+    ) -> Result<Self, Fault> {
+        let inputs = if spec.crosses() { vec![0, 1, 2] } else { vec![axis] };
+        let influence = |input: usize, mode: usize| {
+            let group = &groups[input][0];
+            shapes[mode][axis] * group.forces[mode] / group.acceleration
+        };
+        let tracker = |frequency: Frequency, influence: Vec<f64>| Tracker {
+            frequency,
+            influence: influence.into_iter().map(|value| Finite::new(value).unwrap_or_default()).collect(),
+            bounds: None,
+        };
+        // Which modes dominate is what the axis' own jets tell: those are to damp them.
+        let sampled = |mode: &usize| body.modes[*mode].frequency.get() * period < std::f64::consts::PI;
+        let there: Vec<usize> =
+            (0..shapes.len()).filter(sampled).filter(|mode| influence(axis, *mode) != 0.0).collect();
+        let own: Vec<Tracker> = there
+            .iter()
+            .map(|mode| tracker(body.modes[*mode].frequency, vec![influence(axis, *mode)]))
+            .collect();
+        let mut all = merged(&own, spec.merge.get());
+        for one in &mut all {
+            for mode in &mut one.modes {
+                *mode = there[*mode];
+            }
+            let summed = |input: &usize| one.modes.iter().map(|mode| influence(*input, *mode)).sum();
+            one.tracker = tracker(one.tracker.frequency, inputs.iter().map(summed).collect());
+        }
+        let own = inputs.iter().position(|input| *input == axis).unwrap_or(0);
+        let given = spec.trackers.as_ref().map(|given| given.axes()[axis]);
+        let modes = given.map_or_else(|| strongest(&all, own, spec.count()), |given| nearest(&all, given));
+        let designed: Vec<Tracker> =
+            given.map_or_else(|| modes.iter().map(|mode| mode.tracker.clone()).collect(), <[_]>::to_vec);
+        let start = started(spec, form, axis, &designed, inputs.len(), period)?;
+        let tensor = body.tensor();
+        let turn = |input: &usize| {
+            let group = &groups[*input][0];
+            if spec.crosses() {
+                tensor.cholesky().map_or(0.0, |of| of.solve(&group.torque)[axis] / group.acceleration)
+            } else {
+                1.0
+            }
+        };
+        let rigid = inputs.iter().map(turn).collect();
+        Ok(Self { modes, start, rigid, inputs, seen: shapes.iter().map(|shape| shape[axis]).collect() })
+    }
+
+    /// The index of the axis' own jets among the inputs.
+    pub fn own(&self, axis: usize) -> usize {
+        self.inputs.iter().position(|input| *input == axis).unwrap_or(0)
+    }
+}
+
+/// So many of the modes that a long burn of an input excites most, by frequency: a step of the elastic acceleration a makes
+/// an elastic rate of a/w.
+fn strongest(all: &[Merged], input: usize, count: usize) -> Vec<Merged> {
+    let strength = |mode: &Merged| mode.tracker.influence[input].get().abs() / mode.tracker.frequency.get();
+    let mut modes = all.to_vec();
+    modes.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+    modes.truncate(count);
+    modes.sort_by(|a, b| a.tracker.frequency.get().total_cmp(&b.tracker.frequency.get()));
+    modes
+}
+
+/// The mode that is nearest to each tracker; one of nothing where there is no mode.
+fn nearest(all: &[Merged], trackers: &[Tracker]) -> Vec<Merged> {
+    let of = |tracker: &Tracker| {
+        let far = |mode: &&Merged| (mode.tracker.frequency.get() - tracker.frequency.get()).abs();
+        let found = all.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+        found.cloned().unwrap_or_else(|| Merged { tracker: tracker.clone(), modes: Vec::new() })
+    };
+    trackers.iter().map(of).collect()
+}
+
+/// The trackers with the errors of the start, as far as the bounds of the design allow.
+fn started(
+    spec: &Adaptive,
+    form: &Form,
+    axis: usize,
+    designed: &[Tracker],
+    inputs: usize,
+    period: f64,
+) -> Result<Vec<Tracker>, Fault> {
+    if designed.is_empty() {
+        return Ok(Vec::new());
+    }
+    let within = |(key, why): Fault| (key.replace("trackers", &format!("trackers.{}", AXES[axis])), why);
+    let (wrong, reach) = match form {
+        Form::Gradient(of) => (of.inconsistency(designed, inputs, period), of.reach),
+        Form::Recurrence(_) if designed.len() > 1 => {
+            let why = format!("must be one mode in the form `recurrence`, got {}", designed.len());
+            return Err(within(("trackers".to_owned(), why)));
+        }
+        Form::Recurrence(of) => (of.inconsistency(&designed[0], period), of.reach),
+    };
+    if let Some((key, why)) = wrong {
+        let kind = if matches!(form, Form::Gradient(_)) { "gradient" } else { "recurrence" };
+        let own = !key.starts_with("trackers");
+        return Err(if own { (format!("form.{kind}.{key}"), why) } else { within((key, why)) });
+    }
+    let factor = |error: Finite| 1.0 + error.get();
+    let bounds = bounds(designed, reach.get(), period);
+    let frequency = |value: f64, or: Frequency| {
+        Frequency::new(value.clamp(Frequency::SMALLEST, Frequency::LARGEST)).unwrap_or(or)
+    };
+    let start = |(tracker, [low, high]): (&Tracker, [f64; 2])| {
+        let known = tracker.frequency;
+        let influence = tracker.influence.iter().map(|influence| {
+            Finite::new(influence.get() * factor(spec.influence_error)).unwrap_or(*influence)
+        });
+        Tracker {
+            // Beyond its bounds it would be taken for another mode.
+            frequency: frequency((known.get() * factor(spec.frequency_error)).clamp(low, high), known),
+            influence: influence.collect(),
+            bounds: Some([low, high].map(|bound| frequency(bound, known))),
+        }
+    };
+    Ok(designed.iter().zip(bounds).map(start).collect())
+}

@@ -1,0 +1,208 @@
+//! The gradient observer at work.
+
+use super::super::oscillator::{Oscillator, Phase};
+use super::super::residual::Residual;
+use super::super::tracker::{self, Tracker};
+use super::super::{Estimate, Observer, Pulse};
+use super::Gradient;
+use super::parameter::{Motion, Parameter};
+use crate::quantity::Fraction;
+
+/// The largest step of ln w, and of an influence by its value at the start.
+const STEP: f64 = 0.02;
+/// An innovation of more than this is no measurement of a spacecraft (rad/s).
+const FARTHEST: f64 = 10.0;
+/// Gain of a mode that is alone, and of one among others.
+const ELASTIC_GAIN: [f64; 2] = [0.15, 0.1];
+
+impl Gradient {
+    /// An observer of a channel: `rigid` is what each input adds to its rigid rate for each unit that it adds to that about
+    /// its own axis (1 for the channel's own thrusters). The trackers are consistent.
+    pub fn observer(&self, trackers: &[Tracker], rigid: &[f64], period: f64) -> GradientObserver {
+        let (modes, inputs) = (trackers.len(), rigid.len());
+        let gain = ELASTIC_GAIN[usize::from(modes > 1)];
+        let gate = self.gate.get();
+        let rest = || Motion { rate: 0.0, phases: vec![[0.0; 2]; modes] };
+        let mut parameters = Vec::with_capacity(modes * (1 + inputs));
+        for (tracker, bounds) in trackers.iter().zip(tracker::bounds(trackers, self.reach.get(), period)) {
+            parameters.push(Parameter {
+                value: libm::log(tracker.frequency.get()),
+                bounds: bounds.map(libm::log),
+                step: STEP,
+                floor: gate * gate,
+                power: 0.0,
+                slope: rest(),
+            });
+        }
+        for influence in trackers.iter().flat_map(|tracker| tracker.influence.iter().map(|i| i.get())) {
+            let [a, b] = self.influence_bounds.map(|bound| bound.get() * influence);
+            // What nothing is known of stays 0: it has no scale to be identified on.
+            let size = influence.abs();
+            let floor = if size > 0.0 { gate / size } else { f64::INFINITY };
+            parameters.push(Parameter {
+                value: influence,
+                bounds: [a.min(b), a.max(b)],
+                step: STEP * size,
+                floor: floor * floor,
+                power: 0.0,
+                slope: rest(),
+            });
+        }
+        GradientObserver {
+            damping: self.damping.get(),
+            gains: [self.rigid_gain.get(), self.elastic_gain.map_or(gain, Fraction::get)],
+            learning: self.rate.get(),
+            gate,
+            rigid: rigid.to_vec(),
+            period,
+            motion: rest(),
+            parameters,
+            residual: Residual::default(),
+        }
+    }
+}
+
+/// A gradient observer at work.
+#[derive(Clone, Debug)]
+pub struct GradientObserver {
+    damping: f64,
+    /// Of the rigid rate and of each elastic rate.
+    gains: [f64; 2],
+    learning: f64,
+    gate: f64,
+    /// What each input adds to the rigid rate.
+    rigid: Vec<f64>,
+    period: f64,
+    motion: Motion,
+    /// ln w of each mode, then the influences of each input on the first mode, on the second, ...
+    parameters: Vec<Parameter>,
+    residual: Residual,
+}
+
+impl GradientObserver {
+    /// Derivatives of the predicted measurement by the parameters (rad/s for each unit): ln w of each mode, then the
+    /// influences of the inputs on the first mode, and so on.
+    pub fn sensitivities(&self) -> Vec<f64> {
+        self.parameters.iter().map(|parameter| parameter.slope.measured()).collect()
+    }
+
+    fn oscillator(&self, mode: usize) -> Oscillator {
+        Oscillator { frequency: libm::exp(self.parameters[mode].value), damping: self.damping }
+    }
+
+    /// The index of the first influence on a mode.
+    fn influences(&self, mode: usize) -> usize {
+        self.motion.phases.len() + mode * self.rigid.len()
+    }
+
+    fn sound<'a>(&self, pulses: &'a [Pulse]) -> impl Iterator<Item = &'a Pulse> + use<'a> {
+        let inputs = self.rigid.len();
+        pulses.iter().filter(move |pulse| pulse.input < inputs && pulse.is_sound())
+    }
+
+    /// Carries one mode and its derivatives over a cycle.
+    fn turn(&mut self, mode: usize, pulses: &[Pulse]) {
+        let of = self.oscillator(mode);
+        let (period, first) = (self.period, self.influences(mode));
+        let transition = of.transition(period);
+        let (mut phase, mut by_frequency) = of.turned(&transition, period, self.motion.phases[mode]);
+        for parameter in &mut self.parameters {
+            let slope = &mut parameter.slope.phases[mode];
+            *slope = of.turned(&transition, period, *slope).0;
+        }
+        for pulse in self.sound(pulses) {
+            let (began, ended) = (period - pulse.start, period - pulse.start - pulse.duration);
+            let (push, slope) = of.pulse(began, ended);
+            let parameter = &mut self.parameters[first + pulse.input];
+            for axis in 0..2 {
+                let pushed = push[axis] * pulse.acceleration;
+                parameter.slope.phases[mode][axis] += pushed;
+                phase[axis] += parameter.value * pushed;
+                by_frequency[axis] += parameter.value * slope[axis] * pulse.acceleration;
+            }
+        }
+        self.motion.phases[mode] = phase;
+        for (slope, added) in self.parameters[mode].slope.phases[mode].iter_mut().zip(by_frequency) {
+            *slope += added;
+        }
+    }
+
+    /// What cannot be carried on begins again, with the parameters that it had.
+    fn stay_finite(&mut self) {
+        if !(self.motion.is_sound() && self.parameters.iter().all(|parameter| parameter.slope.is_sound())) {
+            self.motion.rest();
+            for parameter in &mut self.parameters {
+                parameter.slope.rest();
+                parameter.power = 0.0;
+            }
+        }
+    }
+}
+
+impl Observer for GradientObserver {
+    fn update(&mut self, measured: f64) {
+        let innovation = measured - self.motion.measured();
+        if innovation.is_nan() || innovation.abs() > FARTHEST {
+            self.residual.take(None, self.motion.elastic());
+            return;
+        }
+        let modes = self.motion.phases.len();
+        for (index, parameter) in self.parameters.iter_mut().enumerate() {
+            let sensitivity = parameter.slope.measured();
+            parameter.weigh(sensitivity);
+            let phase = self.motion.phases.get(index);
+            let excited = phase.is_none_or(|phase| libm::hypot(phase[0], phase[1]) > self.gate);
+            if index >= modes || excited {
+                parameter.learn(sensitivity, innovation, self.learning);
+            }
+            parameter.slope.correct(self.gains, -sensitivity);
+        }
+        self.motion.correct(self.gains, innovation);
+        self.stay_finite();
+        self.residual.take(Some(innovation), self.motion.elastic());
+    }
+
+    fn advance(&mut self, pulses: &[Pulse]) {
+        for mode in 0..self.motion.phases.len() {
+            self.turn(mode, pulses);
+        }
+        for pulse in self.sound(pulses) {
+            self.motion.rate += self.rigid[pulse.input] * pulse.acceleration * pulse.duration;
+        }
+        self.stay_finite();
+    }
+
+    fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64> {
+        let of_mode = |(mode, phase): (usize, &Phase)| {
+            let (of, first) = (self.oscillator(mode), self.influences(mode));
+            let free = of.turned(&of.transition(ahead), ahead, *phase).0[0];
+            let pushed = self.sound(pulses).map(|pulse| {
+                let (began, ended) = (ahead - pulse.start, ahead - pulse.start - pulse.duration);
+                self.parameters[first + pulse.input].value * pulse.acceleration * of.pulse(began, ended).0[0]
+            });
+            free + pushed.sum::<f64>()
+        };
+        self.motion.phases.iter().enumerate().map(of_mode).collect()
+    }
+
+    fn rate(&self) -> f64 {
+        self.motion.rate
+    }
+
+    fn modes(&self) -> Vec<Estimate> {
+        let of_mode = |(mode, phase): (usize, &Phase)| {
+            let first = self.influences(mode);
+            let influences = &self.parameters[first..first + self.rigid.len()];
+            Estimate {
+                phase: *phase,
+                frequency: libm::exp(self.parameters[mode].value),
+                influence: influences.iter().map(|parameter| parameter.value).collect(),
+            }
+        };
+        self.motion.phases.iter().enumerate().map(of_mode).collect()
+    }
+
+    fn residual(&self) -> Residual {
+        self.residual
+    }
+}

@@ -1,0 +1,87 @@
+//! Adaptive observers of one channel of a rate sensor: the rigid rate, the dominant elastic modes, and their parameters.
+//!
+//! y = w + sum g_i: the measured rate is the rigid one and the elastic rates of some modes, which known pulses of thrusters
+//! excite. The natural frequencies and the influence of the thrusters on each mode are identified as the observer runs. Two
+//! forms: the recurrence of seed paper 4 (pages 41 to 46) and a recursive gradient with exact pulses.
+
+mod axes;
+mod channel;
+mod design;
+mod gradient;
+mod oscillator;
+mod recurrence;
+mod residual;
+#[cfg(test)]
+mod tests;
+mod tracker;
+
+pub use axes::{Adaptive, Form, Given};
+pub use channel::Channel;
+pub use design::{Design, Plan};
+pub use gradient::{Gradient, GradientObserver};
+pub use oscillator::{Oscillator, Phase};
+pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
+pub use residual::Residual;
+pub use tracker::{Merged, Tracker, bounds, dominant, inconsistency, merged, trackers};
+
+/// A pulse of thrusters, as one that was executed or is about to be.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Pulse {
+    /// Index of the input: the group of thrusters.
+    pub input: usize,
+    /// Rigid acceleration about the group's own axis, signed (rad/s²).
+    pub acceleration: f64,
+    /// When it begins, after the last sample (s).
+    pub start: f64,
+    /// How long it lasts (s).
+    pub duration: f64,
+}
+
+impl Pulse {
+    /// Whether it is a pulse, and not nonsense.
+    fn is_sound(&self) -> bool {
+        self.acceleration.is_finite()
+            && self.start.is_finite()
+            && self.duration.is_finite()
+            && self.duration > 0.0
+    }
+}
+
+/// What an observer knows of a mode.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Elastic rate g of the mode in the channel, and s, a quarter of a period behind it (rad/s).
+    pub phase: Phase,
+    /// Natural frequency (rad/s).
+    pub frequency: f64,
+    /// Influence of each input (dimensionless).
+    pub influence: Vec<f64>,
+}
+
+impl Estimate {
+    /// Amplitude of the elastic rate (rad/s).
+    pub fn amplitude(&self) -> f64 {
+        libm::hypot(self.phase[0], self.phase[1])
+    }
+}
+
+/// An observer at work: at each sample `update`, then `advance` over the cycle that follows.
+pub trait Observer {
+    /// Takes the rate measured at a sample (rad/s). One that is not finite, or off by more than any motion, is dropped.
+    fn update(&mut self, measured: f64);
+
+    /// Carries the estimates over a cycle to the next sample under the pulses that are executed in it.
+    fn advance(&mut self, pulses: &[Pulse]);
+
+    /// The elastic rates of each mode (rad/s) so long after the last sample (s), under all pulses until then.
+    fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64>;
+
+    /// Rigid rate (rad/s).
+    fn rate(&self) -> f64;
+
+    /// The modes.
+    fn modes(&self) -> Vec<Estimate>;
+
+    /// How well it follows.
+    fn residual(&self) -> Residual;
+}

@@ -1,0 +1,116 @@
+//! One mode's exact motion under pulses, and how it changes with the mode's natural frequency.
+//!
+//! q'' + 2 zeta w q' + w² q = u in the state [p, s] = [q', w q], so that x' = K x + [u, 0] with
+//! K = [[-2 zeta w, -w], [w, 0]] (seed paper 4, equation (2); the closed forms are ours).
+
+/// A vector of the state: the modal rate p and, a quarter of a period behind it, s = w q, in the same unit.
+pub type Phase = [f64; 2];
+
+/// A mode as a model knows it.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Oscillator {
+    /// Natural frequency w (rad/s).
+    pub frequency: f64,
+    /// Damping ratio zeta, below 1.
+    pub damping: f64,
+}
+
+impl Oscillator {
+    /// The transition over a time (s), exp(K t), by rows.
+    pub fn transition(&self, time: f64) -> [Phase; 2] {
+        let zeta = self.damping;
+        let root = libm::sqrt((1.0 - zeta) * (1.0 + zeta));
+        let turn = self.frequency * time;
+        let (sin, cos) = libm::sincos(root * turn);
+        let (shrink, sin) = (libm::exp(-zeta * turn), sin / root);
+        [[shrink * (cos - zeta * sin), -shrink * sin], [shrink * sin, shrink * (cos + zeta * sin)]]
+    }
+
+    /// What a transition over a time (s) makes of a state, and its derivative by ln w.
+    pub fn turned(&self, transition: &[Phase; 2], time: f64, phase: Phase) -> (Phase, Phase) {
+        let at = times(transition, phase);
+        let turn = self.frequency * time;
+        (at, [turn * (-2.0 * self.damping * at[0] - at[1]), turn * at[0]])
+    }
+
+    /// State that a pulse of unit acceleration leaves, which began and ended so long ago (s), and its derivative by ln w.
+    /// Of a pulse that has not yet ended, with a negative time, only what was counts.
+    pub fn pulse(&self, began: f64, ended: f64) -> (Phase, Phase) {
+        let (whole, rest) = (self.step(began.max(0.0)), self.step(ended.max(0.0)));
+        (minus(whole.0, rest.0), minus(whole.1, rest.1))
+    }
+
+    /// State after a unit acceleration over a time (s), and its derivative by ln w.
+    fn step(&self, time: f64) -> (Phase, Phase) {
+        if time == 0.0 {
+            return ([0.0; 2], [0.0; 2]);
+        }
+        let [[stays, _], [turns, _]] = self.transition(time);
+        let at = [turns / self.frequency, (1.0 - stays - 2.0 * self.damping * turns) / self.frequency];
+        (at, minus([time * stays, time * turns], at))
+    }
+}
+
+/// A matrix, by rows, times a vector.
+fn times(matrix: &[Phase; 2], v: Phase) -> Phase {
+    [matrix[0][0] * v[0] + matrix[0][1] * v[1], matrix[1][0] * v[0] + matrix[1][1] * v[1]]
+}
+
+fn minus(a: Phase, b: Phase) -> Phase {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MODE: Oscillator = Oscillator { frequency: 0.4 * std::f64::consts::PI, damping: 0.005 };
+
+    #[track_caller]
+    fn close(value: f64, exact: f64, within: f64) {
+        assert!((value - exact).abs() <= within, "{value} is off {exact}");
+    }
+
+    #[test]
+    fn a_mode_turns_and_is_pushed() {
+        let [[a, b], [c, d]] = MODE.transition(0.2);
+        for (value, exact) in [(a, 0.966_125_66), (b, -0.248_377_64), (c, 0.248_377_64), (d, 0.968_609_44)] {
+            close(value, exact, 1e-8);
+        }
+        let ((whole, slope), (short, _)) = (MODE.pulse(0.2, 0.0), MODE.pulse(0.2, 0.15));
+        for (value, exact) in [
+            (whole[0], 0.197_652_64),
+            (whole[1], 0.024_979_82),
+            (short[0], 0.048_679_78),
+            (short[1], 0.010_893_31),
+        ] {
+            close(value, exact, 1e-8);
+        }
+        close(slope[0] / MODE.frequency, -0.003_523_30, 1e-8);
+        close(slope[1] / MODE.frequency, 0.019_652_22, 1e-8);
+    }
+
+    #[test]
+    fn slopes_are_those_of_finite_differences() {
+        let h = 1e-5;
+        let off = |factor: f64| Oscillator { frequency: MODE.frequency * libm::exp(factor * h), ..MODE };
+        let phase = [0.3, -0.7];
+        let turned = |of: Oscillator| of.turned(&of.transition(0.2), 0.2, phase).0;
+        let (_, slope) = MODE.turned(&MODE.transition(0.2), 0.2, phase);
+        let pulse = MODE.pulse(0.17, 0.04).1;
+        for axis in 0..2 {
+            let turn = (turned(off(1.0))[axis] - turned(off(-1.0))[axis]) / (2.0 * h);
+            close(slope[axis], turn, 1e-9);
+            let pushed = |of: Oscillator| of.pulse(0.17, 0.04).0[axis];
+            let push = (pushed(off(1.0)) - pushed(off(-1.0))) / (2.0 * h);
+            close(pulse[axis], push, 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_pulse_to_come_does_nothing() {
+        assert_eq!(MODE.pulse(-0.1, -0.3).0, [0.0, 0.0]);
+        // Of one that is under way, the part so far counts.
+        assert_eq!(MODE.pulse(0.1, -0.1), MODE.pulse(0.1, 0.0));
+    }
+}

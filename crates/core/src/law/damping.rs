@@ -1,0 +1,191 @@
+//! Active damping beside the phase-plane law: where the rigid motion needs no jets, they push against the elastic rate.
+//!
+//! Seed paper 4 (pages 37 and 48) tells that a relay on the estimated elastic rate acts in the dead zone of the attitude law.
+//! Threshold, hysteresis and guards are ours.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::actuator::Jets;
+use crate::analysis::damping::{Relay, partition};
+use crate::belief::ElasticRate;
+use crate::quantity::{Fraction, Positive};
+
+/// From this phase factor on a late push is worth its propellant.
+const ELIGIBLE: f64 = 0.5;
+/// So many cycles with a push make a window of the watchdog.
+const WINDOW: u32 = 75;
+/// From window to window the elastic rate must fall to this part.
+const FALL: f64 = 0.9;
+/// For so many cycles the watchdog keeps the jets quiet.
+const REST: u32 = 300;
+/// The threshold is at least so many times the amplitude of the limit cycle, and the elastic rate of so many whole cycles.
+const LIMIT_CYCLES: f64 = 1.5;
+const CYCLES: f64 = 2.0;
+
+/// Active damping.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Damping {
+    /// Elastic rates beyond which the jets push, about each axis (rad/s); left out, 1.5 times the amplitude of the limit
+    /// cycle that the delay makes, and at least what two whole cycles change, of the mode that a long burn excites most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<[Positive; 3]>,
+    /// Part of the threshold at which they end.
+    pub release: Fraction,
+    /// Whether a pulse is no longer than it takes to stop the elastic motion; else it fills the cycle.
+    pub pulse_width: bool,
+    /// Whether the elastic rate is predicted to the middle of the coming pulse.
+    pub predictor: bool,
+    /// What keeps it from doing harm.
+    pub guards: DampingGuards,
+}
+
+/// Guards of active damping.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DampingGuards {
+    /// No pulse that would kick the rigid motion out of the dead zone.
+    pub dead_zone: bool,
+    /// Without the predictor, only modes whose phase factor is 0.5 or more.
+    pub eligibility: bool,
+    /// Only while the observer's innovations are small.
+    pub residual: bool,
+    /// A pause where the pushes do not help.
+    pub watchdog: bool,
+}
+
+impl Default for Damping {
+    fn default() -> Self {
+        let guards = DampingGuards::default();
+        Self { threshold: None, release: Fraction::HALF, pulse_width: true, predictor: true, guards }
+    }
+}
+
+impl Default for DampingGuards {
+    fn default() -> Self {
+        Self { dead_zone: true, eligibility: true, residual: true, watchdog: true }
+    }
+}
+
+impl Damping {
+    /// The threshold about an axis (rad/s) for modes of these frequencies (rad/s) and elastic accelerations a (rad/s²), in
+    /// cycles of a period (s), with a delay (s) and a damping ratio: of the mode that a long burn excites most.
+    pub fn threshold(&self, axis: usize, modes: &[[f64; 2]], period: f64, delay: f64, damping: f64) -> f64 {
+        if let Some(given) = &self.threshold {
+            return given[axis].get();
+        }
+        let of = |[frequency, acceleration]: &[f64; 2]| {
+            let border = partition(*frequency, delay, damping);
+            let cycle = border.map_or(0.0, |border| border.limit_cycle(*acceleration));
+            (LIMIT_CYCLES * cycle).max(CYCLES * acceleration * period)
+        };
+        let excited = |[frequency, acceleration]: &[f64; 2]| acceleration / frequency;
+        modes.iter().max_by(|a, b| excited(a).total_cmp(&excited(b))).map_or(0.0, of)
+    }
+}
+
+/// What active damping does about an axis.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Damped {
+    /// Elastic rate on which it acts (rad/s).
+    pub rate: f64,
+    /// Threshold (rad/s).
+    pub threshold: f64,
+    /// Whether the elastic rate has been beyond the threshold and is not yet back.
+    pub latched: bool,
+    /// Whether the watchdog keeps it quiet.
+    pub resting: bool,
+    /// Signed on-time of its pulse (s).
+    pub on: f64,
+}
+
+/// Active damping about one axis at work.
+#[derive(Clone, Debug)]
+pub struct DampingRelay {
+    spec: Damping,
+    jets: Jets,
+    period: f64,
+    threshold: f64,
+    latched: bool,
+    /// Cycles for which the watchdog still keeps it quiet.
+    rest: u32,
+    /// Sum of the absolute elastic rate over the cycles with a push (rad/s), how many they were, and the mean before.
+    window: (f64, u32, Option<f64>),
+}
+
+impl DampingRelay {
+    /// It at the start, with a threshold (rad/s).
+    pub fn new(spec: &Damping, jets: &Jets, period: f64, threshold: f64) -> Self {
+        let (spec, jets) = (spec.clone(), jets.clone());
+        Self { spec, jets, period, threshold, latched: false, rest: 0, window: (0.0, 0, None) }
+    }
+
+    /// How far ahead of a sample it wants to know the elastic rate (s).
+    pub fn ahead(&self) -> f64 {
+        if self.spec.predictor { self.delay() + 0.5 * self.period } else { 0.0 }
+    }
+
+    fn delay(&self) -> f64 {
+        f64::from(self.jets.delay) * self.period
+    }
+
+    fn acts_on(&self, mode: &ElasticRate) -> bool {
+        let relay = Relay { period: self.period, delay: self.delay(), on_time: self.period };
+        let late = !self.spec.predictor && self.spec.guards.eligibility;
+        mode.influence > 0.0 && (!late || relay.phase_factor(mode.frequency) >= ELIGIBLE)
+    }
+
+    /// What to do in a cycle: `free` tells whether the rigid motion leaves the jets free, `trusted` whether the observer
+    /// follows, `excess` where the rigid rate is from where it should be (rad/s), within `switch_on`; the accelerations
+    /// are those of plus and minus (rad/s²).
+    pub fn decide(
+        &mut self,
+        modes: &[ElasticRate],
+        [free, trusted]: [bool; 2],
+        [excess, switch_on]: [f64; 2],
+        accelerations: [f64; 2],
+    ) -> Damped {
+        let acted = || modes.iter().filter(|mode| self.acts_on(mode));
+        let (rate, influence) =
+            acted().fold((0.0, 0.0), |(rate, sum), mode| (rate + mode.rate, sum + mode.influence));
+        if rate.abs() > self.threshold {
+            self.latched = true;
+        } else if rate.abs() < self.spec.release.get() * self.threshold {
+            self.latched = false;
+        }
+        let resting = self.rest > 0;
+        self.rest = self.rest.saturating_sub(1);
+        let mut damped = Damped { rate, threshold: self.threshold, latched: self.latched, resting, on: 0.0 };
+        if !free || !self.latched || resting || (self.spec.guards.residual && !trusted) || influence <= 0.0 {
+            return damped;
+        }
+        let [plus, minus] = accelerations;
+        let (sign, acceleration) = if rate > 0.0 { (-1.0, minus) } else { (1.0, plus) };
+        let wanted =
+            if self.spec.pulse_width { rate.abs() / (acceleration * influence) } else { self.period };
+        let on = self.jets.on_time(wanted, self.period);
+        let kicked = (excess + sign * acceleration * on).abs() > switch_on;
+        if on > 0.0 && !(kicked && self.spec.guards.dead_zone) {
+            damped.on = sign * on;
+            self.watch(rate.abs());
+        }
+        damped
+    }
+
+    /// Takes a cycle with a push: where a window's mean has not fallen enough, it rests.
+    fn watch(&mut self, rate: f64) {
+        let (sum, count, before) = &mut self.window;
+        *sum += rate;
+        *count += 1;
+        if *count < WINDOW {
+            return;
+        }
+        let mean = *sum / f64::from(WINDOW);
+        let in_vain = before.is_some_and(|before| mean > FALL * before);
+        self.window = (0.0, 0, (!in_vain).then_some(mean));
+        if in_vain && self.spec.guards.watchdog {
+            self.rest = REST;
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What a run of a spatial body comes to: propellant, firings, elastic energy, pointing.
+
+use super::{
+    BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, POINTING_END,
+    Told, Value,
+};
+use crate::record::Cycle;
+use crate::scenario::Scenario;
+use crate::time::Instant;
+
+/// The elastic rates are judged over so much of the run's end (s).
+const LATE: f64 = 200.0;
+
+/// Gathers the cycles of a run.
+#[derive(Clone, Debug)]
+pub struct Spatial {
+    /// From when on a cycle is late (s).
+    late: f64,
+    fuel: f64,
+    /// Pulses, and cycles with any.
+    firings: (u64, u64),
+    /// Elastic energy at the start, at its largest, and last (J).
+    energy: (f64, f64, f64),
+    /// When it was first below a tenth and a hundredth of that at the start (s).
+    below: [f64; 2],
+    /// Sum of the squared elastic rates of late cycles (rad²/s²), and how many they were.
+    square: (f64, u64),
+    error: f64,
+}
+
+impl Spatial {
+    /// An empty gathering for runs of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            late: scenario.duration.seconds() - LATE,
+            fuel: 0.0,
+            firings: (0, 0),
+            energy: (f64::NAN, 0.0, f64::NAN),
+            below: [f64::NAN; 2],
+            square: (0.0, 0),
+            error: f64::NAN,
+        }
+    }
+
+    /// Takes a cycle.
+    pub fn see(&mut self, now: Instant, cycle: &Cycle) {
+        let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
+        let norm = |of: [f64; 3]| of.iter().map(|value| value * value).sum::<f64>();
+        self.fuel = cycle.jets.fuel_kg;
+        self.firings.0 += cycle.pulses;
+        self.firings.1 += u64::from(cycle.pulses > 0);
+        if self.energy.0.is_nan() {
+            self.energy.0 = energy;
+        }
+        self.energy = (self.energy.0, self.energy.1.max(energy), energy);
+        for (below, part) in self.below.iter_mut().zip([0.1, 0.01]) {
+            if below.is_nan() && energy < part * self.energy.0 {
+                *below = t;
+            }
+        }
+        if t >= self.late {
+            self.square.0 += norm(cycle.elastic_rate_rad_s);
+            self.square.1 += 1;
+        }
+        self.error = libm::sqrt(norm(cycle.error_rad));
+    }
+
+    /// The metrics of the run that has ended.
+    pub fn finish(self) -> Vec<Told> {
+        let [tenth, hundredth] = self.below;
+        vec![
+            (&FUEL, Value::Number(self.fuel)),
+            (&FIRINGS, Value::Count(self.firings.0)),
+            (&FIRING_CYCLES, Value::Count(self.firings.1)),
+            (&ELASTIC_PEAK, Value::Number(self.energy.1)),
+            (&ELASTIC_END, Value::Number(self.energy.2)),
+            (&BELOW_10, Value::Number(tenth)),
+            (&BELOW_1, Value::Number(hundredth)),
+            (&ELASTIC_RATE, Value::Number(libm::sqrt(self.square.0 / self.square.1 as f64))),
+            (&POINTING_END, Value::Number(self.error)),
+        ]
+    }
+}

@@ -1,0 +1,49 @@
+//! What adaptive observers have found at the end of a run, and what active damping did.
+
+use super::{
+    DAMPING_CYCLES, DAMPING_PAUSES, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, INFLUENCE_ERRORS,
+    INFLUENCE_ESTIMATES, TRACKING_ERROR, Told, Value,
+};
+use crate::record::{TrackedMode, Tracking};
+
+/// Gathers the cycles of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Tracked {
+    last: Option<Vec<TrackedMode>>,
+    /// Sum of the squared errors of the elastic rates (rad²/s²), and of how many cycles.
+    square: (f64, u64),
+    cycles: u64,
+    pauses: u64,
+    resting: [bool; 3],
+}
+
+impl Tracked {
+    /// Takes a cycle.
+    pub fn see(&mut self, tracking: &Tracking) {
+        let error = |of: &crate::record::ChannelState| of.elastic_rad_s - of.true_elastic_rad_s;
+        self.square.0 += tracking.channels.iter().map(|of| error(of) * error(of)).sum::<f64>();
+        self.square.1 += 1;
+        self.cycles += u64::from(tracking.channels.iter().any(|of| of.damping_on_s != 0.0));
+        for (resting, channel) in self.resting.iter_mut().zip(&tracking.channels) {
+            let rests = channel.resting == 1;
+            self.pauses += u64::from(rests && !*resting);
+            *resting = rests;
+        }
+        self.last = Some(tracking.trackers.clone());
+    }
+
+    /// The metrics of the run that has ended; none without an adaptive observer.
+    pub fn finish(self) -> Vec<Told> {
+        let Some(last) = self.last else { return Vec::new() };
+        let list = |of: &dyn Fn(&TrackedMode) -> f64| Value::Numbers(last.iter().map(of).collect());
+        vec![
+            (&FREQUENCY_ESTIMATES, list(&|of| of.frequency_rad_s / std::f64::consts::TAU)),
+            (&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)),
+            (&INFLUENCE_ESTIMATES, list(&|of| of.influence)),
+            (&INFLUENCE_ERRORS, list(&|of| of.influence / of.true_influence - 1.0)),
+            (&TRACKING_ERROR, Value::Number(libm::sqrt(self.square.0 / self.square.1 as f64))),
+            (&DAMPING_CYCLES, Value::Count(self.cycles)),
+            (&DAMPING_PAUSES, Value::Count(self.pauses)),
+        ]
+    }
+}

@@ -1,0 +1,121 @@
+//! The spatial body on its way, from one change of the jets to the next.
+
+use crate::body::spatial::{Elastic, Rigid, SpatialState, Vector};
+use crate::record::{Energy, Pointing, Vibration, Vibrations};
+use crate::scenario::SpatialLoop;
+use crate::time::Instant;
+
+use super::jets::Push;
+
+/// The body, and what pushes it.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    rigid: Rigid,
+    elastic: Elastic,
+    /// Rotations of the modes at the gyro.
+    gyro: Vec<Vector>,
+    /// The state when the jets changed last.
+    departed: Instant,
+    origin: SpatialState,
+    push: Push,
+    /// The state at the instant seen last.
+    seen: Instant,
+    state: SpatialState,
+}
+
+impl Plant {
+    /// The body of a loop at the start, which nothing pushes.
+    pub fn new(spatial: &SpatialLoop) -> Self {
+        let rigid = Rigid::new(&spatial.body);
+        let origin = SpatialState::start(&spatial.body, &rigid);
+        let shapes = spatial.body.shapes(&spatial.gyro.point);
+        Self {
+            rigid,
+            elastic: Elastic::new(&spatial.body, spatial.law.period.seconds()),
+            gyro: shapes.into_iter().map(|(_, rotation)| rotation).collect(),
+            departed: Instant::START,
+            push: Push::default(),
+            seen: Instant::START,
+            state: origin.clone(),
+            origin,
+        }
+    }
+
+    /// Brings the body to an instant. What is seen on the way does not change the motion.
+    pub fn view(&mut self, now: Instant) -> &SpatialState {
+        if self.seen != now {
+            let h = now.since(self.departed).seconds();
+            self.state.clone_from(&self.origin);
+            self.rigid.advance(&mut self.state.turn, &self.push.torque, self.departed.seconds(), h);
+            self.elastic.advance(&mut self.state.modes, &self.push.forces, h);
+            self.seen = now;
+        }
+        &self.state
+    }
+
+    /// Begins a new motion at the instant seen last, under what pushes from now on.
+    pub fn depart(&mut self, push: Push) {
+        self.origin.clone_from(&self.state);
+        (self.departed, self.push) = (self.seen, push);
+    }
+
+    /// The state at the instant seen last.
+    pub fn state(&self) -> &SpatialState {
+        &self.state
+    }
+
+    /// Rigid rates, and their elastic part at the gyro (rad/s), at the instant seen last.
+    pub fn rates(&self) -> (Vector, Vector) {
+        (self.rigid.rate(&self.state.turn), self.elastic.rate_at(&self.gyro, &self.state.modes))
+    }
+
+    /// Rates of the modes (m sqrt(kg)/s) at the instant seen last.
+    pub fn modal_rates(&self) -> Vec<f64> {
+        self.elastic.rates(&self.state.modes).collect()
+    }
+
+    /// Energy of the elastic modes at the instant seen last (J).
+    pub fn elastic_energy(&self) -> f64 {
+        self.elastic.energies(&self.state.modes).sum()
+    }
+
+    /// The energies, as logged.
+    pub fn energy(&self) -> Energy {
+        Energy {
+            rotational_j: self.rigid.energy(&self.state.turn),
+            elastic_j: self.elastic_energy(),
+            momentum_nm_s: Rigid::momentum(&self.state.turn).norm(),
+        }
+    }
+
+    /// The modes, as logged.
+    pub fn vibrations(&self) -> Vibrations {
+        let modes = &self.state.modes;
+        let rates = self.elastic.rates(modes).zip(self.elastic.energies(modes));
+        let of = |(phase, (rate, energy_j)): (&crate::body::Phase, (f64, f64))| Vibration {
+            displacement: phase.displacement,
+            rate,
+            energy_j,
+        };
+        Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
+    }
+
+    /// The attitude, as logged, with the angles by which it is beyond its target (rad).
+    pub fn pointing(&self, error: [f64; 3]) -> Pointing {
+        let q = &self.state.turn.attitude;
+        let [roll_rad, pitch_rad, yaw_rad] = crate::body::spatial::angles(q);
+        let [roll_error_rad, pitch_error_rad, yaw_error_rad] = error;
+        Pointing {
+            q_w: q.w,
+            q_x: q.i,
+            q_y: q.j,
+            q_z: q.k,
+            roll_rad,
+            pitch_rad,
+            yaw_rad,
+            roll_error_rad,
+            pitch_error_rad,
+            yaw_error_rad,
+        }
+    }
+}

@@ -1,0 +1,136 @@
+"""Active damping by a relay of thrusters, and the convergence of the observer that it needs."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+from flexsc._loop import _columns, _floats
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from flexsc._loop import Numbers
+
+WEIGHTS = (0.05, 0.2, 0.15)
+
+
+def relay_damping(
+    frequencies: Numbers,
+    acceleration: float,
+    *,
+    period: float = 0.2,
+    delay: float = 0.0,
+    on_time: float | None = None,
+    damping: float = 0.005,
+    amplitude: float = 0.0,
+    threshold: float = 0.0,
+) -> dict[str, npt.NDArray[np.float64]]:
+    """What a relay that pushes against the elastic rate does to modes of these natural frequencies.
+
+    Args:
+        frequencies: Natural frequencies (rad/s).
+        acceleration: Elastic acceleration of a push, the rigid one times the influence on the mode (rad/s²).
+        period: Time from one sample to the next (s); 0 for a relay that reads and pushes all the time.
+        delay: Time from a sample to the push that it decides (s).
+        on_time: How long a push lasts (s); left out, the whole period.
+        damping: Damping ratio of the modes.
+        amplitude: Amplitude of the elastic rate at the start (rad/s).
+        threshold: Amplitude below which no thruster fires (rad/s).
+
+    Returns:
+        Columns of shape (frequencies,), NaN where there is nothing: `frequency_rad_s`, `phase_factor`,
+        `slope_rad_s2`, `delay_limit_s`, `gain_limit_1_s`, `limit_cycle_rate_rad_s`,
+        `limit_cycle_frequency_rad_s`, `decay_s` and `thrust_s`, from the amplitude to the threshold.
+
+    Raises:
+        ValueError: A number is out of its range.
+    """
+    relay = (period, delay, period if on_time is None else on_time)
+    mode, amplitudes = (damping, acceleration), (amplitude, threshold)
+    return _columns(json.loads(engine.relay_damping_json(_floats(frequencies), relay, mode, amplitudes)))
+
+
+def observer_region(
+    frequency: float,
+    elastic: Numbers,
+    *,
+    rigid: float = 0.05,
+    kappa: float = 0.0,
+    period: float = 0.2,
+    damping: float = 0.005,
+) -> dict[str, Any]:
+    """Where the recurrence observer converges in the plane of W2 and W3, its regressor frozen.
+
+    Args:
+        frequency: Natural frequency of the mode (rad/s).
+        elastic: Values of W2.
+        rigid: W1.
+        kappa: W4 times the absolute value of the elastic rate.
+        period: Period of the samples (s).
+        damping: Damping ratio of the mode.
+
+    Returns:
+        `elastic`, W2; `next_min` and `next_max`, the W3 between which it converges, NaN where none does;
+        `area`, that of the whole region.
+
+    Raises:
+        ValueError: A number is out of its range.
+    """
+    observer = ((rigid, 0.0, 0.0), frequency, period, damping)
+    found = json.loads(engine.observer_region_json(observer, kappa, _floats(elastic)))
+    rows = [
+        {"elastic": w2, "next_min": (edge or [None])[0], "next_max": (edge or [None])[-1]}
+        for w2, edge in ((row["elastic"], row["next"]) for row in found["edges"])
+    ]
+    return {**_columns(rows), "area": found["area"]}
+
+
+def observer_margin(
+    frequency: float,
+    kappas: Numbers = (),
+    *,
+    weights: tuple[float, float, float] = WEIGHTS,
+    period: float = 0.2,
+    damping: float = 0.005,
+) -> dict[str, Any]:
+    """How fast the recurrence observer may identify a frequency, its regressor the oscillation that it is.
+
+    Args:
+        frequency: Natural frequency of the mode (rad/s).
+        kappas: Gains W4 V of the identification, V being the amplitude of the elastic rate.
+        weights: W1, W2 and W3.
+        period: Period of the samples (s).
+        damping: Damping ratio of the mode.
+
+    Returns:
+        `gain_max`, up to which it converges, `gain_best`, with which it does soonest, `spectral_radius`, what
+        a sample then leaves of an error (NaN if none converges); `radii`, that for each of `kappas`.
+
+    Raises:
+        ValueError: A number is out of its range.
+    """
+    import numpy as np
+
+    observer = (weights, frequency, period, damping)
+    found = json.loads(engine.observer_margin_json(observer, _floats(kappas)))
+    names = ("gain_max", "gain_best", "spectral_radius")
+    margin = found["margin"] or dict.fromkeys(names, float("nan"))
+    return {**margin, "radii": np.array(found["spectral_radius"], dtype=np.float64)}
+
+
+def persistence(sensitivities: npt.ArrayLike) -> float:
+    """Persistence of excitation: how well what was seen tells parameters apart.
+
+    Args:
+        sensitivities: Derivatives of the measurement by each parameter, shape (samples, parameters).
+
+    Returns:
+        The least eigenvalue of their Gram matrix, each column normalised: 1 at best, 0 where a combination of
+        parameters was never seen; NaN if a parameter was never excited.
+    """
+    import numpy as np
+
+    return engine.persistence(np.ascontiguousarray(np.atleast_2d(sensitivities), dtype=np.float64))

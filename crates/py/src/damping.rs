@@ -1,0 +1,57 @@
+//! Active damping by relays, and the observer that it needs.
+
+use flexsc_core::analysis::damping::{Convergence, Relay, Study, persistence as least_eigenvalue};
+use numpy::PyReadonlyArray2;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use serde_json::json;
+
+use crate::sampled::all_positive;
+
+/// Weights W1 to W3, natural frequency (rad/s), period (s), damping ratio.
+type Recurrence = ([f64; 3], f64, f64, f64);
+
+fn refused(wrong: Option<(&'static str, String)>) -> PyResult<()> {
+    wrong.map_or(Ok(()), |(name, why)| Err(PyValueError::new_err(format!("{name} {why}"))))
+}
+
+fn convergence((weights, frequency, period, damping): Recurrence) -> PyResult<Convergence> {
+    let of = Convergence { frequency, damping, period, weights };
+    refused(of.inconsistency())?;
+    Ok(of)
+}
+
+#[pyfunction]
+pub fn relay_damping_json(
+    frequencies: Vec<f64>,
+    relay: (f64, f64, f64),
+    mode: (f64, f64),
+    amplitudes: (f64, f64),
+) -> PyResult<String> {
+    let (period, delay, on_time) = relay;
+    let ((damping, acceleration), (amplitude, threshold)) = (mode, amplitudes);
+    let relay = Relay { period, delay, on_time };
+    let study = Study { relay, damping, acceleration, amplitude, threshold };
+    refused(study.inconsistency())?;
+    all_positive("frequencies", &frequencies)?;
+    Ok(json!(study.table(&frequencies)).to_string())
+}
+
+#[pyfunction]
+pub fn observer_region_json(observer: Recurrence, kappa: f64, elastic: Vec<f64>) -> PyResult<String> {
+    let of = convergence(observer)?;
+    Ok(json!({"edges": of.region(kappa, &elastic), "area": of.area(kappa)}).to_string())
+}
+
+#[pyfunction]
+pub fn observer_margin_json(observer: Recurrence, kappas: Vec<f64>) -> PyResult<String> {
+    let of = convergence(observer)?;
+    let radii: Vec<f64> = kappas.iter().map(|kappa| of.spectral_radius(*kappa)).collect();
+    Ok(json!({"margin": of.margin(), "spectral_radius": radii}).to_string())
+}
+
+#[pyfunction]
+pub fn persistence(sensitivities: PyReadonlyArray2<'_, f64>) -> f64 {
+    let rows: Vec<Vec<f64>> = sensitivities.as_array().rows().into_iter().map(|row| row.to_vec()).collect();
+    least_eigenvalue(&rows).unwrap_or(f64::NAN)
+}

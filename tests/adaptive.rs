@@ -1,0 +1,326 @@
+//! The adaptive observers over many runs: how often and how fast they find the modes of a channel.
+//!
+//! `cargo test --release adaptive -- --ignored --nocapture` prints the whole table, 100 runs a row.
+
+use std::f64::consts::PI;
+
+use flexsc_core::estimator::adaptive::{
+    Gradient, Observer, Oscillator, Phase, Pulse, Recurrence, Tracker, bounds, trackers,
+};
+use flexsc_core::quantity::{Finite, Frequency, NonNegative};
+use flexsc_core::random::{Seed, Stream};
+
+const CYCLE: f64 = 0.2;
+/// Acceleration of the channel's own thrusters (rad/s²).
+const ACCELERATION: f64 = 2.05e-5;
+/// Standard deviation of the gyro's noise, and its resolution (rad/s).
+const NOISE: (f64, f64) = (2e-6, 1e-6);
+
+fn hertz(hertz: f64) -> Frequency {
+    Frequency::new(2.0 * PI * hertz).expect("a frequency")
+}
+
+fn mode(at: f64, influence: &[f64], bounds: Option<[f64; 2]>) -> Tracker {
+    let influence = influence.iter().map(|i| Finite::new(*i).expect("finite")).collect();
+    Tracker { frequency: hertz(at), influence, bounds: bounds.map(|bounds| bounds.map(hertz)) }
+}
+
+/// A channel of a spacecraft: exact modes, of which each input excites every one.
+struct Channel {
+    modes: Vec<(Oscillator, Vec<f64>)>,
+    rigid: Vec<f64>,
+    rate: f64,
+    phases: Vec<Phase>,
+}
+
+impl Channel {
+    /// Modes by their frequency (Hz) and influences.
+    fn new(modes: &[(f64, Vec<f64>)], rigid: &[f64]) -> Self {
+        let of = |hertz: f64| Oscillator { frequency: 2.0 * PI * hertz, damping: 0.005 };
+        Self {
+            modes: modes.iter().map(|(hertz, influence)| (of(*hertz), influence.clone())).collect(),
+            rigid: rigid.to_vec(),
+            rate: 0.0,
+            phases: vec![[0.0; 2]; modes.len()],
+        }
+    }
+
+    fn elastic(&self) -> f64 {
+        self.phases.iter().map(|phase| phase[0]).sum()
+    }
+
+    fn measured(&self, noise: &mut Stream) -> f64 {
+        let y = self.rate + self.elastic() + NOISE.0 * noise.normal();
+        (y / NOISE.1).round() * NOISE.1
+    }
+
+    fn advance(&mut self, pulses: &[Pulse]) {
+        for (phase, (of, influence)) in self.phases.iter_mut().zip(&self.modes) {
+            *phase = of.turned(&of.transition(CYCLE), CYCLE, *phase).0;
+            for Pulse { input, acceleration, start, duration } in pulses {
+                let push = of.pulse(CYCLE - start, CYCLE - start - duration).0;
+                *phase = [0, 1].map(|axis| phase[axis] + influence[*input] * acceleration * push[axis]);
+            }
+        }
+        self.rate += pulses.iter().map(|p| self.rigid[p.input] * p.acceleration * p.duration).sum::<f64>();
+    }
+}
+
+/// Bursts of one to ten cycles under a random sign, with random pauses.
+struct Bursts {
+    draws: Stream,
+    left: usize,
+    wait: usize,
+    acceleration: f64,
+}
+
+impl Bursts {
+    fn new(run: u64, name: &str) -> Self {
+        let draws = Seed { scenario: 1, run }.stream(name);
+        Self { draws, left: 0, wait: 0, acceleration: 0.0 }
+    }
+
+    /// The pulse of the next cycle, if there is one.
+    fn next(&mut self, input: usize, acceleration: f64, pause: usize) -> Option<Pulse> {
+        if self.left == 0 && self.wait > 0 {
+            self.wait -= 1;
+        } else if self.left == 0 {
+            self.left = 1 + self.draws.index(10);
+            self.acceleration = if self.draws.uniform() < 0.5 { -acceleration } else { acceleration };
+            self.wait = self.draws.index(pause);
+        }
+        (self.left > 0).then(|| {
+            self.left -= 1;
+            Pulse { input, acceleration: self.acceleration, start: 0.0, duration: CYCLE }
+        })
+    }
+}
+
+/// What a run found.
+struct Found {
+    /// The last time at which a frequency was off by more than 2 % (s); none if it is at the end.
+    settled: Option<f64>,
+    /// Relative errors of the frequencies and of the influences at the end, the largest.
+    errors: [f64; 2],
+}
+
+/// 300 s of a channel whose frequencies are off at the start by a part, and whose influences by 40 %.
+fn identify(modes: &[(f64, f64)], off: f64, rate: f64, run: u64) -> Found {
+    let mut draws = Seed { scenario: 1, run }.stream("errors");
+    let mut sign = |size: f64| if draws.uniform() < 0.5 { 1.0 - size } else { 1.0 + size };
+    let nominal: Vec<Tracker> = modes.iter().map(|(at, influence)| mode(*at, &[*influence], None)).collect();
+    // The intervals of the design: what is off is the spacecraft.
+    let starts = |(tracker, [low, high]): (&Tracker, [f64; 2])| {
+        let frequency = (tracker.frequency.get() * sign(off)).clamp(1.001 * low, 0.999 * high);
+        let influence = tracker.influence[0].get() * sign(0.4);
+        mode(frequency / (2.0 * PI), &[influence], Some([low, high].map(|bound| bound / (2.0 * PI))))
+    };
+    let start: Vec<Tracker> = nominal.iter().zip(bounds(&nominal, 2.0, CYCLE)).map(starts).collect();
+    let spec = Gradient { rate: NonNegative::new(rate).expect("a rate"), ..Gradient::default() };
+    let mut observer = spec.observer(&start, &[1.0], CYCLE);
+    let truth: Vec<(f64, Vec<f64>)> = modes.iter().map(|(at, influence)| (*at, vec![*influence])).collect();
+    let mut channel = Channel::new(&truth, &[1.0]);
+    let (mut bursts, mut noise) = (Bursts::new(run, "bursts"), Seed { scenario: 1, run }.stream("noise"));
+    let (mut last, cycles) = (0_u32, 1500_u32);
+    for cycle in 0..cycles {
+        observer.update(channel.measured(&mut noise));
+        let wrong = |(found, (at, _)): (_, &(f64, f64))| error(found, 2.0 * PI * at) > 0.02;
+        if observer.modes().iter().map(|mode| mode.frequency).zip(modes).any(wrong) {
+            last = cycle;
+        }
+        let pulses: Vec<Pulse> = bursts.next(0, ACCELERATION, 20).into_iter().collect();
+        observer.advance(&pulses);
+        channel.advance(&pulses);
+    }
+    let mut errors = [0.0_f64; 2];
+    for (found, (at, influence)) in observer.modes().iter().zip(modes) {
+        errors[0] = errors[0].max(error(found.frequency, 2.0 * PI * at));
+        errors[1] = errors[1].max(error(found.influence[0], *influence));
+    }
+    let settled = (last + 1 < cycles).then_some(f64::from(last) * CYCLE);
+    Found { settled, errors }
+}
+
+fn error(found: f64, exact: f64) -> f64 {
+    (found / exact - 1.0).abs()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Modes by frequency (Hz) and influence; the rate of the identification.
+type Set = (&'static [(f64, f64)], f64);
+
+const SETS: [Set; 5] = [
+    (&[(0.2476, 2.89)], 0.02),
+    (&[(0.2476, 2.89), (0.6, 3.0)], 0.02),
+    (&[(0.2, 2.0), (0.5, 3.0), (1.1, 3.0)], 0.02),
+    (&[(0.48, 2.0), (0.6, 3.0)], 0.02),
+    (&[(0.55, 3.0), (0.605, 3.0)], 0.01),
+];
+const OFF: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
+
+/// How many of the runs converged; of those, the medians of the time and of the errors, and the longest time.
+fn row((modes, rate): Set, off: f64, runs: u64) -> (usize, f64, f64, [f64; 2]) {
+    let found: Vec<Found> = (0..runs).map(|run| identify(modes, off, rate, run)).collect();
+    let converged: Vec<&Found> = found.iter().filter(|found| found.settled.is_some()).collect();
+    let times: Vec<f64> = converged.iter().filter_map(|found| found.settled).collect();
+    let longest = times.iter().fold(0.0_f64, |most, time| most.max(*time));
+    let errors = [0, 1].map(|kind| median(converged.iter().map(|found| found.errors[kind]).collect()));
+    (converged.len(), median(times), longest, errors)
+}
+
+#[test]
+fn modes_are_found_over_random_runs() {
+    // Of each set, the fewest of 12 runs that converge, and limits of the median time, frequency and influence error.
+    let limits = [
+        (12, [12.0, 14.0, 18.0, 24.0], 4e-4, 0.02),
+        (12, [22.0, 22.0, 30.0, 45.0], 5e-4, 0.03),
+        (11, [30.0, 30.0, 60.0, 130.0], 7e-4, 0.03),
+        (11, [50.0, 50.0, 50.0, 60.0], 6e-4, 0.03),
+        (10, [60.0, 60.0, 90.0, 120.0], 2e-3, 0.08),
+    ];
+    for (set, (fewest, times, frequency, influence)) in SETS.into_iter().zip(limits) {
+        for (off, longest) in OFF.into_iter().zip(times) {
+            let (converged, time, _, errors) = row(set, off, 12);
+            let place = format!("{:?} off by {off}: {converged}, {time} s, {errors:?}", set.0);
+            assert!(converged >= fewest && time <= longest, "{place}");
+            assert!(errors[0] <= frequency && errors[1] <= influence, "{place}");
+        }
+    }
+}
+
+#[test]
+#[ignore = "100 runs a row, for people"]
+fn whole_table() {
+    eprintln!("modes, Hz | off | converged | median, longest s | error of frequency, influence");
+    for set in SETS {
+        for off in OFF {
+            let (converged, time, longest, [frequency, influence]) = row(set, off, 100);
+            let modes: Vec<String> = set.0.iter().map(|(at, _)| at.to_string()).collect();
+            eprintln!(
+                "{} | {off} | {converged} | {time:.1} {longest:.1} | {frequency:.1e} {influence:.4}",
+                modes.join(" + ")
+            );
+        }
+    }
+    eprintln!("roll beside yaw thrusters, 100 runs: elastic rate off by a part, a frequency off by, median");
+    let runs: Vec<_> = (0..100).map(beside_yaw).collect();
+    for (inputs, name) in ["without them", "with them as an input"].into_iter().enumerate() {
+        let off = median(runs.iter().map(|run| run[inputs].0).collect());
+        let strayed = median(runs.iter().map(|run| run[inputs].1).collect());
+        eprintln!("{name} | {off:.3} | {strayed:.4}");
+    }
+}
+
+/// Ten cycles of every 65 under one sign, then under the other.
+fn regular(cycle: usize) -> Vec<Pulse> {
+    let acceleration = if (cycle / 65).is_multiple_of(2) { ACCELERATION } else { -ACCELERATION };
+    let pulse = Pulse { input: 0, acceleration, start: 0.0, duration: CYCLE };
+    if (5..15).contains(&(cycle % 65)) { vec![pulse] } else { Vec::new() }
+}
+
+#[test]
+fn basin_of_attraction_of_one_mode() {
+    let wide = [0.1, 10.0].map(|bound| NonNegative::new(bound).expect("0 or more"));
+    let found = |observer: &mut dyn Observer| {
+        let mut channel = Channel::new(&[(0.2, vec![2.0])], &[1.0]);
+        for cycle in 0..1500 {
+            observer.update(channel.rate + channel.elastic());
+            observer.advance(&regular(cycle));
+            channel.advance(&regular(cycle));
+        }
+        observer.modes()[0].frequency / (2.0 * PI)
+    };
+    for at in [0.06, 0.1, 0.15, 0.3, 0.4, 0.5, 0.6, 0.8] {
+        let start = mode(at, &[1.2], Some([0.03, 1.2]));
+        let spec = Gradient { influence_bounds: wide, ..Gradient::default() };
+        let gradient = found(&mut spec.observer(std::slice::from_ref(&start), &[1.0], CYCLE));
+        assert_eq!(error(gradient, 0.2) < 0.002, at < 0.55, "gradient from {at}: {gradient} Hz");
+        let recurrence = found(&mut Recurrence::default().observer(&start, CYCLE));
+        assert!(error(recurrence, 0.2) < 0.012, "recurrence from {at}: {recurrence} Hz");
+    }
+}
+
+/// Root mean square of a sequence.
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+#[test]
+fn one_tracker_follows_a_near_pair() {
+    let pair = [(0.6049, vec![1.4]), (0.6096, vec![1.7])];
+    let merged = trackers(&[mode(0.6049, &[1.4], None), mode(0.6096, &[1.7], None)], 0.08);
+    assert_eq!(merged.len(), 1);
+    let mut found = Vec::new();
+    for run in 0..6 {
+        let mut start = merged.clone();
+        start[0].frequency = Frequency::new(1.1 * start[0].frequency.get()).expect("a frequency");
+        let mut observer = Gradient::default().observer(&start, &[1.0], CYCLE);
+        let mut channel = Channel::new(&pair, &[1.0]);
+        let (mut bursts, mut noise) = (Bursts::new(run, "bursts"), Seed { scenario: 1, run }.stream("noise"));
+        let (mut wrong, mut elastic) = (Vec::new(), Vec::new());
+        for cycle in 0..1500 {
+            observer.update(channel.measured(&mut noise));
+            if cycle >= 750 {
+                wrong.push(observer.modes()[0].phase[0] - channel.elastic());
+                elastic.push(channel.elastic());
+            }
+            let pulses: Vec<Pulse> = bursts.next(0, ACCELERATION, 20).into_iter().collect();
+            observer.advance(&pulses);
+            channel.advance(&pulses);
+        }
+        let mode = observer.modes().remove(0);
+        let hertz = mode.frequency / (2.0 * PI);
+        assert!((0.600..0.613).contains(&hertz), "{hertz}");
+        assert!(error(mode.influence[0], 3.1) < 0.15, "{:?}", mode.influence);
+        found.push(rms(&wrong) / rms(&elastic));
+    }
+    assert!(median(found.clone()) < 0.08, "{found:?}");
+}
+
+/// A roll channel beside yaw thrusters that excite what it sees: how far the observer is off, in parts of what there is, and
+/// the largest error of a frequency, without and with the yaw thrusters as an input.
+fn beside_yaw(run: u64) -> [(f64, f64); 2] {
+    // The station's modes of 0.605 and 0.773 Hz: influence of the roll and of the yaw thrusters.
+    let modes = [(0.605, vec![0.90, 1.08]), (0.7733, vec![7.55, -1.34])];
+    let (roll, yaw) = (8.40e-6, 2.05e-5);
+    [1, 2].map(|inputs| {
+        let start: Vec<Tracker> =
+            modes.iter().map(|(at, influence)| mode(0.95 * at, &influence[..inputs], None)).collect();
+        let mut observer = Gradient::default().observer(&start, &[1.0, 0.0][..inputs], CYCLE);
+        let mut channel = Channel::new(&modes, &[1.0, 0.0]);
+        let mut groups = [Bursts::new(run, "roll"), Bursts::new(run, "yaw")];
+        let mut noise = Seed { scenario: 1, run }.stream("noise");
+        let (mut wrong, mut elastic, mut worst) = (Vec::new(), Vec::new(), 0.0_f64);
+        for cycle in 0..3000 {
+            observer.update(channel.measured(&mut noise));
+            if cycle >= 1500 {
+                let found = observer.modes();
+                wrong.push(found.iter().map(|mode| mode.phase[0]).sum::<f64>() - channel.elastic());
+                elastic.push(channel.elastic());
+                for (mode, (at, _)) in found.iter().zip(&modes) {
+                    worst = worst.max(error(mode.frequency, 2.0 * PI * at));
+                }
+            }
+            let [first, second] = &mut groups;
+            let pulses: Vec<Pulse> =
+                [first.next(0, roll, 60), second.next(1, yaw, 20)].into_iter().flatten().collect();
+            observer.advance(&pulses);
+            channel.advance(&pulses);
+        }
+        (rms(&wrong) / rms(&elastic), worst)
+    })
+}
+
+#[test]
+fn thrusters_of_other_axes_do_not_deceive() {
+    for run in 0..6 {
+        let [(without, strayed), (with, kept)] = beside_yaw(run);
+        assert!(with < 0.1 && kept < 0.01, "run {run}: {with}, {kept}");
+        assert!(without > 3.0 * with, "run {run}: {without} without, {with} with");
+        assert!(strayed > 2.0 * kept, "run {run}: {strayed} without, {kept} with");
+    }
+}

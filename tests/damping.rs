@@ -1,0 +1,418 @@
+//! Active damping in closed form, against simulations of a mode under a relay and independent computations.
+//!
+//! Golden numbers beside those of the simulations here: tests/golden/damping_oracle.py, NumPy and SciPy.
+
+use std::f64::consts::PI;
+
+use flexsc_core::analysis::damping::{Convergence, Decay, Relay, Study, partition, persistence};
+use flexsc_core::estimator::adaptive::{Gradient, Observer, Oscillator, Phase, Pulse, Tracker};
+use flexsc_core::quantity::{Finite, Frequency};
+use flexsc_core::random::Seed;
+
+use crate::study::close;
+use crate::util::Dir;
+
+const TURN: f64 = 2.0 * PI;
+const CYCLE: f64 = 0.2;
+/// Elastic acceleration of the yaw thrusters on their dominant mode (rad/s²).
+const YAW: f64 = 5.908_32e-5;
+
+fn relay(delay: f64, on_time: f64) -> Relay {
+    Relay { period: CYCLE, delay, on_time }
+}
+
+/// The amplitude of a mode's rate at each sample under a relay with a push over the whole cycle, exact.
+fn amplitudes(
+    hertz: f64,
+    damping: f64,
+    acceleration: f64,
+    start: Phase,
+    late: usize,
+    count: usize,
+) -> Vec<f64> {
+    let of = Oscillator { frequency: TURN * hertz, damping };
+    let (transition, push) = (of.transition(CYCLE), of.pulse(CYCLE, 0.0).0);
+    let (mut phase, mut queue) = (start, vec![0.0; late]);
+    let sample = |_| {
+        let amplitude = phase[0].hypot(phase[1]);
+        queue.push(if phase[0] > 0.0 { -acceleration } else { acceleration });
+        let now = queue.remove(0);
+        phase = of.turned(&transition, CYCLE, phase).0;
+        phase = [0, 1].map(|axis| phase[axis] + now * push[axis]);
+        amplitude
+    };
+    (0..count).map(sample).collect()
+}
+
+#[test]
+fn phase_factor_is_the_mean_fall_of_the_amplitude() {
+    // (frequency in Hz, cycles of delay, slope for 1e-6 rad/s², how far a simulation may be off).
+    let exact = [
+        (0.137, 0, -6.3348e-7, 0.003),
+        (0.137, 1, -6.1475e-7, 0.003),
+        (0.711, 0, -5.5524e-7, 0.01),
+        (0.711, 1, -1.4071e-7, 0.01),
+        (1.1, 0, -4.5239e-7, 0.01),
+        (1.1, 1, 2.8285e-7, 0.01),
+    ];
+    for (hertz, late, slope, off) in exact {
+        let relay = relay(CYCLE * late as f64, CYCLE);
+        let decay = Decay::new(1e-6 * relay.phase_factor(TURN * hertz), 0.0);
+        close(-decay.slope, slope, 2e-4);
+        // 60 periods from an amplitude that stays large, over eight phases.
+        let count = (60.0 / (hertz * CYCLE)).round() as usize;
+        let fall = |eighth: f64| {
+            let start = [1e-3 * (PI * eighth / 4.0).cos(), 1e-3 * (PI * eighth / 4.0).sin()];
+            let all = amplitudes(hertz, 0.0, 1e-6, start, late, count + 1);
+            let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+            let half = all.len() / 2;
+            (mean(&all[half..2 * half]) - mean(&all[..half])) / (CYCLE * half as f64)
+        };
+        let mean = (0..8).map(|eighth| fall(f64::from(eighth))).sum::<f64>() / 8.0;
+        close(mean, slope, off);
+    }
+}
+
+#[test]
+fn a_relay_damps_up_to_a_limit() {
+    // A pure delay; a push over the whole cycle, at once and one cycle late (Hz).
+    let pure = Relay { period: 0.0, delay: CYCLE, on_time: 0.0 };
+    for (relay, hertz) in
+        [(pure, 1.25), (relay(0.0, CYCLE), 2.5), (relay(CYCLE, CYCLE), 5.0 / 6.0), (relay(CYCLE, 0.1), 1.0)]
+    {
+        let limit = relay.frequency_limit();
+        close(limit, TURN * hertz, 1e-14);
+        assert!((relay.delay_limit(limit) - relay.delay).abs() < 1e-14);
+        assert!(relay.phase_factor(0.99 * limit) > 0.0 && relay.phase_factor(1.01 * limit) < 0.0);
+    }
+    assert!((Relay { period: 0.0, delay: 0.0, on_time: 0.0 }).frequency_limit().is_infinite());
+    close(relay(0.0, 0.1).phase_factor(1e-9), 0.5, 1e-12);
+}
+
+#[test]
+fn delayed_feedback_is_stable_up_to_a_gain() {
+    // (frequency in Hz, delay, damping ratio, gain).
+    let exact = [
+        (0.2, 0.2, 0.005, 7.661_340_901),
+        (0.5, 0.2, 0.005, 6.6249),
+        (0.8, 0.2, 0.005, 4.7123),
+        (1.0, 0.2, 0.005, 2.999_018_284),
+        (1.2, 0.2, 0.005, 1.2075),
+        (1.25, 0.2, 0.005, 0.876_52),
+        (1.3, 0.2, 0.005, 0.641_42),
+        (1.5, 0.2, 0.005, 0.281_885_716),
+        (0.8, 1.0, 0.05, 1.498_076_840),
+        (2.3, 1.0, 0.05, 1.845_574_130),
+        (3.0, 1.5, 0.1, 3.769_911_184),
+    ];
+    for (hertz, delay, damping, gain) in exact {
+        let border = partition(TURN * hertz, delay, damping).expect("a border");
+        let digits = if gain.to_string().len() > 8 { 1e-8 } else { 1e-4 };
+        close(border.gain, gain, digits);
+        // The characteristic equation holds at i y.
+        let (w, y, k) = (TURN * hertz, border.frequency, border.gain);
+        let real = w * w - y * y + k * y * (y * delay).sin();
+        let imaginary = 2.0 * damping * w * y + k * y * (y * delay).cos();
+        assert!(real.abs() < 1e-11 * w * w && imaginary.abs() < 1e-11 * w * w, "{hertz}: {real} {imaginary}");
+    }
+    assert_eq!(partition(1.0, 0.0, 0.01), None);
+    // Without damping a delay of more than a quarter of a period makes every gain unstable.
+    assert!(partition(TURN, 0.3, 0.0).expect("a border").gain < 1e-12);
+    close(partition(TURN, 0.2, 0.0).expect("a border").gain, 2.5 * PI - TURN * TURN / (2.5 * PI), 1e-12);
+    // Far intervals and long delays end, too.
+    assert!(partition(1e3, 1e3, 0.3).expect("a border").gain >= 600.0 * (1.0 - 1e-12));
+}
+
+/// The delay equation x'' + 2 zeta w x' + w² x + k x'(t - h) = 0 by steps, the delayed rate held over a thousandth of h
+/// and that half step made up for: the amplitude at the end, of one at the start.
+fn delayed(frequency: f64, delay: f64, damping: f64, gain: f64, time: f64) -> f64 {
+    let steps = 1000_usize;
+    let step = delay / steps as f64;
+    let of = Oscillator { frequency, damping };
+    let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
+    let mut past = vec![0.0; steps];
+    let (mut phase, mut late) = ([1.0, 0.0], 0.0);
+    for index in 0..(time / step) as usize {
+        let held = past[index % steps];
+        past[index % steps] = phase[0];
+        let mean = 1.5 * held - 0.5 * late;
+        late = held;
+        phase = of.turned(&transition, step, phase).0;
+        phase = [0, 1].map(|axis| phase[axis] - gain * mean * push[axis]);
+    }
+    phase[0].hypot(phase[1])
+}
+
+#[test]
+fn beyond_that_gain_the_delay_equation_grows() {
+    let limit = partition(TURN, 0.2, 0.005).expect("a border").gain;
+    let after = |part: f64| {
+        delayed(TURN, 0.2, 0.005, part * limit, 60.0) / delayed(TURN, 0.2, 0.005, part * limit, 20.0)
+    };
+    assert!(after(0.97) < 0.7 && after(1.03) > 1.4, "{} {}", after(0.97), after(1.03));
+}
+
+#[test]
+fn a_relay_brings_a_mode_to_rest() {
+    // Continuous, without damping: a = 4.6e-5 rad/s², from 1e-3 rad/s at 0.2 Hz.
+    let decay = Decay::new(4.6e-5, 0.0);
+    close(decay.threshold_time(1e-3, 0.0).expect("there"), 34.148, 1e-4);
+    close(1e-3 - decay.amplitude(1e-3, 5.0), 1.464_23e-4, 1e-5);
+    close(decay.threshold_time(1e-3, 1e-4).expect("there"), 33.98, 2e-4);
+    close(decay.thrust_time(1e-3, 1e-4).expect("there"), 26.80, 5e-4);
+    let halfway = decay.amplitude_above(1e-3, 1e-4, 17.0);
+    close(decay.threshold_time(halfway, 1e-4).expect("there"), 33.976_578_5 - 17.0, 1e-7);
+    close(Decay::duty(1e-3, 1e-4), 1.0 - (0.1_f64).asin() / (0.5 * PI), 1e-12);
+    // With damping and a threshold: an integral.
+    let damped = Decay { slope: 2e-5, rate: 0.01 };
+    close(damped.threshold_time(5e-4, 1e-4).expect("there"), 20.857_400_073, 1e-9);
+    close(
+        damped.threshold_time(5e-4, 1e-7).expect("there"),
+        damped.threshold_time(5e-4, 0.0).expect("there"),
+        1e-3,
+    );
+    close(damped.thrust_time(5e-4, 1e-4).expect("there"), 13.898_849_477, 1e-9);
+    let barely = Decay { slope: 2e-5, rate: 1e-9 };
+    let free = Decay { rate: 0.0, ..barely };
+    for time in [Decay::threshold_time, Decay::thrust_time] {
+        close(time(&barely, 5e-4, 1e-4).expect("there"), time(&free, 5e-4, 1e-4).expect("there"), 1e-7);
+    }
+    assert_eq!(damped.threshold_time(1e-5, 1e-4), Some(0.0));
+    // One that is fed never gets there.
+    let fed = Decay::new(-1e-6, 0.0);
+    assert_eq!((fed.threshold_time(1e-4, 1e-5), fed.thrust_time(1e-4, 1e-5)), (None, None));
+    close(fed.amplitude(1e-4, 10.0), 1e-4 + 2e-5 / PI, 1e-12);
+}
+
+#[test]
+fn a_threshold_saves_thrust_as_foreseen() {
+    // The relay that reads all the time, 0.2 Hz: steps of 1 ms.
+    let of = Oscillator { frequency: 0.2 * TURN, damping: 0.0 };
+    let step = 1e-3;
+    let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
+    let (mut phase, mut thrust, mut time): (Phase, f64, f64) = ([1e-3, 0.0], 0.0, 0.0);
+    while phase[0].hypot(phase[1]) > 1.001e-4 {
+        let fires = phase[0].abs() > 1e-4;
+        let now = if fires { -4.6e-5 * phase[0].signum() } else { 0.0 };
+        thrust += if fires { step } else { 0.0 };
+        time += step;
+        phase = of.turned(&transition, step, phase).0;
+        phase = [0, 1].map(|axis| phase[axis] + now * push[axis]);
+        assert!(time < 60.0, "no end");
+    }
+    let decay = Decay::new(4.6e-5, 0.0);
+    assert!((time - decay.threshold_time(1e-3, 1e-4).expect("there")).abs() < 2.5, "{time}");
+    close(thrust, decay.thrust_time(1e-3, 1e-4).expect("there"), 0.01);
+}
+
+#[test]
+fn a_sampled_relay_damps_the_yaw_mode() {
+    // (cycles of delay, closed form, exact run from q = 0, how far one run may be off).
+    let cases = [
+        (
+            0,
+            [4.1884e-4, 2.9943e-4, 1.8278e-4, 1.0651e-4],
+            [4.181_334_74e-4, 2.964_553_95e-4, 1.816_1e-4, 1.048_516_58e-4],
+        ),
+        (
+            1,
+            [4.2589e-4, 3.1686e-4, 2.1035e-4, 1.4071e-4],
+            [4.332_190_19e-4, 3.207_375_46e-4, 2.119_191_07e-4, 1.367_4e-4],
+        ),
+    ];
+    let (w, zeta) = (0.2476 * TURN, 0.005);
+    for (late, closed, exact) in cases {
+        let decay = Decay::new(YAW * relay(CYCLE * late as f64, CYCLE).phase_factor(w), zeta * w);
+        let runs: Vec<Vec<f64>> = (0..8)
+            .map(|eighth| PI * f64::from(eighth) / 4.0)
+            .map(|angle| amplitudes(0.2476, zeta, YAW, [5e-4 * angle.cos(), 5e-4 * angle.sin()], late, 51))
+            .collect();
+        for (index, cycle) in [10_usize, 25, 40, 50].into_iter().enumerate() {
+            let foreseen = decay.amplitude(5e-4, CYCLE * cycle as f64);
+            close(foreseen, closed[index], 2e-4);
+            close(runs[0][cycle], exact[index], 1e-6);
+            close(runs[0][cycle], foreseen, 0.05);
+            let mean = runs.iter().map(|run| run[cycle]).sum::<f64>() / 8.0;
+            close(mean, foreseen, if late == 0 { 0.02 } else { 0.05 });
+        }
+    }
+}
+
+#[test]
+fn a_delayed_relay_ends_in_a_limit_cycle() {
+    // (frequency in Hz, acceleration; by the describing function, simulated: rate, frequency in Hz).
+    let cases =
+        [(0.2476, YAW, 9.95e-6, 1.22e-5, 1.252, 1.247), (0.5119, 1.289e-4, 2.50e-5, 3.00e-5, 1.254, 1.250)];
+    for (hertz, acceleration, foreseen, rate, swing, seen) in cases {
+        let border = partition(TURN * hertz, 0.2, 0.005).expect("a border");
+        close(border.limit_cycle(acceleration), foreseen, 2e-3);
+        close(border.frequency, TURN * swing, 1e-3);
+        // Steps of 1 ms: the relay reads all the time.
+        let of = Oscillator { frequency: TURN * hertz, damping: 0.005 };
+        let (step, count) = (1e-3, 200_000);
+        let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
+        let (mut phase, mut past): (Phase, Vec<f64>) = ([5e-5, 0.0], vec![0.0; 200]);
+        let (mut largest, mut crossings) = (0.0_f64, Vec::new());
+        for index in 0..count {
+            let now = std::mem::replace(&mut past[index % 200], -acceleration * phase[0].signum());
+            let before = phase[0];
+            phase = of.turned(&transition, step, phase).0;
+            phase = [0, 1].map(|axis| phase[axis] + now * push[axis]);
+            if index > count / 2 {
+                largest = largest.max(phase[0].abs());
+                if before < 0.0 && phase[0] >= 0.0 {
+                    crossings.push(index as f64 * step);
+                }
+            }
+        }
+        let periods = crossings.len() - 1;
+        let swings = periods as f64 / (crossings[periods] - crossings[0]);
+        close(largest, rate, 0.01);
+        close(swings, seen, 0.005);
+        close(border.limit_cycle(acceleration), largest, 0.25);
+        close(border.frequency, TURN * swings, 0.01);
+    }
+}
+
+fn observer(weights: [f64; 3]) -> Convergence {
+    Convergence { frequency: 0.2 * TURN, damping: 0.005, period: CYCLE, weights }
+}
+
+#[test]
+fn the_frozen_observer_converges_in_a_region() {
+    let of = observer([0.05, 0.2, 0.15]);
+    let (a, b) = of.recurrence();
+    close(a, 1.934_735_096_8, 1e-10);
+    close(b, 0.997_489_881_5, 1e-10);
+    let [a0, a1, a2] = of.cubic(0.0);
+    let real = 0.966_148_01;
+    assert!((((real + a2) * real + a1) * real + a0).abs() < 1e-9);
+    // The sum of the roots, and of the pair's: their product.
+    close(-a2, real + 2.0 * 0.840_820_03, 1e-8);
+    close(-a0, real * (0.840_820_03 * 0.840_820_03 + 0.259_522_05 * 0.259_522_05), 1e-7);
+    for (w1, kappa, area) in
+        [(0.05, 0.0, 3.983), (0.05, 1.5, 1.347), (0.05, 4.0, 0.227), (0.02, 0.0, 3.9963), (0.2, 0.0, 3.9223)]
+    {
+        close(observer([w1, 0.0, 0.0]).area(kappa), area, 0.01);
+    }
+    // Nothing converges beyond kappa = 8, and the edges are where it begins to.
+    assert_eq!(of.area(8.1), 0.0);
+    for edge in of.region(1.5, &[0.6, 1.2, 1.8]) {
+        let (low, high) = edge.next.expect("a region");
+        for (w3, inside) in
+            [(low - 1e-6, false), (low + 1e-6, true), (high - 1e-6, true), (high + 1e-6, false)]
+        {
+            let at = observer([0.05, edge.elastic, w3]);
+            assert_eq!(at.converges(1.5), inside, "{edge:?} at {w3}");
+        }
+    }
+    assert_eq!(of.region(0.0, &[-0.2, 2.1]).iter().filter(|edge| edge.next.is_some()).count(), 0);
+}
+
+#[test]
+fn the_turning_regressor_allows_far_less() {
+    for (weights, gain, best, radius) in
+        [([0.05, 0.2, 0.15], 0.0429, 0.0187, 0.9539), ([0.05, 0.1, 0.05], 0.0255, 0.0046, 0.9684)]
+    {
+        let margin = observer(weights).margin().expect("a margin");
+        close(margin.gain_max, gain, 0.035);
+        close(margin.gain_best, best, 0.06);
+        close(margin.spectral_radius, radius, 1e-3);
+        assert!(observer(weights).spectral_radius(0.98 * margin.gain_max) < 1.0);
+        assert!(observer(weights).spectral_radius(1.02 * margin.gain_max) > 1.0);
+    }
+    assert_eq!(observer([0.05, -0.5, 0.15]).margin(), None);
+    // A period that is no multiple of the cycle: nearly that of the neighbour.
+    let near = Convergence { frequency: 0.201 * TURN, ..observer([0.05, 0.2, 0.15]) };
+    close(near.spectral_radius(0.01), observer([0.05, 0.2, 0.15]).spectral_radius(0.01), 5e-3);
+}
+
+/// Persistence of excitation of two modes (Hz) over random bursts of a time (s).
+fn told_apart(modes: [f64; 2], time: f64, run: u64) -> f64 {
+    let frequency = |hertz: f64| Frequency::new(TURN * hertz).expect("a frequency");
+    let tracker = |hertz: f64| Tracker {
+        frequency: frequency(hertz),
+        influence: vec![Finite::new(3.0).expect("finite")],
+        bounds: None,
+    };
+    let mut observer = Gradient::default().observer(&modes.map(tracker), &[1.0], CYCLE);
+    let mut draws = Seed { scenario: 1, run }.stream("bursts");
+    let (mut rows, mut left, mut wait, mut sign) = (Vec::new(), 0, 0, 1.0);
+    for _ in 0..(time / CYCLE) as usize {
+        rows.push(observer.sensitivities());
+        // What it expects, so that the parameters stay.
+        observer.update(observer.rate() + observer.modes().iter().map(|mode| mode.phase[0]).sum::<f64>());
+        if left == 0 && wait == 0 {
+            (left, wait) = (1 + draws.index(10), draws.index(20));
+            sign = if draws.uniform() < 0.5 { -1.0 } else { 1.0 };
+        }
+        let fires = left > 0;
+        (left, wait) = if fires { (left - 1, wait) } else { (0, wait.saturating_sub(1)) };
+        let pulse = Pulse { input: 0, acceleration: 2.05e-5 * sign, start: 0.0, duration: CYCLE };
+        observer.advance(if fires { std::slice::from_ref(&pulse) } else { &[] });
+    }
+    persistence(&rows).expect("excited")
+}
+
+#[test]
+fn near_modes_are_not_told_apart() {
+    // (modes, after 60 s, after 300 s: between which bounds).
+    let cases = [
+        ([0.25, 0.6], [0.4, 1.0], [0.7, 1.0]),
+        ([0.48, 0.6], [0.4, 0.85], [0.6, 0.95]),
+        ([0.55, 0.605], [0.3, 0.7], [0.45, 0.8]),
+        ([0.6049, 0.6096], [0.0, 2e-3], [1e-3, 0.05]),
+    ];
+    for (modes, short, long) in cases {
+        for (time, [low, high]) in [(60.0, short), (300.0, long)] {
+            let mut found: Vec<f64> = (0..5).map(|run| told_apart(modes, time, run)).collect();
+            found.sort_by(f64::total_cmp);
+            assert!((low..high).contains(&found[2]), "{modes:?} over {time} s: {found:?}");
+        }
+    }
+    // Two parameters that act alike, one that does not act, rows that do not fit.
+    assert!(persistence(&[vec![1.0, 2.0], vec![-2.0, -4.0]]).expect("numbers").abs() < 1e-12);
+    close(persistence(&[vec![1.0, 0.0], vec![0.0, 3.0]]).expect("numbers"), 1.0, 1e-12);
+    assert_eq!(persistence(&[vec![1.0, 0.0]]), None);
+    assert_eq!(persistence(&[vec![1.0], vec![1.0, 2.0]]), None);
+    assert_eq!(persistence(&[]), None);
+}
+
+#[test]
+fn the_command_tells_what_a_relay_does() {
+    let dir = Dir::new();
+    let yaw = format!("--acceleration {YAW} --amplitude 5e-4");
+    let told = dir.run(&format!("damping --frequency 1.5557167:1.5557167:1 {yaw} --json")).exits(0).json();
+    let row = &told["rows"][0];
+    let number = |name: &str| row[name].as_f64().expect("a number");
+    close(told["frequency_limit_rad_s"].as_f64().expect("a number"), 5.0 * PI, 1e-14);
+    // ln(1 + r V0/s)/r
+    close(number("decay_s"), 12.846_26, 1e-6);
+    close(number("phase_factor"), 0.983_95, 1e-5);
+    close(number("thrust_s"), number("decay_s"), 1e-15);
+    let pure = format!("damping --frequency 0.5:8:4 --period 0 --delay 0.2 {yaw}");
+    dir.run(&pure).exits(0).says(&["all the time, 0.2 s late: damps below 7.8540 rad/s, 1.2500 Hz", "none"]);
+    dir.run(&format!("{pure} --threshold 2e-5 --json")).exits(0).prints(&["limit_cycle_rate_rad_s"]);
+    dir.run(&format!("damping --frequency 1:2:2 --period 0 {yaw} --json")).exits(0).prints(&["null"]);
+    for (arguments, words) in [
+        ("--frequency 1:2:2", "--acceleration"),
+        ("--frequency 1:2:2 --acceleration 0", "--acceleration must be a positive number, got 0"),
+        (
+            "--frequency 1:2:2 --acceleration 1 --on-time 0.3",
+            "--on-time must be above 0 and at most the period of 0.2 s, got 0.3",
+        ),
+        ("--frequency 1:2:2 --acceleration 1 --damping 1", "--damping must be 0 or more and below 1, got 1"),
+        ("--frequency 1:2:2 --acceleration 1 --threshold 1", "--amplitude"),
+        ("--frequency 1:2:2 --acceleration 1 --period=-1", "--period must be a number of 0 or more, got -1"),
+    ] {
+        dir.run(&format!("damping {arguments}")).exits(2).says(&[words]);
+    }
+    let study = Study {
+        relay: relay(0.0, CYCLE),
+        damping: 0.005,
+        acceleration: YAW,
+        amplitude: 5e-4,
+        threshold: 0.0,
+    };
+    assert_eq!(study.table(&[1.0, 2.0]).len(), 2);
+}

@@ -1,0 +1,168 @@
+//! The spatial body: rigid motion and elastic modes.
+//!
+//! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
+
+use flexsc_core::body::Body;
+use flexsc_core::body::spatial::{Elastic, Rigid, Spatial, SpatialState, Turn, Vector};
+use flexsc_core::{Document, Scenario};
+
+use crate::study::{close, scenario};
+
+/// A small free body with one mode: the law's dead zones are so wide that the jets stay silent.
+pub const FREE: &str = r#"duration = 100.0
+[body.spatial]
+inertia = [[5.0, 0.4, -0.2], [0.4, 3.0, 0.1], [-0.2, 0.1, 2.0]]
+rate = [0.3, -0.2, 0.5]
+points = [{ name = "hub" }]
+[[body.spatial.modes]]
+frequency = 1.2566370614359172
+damping = 0.005
+shapes.hub = { translation = [1.0, 0.0, 0.0], rotation = [0.0, 0.5, 0.0] }
+[sensor.gyro]
+point = "hub"
+[law.phase_plane]
+period = 0.2
+dead_zone = 10.0
+rate_limit = 1.0
+switch_on = 100.0
+switch_off = 1.0
+[actuator.jets]
+specific_impulse = 200.0
+thrusters = [
+    { name = "x", point = "hub", offset = [0.0, 1.0, 0.0], direction = [0.0, 0.0, 1.0], thrust = 1.0 },
+    { name = "-x", point = "hub", offset = [0.0, 1.0, 0.0], direction = [0.0, 0.0, -1.0], thrust = 1.0 },
+    { name = "y", point = "hub", offset = [0.0, 0.0, 1.0], direction = [1.0, 0.0, 0.0], thrust = 1.0 },
+    { name = "-y", point = "hub", offset = [0.0, 0.0, 1.0], direction = [-1.0, 0.0, 0.0], thrust = 1.0 },
+    { name = "z", point = "hub", offset = [1.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], thrust = 1.0 },
+    { name = "-z", point = "hub", offset = [1.0, 0.0, 0.0], direction = [0.0, -1.0, 0.0], thrust = 1.0 },
+]
+[actuator.jets.groups]
+roll = { plus = ["x"], minus = ["-x"] }
+pitch = { plus = ["y"], minus = ["-y"] }
+yaw = { plus = ["z"], minus = ["-z"] }
+"#;
+
+/// That body with some keys set.
+pub fn free(set: &[(&str, &str)]) -> Scenario {
+    let mut document = Document::parse("free.toml", FREE.to_owned()).expect("TOML");
+    for (key, value) in set {
+        document.set_text(key, value).expect("a key");
+    }
+    Scenario::from_document(&document).expect("valid")
+}
+
+/// The body of a scenario.
+pub fn body(scenario: &Scenario) -> &Spatial {
+    let Body::Spatial(body) = &scenario.body else { panic!("a spatial body") };
+    body
+}
+
+#[test]
+fn a_tumbling_body_is_where_thirty_digits_put_it() {
+    #[rustfmt::skip]
+    let exact = [
+        ([0.0, 0.0, 0.0], [-0.507_767_528_548_667, -0.730_551_828_790_898_9, -0.319_830_593_538_844_9, 0.325_844_370_579_640_4],
+         [-0.052_423_834_693_582_82, 0.563_702_583_902_254_3, -0.054_077_652_513_899_01]),
+        ([0.02, -0.01, 0.03], [0.675_847_417_291_500_4, -0.291_732_333_088_535_73, 0.162_797_066_718_684_26, -0.656_977_647_594_589_3],
+         [0.248_287_393_218_305_87, 0.179_815_096_323_343_9, 1.085_638_361_491_806]),
+    ];
+    let scenario = free(&[]);
+    let rigid = Rigid::new(body(&scenario));
+    for (torque, [w, x, y, z], rate) in exact {
+        let mut turn = SpatialState::start(body(&scenario), &rigid).turn;
+        for k in 0..400 {
+            rigid.advance(&mut turn, &Vector::from(torque), 0.1 * f64::from(k), 0.1);
+        }
+        let q = turn.attitude;
+        for (found, exact) in [q.w, q.i, q.j, q.k].into_iter().zip([w, x, y, z]) {
+            assert!((found - exact).abs() < 2e-13, "{found} {exact}");
+        }
+        for (found, exact) in rigid.rate(&turn).iter().zip(rate) {
+            assert!((found - exact).abs() < 2e-13, "{found} {exact}");
+        }
+    }
+}
+
+/// Without a torque momentum and energy last, and so does the direction of the momentum in space.
+#[test]
+fn momentum_and_energy_last() {
+    let station = scenario("iss-manoeuvre-off", &[("body.spatial.rate", "[7e-4, -5e-4, 6e-4]")]);
+    let tumbling = free(&[]);
+    // (body, time, step, relative error of momentum and energy, of the momentum's direction).
+    for (of, time, step, bound, direction) in [
+        (&station, 1e4, 0.2, 1e-14, 1e-14),
+        (&tumbling, 1e4, 0.2, 2e-14, 1e-13),
+        (&station, 1e6, 0.2, 1e-14, 1e-14),
+    ] {
+        let rigid = Rigid::new(body(of));
+        let mut turn = SpatialState::start(body(of), &rigid).turn;
+        let inertial = |turn: &Turn| {
+            let (v, momentum) = (turn.attitude.vector().into_owned(), Rigid::momentum(turn));
+            let across = v.cross(&momentum);
+            momentum + (across * turn.attitude.w + v.cross(&across)) * 2.0
+        };
+        let (momentum, energy, fixed) = (Rigid::momentum(&turn).norm(), rigid.energy(&turn), inertial(&turn));
+        let (mut worst, mut longest) = (0.0_f64, 0.0_f64);
+        for k in 0..(time / step) as u64 {
+            rigid.advance(&mut turn, &Vector::zeros(), step * k as f64, step);
+            worst = worst.max((Rigid::momentum(&turn).norm() / momentum - 1.0).abs());
+            worst = worst.max((rigid.energy(&turn) / energy - 1.0).abs());
+            longest = longest.max((turn.attitude.norm() - 1.0).abs());
+        }
+        let turned = (inertial(&turn) - fixed).norm() / momentum;
+        assert!(worst < bound, "{time} s: {worst:e}");
+        assert!(longest <= 1e-15, "{longest:e}");
+        assert!(turned < direction, "{time} s: {turned:e}");
+    }
+}
+
+#[test]
+fn modes_follow_the_matrix_exponential() {
+    // (frequency in Hz, damping ratio, seconds, Phi of (q', w q) row by row).
+    #[rustfmt::skip]
+    let exact = [
+        (0.2, 0.005, 0.2, [0.966_125_660_194_103, -0.248_377_636_158_584, 0.248_377_636_158_584, 0.968_609_436_555_689]),
+        (1.1, 0.0, 0.37, [-0.834_078_433_613_169, -0.551_645_870_628_429, 0.551_645_870_628_429, -0.834_078_433_613_169]),
+        (0.05, 0.9, 3.1, [0.025_317_774_961_25, -0.393_303_064_339_043, 0.393_303_064_339_043, 0.733_263_290_771_527]),
+        (0.05, 1.7, 3.1, [-0.030_189_525_212_371, -0.246_753_845_344_867, 0.246_753_845_344_867, 0.808_773_548_960_176]),
+    ];
+    for (hertz, damping, t, phi) in exact {
+        let w = std::f64::consts::TAU * hertz;
+        let keys = [("frequency", w.to_string()), ("damping", format!("{damping:?}"))];
+        // A unit of q', then a unit of w q.
+        for (start, column) in [([1.0, 0.0], [phi[0], phi[2]]), ([0.0, 1.0], [phi[1], phi[3]])] {
+            let start = [("rate", start[0].to_string()), ("displacement", (start[1] / w).to_string())];
+            let keys: Vec<_> =
+                keys.iter().chain(&start).map(|(k, v)| (format!("body.spatial.modes[0].{k}"), v)).collect();
+            let keys: Vec<_> = keys.iter().map(|(k, v)| (k.as_str(), v.as_str())).collect();
+            assert_moves(&free(&keys), w, &[(0.0, t)], column);
+        }
+    }
+    // Pulses of 0.2 s and of 0.05 s at the start of a cycle of 0.2 s, then three accelerations one after the other.
+    let w = std::f64::consts::TAU * 0.2;
+    assert_moves(&free(&[]), w, &[(1.0, 0.2)], [0.197_652_642_740_595, 0.024_979_816_693_009]);
+    assert_moves(&free(&[]), w, &[(1.0, 0.05), (0.0, 0.15)], [0.048_679_778_117_469, 0.010_893_305_635_643]);
+    let moving = [
+        ("body.spatial.modes[0].rate", "0.3"),
+        ("body.spatial.modes[0].displacement", "-0.15915494309189535"),
+    ];
+    let pieces = [(0.7, 0.13), (-1.1, 0.05), (0.0, 0.62)];
+    assert_moves(&free(&moving), w, &pieces, [0.343_354_755_413_247, 0.177_055_131_174_376]);
+}
+
+/// The mode of a body, pushed by these accelerations for these times (m sqrt(kg)/s², s), must come to this (q', w q).
+#[track_caller]
+fn assert_moves(scenario: &Scenario, w: f64, pieces: &[(f64, f64)], exact: [f64; 2]) {
+    // One of the pieces may be the cycle, whose transition is known beforehand.
+    let elastic = Elastic::new(body(scenario), 0.2);
+    let mut phases = Elastic::start(body(scenario));
+    for (push, t) in pieces {
+        elastic.advance(&mut phases, &[*push], *t);
+    }
+    let rate = elastic.rates(&phases).next().expect("a mode");
+    let found = [rate, w * phases[0].displacement];
+    for (found, exact) in found.into_iter().zip(exact) {
+        assert!((found - exact).abs() < 1e-14, "{pieces:?}: {found} {exact}");
+    }
+    close(elastic.energies(&phases).sum(), 0.5 * (found[0] * found[0] + found[1] * found[1]), 1e-14);
+}
