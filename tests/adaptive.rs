@@ -1,14 +1,17 @@
 //! The adaptive observers over many runs: how often and how fast they find the modes of a channel.
 //!
-//! `cargo test --release adaptive -- --ignored --nocapture` prints the whole table, 100 runs a row.
+//! `flexsc identify` prints the whole table, 100 runs a row.
 
 use std::f64::consts::PI;
 
+use flexsc_core::analysis::identification::Trial;
 use flexsc_core::estimator::adaptive::{
-    Gradient, Observer, Oscillator, Phase, Pulse, Recurrence, Tracker, bounds, trackers,
+    Gradient, Observer, Oscillator, Phase, Pulse, Recurrence, Tracker, trackers,
 };
 use flexsc_core::quantity::{Finite, Frequency, NonNegative};
 use flexsc_core::random::{Seed, Stream};
+
+use crate::util::Dir;
 
 const CYCLE: f64 = 0.2;
 /// Acceleration of the channel's own thrusters (rad/s²).
@@ -96,51 +99,6 @@ impl Bursts {
     }
 }
 
-/// What a run found.
-struct Found {
-    /// The last time at which a frequency was off by more than 2 % (s); none if it is at the end.
-    settled: Option<f64>,
-    /// Relative errors of the frequencies and of the influences at the end, the largest.
-    errors: [f64; 2],
-}
-
-/// 300 s of a channel whose frequencies are off at the start by a part, and whose influences by 40 %.
-fn identify(modes: &[(f64, f64)], off: f64, rate: f64, run: u64) -> Found {
-    let mut draws = Seed { scenario: 1, run }.stream("errors");
-    let mut sign = |size: f64| if draws.uniform() < 0.5 { 1.0 - size } else { 1.0 + size };
-    let nominal: Vec<Tracker> = modes.iter().map(|(at, influence)| mode(*at, &[*influence], None)).collect();
-    // The intervals of the design: what is off is the spacecraft.
-    let starts = |(tracker, [low, high]): (&Tracker, [f64; 2])| {
-        let frequency = (tracker.frequency.get() * sign(off)).clamp(1.001 * low, 0.999 * high);
-        let influence = tracker.influence[0].get() * sign(0.4);
-        mode(frequency / (2.0 * PI), &[influence], Some([low, high].map(|bound| bound / (2.0 * PI))))
-    };
-    let start: Vec<Tracker> = nominal.iter().zip(bounds(&nominal, 2.0, CYCLE)).map(starts).collect();
-    let spec = Gradient { rate: NonNegative::new(rate).expect("a rate"), ..Gradient::default() };
-    let mut observer = spec.observer(&start, &[1.0], CYCLE);
-    let truth: Vec<(f64, Vec<f64>)> = modes.iter().map(|(at, influence)| (*at, vec![*influence])).collect();
-    let mut channel = Channel::new(&truth, &[1.0]);
-    let (mut bursts, mut noise) = (Bursts::new(run, "bursts"), Seed { scenario: 1, run }.stream("noise"));
-    let (mut last, cycles) = (0_u32, 1500_u32);
-    for cycle in 0..cycles {
-        observer.update(channel.measured(&mut noise));
-        let wrong = |(found, (at, _)): (_, &(f64, f64))| error(found, 2.0 * PI * at) > 0.02;
-        if observer.modes().iter().map(|mode| mode.frequency).zip(modes).any(wrong) {
-            last = cycle;
-        }
-        let pulses: Vec<Pulse> = bursts.next(0, ACCELERATION, 20).into_iter().collect();
-        observer.advance(&pulses);
-        channel.advance(&pulses);
-    }
-    let mut errors = [0.0_f64; 2];
-    for (found, (at, influence)) in observer.modes().iter().zip(modes) {
-        errors[0] = errors[0].max(error(found.frequency, 2.0 * PI * at));
-        errors[1] = errors[1].max(error(found.influence[0], *influence));
-    }
-    let settled = (last + 1 < cycles).then_some(f64::from(last) * CYCLE);
-    Found { settled, errors }
-}
-
 fn error(found: f64, exact: f64) -> f64 {
     (found / exact - 1.0).abs()
 }
@@ -150,68 +108,48 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Modes by frequency (Hz) and influence; the rate of the identification.
-type Set = (&'static [(f64, f64)], f64);
-
-const SETS: [Set; 5] = [
-    (&[(0.2476, 2.89)], 0.02),
-    (&[(0.2476, 2.89), (0.6, 3.0)], 0.02),
-    (&[(0.2, 2.0), (0.5, 3.0), (1.1, 3.0)], 0.02),
-    (&[(0.48, 2.0), (0.6, 3.0)], 0.02),
-    (&[(0.55, 3.0), (0.605, 3.0)], 0.01),
-];
-const OFF: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
-
-/// How many of the runs converged; of those, the medians of the time and of the errors, and the longest time.
-fn row((modes, rate): Set, off: f64, runs: u64) -> (usize, f64, f64, [f64; 2]) {
-    let found: Vec<Found> = (0..runs).map(|run| identify(modes, off, rate, run)).collect();
-    let converged: Vec<&Found> = found.iter().filter(|found| found.settled.is_some()).collect();
-    let times: Vec<f64> = converged.iter().filter_map(|found| found.settled).collect();
-    let longest = times.iter().fold(0.0_f64, |most, time| most.max(*time));
-    let errors = [0, 1].map(|kind| median(converged.iter().map(|found| found.errors[kind]).collect()));
-    (converged.len(), median(times), longest, errors)
-}
-
 #[test]
 fn modes_are_found_over_random_runs() {
-    // Of each set, the fewest of 12 runs that converge, and limits of the median time, frequency and influence error.
-    let limits = [
-        (12, [12.0, 14.0, 18.0, 24.0], 4e-4, 0.02),
-        (12, [22.0, 22.0, 30.0, 45.0], 5e-4, 0.03),
-        (11, [30.0, 30.0, 60.0, 130.0], 7e-4, 0.03),
-        (11, [50.0, 50.0, 50.0, 60.0], 6e-4, 0.03),
-        (10, [60.0, 60.0, 90.0, 120.0], 2e-3, 0.08),
+    // Of each set in hertz, the fewest of 12 runs that converge, and limits of the median time, frequency and influence error.
+    let sets: [(&[(f64, f64)], f64, u64, [f64; 4], f64, f64); 5] = [
+        (&[(0.2476, 2.89)], 0.02, 12, [12.0, 14.0, 18.0, 24.0], 4e-4, 0.02),
+        (&[(0.2476, 2.89), (0.6, 3.0)], 0.02, 12, [22.0, 22.0, 30.0, 45.0], 5e-4, 0.03),
+        (&[(0.2, 2.0), (0.5, 3.0), (1.1, 3.0)], 0.02, 11, [30.0, 30.0, 60.0, 130.0], 7e-4, 0.03),
+        (&[(0.48, 2.0), (0.6, 3.0)], 0.02, 11, [50.0, 50.0, 50.0, 60.0], 6e-4, 0.03),
+        (&[(0.55, 3.0), (0.605, 3.0)], 0.01, 10, [60.0, 60.0, 90.0, 120.0], 2e-3, 0.08),
     ];
-    for (set, (fewest, times, frequency, influence)) in SETS.into_iter().zip(limits) {
-        for (off, longest) in OFF.into_iter().zip(times) {
-            let (converged, time, _, errors) = row(set, off, 12);
-            let place = format!("{:?} off by {off}: {converged}, {time} s, {errors:?}", set.0);
-            assert!(converged >= fewest && time <= longest, "{place}");
-            assert!(errors[0] <= frequency && errors[1] <= influence, "{place}");
+    for (modes, rate, fewest, times, frequency, influence) in sets {
+        for (off, longest) in [0.05, 0.1, 0.2, 0.3].into_iter().zip(times) {
+            let mut trial = Trial::of(modes.iter().map(|(at, mu)| (2.0 * PI * at, *mu)).collect(), off);
+            trial.observer.rate = NonNegative::new(rate).expect("a rate");
+            let row = trial.table(12);
+            assert!(
+                row.converged >= fewest && row.time_median_s.expect("a time") <= longest,
+                "{modes:?} {row:?}"
+            );
+            assert!(row.frequency_error.expect("an error") <= frequency, "{modes:?} {row:?}");
+            assert!(row.influence_error.expect("an error") <= influence, "{modes:?} {row:?}");
         }
     }
 }
 
 #[test]
-#[ignore = "100 runs a row, for people"]
-fn whole_table() {
-    eprintln!("modes, Hz | off | converged | median, longest s | error of frequency, influence");
-    for set in SETS {
-        for off in OFF {
-            let (converged, time, longest, [frequency, influence]) = row(set, off, 100);
-            let modes: Vec<String> = set.0.iter().map(|(at, _)| at.to_string()).collect();
-            eprintln!(
-                "{} | {off} | {converged} | {time:.1} {longest:.1} | {frequency:.1e} {influence:.4}",
-                modes.join(" + ")
-            );
-        }
-    }
-    eprintln!("roll beside yaw thrusters, 100 runs: elastic rate off by a part, a frequency off by, median");
-    let runs: Vec<_> = (0..100).map(beside_yaw).collect();
-    for (inputs, name) in ["without them", "with them as an input"].into_iter().enumerate() {
-        let off = median(runs.iter().map(|run| run[inputs].0).collect());
-        let strayed = median(runs.iter().map(|run| run[inputs].1).collect());
-        eprintln!("{name} | {off:.3} | {strayed:.4}");
+fn the_command_tells_how_often_modes_are_found() {
+    let dir = Dir::new();
+    let told = dir.run("identify --modes 1.556:2.89 --off 0.1,0.3 --runs 12 --json").exits(0).json();
+    let rows = told["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 2);
+    let trial = Trial::of(vec![(1.556, 2.89)], 0.3);
+    assert_eq!(rows[1]["found"], serde_json::json!(trial.table(12)));
+    dir.run("identify --modes 1.556:2.89 --off 0.1 --runs 12").exits(0).says(&["0.2476", "12/12"]);
+    for (bad, why) in [
+        ("identify --modes 1.2", "must be W:MU,W:MU"),
+        ("identify --modes 20:1", "got 20"),
+        ("identify --modes 1.2:0", "other than 0"),
+        ("identify --off 1.5", "must be off by 0 to 1, got 1.5"),
+        ("identify --runs 0", "0 is not in"),
+    ] {
+        dir.run(bad).exits(2).says(&[why]);
     }
 }
 

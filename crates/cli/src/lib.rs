@@ -8,6 +8,7 @@ mod export;
 mod failure;
 mod figure;
 mod grid;
+mod identify;
 mod log;
 mod map;
 mod modes;
@@ -56,6 +57,8 @@ enum Verb {
     Map(map::Args),
     /// Tell what a relay of thrusters does to elastic modes: what it damps, how fast, and where a delay makes it swing
     Damping(damping::Args),
+    /// Tell how often and how fast an adaptive observer finds elastic modes, over many runs
+    Identify(identify::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
     /// Print a topic of a log as a table
@@ -93,6 +96,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Tune(args) => tune::run(&args),
         Verb::Map(args) => map::run(&args),
         Verb::Damping(args) => damping::run(&args),
+        Verb::Identify(args) => identify::run(&args),
         Verb::Plot(args) => plot::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),

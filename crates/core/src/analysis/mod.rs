@@ -3,6 +3,7 @@
 pub mod cycle;
 pub mod damping;
 pub mod elliptic;
+pub mod identification;
 pub mod influence;
 pub mod modal;
 pub mod rigid_cycle;

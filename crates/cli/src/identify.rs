@@ -1,0 +1,138 @@
+//! `flexsc identify`: how often and how fast an adaptive observer finds elastic modes.
+
+use std::f64::consts::TAU;
+use std::io::Write;
+use std::str::FromStr;
+
+use flexsc_core::analysis::identification::{Row, Trial};
+use flexsc_core::quantity::NonNegative;
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::{print, say};
+
+/// The sets of the study behind seed paper 4's scenarios, in hertz, and the rate at which each is identified.
+const SETS: [(&[(f64, f64)], f64); 5] = [
+    (&[(0.2476, 2.89)], 0.02),
+    (&[(0.2476, 2.89), (0.6, 3.0)], 0.02),
+    (&[(0.2, 2.0), (0.5, 3.0), (1.1, 3.0)], 0.02),
+    (&[(0.48, 2.0), (0.6, 3.0)], 0.02),
+    (&[(0.55, 3.0), (0.605, 3.0)], 0.01),
+];
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// A set of modes by frequency (rad/s) and influence, such as 1.556:2.89,3.77:3.0; may be repeated. Left out, those of
+    /// the space station's study
+    #[arg(long, value_name = "W:MU,...")]
+    modes: Vec<Modes>,
+    /// Parts by which the frequencies are off at the start
+    #[arg(long, value_delimiter = ',', default_value = "0.05,0.1,0.2,0.3", value_name = "PARTS")]
+    off: Vec<f64>,
+    /// Part by which the influences are
+    #[arg(long, default_value_t = 0.4, value_name = "PART")]
+    influence_off: f64,
+    /// Runs of each row
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    runs: u64,
+    /// Rate of the identification of the given modes
+    #[arg(long, default_value = "0.02", requires = "modes")]
+    rate: f64,
+    /// Cycles of a run, of 0.2 s
+    #[arg(long, default_value_t = 1500, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    cycles: u32,
+    /// Seed
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// Frequency and influence of each mode of a set.
+#[derive(Clone, Debug)]
+struct Modes(Vec<(f64, f64)>);
+
+impl FromStr for Modes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mode = |part: &str| {
+            let (w, mu) = part.split_once(':')?;
+            Some((w.trim().parse().ok()?, mu.trim().parse().ok()?))
+        };
+        let modes: Option<Vec<_>> = text.split(',').map(mode).collect();
+        modes.map(Self).ok_or_else(|| format!("must be W:MU,W:MU,... with numbers, got {text}"))
+    }
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let shipped =
+        SETS.iter().map(|(modes, rate)| (modes.iter().map(|(f, mu)| (TAU * f, *mu)).collect(), *rate));
+    let sets: Vec<(Vec<(f64, f64)>, f64)> = if args.modes.is_empty() {
+        shipped.collect()
+    } else {
+        args.modes.iter().map(|Modes(modes)| (modes.clone(), args.rate)).collect()
+    };
+    let Some(rate) = NonNegative::new(args.rate) else {
+        return Err(Failure::Arguments(format!("--rate must be 0 or more, got {}", args.rate)));
+    };
+    let mut rows = Vec::new();
+    for (modes, rate_of_set) in &sets {
+        for off in &args.off {
+            let mut trial = Trial::of(modes.clone(), *off);
+            trial.observer.rate = NonNegative::new(*rate_of_set).unwrap_or(rate);
+            (trial.off[1], trial.cycles, trial.seed) = (args.influence_off, args.cycles, args.seed);
+            if let Some(why) = trial.inconsistency() {
+                return Err(Failure::Arguments(format!("the modes {why}")));
+            }
+            rows.push((modes, trial.table(args.runs)));
+        }
+    }
+    if args.json {
+        let told = rows.iter().map(|(modes, row)| {
+            let (frequencies, influences): (Vec<f64>, Vec<f64>) = modes.iter().copied().unzip();
+            json!({"frequencies_rad_s": frequencies, "influences": influences, "found": row})
+        });
+        return print(format!("{}\n", json!({"rows": told.collect::<Vec<_>>()})).as_bytes());
+    }
+    tell(args, &rows);
+    Ok(())
+}
+
+fn tell(args: &Args, rows: &[(&Vec<(f64, f64)>, Row)]) {
+    let whole = 0.2 * f64::from(args.cycles);
+    say!(
+        "identification   {} runs of {whole:.0} s a row; influences off by {} %; found is within 2 %",
+        args.runs,
+        100.0 * args.influence_off
+    );
+    say!(
+        "  {:<26}{:>10}{:>10}{:>12}{:>12}{:>14}{:>14}",
+        "frequencies, Hz",
+        "off by",
+        "found",
+        "median, s",
+        "longest, s",
+        "frequency",
+        "influence"
+    );
+    for (modes, row) in rows {
+        let names: Vec<String> = modes.iter().map(|(w, _)| format!("{:.4}", w / TAU)).collect();
+        let cell = |value: Option<f64>, digits: usize| {
+            value.map_or_else(|| "none".to_owned(), |value| format!("{value:.digits$}"))
+        };
+        let small =
+            |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |value| format!("{value:.1e}"));
+        say!(
+            "  {:<26}{:>9}%{:>10}{:>12}{:>12}{:>14}{:>14}",
+            names.join(" + "),
+            100.0 * row.off,
+            format!("{}/{}", row.converged, row.runs),
+            cell(row.time_median_s, 1),
+            cell(row.time_longest_s, 1),
+            small(row.frequency_error),
+            small(row.influence_error),
+        );
+    }
+}

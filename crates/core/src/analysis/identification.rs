@@ -1,0 +1,235 @@
+//! How often and how fast an adaptive observer finds the modes of a channel: many runs under random bursts of thrusters.
+//!
+//! The channel is a rigid rate and modes that are exact (seed paper 4, page 46, tells of such an example); the gyro has noise
+//! and a resolution. At the start each natural frequency is off by a part, up or down, and each influence by another.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::estimator::adaptive::{Gradient, Observer, Oscillator, Phase, Pulse, Tracker, bounds};
+use crate::quantity::{Finite, Frequency};
+use crate::random::{Seed, Stream};
+
+/// Frequencies that are off by less than this part are found.
+const BAND: f64 = 0.02;
+/// Cycles of the longest burst, and of the longest pause after it.
+const BURST: usize = 10;
+const PAUSE: usize = 20;
+
+/// A channel, its thrusters and its gyro.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// Natural frequency (rad/s) and influence of each mode.
+    pub modes: Vec<(f64, f64)>,
+    /// The observer, whose damping ratio is that of the modes.
+    pub observer: Gradient,
+    /// Parts by which frequencies and influences are off at the start.
+    pub off: [f64; 2],
+    /// Rigid acceleration of the thrusters (rad/s²).
+    pub acceleration: f64,
+    /// Standard deviation of the gyro's noise, and its resolution (rad/s).
+    pub gyro: [f64; 2],
+    /// Cycle (s), and how many there are.
+    pub cycle: f64,
+    /// See `cycle`.
+    pub cycles: u32,
+    /// Seed of all runs.
+    pub seed: u64,
+}
+
+/// What a run found.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The last time at which a frequency was off by more than 2 % (s); none if that is the last cycle.
+    pub time: Option<f64>,
+    /// Relative error of the frequency that is furthest off at the end, and of the influence.
+    pub errors: [f64; 2],
+}
+
+/// What many runs found.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Part by which the frequencies were off at the start.
+    pub off: f64,
+    /// Runs, and those that converged.
+    pub runs: u64,
+    /// See `runs`.
+    pub converged: u64,
+    /// Of those that did, the median and the longest time (s); none if none did.
+    pub time_median_s: Option<f64>,
+    /// See `time_median_s`.
+    pub time_longest_s: Option<f64>,
+    /// The medians of the relative errors at the end.
+    pub frequency_error: Option<f64>,
+    /// See `frequency_error`.
+    pub influence_error: Option<f64>,
+}
+
+impl Trial {
+    /// The channel of the study behind seed paper 4's scenarios: yaw of the station, 300 s.
+    pub fn of(modes: Vec<(f64, f64)>, off: f64) -> Self {
+        Self {
+            modes,
+            observer: Gradient::default(),
+            off: [off, 0.4],
+            acceleration: 2.05e-5,
+            gyro: [2e-6, 1e-6],
+            cycle: 0.2,
+            cycles: 1500,
+            seed: 1,
+        }
+    }
+
+    /// What is wrong with it, if anything: a mode, and why.
+    pub fn inconsistency(&self) -> Option<String> {
+        let highest = std::f64::consts::PI / self.cycle;
+        let [frequency, influence] = self.off;
+        if self.modes.is_empty() {
+            return Some("must have a mode".to_owned());
+        }
+        for (w, mu) in &self.modes {
+            if Frequency::new(*w).is_none() || *w >= highest {
+                return Some(format!(
+                    "must have frequencies between 1e-4 rad/s and {highest:.4} rad/s, half of what the cycle samples, got {w}"
+                ));
+            }
+            if !mu.is_finite() || *mu == 0.0 {
+                return Some(format!("must have influences other than 0, got {mu}"));
+            }
+        }
+        let parts = (0.0..1.0).contains(&frequency) && (0.0..1.0).contains(&influence);
+        (!parts).then(|| format!("must be off by 0 to 1, got {frequency} and {influence}"))
+    }
+
+    /// A run.
+    pub fn run(&self, number: u64) -> Found {
+        let seed = Seed { scenario: self.seed, run: number };
+        let mut observer =
+            self.observer.observer(&self.start(&mut seed.stream("errors")), &[1.0], self.cycle);
+        let mut channel = Channel::new(self);
+        let (mut bursts, mut noise) = (Bursts::new(seed), seed.stream("noise"));
+        let mut last = 0;
+        for cycle in 0..self.cycles {
+            observer.update(channel.measured(self.gyro, &mut noise));
+            let found = observer.modes();
+            if found.iter().zip(&self.modes).any(|(mode, (w, _))| off(mode.frequency, *w) > BAND) {
+                last = cycle;
+            }
+            let pulse = bursts.next(self.acceleration, self.cycle);
+            observer.advance(pulse.as_slice());
+            channel.advance(pulse, self.cycle);
+        }
+        let mut errors = [0.0_f64; 2];
+        for (mode, (w, mu)) in observer.modes().iter().zip(&self.modes) {
+            errors[0] = errors[0].max(off(mode.frequency, *w));
+            errors[1] = errors[1].max(off(mode.influence[0], *mu));
+        }
+        let time = (last + 1 < self.cycles).then_some(f64::from(last) * self.cycle);
+        Found { time, errors }
+    }
+
+    /// Runs on the threads of the current rayon pool.
+    pub fn table(&self, runs: u64) -> Row {
+        let found: Vec<Found> = (0..runs).into_par_iter().map(|number| self.run(number)).collect();
+        let converged: Vec<&Found> = found.iter().filter(|found| found.time.is_some()).collect();
+        let times: Vec<f64> = converged.iter().filter_map(|found| found.time).collect();
+        let error = |kind: usize| median(converged.iter().map(|found| found.errors[kind]).collect());
+        Row {
+            off: self.off[0],
+            runs,
+            converged: converged.len() as u64,
+            time_longest_s: times.iter().copied().max_by(f64::total_cmp),
+            time_median_s: median(times),
+            frequency_error: error(0),
+            influence_error: error(1),
+        }
+    }
+
+    /// What the observer begins with: within the intervals of the design, for what is off is the spacecraft.
+    fn start(&self, draws: &mut Stream) -> Vec<Tracker> {
+        let mut sign = |size: f64| if draws.uniform() < 0.5 { 1.0 - size } else { 1.0 + size };
+        let valid = |w: f64| Frequency::new(w).expect("a mode's frequency is one, and so are its bounds");
+        let tracker = |w: f64, mu: f64, bounds: Option<[Frequency; 2]>| Tracker {
+            frequency: valid(w),
+            influence: vec![Finite::new(mu).unwrap_or_default()],
+            bounds,
+        };
+        let design: Vec<Tracker> = self.modes.iter().map(|(w, mu)| tracker(*w, *mu, None)).collect();
+        let intervals = bounds(&design, self.observer.reach.get(), self.cycle);
+        let start = |((w, mu), [low, high]): (&(f64, f64), [f64; 2])| {
+            let frequency = (w * sign(self.off[0])).clamp(1.001 * low, 0.999 * high);
+            tracker(frequency, mu * sign(self.off[1]), Some([low, high].map(valid)))
+        };
+        self.modes.iter().zip(intervals).map(start).collect()
+    }
+}
+
+/// A channel in motion.
+struct Channel {
+    modes: Vec<(Oscillator, f64)>,
+    rate: f64,
+    phases: Vec<Phase>,
+}
+
+impl Channel {
+    fn new(trial: &Trial) -> Self {
+        let damping = trial.observer.damping.get();
+        let modes = trial.modes.iter().map(|(w, mu)| (Oscillator { frequency: *w, damping }, *mu));
+        Self { modes: modes.collect(), rate: 0.0, phases: vec![[0.0; 2]; trial.modes.len()] }
+    }
+
+    fn measured(&self, [noise, resolution]: [f64; 2], draws: &mut Stream) -> f64 {
+        let y = self.rate + self.phases.iter().map(|phase| phase[0]).sum::<f64>() + noise * draws.normal();
+        if resolution > 0.0 { libm::round(y / resolution) * resolution } else { y }
+    }
+
+    fn advance(&mut self, pulse: Option<Pulse>, cycle: f64) {
+        for (phase, (of, influence)) in self.phases.iter_mut().zip(&self.modes) {
+            *phase = of.turned(&of.transition(cycle), cycle, *phase).0;
+            if let Some(Pulse { acceleration, start, duration, .. }) = pulse {
+                let push = of.pulse(cycle - start, cycle - start - duration).0;
+                *phase = [0, 1].map(|part| phase[part] + influence * acceleration * push[part]);
+            }
+        }
+        self.rate += pulse.map_or(0.0, |pulse| pulse.acceleration * pulse.duration);
+    }
+}
+
+/// Bursts of one to ten cycles under a random sign, with random pauses.
+struct Bursts {
+    draws: Stream,
+    left: usize,
+    wait: usize,
+    sign: f64,
+}
+
+impl Bursts {
+    fn new(seed: Seed) -> Self {
+        Self { draws: seed.stream("bursts"), left: 0, wait: 0, sign: 1.0 }
+    }
+
+    /// The pulse of the next cycle, if there is one.
+    fn next(&mut self, acceleration: f64, cycle: f64) -> Option<Pulse> {
+        if self.left == 0 && self.wait > 0 {
+            self.wait -= 1;
+        } else if self.left == 0 {
+            self.left = 1 + self.draws.index(BURST);
+            self.sign = if self.draws.uniform() < 0.5 { -1.0 } else { 1.0 };
+            self.wait = self.draws.index(PAUSE);
+        }
+        (self.left > 0).then(|| {
+            self.left -= 1;
+            Pulse { input: 0, acceleration: self.sign * acceleration, start: 0.0, duration: cycle }
+        })
+    }
+}
+
+/// By which part a value is off.
+fn off(found: f64, exact: f64) -> f64 {
+    (found / exact - 1.0).abs()
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
