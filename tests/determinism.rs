@@ -15,7 +15,7 @@ fn fingerprint(text: &str) -> u64 {
 #[test]
 fn runs_repeat_to_the_last_bit() {
     // (scenario, topic, fingerprint): undamped with adaptation; damped with noise, quadrature and drawn numbers;
-    // three axes, whose metrics hold energies and angles to the last bit.
+    // three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
     let runs = [
         ("relay-adaptive", "", "/command", 0xfed5_1b8d_2885_31dd),
         ("relay-adaptive", "", "/adaptation", 0x6fc9_7027_b350_262f),
@@ -23,6 +23,8 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0xbc8b_d593_5234_1614),
         ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0x2935_cc16_a9ac_85dc),
+        ("iss-manoeuvre", " --runs 5:6", "/jets", 0x938f_f082_96da_f932),
+        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x07bd_6106_2068_7495),
     ];
     for (name, runs, topic, expected) in runs {
         let dir = Dir::with(&[name]);

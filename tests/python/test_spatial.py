@@ -52,3 +52,18 @@ def test_a_ring_down_is_that_of_another_integrator() -> None:
             atol=1e-14,
         )
         np.testing.assert_allclose(seen[:, index], exact.y[0], atol=1e-10)
+
+
+def test_a_damped_run_tells_what_its_observers_know() -> None:
+    run = shipped("iss-ringdown").with_({"duration": 60.0, "log.period": 60.0}).simulate(log="full")
+    tracking = run["tracking"]
+    rows = len(tracking["time_s"])
+    assert rows == 301
+    assert tracking["channels.acted_on_rad_s"].shape == (rows, 3)
+    assert tracking["trackers.axis"].shape == (rows, 6)
+    found, truth = tracking["trackers.frequency_rad_s"], tracking["trackers.true_frequency_rad_s"]
+    errors = np.asarray(run.metrics["frequency_estimate_errors"])
+    np.testing.assert_allclose(found[-1] / truth[-1] - 1.0, errors, atol=1e-12)
+    elastic = tracking["channels.true_elastic_rad_s"]
+    assert np.abs(elastic[-50:]).max() < 0.15 * np.abs(elastic[:50]).max()
+    assert run.metrics["damping_cycles"] > 20

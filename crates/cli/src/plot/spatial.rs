@@ -122,6 +122,9 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
 
 /// Natural frequencies of the tracked modes as estimated, and as they are.
 pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
+    let ends = |points: Vec<Point>| -> Vec<Point> {
+        points.first().into_iter().chain(points.last()).copied().collect()
+    };
     let lines = |axis: usize| {
         let count = cycles.1.first().map_or(0, |(_, tracking)| tracking.trackers.len());
         let of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
@@ -137,7 +140,7 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
                 name("true"),
                 colour::BLACK,
                 Shape::Line(1.0),
-                of(mode, |of| of.true_frequency_rad_s),
+                ends(of(mode, |of| of.true_frequency_rad_s)),
             );
             let estimate = Layer::new(
                 name("estimated"),

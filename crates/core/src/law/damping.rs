@@ -44,6 +44,7 @@ pub struct Damping {
 /// Guards of active damping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a key that stands alone")]
 pub struct DampingGuards {
     /// No pulse that would kick the rigid motion out of the dead zone.
     pub dead_zone: bool,
