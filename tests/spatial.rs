@@ -7,6 +7,7 @@ use flexsc_core::body::spatial::{Elastic, Rigid, Spatial, SpatialState, Turn, Ve
 use flexsc_core::{Document, Scenario};
 
 use crate::study::{close, scenario};
+use crate::util::Dir;
 
 /// A small free body with one mode: the law's dead zones are so wide that the jets stay silent.
 pub const FREE: &str = r#"duration = 100.0
@@ -165,4 +166,47 @@ fn assert_moves(scenario: &Scenario, w: f64, pieces: &[(f64, f64)], exact: [f64;
         assert!((found - exact).abs() < 1e-14, "{pieces:?}: {found} {exact}");
     }
     close(elastic.energies(&phases).sum(), 0.5 * (found[0] * found[0] + found[1] * found[1]), 1e-14);
+}
+
+/// The free body with its modes in a file, and that file.
+fn in_a_file(csv: &str) -> Dir {
+    let (head, rest) = FREE.split_once("[[body.spatial.modes]]").expect("modes");
+    let (_, tail) = rest.split_once("[sensor.gyro]").expect("a gyro");
+    let dir = Dir::holding("modes.csv", csv);
+    dir.write("free.toml", format!("{head}modes = \"modes.csv\"\n[sensor.gyro]{tail}"));
+    dir
+}
+
+const IN_A_FILE: &str =
+    "# shapes of the hub\nfrequency, damping, hub.tx, hub.ry\n1.2566370614359172, 0.005, 1.0, 0.5\n";
+
+#[test]
+fn modes_in_a_file_are_those_of_the_table_and_stay_in_the_log() {
+    let dir = in_a_file(IN_A_FILE);
+    let read = Scenario::load(&dir.path("free.toml")).expect("valid");
+    let free = free(&[]);
+    assert_eq!(body(&read).modes[..], body(&free).modes[..]);
+    assert_eq!(read.self_contained().to_toml(), free.to_toml());
+    dir.run("simulate free.toml --log full").exits(0);
+    let document = Document::load(&dir.path("free.toml")).expect("there");
+    std::fs::remove_file(dir.path("modes.csv")).expect("there");
+    let again = Scenario::from_document_like(&document, &read).expect("the modes are taken over");
+    assert_eq!(again, read);
+    std::fs::rename(dir.path("free.mcap"), dir.path("first.mcap")).expect("there");
+    let kept = dir.run("log scenario first.mcap").exits(0).prints(&["hub"]);
+    dir.write("free.toml", kept);
+    dir.run("simulate free.toml --log full").exits(0);
+    assert!(dir.read("free.mcap") == dir.read("first.mcap"), "the log repeats without the file");
+}
+
+#[test]
+fn columns_of_a_file_of_modes_may_stand_in_any_order() {
+    let csv = "hub.rz,rate,hub.tz,frequency,displacement\n3,4,5,6,7\n";
+    let read = Scenario::load(&in_a_file(csv).path("free.toml")).expect("valid");
+    let mode = &body(&read).modes[0];
+    let shape = mode.shapes["hub"];
+    assert_eq!(shape.translation.map(|c| c.get()), [0.0, 0.0, 5.0]);
+    assert_eq!(shape.rotation.map(|c| c.get()), [0.0, 0.0, 3.0]);
+    let numbers = (mode.frequency.get(), mode.damping.get(), mode.displacement.get(), mode.rate.get());
+    assert_eq!(numbers, (6.0, 0.0, 7.0, 4.0));
 }
