@@ -86,6 +86,8 @@ def poles(*pairs: tuple[float, float]) -> Numbers:
 
 PUSHED = np.vstack([np.eye(5)[:, :3], B2])
 COUPLED = poles() - np.block([[np.zeros((5, 10))], [np.zeros((5, 5)), 0.02 * np.ones((5, 5))]])
+# The first of two alike drives the second.
+CHAIN = np.block([[np.zeros((2, 2)), np.eye(2)], [np.array([[-1.0, 0.0], [1.0, -1.0]]), -0.02 * np.eye(2)]])
 BAD: list[tuple[tuple[Any, ...], str]] = [
     (broken(0, poles((1.0, 3.0))), r"real poles \(-2.61803, -0.381966\): overdamped pairs"),
     (broken(0, poles((1.0, -0.1))), r"A: must be stable, and has the pole 0.05 \+0.998749i"),
@@ -93,6 +95,7 @@ BAD: list[tuple[tuple[Any, ...], str]] = [
     (broken(1, PUSHED), "B: must push a mode along its rate alone, and at 0.6 rad/s does not"),
     (broken(0, COUPLED), "B: must push a mode along its rate alone"),
     ((*second_order(), np.eye(3)), "D: must be 0, as no motion of modes feeds through, got 1"),
+    ((CHAIN, np.eye(4)[:, [2]], np.eye(4)[[1]]), "A: must have motions that are modes of their own"),
     (broken(1, np.zeros((10, 3))), "B: must push a mode, and pushes none"),
     (
         broken(1, np.zeros((9, 3))),
@@ -106,6 +109,17 @@ BAD: list[tuple[tuple[Any, ...], str]] = [
 def test_what_is_no_modal_model_is_refused(matrices: tuple[Any, ...], why: str) -> None:
     with pytest.raises(ValueError, match=why):
         flexsc.from_state_space(*matrices)
+
+
+def test_what_nearly_are_modes_is_taken_where_that_is_asked_for() -> None:
+    a, b, c = second_order()
+    a[5:, 5:] -= 1e-4  # a drag that couples the modes a little
+    with pytest.raises(ValueError, match="B: must push a mode along its rate alone"):
+        flexsc.from_state_space(a, b, c)
+    model = flexsc.from_state_space(a, b, c, tolerance=0.01)
+    assert 1e-6 < model.deviation < 0.01
+    with pytest.raises(ValueError, match="whose transfer function is off by a relative"):
+        flexsc.from_state_space(*second_order(), tolerance=1e-17)
 
 
 @pytest.mark.parametrize("kind", ["force", "torque"])

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 _ALIKE = 1e-8
 # An input that pushes a mode by less than this part of what it pushes the others by is rounding.
 _ROUNDING = 1e-12
+# Where motions drive each other, rounding gives eigenvectors a condition number of its inverse root.
+_FULL = 1e7
 # For each axis the component of a force that turns about it, and that of its arm.
 _FORCE, _ARM = (2, 0, 1), (1, 2, 0)
 
@@ -202,9 +204,10 @@ def from_state_space(
     poles, right = np.linalg.eig(a)
     upper = _oscillating(poles)
     condition = np.linalg.cond(right)
-    if not condition < 1e12:
+    if not condition < _FULL:
         raise ValueError(
-            "A: must have a full set of eigenvectors, and has not: some of its motions are coupled"
+            f"A: must have motions that are modes of their own, and their condition number is {condition:.1e}: "
+            "some drive each other, or the state has scales too far apart"
         )
     left = np.linalg.inv(right)
     found = []
