@@ -8,8 +8,9 @@
 """
 
 from flexsc.structure._files import from_csv, write_scenario
+from flexsc.structure._modal_model import StateSpace
 from flexsc.structure._nastran import from_nastran
-from flexsc.structure._state_space import StateSpace, from_state_space
+from flexsc.structure._state_space import from_state_space
 from flexsc.structure._structure import Structure
 
 __all__ = ["StateSpace", "Structure", "from_csv", "from_nastran", "from_state_space", "write_scenario"]

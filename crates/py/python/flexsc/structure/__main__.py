@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from flexsc.structure._files import write_scenario
-from flexsc.structure._state_space import StateSpace, from_state_space
+from flexsc.structure._modal_model import StateSpace
+from flexsc.structure._state_space import from_state_space
 from flexsc.structure._structure import AXES
 
 # Assumed of the rigid body, of which such a file tells nothing: kg m², N, m.
