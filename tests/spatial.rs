@@ -4,6 +4,7 @@
 
 use flexsc_core::body::Body;
 use flexsc_core::body::spatial::{Elastic, Rigid, Spatial, SpatialState, Turn, Vector};
+use flexsc_core::quantity::Finite;
 use flexsc_core::{Document, Scenario};
 
 use crate::study::{close, scenario};
@@ -205,8 +206,29 @@ fn columns_of_a_file_of_modes_may_stand_in_any_order() {
     let read = Scenario::load(&in_a_file(csv).path("free.toml")).expect("valid");
     let mode = &body(&read).modes[0];
     let shape = mode.shapes["hub"];
-    assert_eq!(shape.translation.map(|c| c.get()), [0.0, 0.0, 5.0]);
-    assert_eq!(shape.rotation.map(|c| c.get()), [0.0, 0.0, 3.0]);
+    assert_eq!(shape.translation.map(Finite::get), [0.0, 0.0, 5.0]);
+    assert_eq!(shape.rotation.map(Finite::get), [0.0, 0.0, 3.0]);
     let numbers = (mode.frequency.get(), mode.damping.get(), mode.displacement.get(), mode.rate.get());
     assert_eq!(numbers, (6.0, 0.0, 7.0, 4.0));
+}
+
+#[test]
+fn keys_of_modes_in_a_file_may_be_uncertain_and_swept() {
+    let uncertain = "[uncertain]\n\"body.spatial.modes[0].frequency\" = { relative_uniform = 0.2 }\n\
+                     \"body.spatial.modes[0].shapes.hub.rotation[1]\" = { uniform = [0.1, 0.2] }\n";
+    let dir = in_a_file(IN_A_FILE);
+    dir.write("free.toml", format!("{}{uncertain}", dir.text("free.toml")));
+    dir.write("table.toml", format!("{FREE}{uncertain}"));
+    for name in ["free", "table"] {
+        dir.run(&format!("simulate {name}.toml --runs 3 -o {name}")).exits(0);
+        let vary = "body.spatial.modes[0].frequency=1:2:3";
+        dir.run(&format!("sweep {name}.toml --vary {vary} -o {name}-sweep")).exits(0);
+    }
+    assert_eq!(dir.text("free/runs.csv"), dir.text("table/runs.csv"));
+    let drawn = crate::util::table(&dir, "free/runs.csv");
+    assert_ne!(drawn[0]["body.spatial.modes[0].frequency"], drawn[1]["body.spatial.modes[0].frequency"]);
+    assert_eq!(dir.names("free-sweep"), dir.names("table-sweep"));
+    dir.run("check free.toml").exits(0);
+    dir.write("free.toml", dir.text("free.toml").replace("modes[0].f", "modes[1].f"));
+    dir.run("check free.toml").exits(2).says(&["modes[1].frequency\"` names no key of this scenario"]);
 }

@@ -172,6 +172,11 @@ def test_a_scenario_is_written_with_its_modes_beside_it(tmp_path: Path) -> None:
         {key: mode[key] for key in ("frequency", "damping", "shapes")}
         for mode in scenario.to_dict()["body"]["spatial"]["modes"]
     ]
+    uncertain = scenario.with_("uncertain", {"body.spatial.modes[0].frequency": {"relative_uniform": 0.1}})
+    flexsc.write_scenario(uncertain, tmp_path / "uncertain.toml")
+    drawn = [flexsc.Scenario.load(tmp_path / "uncertain.toml").draw(run).modes["frequency"] for run in (0, 1)]
+    assert drawn[0][0] != drawn[1][0]
+    np.testing.assert_array_equal(drawn[0], uncertain.draw(0).modes["frequency"])
     with pytest.raises(ValueError, match="must have modes in itself"):
         flexsc.write_scenario(read, tmp_path / "again.toml")
 

@@ -268,15 +268,21 @@ impl Scenario {
     /// of a file of modes to the modes.
     #[must_use]
     pub fn self_contained(&self) -> Self {
-        let mut scenario = self.clone();
+        let mut scenario = self.clone().with_own_modes();
         if matches!(self.body, Body::Matrices(_)) {
             scenario.body = Body::Planar(self.model.clone());
             scenario.uncertain.retain(|key, _| !key.starts_with("body.matrices"));
         }
-        if let Body::Spatial(spatial) = &mut scenario.body {
+        scenario
+    }
+
+    /// The scenario with the modes of a spatial body in itself, where they have keys, and not in a file.
+    #[must_use]
+    pub fn with_own_modes(mut self) -> Self {
+        if let Body::Spatial(spatial) = &mut self.body {
             spatial.modes.forget_file();
         }
-        scenario
+        self
     }
 
     /// The date of the start in nanoseconds since 1970 UTC; 0 without one.

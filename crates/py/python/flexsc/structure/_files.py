@@ -76,7 +76,7 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> Path:
     """Write a scenario of a spatial body as `NAME.toml`, its modes beside it as `NAME-modes.csv`.
 
     Args:
-        scenario: The scenario. Keys of single modes, such as uncertain ones, need the modes in the scenario.
+        scenario: The scenario, its modes in itself.
         path: The file to write.
 
     Returns:
@@ -84,7 +84,6 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> Path:
 
     Raises:
         ValueError: The body is not a spatial one with modes.
-        ScenarioError: The scenario needs its modes in itself.
         OSError: A file cannot be written.
     """
     values = scenario.to_dict()
