@@ -93,3 +93,43 @@ fn parts_of_a_loop_fit_each_other() {
         dir.run("check bad.toml").exits(2).says(&[words]);
     }
 }
+
+/// A file of modes, and words of the error.
+#[rustfmt::skip] // One case a line.
+const FILES: &[(&str, &[&str])] = &[
+    ("", &["must have a header"]),
+    ("damping,hub.tx\n", &["line 1: must have a column `frequency`"]),
+    ("frequency,hub.tx,hub.tx\n", &["line 1: must have each column once, got `hub.tx` again"]),
+    ("frequency,zeta\n", &["line 1: must name columns `frequency`, `damping`", "`POINT.rz`, got `zeta`"]),
+    ("frequency,hub.tw\n", &["line 1", "got `hub.tw`"]),
+    ("frequency,hub.tx\n1,2\n3\n", &["line 3: must have 2 numbers, as the header, got 1"]),
+    ("frequency,hub.tx\n1,x\n", &["line 2: `hub.tx` must be a number, got `x`"]),
+    ("frequency,hub.tx\n1,inf\n", &["line 2: `hub.tx` must be a finite number, got inf"]),
+    ("frequency,hub.tx\n0,1\n", &["line 2: `frequency` must be a natural frequency of 1e-4 to 1e3 rad/s, got 0"]),
+    ("hub.tx,frequency,damping\n1,1,-1\n", &["line 2: `damping` must be a number of 0 or more, got -1"]),
+];
+
+#[test]
+fn bad_files_of_modes_are_refused() {
+    let (head, rest) = FREE.split_once("[[body.spatial.modes]]").expect("modes");
+    let (_, tail) = rest.split_once("[sensor.gyro]").expect("a gyro");
+    let with = |modes: &str| format!("{head}modes = {modes}\n[sensor.gyro]{tail}");
+    let dir = Dir::holding("bad.toml", with("\"modes.csv\""));
+    let refused = |words: &[&str]| {
+        dir.run("check bad.toml").exits(2).says(&["bad.toml:6:", "`body.spatial.modes`"]).says(words);
+    };
+    refused(&["cannot be used", "modes.csv: No such file"]);
+    for (csv, words) in FILES {
+        dir.write("modes.csv", csv);
+        refused(&["cannot be used", "modes.csv"]);
+        refused(words);
+    }
+    dir.write("modes.csv", "frequency,hab.tx\n1,2\n");
+    dir.run("check bad.toml")
+        .exits(2)
+        .says(&["`body.spatial.modes[0].shapes.hab` must be one of the points, `hub`"]);
+    dir.write("bad.toml", with("\"modes.txt\""));
+    refused(&["must be an array of modes, or the path of a .csv file", "modes.txt"]);
+    dir.write("bad.toml", with("5"));
+    refused(&["expected an array of modes, or the path of a .csv file"]);
+}

@@ -4,9 +4,11 @@
 
 use flexsc_core::body::Body;
 use flexsc_core::body::spatial::{Elastic, Rigid, Spatial, SpatialState, Turn, Vector};
+use flexsc_core::quantity::Finite;
 use flexsc_core::{Document, Scenario};
 
 use crate::study::{close, scenario};
+use crate::util::Dir;
 
 /// A small free body with one mode: the law's dead zones are so wide that the jets stay silent.
 pub const FREE: &str = r#"duration = 100.0
@@ -165,4 +167,68 @@ fn assert_moves(scenario: &Scenario, w: f64, pieces: &[(f64, f64)], exact: [f64;
         assert!((found - exact).abs() < 1e-14, "{pieces:?}: {found} {exact}");
     }
     close(elastic.energies(&phases).sum(), 0.5 * (found[0] * found[0] + found[1] * found[1]), 1e-14);
+}
+
+/// The free body with its modes in a file, and that file.
+fn in_a_file(csv: &str) -> Dir {
+    let (head, rest) = FREE.split_once("[[body.spatial.modes]]").expect("modes");
+    let (_, tail) = rest.split_once("[sensor.gyro]").expect("a gyro");
+    let dir = Dir::holding("modes.csv", csv);
+    dir.write("free.toml", format!("{head}modes = \"modes.csv\"\n[sensor.gyro]{tail}"));
+    dir
+}
+
+const IN_A_FILE: &str =
+    "# shapes of the hub\nfrequency, damping, hub.tx, hub.ry\n1.2566370614359172, 0.005, 1.0, 0.5\n";
+
+#[test]
+fn modes_in_a_file_are_those_of_the_table_and_stay_in_the_log() {
+    let dir = in_a_file(IN_A_FILE);
+    let read = Scenario::load(&dir.path("free.toml")).expect("valid");
+    let free = free(&[]);
+    assert_eq!(body(&read).modes[..], body(&free).modes[..]);
+    assert_eq!(read.self_contained().to_toml(), free.to_toml());
+    dir.run("simulate free.toml --log full").exits(0);
+    let document = Document::load(&dir.path("free.toml")).expect("there");
+    std::fs::remove_file(dir.path("modes.csv")).expect("there");
+    let again = Scenario::from_document_like(&document, &read).expect("the modes are taken over");
+    assert_eq!(again, read);
+    std::fs::rename(dir.path("free.mcap"), dir.path("first.mcap")).expect("there");
+    let kept = dir.run("log scenario first.mcap").exits(0).prints(&["hub"]);
+    dir.write("free.toml", kept);
+    dir.run("simulate free.toml --log full").exits(0);
+    assert!(dir.read("free.mcap") == dir.read("first.mcap"), "the log repeats without the file");
+}
+
+#[test]
+fn columns_of_a_file_of_modes_may_stand_in_any_order() {
+    let csv = "hub.rz,rate,hub.tz,frequency,displacement\n3,4,5,6,7\n";
+    let read = Scenario::load(&in_a_file(csv).path("free.toml")).expect("valid");
+    let mode = &body(&read).modes[0];
+    let shape = mode.shapes["hub"];
+    assert_eq!(shape.translation.map(Finite::get), [0.0, 0.0, 5.0]);
+    assert_eq!(shape.rotation.map(Finite::get), [0.0, 0.0, 3.0]);
+    let numbers = (mode.frequency.get(), mode.damping.get(), mode.displacement.get(), mode.rate.get());
+    assert_eq!(numbers, (6.0, 0.0, 7.0, 4.0));
+}
+
+#[test]
+fn keys_of_modes_in_a_file_may_be_uncertain_and_swept() {
+    let uncertain = "[uncertain]\n\"body.spatial.modes[0].frequency\" = { relative_uniform = 0.2 }\n\
+                     \"body.spatial.modes[0].shapes.hub.rotation[1]\" = { uniform = [0.1, 0.2] }\n";
+    let dir = in_a_file(IN_A_FILE);
+    dir.write("free.toml", format!("{}{uncertain}", dir.text("free.toml")));
+    dir.write("table.toml", format!("{FREE}{uncertain}"));
+    for name in ["free", "table"] {
+        dir.run(&format!("simulate {name}.toml --runs 3 -o {name}")).exits(0);
+        let vary = "body.spatial.modes[0].frequency=1:2:3";
+        dir.run(&format!("sweep {name}.toml --vary {vary} -o {name}-sweep")).exits(0);
+    }
+    assert_eq!(dir.text("free/runs.csv"), dir.text("table/runs.csv"));
+    let drawn = crate::util::table(&dir, "free/runs.csv");
+    assert_ne!(drawn[0]["body.spatial.modes[0].frequency"], drawn[1]["body.spatial.modes[0].frequency"]);
+    assert_eq!(dir.names("free-sweep"), dir.names("table-sweep"));
+    dir.run("check free.toml").exits(0);
+    dir.write("free.toml", dir.text("free.toml").replace("modes[0].f", "modes[1].f"));
+    dir.run("check free.toml").exits(2).says(&["modes[1].frequency\"` names no key of this scenario"]);
 }

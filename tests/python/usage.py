@@ -35,6 +35,12 @@ plan: flexsc.Plan = turn.plan(band=0.05)
 command: npt.NDArray[Any] = plan.torque(np.linspace(0.0, 40.0, 5))
 peak: float = plan["peak_torque_nm"]
 rows: list[dict[str, Any]] = plan.compare()
+model: flexsc.StateSpace = flexsc.from_state_space(np.array([[0, 1], [-4, -0.02]]), [[0], [1]], [[0, 1]])
+structure: flexsc.Structure = model.structure(arm=2.0, inputs=("yaw",), outputs=("yaw",)).keep([0])
+station: flexsc.Scenario = model.scenario(np.eye(3), thrust=1.0, arm=2.0, inputs=("yaw",), outputs=("yaw",))
+with tempfile.TemporaryDirectory() as directory:
+    modes: Path = flexsc.write_scenario(station, Path(directory) / "station.toml")
+    read: flexsc.Structure = flexsc.from_csv(modes, {"yaw": (2.0, 0.0, 0.0)})
 try:
     flexsc.Scenario({"duration": 1.0})
 except flexsc.ScenarioError as error:

@@ -82,6 +82,7 @@ pub struct Outcome {
 impl Campaign {
     /// The campaign of a scenario over its `[uncertain]` keys and, with a grid, over that key too.
     pub fn new(scenario: Scenario, origin: &str, grid: Option<Grid>) -> Result<Self, ScenarioError> {
+        let scenario = scenario.with_own_modes();
         let mut table = scenario.to_table();
         // What was drawn is said by the keys themselves.
         table.remove("uncertain");

@@ -67,10 +67,24 @@ impl Body {
 
     /// Makes the paths of files absolute: relative ones begin at a directory.
     pub fn locate(&mut self, directory: &Path) {
-        if let Self::Matrices(matrices) = self {
-            matrices.mass.locate(directory);
-            matrices.stiffness.locate(directory);
+        match self {
+            Self::Matrices(matrices) => {
+                matrices.mass.locate(directory);
+                matrices.stiffness.locate(directory);
+            }
+            Self::Spatial(spatial) => spatial.modes.locate(directory),
+            Self::Planar(_) | Self::Panels(_) => {}
         }
+    }
+
+    /// Reads the modes of a spatial body that are in a file; those of another body from the same file are taken over.
+    ///
+    /// # Errors
+    /// What is wrong with the file: a key within the body, and why.
+    pub fn read(&mut self, other: Option<&Self>) -> Result<(), Fault> {
+        let Self::Spatial(spatial) = self else { return Ok(()) };
+        let other = other.and_then(Self::spatial).map(|other| &other.modes);
+        spatial.modes.read(other).map_err(|why| ("modes".to_owned(), why))
     }
 
     /// The body, if it is a spatial one.

@@ -36,7 +36,10 @@ impl Scenario {
         // The parts of a spatial loop were found to fit each other when it was put together.
         let parts = if self.spatial.is_some() { None } else { self.planar_inconsistency() };
         parts.or_else(|| {
-            let mut table = self.to_table();
+            if self.uncertain.is_empty() {
+                return None;
+            }
+            let mut table = self.clone().with_own_modes().to_table();
             table.remove("uncertain");
             self.uncertain.iter().find_map(|(key, distribution)| {
                 let why = distribution.problem(key::get(&table, key))?;

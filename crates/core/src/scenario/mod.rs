@@ -22,6 +22,7 @@ use crate::law::{Goal, Law};
 use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::quantity::Positive;
 use crate::sensor::Sensor;
+use crate::structure::Fault;
 use crate::time::{Instant, Span};
 use crate::uncertain::Distribution;
 
@@ -168,11 +169,12 @@ impl Scenario {
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
         }
         scenario.body.locate(Path::new(document.origin()).parent().unwrap_or(Path::new("")));
+        let kind = scenario.body.kind();
+        let in_body = |(key, why): Fault| document.inconsistent(&format!("body.{kind}.{key}"), &why);
+        scenario.body.read(parent.map(|parent| &parent.body)).map_err(in_body)?;
         scenario.model = match parent.filter(|parent| parent.body == scenario.body) {
             Some(parent) => parent.model.clone(),
-            None => scenario.body.solve().map_err(|(key, why)| {
-                document.inconsistent(&format!("body.{}.{key}", scenario.body.kind()), &why)
-            })?,
+            None => scenario.body.solve().map_err(in_body)?,
         };
         scenario.chain = scenario.body.chain(&scenario.model);
         if matches!(scenario.law, Law::Open(_)) && !document.has("law") && scenario.manoeuvre.is_none() {
@@ -262,15 +264,25 @@ impl Scenario {
         })
     }
 
-    /// The scenario without need of any file: the matrices of a structure give way to the modes that they came to.
+    /// The scenario without need of any file: the matrices of a structure give way to the modes that they came to, the path
+    /// of a file of modes to the modes.
     #[must_use]
     pub fn self_contained(&self) -> Self {
-        let mut scenario = self.clone();
+        let mut scenario = self.clone().with_own_modes();
         if matches!(self.body, Body::Matrices(_)) {
             scenario.body = Body::Planar(self.model.clone());
             scenario.uncertain.retain(|key, _| !key.starts_with("body.matrices"));
         }
         scenario
+    }
+
+    /// The scenario with the modes of a spatial body in itself, where they have keys, and not in a file.
+    #[must_use]
+    pub fn with_own_modes(mut self) -> Self {
+        if let Body::Spatial(spatial) = &mut self.body {
+            spatial.modes.forget_file();
+        }
+        self
     }
 
     /// The date of the start in nanoseconds since 1970 UTC; 0 without one.

@@ -1,35 +1,22 @@
-//! Matrices from CSV files: a row a line, numbers parted by commas, no header.
+//! CSV files: matrices, a row a line, numbers parted by commas, no header; and the records that other tables begin with.
 
 use std::path::Path;
 
+use ::csv::StringRecord;
 use nalgebra::DMatrix;
 
 use super::LARGEST;
 
-/// Reads a file.
+/// Reads a matrix.
 pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
-    let reader = ::csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(::csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(path);
-    let mut numbers: Vec<f64> = Vec::new();
-    let (mut rows, mut columns) = (0, 0);
-    for record in reader.map_err(told)?.into_records() {
-        let record = record.map_err(told)?;
-        let line = record.position().map_or(0, ::csv::Position::line);
-        if rows == 0 {
-            columns = record.len();
-        }
+    let records = records(path, LARGEST, "rows")?;
+    let columns = records.first().map_or(0, |(_, record)| record.len());
+    let mut numbers: Vec<f64> = Vec::with_capacity(records.len() * columns);
+    for (line, record) in &records {
         if record.len() != columns {
             let found = record.len();
             return Err(format!("line {line}: must have {columns} numbers, as the first row, got {found}"));
         }
-        if rows == LARGEST {
-            return Err(format!("line {line}: must have at most {LARGEST} rows"));
-        }
-        rows += 1;
         for (index, field) in record.iter().enumerate() {
             let number = field.parse().map_err(|_| {
                 let column = index + 1;
@@ -38,7 +25,27 @@ pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
             numbers.push(number);
         }
     }
-    Ok(DMatrix::from_row_slice(rows, columns, &numbers))
+    Ok(DMatrix::from_row_slice(records.len(), columns, &numbers))
+}
+
+/// The records of a file, each with its line: at most so many, which errors call by this name. Comments begin with `#`.
+pub fn records(path: &Path, most: usize, called: &str) -> Result<Vec<(u64, StringRecord)>, String> {
+    let reader = ::csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(::csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(path);
+    let mut records = Vec::new();
+    for record in reader.map_err(told)?.into_records() {
+        let record = record.map_err(told)?;
+        let line = record.position().map_or(0, ::csv::Position::line);
+        if records.len() == most {
+            return Err(format!("line {line}: must have at most {most} {called}"));
+        }
+        records.push((line, record));
+    }
+    Ok(records)
 }
 
 fn told(error: ::csv::Error) -> String {

@@ -6,7 +6,7 @@
 //!
 //! J theta'' + m' e'' = torque, m theta'' + Mc e'' + Kc e = 0, J = r' M r, m = the elastic part of M r.
 
-mod csv;
+pub(crate) mod csv;
 mod eigen;
 mod market;
 mod matrix;

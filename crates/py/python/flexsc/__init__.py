@@ -26,6 +26,14 @@ from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._scenario import Log, Result, Scenario
+from flexsc.structure import (
+    StateSpace,
+    Structure,
+    from_csv,
+    from_nastran,
+    from_state_space,
+    write_scenario,
+)
 
 __all__ = [
     "Log",
@@ -35,9 +43,14 @@ __all__ = [
     "Scenario",
     "ScenarioError",
     "SimulationError",
+    "StateSpace",
+    "Structure",
     "Table",
     "__version__",
     "campaign",
+    "from_csv",
+    "from_nastran",
+    "from_state_space",
     "gain_region",
     "metrics",
     "observer_margin",
@@ -50,6 +63,7 @@ __all__ = [
     "schema",
     "stability_map",
     "sweep",
+    "write_scenario",
 ]
 
 

@@ -7,6 +7,7 @@
 mod attitude;
 mod disturbance;
 mod elastic;
+mod modes;
 mod rigid;
 mod state;
 
@@ -22,6 +23,7 @@ use crate::structure::Fault;
 pub use attitude::{Attitude, angles, beyond, turned};
 pub use disturbance::Periodic;
 pub use elastic::Elastic;
+pub use modes::SpatialModes;
 pub use rigid::{Rigid, Turn};
 pub use state::SpatialState;
 
@@ -46,9 +48,9 @@ pub struct Spatial {
     /// Named points of the structure, at which jets push and gyros look.
     #[serde(default)]
     pub points: Vec<NamedPoint>,
-    /// Elastic modes.
+    /// Elastic modes: a table, or the path of a CSV file.
     #[serde(default)]
-    pub modes: Vec<SpatialMode>,
+    pub modes: SpatialModes,
     /// A torque that the surroundings exert; left out, there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disturbance: Option<Periodic>,

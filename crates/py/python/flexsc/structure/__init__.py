@@ -1,0 +1,16 @@
+"""Structures from elsewhere: state-space matrices, CSV files and Nastran, as scenarios ready to run.
+
+    >>> model = flexsc.from_state_space(A, B, C)
+    >>> scenario = model.scenario(inertia, thrust=130.0, arm=20.0)
+    >>> flexsc.write_scenario(scenario, "station.toml")
+
+`python -m flexsc.structure iss.mat --check` does so for a MATLAB file.
+"""
+
+from flexsc.structure._files import from_csv, write_scenario
+from flexsc.structure._modal_model import StateSpace
+from flexsc.structure._nastran import from_nastran
+from flexsc.structure._state_space import from_state_space
+from flexsc.structure._structure import Structure
+
+__all__ = ["StateSpace", "Structure", "from_csv", "from_nastran", "from_state_space", "write_scenario"]
