@@ -55,41 +55,9 @@ def from_state_space(
         )
     if D is not None and (through := np.abs(_matrix("D", D)).max(initial=0.0)) > 0.0:
         raise ValueError(f"D: must be 0, as no motion of modes feeds through, got {through:g}")
-    poles, right = np.linalg.eig(a)
-    upper = _oscillating(poles)
-    condition = np.linalg.cond(right)
-    if not condition < _FULL:
-        raise ValueError(
-            f"A: must have motions that are modes of their own, and their condition number is "
-            f"{condition:.1e}: some drive each other, or the state has scales too far apart"
-        )
-    left = np.linalg.inv(right)
-    found = []
-    largest = np.linalg.norm(b, axis=0).max(initial=0.0)
-    for group in _alike(poles, upper):
-        frequency = float(np.abs(poles[group]).mean())
-        decay = float(-2.0 * poles[group].real.mean())
-        push = 2.0 * (right[:, group] @ (left[group] @ b)).real
-        directions, sizes, amounts = np.linalg.svd(push, full_matrices=False)
-        if len(sizes) > len(group) and sizes[len(group)] > max(
-            tolerance * sizes[0], _ROUNDING * condition * largest
-        ):
-            raise ValueError(
-                f"B: must push a mode along its rate alone, and at {frequency:g} rad/s does not, by a "
-                f"relative {sizes[len(group)] / sizes[0]:.1e}: this is no q'' + 2 zeta w q' + w² q = b u"
-            )
-        for index in range(min(len(group), len(sizes))):
-            if sizes[index] > _ROUNDING * largest:
-                rate = directions[:, index]
-                influence = sizes[index] * amounts[index]
-                sign = np.sign(influence[np.argmax(np.abs(influence))])
-                displacement = a @ rate + decay * rate
-                found.append(
-                    (frequency, decay / (2.0 * frequency), sign * influence, sign * displacement, sign * rate)
-                )
+    found = sorted(_modes(a, b, tolerance), key=lambda mode: mode[0])
     if not found:
         raise ValueError("B: must push a mode, and pushes none")
-    found.sort(key=lambda mode: mode[0])
     w, zeta, influences, displacements, rates = (np.array(column) for column in zip(*found, strict=True))
     model = StateSpace(w, zeta, influences, c @ displacements.T, c @ rates.T, 0.0)
     deviation, where = _deviation(model, a, b, c)
@@ -109,6 +77,49 @@ def _matrix(name: str, matrix: Any) -> Numbers:
     if found.ndim != 2 or not np.isfinite(found).all():
         raise ValueError(f"{name}: must be a matrix of finite numbers")
     return found
+
+
+def _modes(a: Numbers, b: Numbers, tolerance: float) -> list[tuple[float, float, Numbers, Numbers, Numbers]]:
+    """Frequency, damping ratio, influence of the inputs, states of a unit displacement and of a unit rate."""
+    import numpy as np
+
+    poles, right = np.linalg.eig(a)
+    upper = _oscillating(poles)
+    condition = np.linalg.cond(right)
+    if not condition < _FULL:
+        raise ValueError(
+            f"A: must have motions that are modes of their own, and their condition number is "
+            f"{condition:.1e}: some drive each other, or the state has scales too far apart"
+        )
+    left = np.linalg.inv(right)
+    largest = np.linalg.norm(b, axis=0).max(initial=0.0)
+    modes = []
+    for group in _alike(poles, upper):
+        count, frequency = len(group), float(np.abs(poles[group]).mean())
+        decay = float(-2.0 * poles[group].real.mean())
+        # Where the inputs push in the space of these poles: along as many rates as there are modes.
+        push = 2.0 * (right[:, group] @ (left[group] @ b)).real
+        directions, sizes, amounts = np.linalg.svd(push, full_matrices=False)
+        beside = sizes[count] if len(sizes) > count else 0.0
+        if beside > max(tolerance * sizes[0], _ROUNDING * condition * largest):
+            raise ValueError(
+                f"B: must push a mode along its rate alone, and at {frequency:g} rad/s does not, by a "
+                f"relative {beside / sizes[0]:.1e}: this is no q'' + 2 zeta w q' + w² q = b u"
+            )
+        for rate, size, amount in zip(directions.T, sizes[:count], amounts, strict=False):
+            if size > _ROUNDING * largest:
+                sign = np.sign(amount[np.argmax(np.abs(amount))])
+                displacement = a @ rate + decay * rate
+                modes.append(
+                    (
+                        frequency,
+                        decay / (2.0 * frequency),
+                        sign * size * amount,
+                        sign * displacement,
+                        sign * rate,
+                    )
+                )
+    return modes
 
 
 def _oscillating(poles: Complex) -> npt.NDArray[np.intp]:
