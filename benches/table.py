@@ -1,6 +1,6 @@
 """Measures the engine beside its peers in one run, and writes the table of docs/benchmarks.md.
 
-pip install scipy control           # python-control may be left out
+pip install scipy mpmath control bsk  # python-control and Basilisk (bsk) may be left out
 python3 benches/table.py            # prints the table
 python3 benches/table.py --write    # and puts it into docs/benchmarks.md
 """
@@ -13,6 +13,7 @@ import sys
 import time
 from pathlib import Path
 
+import station
 from loops import peers
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -152,6 +153,26 @@ def loop():
     return lines
 
 
+def spatial():
+    """The table of the space station."""
+
+    def one(name):
+        return criterion("station, 700 s", name)
+
+    plain = one("12")
+    rows = [
+        ("flexsc, 12 modes, phase-plane law", plain),
+        ("flexsc, the same with adaptive observers and active damping", one("damped")),
+        ("flexsc, 135 modes, phase-plane law", one("135")),
+        *station.peers(),
+    ]
+    lines = ["", "| 700 s of the space station's turn: 3500 cycles | CPU time | ratio |", "|---|---|---|"]
+    for name, seconds in rows:
+        told = ("not installed", "") if seconds is None else (duration(seconds), f"{seconds / plain:.3g}")
+        lines.append(f"| {name} | {told[0]} | {told[1]} |")
+    return lines
+
+
 def filtered(name):
     return criterion("filter", name)
 
@@ -179,6 +200,7 @@ def table():
         t = criterion("modes", str(count))
         lines.append(f"| {count} | {duration(t)} | {t / count / per_mode:.2f} |")
     lines += loop()
+    lines += spatial()
     solved, (wall, cpu) = criterion("structure", "1000"), eigenproblem(1000)
     dense = criterion("log", "dense MCAP")
     cores = os.cpu_count() or 1

@@ -1,8 +1,8 @@
 """Golden numbers of tests/spatial.rs: `python3 tests/golden/station_oracle.py` prints them.
 
 Modes by SciPy's matrix exponential, tumbling by Taylor series of 30 digits (mpmath), and the whole loop of
-scenarios/iss-manoeuvre-off.toml without noise by Runge-Kutta steps of 0.01 s, on which all pulses begin and end.
-It takes about a minute.
+scenarios/iss-manoeuvre-off.toml without noise by Runge-Kutta steps of 0.01 s, on which all pulses begin and
+end. It takes about a minute.
 """
 
 import pathlib

@@ -245,10 +245,12 @@ fn station(c: &mut Criterion) {
             modes.push(mode);
         }
         let scenario = scenario(&toml::to_string(&table).expect("TOML"));
-        group.bench_with_input(BenchmarkId::new("modes", count), &scenario, |b, scenario| {
+        group.bench_with_input(BenchmarkId::from_parameter(count), &scenario, |b, scenario| {
             b.iter(|| simulate(black_box(scenario), &mut ()));
         });
     }
+    let damped = scenario(include_str!("../../../scenarios/iss-manoeuvre.toml"));
+    group.bench_function("damped", |b| b.iter(|| simulate(black_box(&damped), &mut ())));
     group.finish();
 }
 
