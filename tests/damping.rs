@@ -393,6 +393,11 @@ fn the_command_tells_what_a_relay_does() {
     let pure = format!("damping --frequency 0.5:8:4 --period 0 --delay 0.2 {yaw}");
     dir.run(&pure).exits(0).says(&["all the time, 0.2 s late: damps below 7.8540 rad/s, 1.2500 Hz", "none"]);
     dir.run(&format!("{pure} --threshold 2e-5 --json")).exits(0).prints(&["limit_cycle_rate_rad_s"]);
+    dir.run(&format!("{pure} --figures figures --format svg")).exits(0);
+    let figure = dir.text("figures/damping.svg");
+    for words in ["gain limit", "limit cycle", "natural frequency", "beyond this the relay drives the mode"] {
+        assert!(figure.contains(words), "{words}");
+    }
     dir.run(&format!("damping --frequency 1:2:2 --period 0 {yaw} --json")).exits(0).prints(&["null"]);
     for (arguments, words) in [
         ("--frequency 1:2:2", "--acceleration"),

@@ -171,6 +171,7 @@ def station():
     print("  first pulses", first[:3], "last", first[-3:])
 
 
-modes()
-tumbling()
-station()
+if __name__ == "__main__":
+    modes()
+    tumbling()
+    station()

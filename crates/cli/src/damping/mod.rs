@@ -1,12 +1,16 @@
 //! `flexsc damping`: what a relay of thrusters does to elastic modes, over their natural frequency.
 
+mod figures;
+
 use std::f64::consts::PI;
 use std::io::Write;
+use std::path::PathBuf;
 
 use flexsc_core::analysis::damping::{Damped, Relay, Study};
 use serde_json::json;
 
 use crate::failure::Failure;
+use crate::figure::Format;
 use crate::grid::Even;
 use crate::{print, say};
 
@@ -36,6 +40,12 @@ pub struct Args {
     /// Amplitude below which no thruster fires (rad/s)
     #[arg(long, value_name = "RATE", default_value_t = 0.0, requires = "amplitude")]
     threshold: f64,
+    /// Draw the figure into this directory, made if it is not there
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Form of the figure
+    #[arg(long, value_enum, default_value = "both", requires = "figures")]
+    format: Format,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -62,6 +72,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     let limit = relay.frequency_limit();
+    if let Some(directory) = &args.figures {
+        figures::save(&rows, limit, directory, args.format)?;
+    }
     if args.json {
         // What is infinite is null.
         return print(format!("{}\n", json!({"frequency_limit_rad_s": limit, "rows": rows})).as_bytes());

@@ -1,0 +1,52 @@
+//! The figure of a relay's damping over the frequency of a mode: what is left of its effect, how much gain and what limit
+//! cycle the delay leaves.
+
+use std::path::Path;
+
+use flexsc_core::analysis::damping::Damped;
+
+use crate::failure::Failure;
+use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Point, Shape, colour};
+
+/// Draws the figure into a directory; `limit` is the frequency (rad/s) above which the relay drives the modes.
+pub fn save(rows: &[Damped], limit: f64, directory: &Path, format: Format) -> Result<(), Failure> {
+    figure::save(directory, format, &[()], |()| "damping".to_owned(), |()| drawn(rows, limit))
+}
+
+fn drawn(rows: &[Damped], limit: f64) -> Figure {
+    let (low, high) = (rows.first(), rows.last());
+    let range = low.map_or(0.0, |row| row.frequency_rad_s)..high.map_or(1.0, |row| row.frequency_rad_s);
+    let x = |name: &str| Axis::exact(name, "rad/s", range.clone());
+    let line = |value: &dyn Fn(&Damped) -> Option<f64>| -> Vec<Point> {
+        rows.iter().map(|row| (row.frequency_rad_s, value(row).unwrap_or(f64::NAN))).collect()
+    };
+    let part = line(&|row| Some(row.phase_factor));
+    let gain = line(&|row| row.gain_limit_1_s);
+    let cycle = line(&|row| row.limit_cycle_rate_rad_s);
+    let values =
+        |of: &[Point]| of.iter().map(|point| point.1).filter(|v| v.is_finite()).collect::<Vec<f64>>();
+    let panel = |x: Axis, y: Axis, points: Vec<Point>, name: &str| {
+        let mut layers = Vec::new();
+        if limit < range.end {
+            let edge = y.range.clone();
+            let at = vec![(limit, edge.start), (limit, edge.end)];
+            layers.push(Layer::new(name, colour::VERMILLION, Shape::Dashes, at));
+        }
+        layers.push(Layer::new("", colour::BLUE, Shape::Line(1.6), points));
+        Panel::new(x, y, layers)
+    };
+    let factor = Axis::around("part of the full effect", "", values(&part).into_iter().chain([0.0, 1.0]));
+    let gains = Axis::decades("gain limit, 1/s", "", values(&gain));
+    let cycles = Axis::decades("limit cycle", "rad/s", values(&cycle));
+    let mut panels = vec![panel(x("").unnamed(), factor, part, "beyond this the relay drives the mode")];
+    if !values(&gain).is_empty() {
+        panels.push(panel(x("").unnamed(), gains, gain, ""));
+    }
+    if !values(&cycle).is_empty() {
+        panels.push(panel(x("").unnamed(), cycles, cycle, ""));
+    }
+    if let Some(last) = panels.last_mut() {
+        last.x = x("natural frequency");
+    }
+    Figure { title: "a relay against elastic modes".to_owned(), panels, panel_height: 200 }
+}
