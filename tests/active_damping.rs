@@ -2,9 +2,7 @@
 //!
 //! The limits are trends of many seeds: a run of relays beyond its first pulses hangs on each draw of the gyro's noise.
 
-use flexsc_core::belief::ElasticRate;
 use flexsc_core::campaign::{Campaign, Run};
-use flexsc_core::law::{Damping, DampingGuards, DampingRelay};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
@@ -268,83 +266,6 @@ fn nonsense_stays_finite() {
     }
 }
 
-const ACCELERATIONS: [f64; 2] = [2e-5, 2e-5];
-
-/// A relay with a threshold of 3e-5 rad/s and the station's jets.
-fn relay(spec: &Damping) -> DampingRelay {
-    let jets = scenario("iss-ringdown", &[]).spatial.expect("a spatial loop").jets;
-    DampingRelay::new(spec, &jets, 0.2, 3e-5)
-}
-
-/// What it does about one mode of 0.2 Hz with this elastic rate, where the rigid rate is 9e-5 rad/s from where it should be
-/// and 1e-4 rad/s are allowed.
-fn fired(relay: &mut DampingRelay, rate: f64, influence: f64, gates: [bool; 2]) -> f64 {
-    let modes = [ElasticRate { rate, frequency: 1.256_637, influence }];
-    relay.decide(&modes, gates, [9e-5, 1e-4], ACCELERATIONS).on
-}
-
-#[test]
-fn the_relay_keeps_its_rules() {
-    let open = [true, true];
-    let guards = DampingGuards { dead_zone: false, ..DampingGuards::default() };
-    let spec = Damping { guards: guards.clone(), ..Damping::default() };
-    let at = &mut relay(&spec);
-    // Latched above the threshold, and until half of it; a pulse is as long as it takes, 0.05 to 0.2 s.
-    assert_eq!(fired(at, 2.9e-5, 2.0, open), 0.0);
-    assert_eq!(fired(at, 3.1e-5, 2.0, open), -0.2);
-    close(fired(at, -1.6e-5, 8.0, open), 0.1, 1e-12);
-    assert_eq!(fired(at, 1.6e-5, 20.0, open), 0.0);
-    assert_eq!(fired(at, 1.4e-5, 2.0, open), 0.0);
-    assert_eq!(fired(at, 2.0e-5, 2.0, open), 0.0);
-    // Only where the rigid law leaves the jets free, the observer follows, and the jets can damp the mode.
-    for (influence, gates) in [(2.0, [false, true]), (2.0, [true, false]), (-2.0, open), (0.0, open)] {
-        assert_eq!(fired(at, 5e-5, influence, gates), 0.0, "{influence} {gates:?}");
-    }
-    // A pulse adds 4e-6 rad/s to the rigid rate, which may then be 1e-4 rad/s off.
-    let at = &mut relay(&Damping::default());
-    assert_eq!(fired(at, -5e-5, 0.1, open), 0.2);
-    let modes = [ElasticRate { rate: -5e-5, frequency: 1.0, influence: 0.1 }];
-    for (excess, on) in [(9.5e-5, 0.2), (9.7e-5, 0.0), (-9.7e-5, 0.2)] {
-        assert_eq!(at.decide(&modes, open, [excess, 1e-4], ACCELERATIONS).on, on, "{excess}");
-    }
-    // Without pulse widths the whole cycle.
-    let whole = Damping { pulse_width: false, ..spec };
-    assert_eq!(fired(&mut relay(&whole), -4e-5, 50.0, open), 0.2);
-    // Without the predictor, of a mode that a late push still damps: 0.6 Hz is not one, with a cycle of delay.
-    let late = Damping { predictor: false, ..Damping::default() };
-    for (hertz, eligible) in [(0.25, true), (0.5, true), (0.6, false), (0.8, false)] {
-        let frequency = std::f64::consts::TAU * hertz;
-        let modes = [ElasticRate { rate: -5e-5, frequency, influence: 0.1 }];
-        let damped = relay(&late).decide(&modes, open, [0.0, 1e-4], ACCELERATIONS);
-        assert_eq!(damped.on != 0.0, eligible, "{hertz} Hz");
-    }
-    assert_eq!(relay(&late).ahead(), 0.0);
-    close(relay(&Damping::default()).ahead(), 0.3, 1e-12);
-}
-
-/// 75 cycles at one rate, then 75 at another: the pause comes if that is more than 0.9 of the first, and lasts 300 cycles.
-#[test]
-fn the_watchdog_rests_where_nothing_falls() {
-    let guards = |watchdog| DampingGuards { dead_zone: false, watchdog, ..DampingGuards::default() };
-    for (watchdog, second, rests) in [(true, 4.6e-5, true), (true, 4.4e-5, false), (false, 5e-5, false)] {
-        let at = &mut relay(&Damping { guards: guards(watchdog), ..Damping::default() });
-        for k in 0..150 {
-            assert!(fired(at, if k < 75 { 5e-5 } else { second }, 1.0, [true, true]) < 0.0);
-        }
-        let pause = (0..1000).take_while(|_| fired(at, second, 1.0, [true, true]) == 0.0).count();
-        assert_eq!(pause, if rests { 300 } else { 0 }, "{watchdog} {second}");
-    }
-}
-
-/// Where the delay is long for the cycle, the limit cycle sets the threshold: 9.95e-6 rad/s of the yaw mode.
-#[test]
-fn the_threshold_stays_off_the_limit_cycle() {
-    let yaw = [1.555_716_68, 5.908_320e-5];
-    let found = Damping::default().threshold(2, &[yaw], 0.01, 0.2, 0.005);
-    close(found, 1.5 * 9.95e-6, 3e-3);
-    close(Damping::default().threshold(2, &[yaw, [4.0, 6e-5]], 0.2, 0.2, 0.005), 2.363_328e-5, 1e-9);
-}
-
 #[test]
 fn jets_at_once_and_the_recurrence_damp_as_well() {
     for set in [
@@ -375,71 +296,6 @@ fn modes_can_be_given() {
     // Only yaw is damped: pitch rings on.
     assert!(run.number("elastic_energy_end_j").expect("a number") < 0.6);
     assert!(run.number("damping_cycles").expect("a count") > 20.0);
-}
-
-#[test]
-fn bad_keys_are_refused() {
-    let dir = Dir::with(&["iss-ringdown"]);
-    for (set, words) in [
-        (
-            "estimator.adaptive.frequency_error=-1",
-            "`estimator.adaptive.frequency_error` must be above -1, got -1",
-        ),
-        (
-            "estimator.adaptive.influence_error=-2",
-            "`estimator.adaptive.influence_error` must be above -1, got -2",
-        ),
-        ("estimator.adaptive.frequency_error=nan", "must be a finite number, got NaN"),
-        ("estimator.adaptive.count=0", "`estimator.adaptive.count` must be 1 or more, got 0"),
-        ("estimator.adaptive.count=-1", "estimator.adaptive.count"),
-        ("estimator.adaptive.merge=-0.1", "must be a number of 0 or more, got -0.1"),
-        ("estimator.adaptive.form={newton={}}", "newton"),
-        (
-            "estimator.adaptive.form.gradient.damping=1",
-            "`estimator.adaptive.form.gradient.damping` must be below 1, got 1",
-        ),
-        (
-            "estimator.adaptive.form={gradient={reach=0.5}}",
-            "`estimator.adaptive.form.gradient.reach` must be above 1, got 0.5",
-        ),
-        (
-            "estimator.adaptive.trackers={yaw=[{frequency=1.5,influence=[2.0]}]}",
-            "`estimator.adaptive.trackers.yaw[0].influence` must be one number for each of 3 inputs, got 1",
-        ),
-        (
-            "estimator.adaptive.trackers={yaw=[{frequency=20.0,influence=[0.0,0.0,2.0]}]}",
-            "`estimator.adaptive.trackers.yaw[0].frequency` must be below the Nyquist frequency",
-        ),
-        ("estimator.adaptive.trackers={}", "`estimator.adaptive` must have a mode to track"),
-        ("estimator.adaptive.gyro=1", "unknown key `gyro`"),
-        ("law.phase_plane.damping.release=1", "must be a number between 0 and 1, got 1"),
-        ("law.phase_plane.damping.threshold=[1e-5,1e-5]", "expected an array of length 3"),
-        ("law.phase_plane.damping.threshold=[0,1e-5,1e-5]", "must be a positive number, got 0"),
-        ("law.phase_plane.damping.guards={sentinel=true}", "unknown key `sentinel`"),
-        (
-            "estimator={rigid_rate={correction=0.01}}",
-            "`law.phase_plane.damping` acts on elastic rates, which an `[estimator.adaptive]` tells",
-        ),
-    ] {
-        dir.run(&format!("simulate iss-ringdown.toml --set {set}")).exits(2).says(&[words]);
-    }
-    for (set, words) in [
-        (
-            "estimator.adaptive.count=2",
-            "`estimator.adaptive.count` must be 1 in the form `recurrence`, got 2",
-        ),
-        (
-            "estimator.adaptive.cross_axis=true",
-            "`estimator.adaptive.cross_axis` must be false in the form `recurrence`",
-        ),
-    ] {
-        let form = "--set estimator.adaptive.form={recurrence={}}";
-        dir.run(&format!("simulate iss-ringdown.toml {form} --set {set}")).exits(2).says(&[words]);
-    }
-    let dir = Dir::with(&["wheel-ekf"]);
-    dir.run("simulate wheel-ekf.toml --set estimator={adaptive={}}")
-        .exits(2)
-        .says(&["`estimator.adaptive` is for a `[body.spatial]`"]);
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod campaigns;
 mod cli;
 mod cycles;
 mod damping;
+mod damping_relay;
 mod determinism;
 mod events;
 mod filters;
