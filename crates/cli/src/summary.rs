@@ -147,6 +147,10 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
 /// What a Kalman filter came to.
 fn filter(metrics: &Metrics) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    if !number("nees_mean").is_finite() {
+        say!("  filter         not assessed: the run ends before the time to `assess` it begins");
+        return;
+    }
     say!(
         "  filter         frequency off by {:.4e} rad/s rms, at most {:.4e}; NEES {:.2}, NIS {:.2} of what it expects",
         number("frequency_error_rms_rad_s"),

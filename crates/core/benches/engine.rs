@@ -183,24 +183,8 @@ fn structure(c: &mut Criterion) {
     group.finish();
 }
 
-/// The fitted set of seed papers 3 and 5, figure 2, without a command that is shaped.
-const WHEEL: &str = r#"
-duration = 400.0
-[body.planar]
-angle = 0.06
-modes = [
-    { frequency = 0.2, gain = 1.44 }, { frequency = 0.533333333, gain = 0.21 },
-    { frequency = 0.666666667, gain = 0.165 }, { frequency = 1.333333333, gain = 0.72 },
-]
-[actuator.wheel]
-gain = 5e-4
-back_emf = 1e-4
-[law.pd]
-k_p = 7.5
-k_d = 275.0
-period = 0.3
-differentiation = "raw"
-"#;
+/// The fitted set of seed papers 3 and 5, figure 2.
+const WHEEL: &str = include_str!("../../../scenarios/wheel-fast-mode.toml");
 
 fn sampled_loop(c: &mut Criterion) {
     let mut group = c.benchmark_group("sampled loop");

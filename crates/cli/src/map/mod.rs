@@ -2,11 +2,11 @@
 
 mod figure;
 
-use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::analysis::sampled_loop::{Cell, map};
+use flexsc_core::whole;
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -45,6 +45,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.scenario.load()?;
     let (of, law) = sampled(&scenario)?;
     let window = args.settled.window(&of, &scenario.name)?;
+    if let Some(gain) = args.gain.filter(|gain| !gain.is_finite()) {
+        return Err(Failure::Arguments(format!("--gain must be a finite number, got {gain}")));
+    }
     let (Even(frequencies), Even(periods)) = (&args.frequency, &args.period);
     let gain = |frequency: f64| args.gain.unwrap_or_else(|| law.extra_gain(frequency));
     let cells = map(&of, frequencies, periods, args.settled.scaling(), gain, window);
@@ -56,7 +59,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let table = csv(&cells);
     let Some(path) = &args.output else { return print(table.as_bytes()) };
-    fs::write(path, table).map_err(Failure::write(path))?;
+    whole::write(path, table.as_bytes()).map_err(Failure::write(path))?;
     let stable = cells.iter().filter(|cell| cell.spectral_radius < 1.0).count();
     say!("{}   {} cells, {stable} of them stable, in {}", scenario.name, cells.len(), path.display());
     Ok(())

@@ -108,7 +108,7 @@ metrics! {
     SETTLING_TIME = "settling_time_s", "s",
         "Last time at which the hub's angle is outside reference.band of the goal, at the instants of a full log; null if it is so at the end";
     SPECTRAL_RADIUS = "spectral_radius", "",
-        "Largest absolute value of the eigenvalues of the sampled loop at constant frequencies, with the dominant mode known: the largest over the frequencies of a drift; below 1 the loop is stable; null for what is no sampled PD loop";
+        "Largest absolute value of the eigenvalues of the sampled loop at constant frequencies, with the dominant mode known and all of the command executed: the largest over the frequencies of a drift; below 1 the loop is stable; null for what is no sampled PD loop";
     ITAE = "itae", "rad s²", "Integral of time times the distance from the goal, from its beginning on, at the same instants";
     ANGLE_ERROR_LATE = "angle_error_late_rad", "rad", "The same over the last 5 s of the run";
     OUTPUT_SWINGS = "output_swings", "",

@@ -65,6 +65,35 @@ impl Estimate {
     }
 }
 
+/// What both forms are set by.
+struct Settings {
+    /// Damping ratio of the modes.
+    damping: f64,
+    /// Bounds of an influence, relative to its start.
+    influence_bounds: [f64; 2],
+    /// Bounds of a frequency without its own, relative to its start.
+    reach: f64,
+}
+
+impl Settings {
+    /// The first key that is not accepted, and why.
+    fn inconsistency(&self) -> Option<(String, String)> {
+        let at = |key: &str, why: String| Some((key.to_owned(), why));
+        if self.damping >= 1.0 {
+            return at("damping", format!("must be below 1, got {}", self.damping));
+        }
+        let [low, high] = self.influence_bounds;
+        if !(low <= 1.0 && 1.0 <= high && low < high) {
+            let why = format!("must be [low, high] with 1, the start, between them, got [{low}, {high}]");
+            return at("influence_bounds", why);
+        }
+        if self.reach <= 1.0 {
+            return at("reach", format!("must be above 1, got {}", self.reach));
+        }
+        None
+    }
+}
+
 /// An observer at work: at each sample `update`, then `advance` over the cycle that follows.
 pub trait Observer {
     /// Takes the rate measured at a sample (rad/s). One that is not finite, or off by more than any motion, is dropped.

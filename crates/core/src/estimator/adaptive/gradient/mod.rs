@@ -59,17 +59,13 @@ impl Gradient {
         inputs: usize,
         period: f64,
     ) -> Option<(String, String)> {
-        let at = |key: &str, why: String| Some((key.to_owned(), why));
-        if self.damping.get() >= 1.0 {
-            return at("damping", format!("must be below 1, got {}", self.damping.get()));
-        }
-        let [low, high] = self.influence_bounds.map(NonNegative::get);
-        if !(low <= 1.0 && 1.0 <= high && low < high) {
-            let why = format!("must be [low, high] with 1, the start, between them, got [{low}, {high}]");
-            return at("influence_bounds", why);
-        }
-        if self.reach.get() <= 1.0 {
-            return at("reach", format!("must be above 1, got {}", self.reach.get()));
+        let settings = super::Settings {
+            damping: self.damping.get(),
+            influence_bounds: self.influence_bounds.map(NonNegative::get),
+            reach: self.reach.get(),
+        };
+        if let Some(fault) = settings.inconsistency() {
+            return Some(fault);
         }
         tracker::inconsistency(trackers, self.reach.get(), inputs, period)
     }
