@@ -15,6 +15,7 @@ mod modes;
 mod plan;
 mod plot;
 mod progress;
+mod reproduce;
 mod scenario;
 mod schema;
 mod simulate;
@@ -61,6 +62,8 @@ enum Verb {
     Identify(identify::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
+    /// Reproduce the papers that the studies come from: every figure and number, on one HTML page
+    Reproduce(reproduce::Args),
     /// Print a topic of a log as a table
     Export(export::Args),
     /// Look into logs, and save torn ones
@@ -98,6 +101,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Plot(args) => plot::run(&args),
+        Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),
         Verb::Check(args) => check::run(&args),

@@ -53,7 +53,7 @@ pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
 }
 
 /// The quantile of sorted values; NaN without any.
-fn quantile(sorted: &[f64], q: f64) -> f64 {
+pub fn quantile(sorted: &[f64], q: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = q * last as f64;
     let (below, part) = (place as usize, place - libm::floor(place));
