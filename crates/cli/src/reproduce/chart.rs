@@ -1,7 +1,7 @@
 //! Charts that a page draws from its own numbers, and what it reads off curves.
 
 use flexsc_core::analysis::damping::Convergence;
-use minijinja::value::Value;
+use minijinja::value::{Serde, Value};
 use minijinja::{Environment, Error, ErrorKind};
 use serde::Deserialize;
 use serde_json::json;
@@ -75,6 +75,7 @@ pub fn add_to(environment: &mut Environment) {
     environment.add_function("minima", minima);
     environment.add_function("stretches", stretches);
     environment.add_function("observer", observer);
+    environment.add_function("bands", bands);
 }
 
 /// The keys at which a curve is lower than on both sides.
@@ -88,6 +89,27 @@ fn stretches(keys: Vec<f64>, values: Vec<Value>, least: usize) -> Vec<Vec<f64>> 
     let all: Vec<(f64, bool)> = keys.into_iter().zip(values.iter().map(|value| !value.is_none())).collect();
     let runs = all.chunk_by(|a, b| a.1 == b.1).filter(|run| run[0].1 && run.len() >= least);
     runs.map(|run| vec![run[0].0, run[run.len() - 1].0]).collect()
+}
+
+/// The number of periods of a map at which an unstable frequency lies below a stable one.
+fn bands(rows: Serde<Vec<Cell>>) -> usize {
+    let mut rows = rows.0;
+    rows.sort_by(|a, b| {
+        a.period_s.total_cmp(&b.period_s).then(a.frequency_rad_s.total_cmp(&b.frequency_rad_s))
+    });
+    let columns = rows.chunk_by(|a, b| a.period_s == b.period_s);
+    let ends = |cells: &&[Cell]| {
+        cells.windows(2).any(|pair| pair[0].spectral_radius >= 1.0 && pair[1].spectral_radius < 1.0)
+    };
+    columns.filter(ends).count()
+}
+
+/// A cell of a map.
+#[derive(Deserialize)]
+struct Cell {
+    frequency_rad_s: f64,
+    period_s: f64,
+    spectral_radius: f64,
 }
 
 /// The region of convergence of a recurrence observer with these weights, its regressor frozen, with its area, and the gains

@@ -33,6 +33,11 @@ pub fn add_to(environment: &mut Environment) {
     });
     environment.add_filter("sooner", |a: Vec<Value>, b: Vec<Value>| pairs(&a, &b, |a, b| a < b));
     environment.add_filter("equal", |a: Vec<Value>, b: Vec<Value>| pairs(&a, &b, |a, b| a == b));
+    environment.add_filter("first_below", |list: Vec<f64>, limit: f64| list.iter().position(|v| *v < limit));
+    environment.add_filter("last_below", |list: Vec<f64>, limit: f64| list.iter().rposition(|v| *v < limit));
+    environment.add_filter("acos", |value: f64| value.acos());
+    environment.add_filter("fill", fill);
+    environment.add_filter("as_schedule", as_schedule);
     environment.add_filter("within", |list: Vec<Value>, keys: Vec<f64>, low: f64, high: f64| {
         within(&list, &keys, low, high)
     });
@@ -115,8 +120,9 @@ fn quantile(list: &[Value], part: f64) -> Value {
 
 /// How many pairs of two lists fulfil a condition.
 fn pairs(a: &[Value], b: &[Value], fits: impl Fn(f64, f64) -> bool) -> usize {
-    let number = |value: &Value| f64::try_from(value.clone()).ok();
-    let both = a.iter().zip(b).filter_map(|(a, b)| Some((number(a)?, number(b)?)));
+    // What never happens is later than all else.
+    let number = |value: &Value| f64::try_from(value.clone()).unwrap_or(f64::INFINITY);
+    let both = a.iter().map(number).zip(b.iter().map(number));
     both.filter(|(a, b)| fits(*a, *b)).count()
 }
 
@@ -132,4 +138,18 @@ fn place(value: f64, list: Vec<Value>, keys: Vec<f64>) -> Value {
     some(
         list.iter().position(|other| number(other) == Some(value)).and_then(|index| keys.get(index).copied()),
     )
+}
+
+/// A command with values in the places of `{}`.
+fn fill(command: String, values: Vec<f64>) -> String {
+    values.iter().fold(command, |command, value| command.replacen("{}", &format!("{value:?}"), 1))
+}
+
+/// Frequencies (rad/s) and gains as the points of a schedule.
+fn as_schedule(points: Vec<Vec<f64>>) -> String {
+    let point = |point: &Vec<f64>| match point[..] {
+        [frequency, gain] => format!("{{frequency={frequency:.6}, gain={gain:.4}}}"),
+        _ => String::new(),
+    };
+    points.iter().map(point).collect::<Vec<_>>().join(", ")
 }
