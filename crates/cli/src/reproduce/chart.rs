@@ -1,5 +1,7 @@
 //! Charts that a page draws from its own numbers, and what it reads off curves.
 
+#![expect(clippy::needless_pass_by_value, reason = "templates hand their values over")]
+
 use flexsc_core::analysis::damping::Convergence;
 use minijinja::value::{Serde, Value};
 use minijinja::{Environment, Error, ErrorKind};

@@ -1,6 +1,6 @@
 //! The page as HTML: one file that needs no other, without a script.
 
-use pulldown_cmark::{Options, Parser, html};
+use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd, html};
 
 use super::page::{Drawn, Outcome};
 
@@ -8,6 +8,8 @@ const STYLE: &str = include_str!("page.css");
 
 /// A filled section.
 pub struct Section {
+    /// Name of the paper.
+    pub name: String,
     /// Its Markdown, with places for its figures.
     pub text: String,
     /// What it came to.
@@ -40,12 +42,13 @@ pub fn page(sections: &[Section], took: f64) -> String {
          <h1>What the papers say, and what we measure</h1>\n\
          <p class=\"about\">Made by <code>flexsc reproduce</code>, version {version}, on {system} ({machine}) with {threads} threads in \
          {took:.1} s. {} verdicts, {known}: {holds} statements hold, {} do not. {figures} figures. Every number under \"we measure\" \
-         was computed for this page by the command beside it.</p>\n{}\
+         was computed for this page by the command beside it.</p>\n<ul class=\"contents\">\n{}</ul>\n{}\
          <h2>What was run</h2>\n<p>Each command once; several share the machine, so that their times are not those of the command \
          alone.</p>\n<table class=\"times\">\n<thead><tr><th>command</th><th>s</th></tr></thead>\n<tbody>\n{}</tbody>\n</table>\n\
          </body>\n</html>\n",
         verdicts.len(),
         verdicts.len() - holds,
+        sections.iter().map(Section::entry).collect::<String>(),
         body.concat(),
         times.concat(),
     )
@@ -56,15 +59,31 @@ fn row((command, seconds): &(String, f64)) -> String {
 }
 
 impl Section {
+    /// A line of the contents.
+    fn entry(&self) -> String {
+        let heading = self.text.lines().find_map(|line| line.strip_prefix("## ")).unwrap_or(&self.name);
+        let (verdicts, figures) = (&self.outcome.verdicts, self.outcome.figures.len());
+        let holds = verdicts.iter().filter(|verdict| verdict.holds).count();
+        format!(
+            "<li><a href=\"#{}\">{}</a>: {holds} of {} statements hold, {figures} figures</li>\n",
+            self.name,
+            escaped(heading),
+            verdicts.len()
+        )
+    }
+
     fn html(&self) -> String {
         let mut text = String::new();
-        html::push_html(&mut text, Parser::new_ext(&self.text, Options::ENABLE_TABLES));
+        // The page stands alone: what the documentation links to is not beside it.
+        let link = |event: &Event| matches!(event, Event::Start(Tag::Link { .. }) | Event::End(TagEnd::Link));
+        let events = Parser::new_ext(&self.text, Options::ENABLE_TABLES).filter(|event| !link(event));
+        html::push_html(&mut text, events);
         for drawn in &self.outcome.figures {
             text = text.replace(&format!("<!--figure {}-->", drawn.name), &drawn.html());
         }
         // Wide tables scroll within themselves.
         text = text.replace("<table>", "<div class=\"table\"><table>").replace("</table>", "</table></div>");
-        format!("<section>\n{text}</section>\n")
+        format!("<section id=\"{}\">\n{text}</section>\n", self.name)
     }
 }
 

@@ -1,12 +1,15 @@
 //! `flexsc reproduce`: every figure and number of the papers, on one HTML page, and in docs/papers.md.
 
+mod analysis;
 mod chart;
 mod command;
+mod draw;
 mod html;
 mod number;
 mod page;
 mod paper;
 mod shipped;
+mod tell;
 mod verdict;
 
 use std::io::Write;
@@ -33,7 +36,7 @@ pub struct Args {
     /// Directory for papers.html, made if it is not there
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Also write papers.md of the documentation and its figures, images/NAME.svg, into this directory
+    /// Also write the same as papers.md of the documentation, with its figures images/NAME.svg, into this directory
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
 }
@@ -99,7 +102,7 @@ fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
     };
     let (text, outcome) = form(Form::Html)?;
     let (markdown, _) = form(Form::Markdown)?;
-    Ok(Filled { section: Section { text, outcome, times: results.times() }, markdown })
+    Ok(Filled { section: Section { name: paper.name(), text, outcome, times: results.times() }, markdown })
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

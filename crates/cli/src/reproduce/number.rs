@@ -1,5 +1,7 @@
 //! Numbers as pages print them, and what pages make of lists of them.
 
+#![expect(clippy::needless_pass_by_value, reason = "templates hand their values over")]
+
 use flexsc_core::statistics::quantile as quantile_of;
 use minijinja::value::Value;
 use minijinja::{Environment, Error, ErrorKind};
@@ -36,6 +38,7 @@ pub fn add_to(environment: &mut Environment) {
     environment.add_filter("first_below", |list: Vec<f64>, limit: f64| list.iter().position(|v| *v < limit));
     environment.add_filter("last_below", |list: Vec<f64>, limit: f64| list.iter().rposition(|v| *v < limit));
     environment.add_filter("acos", |value: f64| value.acos());
+    environment.add_filter("nth", |list: Vec<Value>, place: usize| list.into_iter().nth(place));
     environment.add_filter("fill", fill);
     environment.add_filter("as_schedule", as_schedule);
     environment.add_filter("within", |list: Vec<Value>, keys: Vec<f64>, low: f64, high: f64| {

@@ -105,7 +105,7 @@ impl Results {
         let (results, list, told) = (Arc::clone(self), Arc::clone(&outcome), Arc::clone(&begin));
         environment.add_function("figure", move |name: &str, command: &str, what: &str, caption: &str| {
             let svg = results
-                .once(&results.drawn, name, &*told, || svg(name, Command::parse(command)?.draw(what)?))?;
+                .once(&results.drawn, name, &*told, || svg(name, &Command::parse(command)?.draw(what)?))?;
             Ok::<_, Error>(show(
                 &list,
                 form,
@@ -121,7 +121,7 @@ impl Results {
         environment.add_function(
             "drawing",
             move |name: &str, chart: Serde<Chart>, caption: &str, command: &str| {
-                let svg = results.once(&results.drawn, name, &|_: &str| {}, || svg(name, chart.figure()))?;
+                let svg = results.once(&results.drawn, name, &|_: &str| {}, || svg(name, &chart.figure()))?;
                 Ok::<_, Error>(show(
                     &list,
                     form,
@@ -188,7 +188,7 @@ fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn svg(name: &str, figure: Figure) -> Result<String, Failure> {
+fn svg(name: &str, figure: &Figure) -> Result<String, Failure> {
     figure.svg().map_err(|why| Failure::Draw { path: name.into(), why })
 }
 
