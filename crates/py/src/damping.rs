@@ -59,8 +59,9 @@ pub fn identify_json(
     modes: Vec<(f64, f64)>,
     off: (f64, f64),
     rate: f64,
-    (runs, cycles, seed): (u64, u32, u64),
+    extent: (u64, u32, u64),
 ) -> PyResult<String> {
+    let (runs, cycles, seed) = extent;
     let mut trial = Trial::of(modes, off.0);
     (trial.off[1], trial.cycles, trial.seed) = (off.1, cycles, seed);
     let Some(rate) = NonNegative::new(rate) else {

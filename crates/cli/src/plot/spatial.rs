@@ -104,7 +104,7 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     };
     let x = time(0.0..story.end);
     let mut energies = panel(x.unnamed(), "elastic energy", "J", elastic);
-    energies.layers[0].name = "all modes".to_owned();
+    "all modes".clone_into(&mut energies.layers[0].name);
     let visible = cycles.over_time(|cycle| cycle.visible_energy_j);
     energies.layers.push(Layer::new("modes that the gyro sees", colour::ORANGE, Shape::Line(1.2), visible));
     let panels = vec![energies, panel(x, "propellant", "kg", fuel)];
