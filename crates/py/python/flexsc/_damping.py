@@ -135,7 +135,8 @@ def identify(
 ) -> dict[str, Any]:
     """How often and how fast the gradient observer finds modes under random bursts of thrusters.
 
-    The channel is the station's yaw: 2.05e-5 rad/s², cycles of 0.2 s, noise of 2e-6 and a resolution of 1e-6 rad/s.
+    The channel is the station's yaw: 2.05e-5 rad/s², cycles of 0.2 s, noise of 2e-6 and a resolution of
+    1e-6 rad/s.
 
     Args:
         modes: Natural frequency (rad/s) and influence of each mode.

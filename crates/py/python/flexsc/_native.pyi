@@ -16,6 +16,7 @@ __all__ = [
     "__version__",
     "campaign",
     "gain_regions_json",
+    "identify_json",
     "main",
     "metrics_json",
     "observer_margin_json",
