@@ -1,7 +1,7 @@
 //! The analyses behind commands of a page: what `plan`, `tune`, `map` and `damping` work on.
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::damping::{Relay, Study};
+use flexsc_core::analysis::damping::{Convergence, Relay, Study};
 use flexsc_core::analysis::sampled_loop::{
     Cell, Doubt, Gains, Goal, Loop, Region, Robust, Scaling, Search, Window, map, regions, robust,
 };
@@ -109,5 +109,15 @@ impl Command {
         }
         let Even(frequencies) = self.one("frequency").ok_or_else(|| self.failure("--frequency"))?;
         Ok((study, frequencies))
+    }
+
+    /// The recurrence observer, and the gains of its regions.
+    pub fn observer(&self) -> Result<(Convergence, Vec<f64>), Failure> {
+        let wrong = || self.failure("an observer has --frequency and the --weights W1,W2,W3");
+        let weights = <[f64; 3]>::try_from(self.many("weights")).map_err(|_| wrong())?;
+        let [frequency, damping, period] =
+            ["frequency", "damping", "period"].map(|name| self.one(name).unwrap_or(f64::NAN));
+        let of = Convergence { frequency, damping, period, weights };
+        if of.inconsistency().is_some() { Err(wrong()) } else { Ok((of, self.many("kappa"))) }
     }
 }

@@ -2,13 +2,10 @@
 
 #![expect(clippy::needless_pass_by_value, reason = "templates hand their values over")]
 
-use flexsc_core::analysis::damping::Convergence;
+use minijinja::Environment;
 use minijinja::value::{Serde, Value};
-use minijinja::{Environment, Error, ErrorKind};
 use serde::Deserialize;
-use serde_json::json;
 
-use super::page::value;
 use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour, name_and_unit};
 
 /// A chart as a template gives it.
@@ -76,7 +73,6 @@ impl Chart {
 pub fn add_to(environment: &mut Environment) {
     environment.add_function("minima", minima);
     environment.add_function("stretches", stretches);
-    environment.add_function("observer", observer);
     environment.add_function("bands", bands);
 }
 
@@ -112,28 +108,4 @@ struct Cell {
     frequency_rad_s: f64,
     period_s: f64,
     spectral_radius: f64,
-}
-
-/// The region of convergence of a recurrence observer with these weights, its regressor frozen, with its area, and the gains
-/// for which it converges with a periodic one (docs/active-damping.md).
-fn observer(frequency: f64, weights: Vec<f64>, kappa: f64) -> Result<Value, Error> {
-    let [w1, w2, w3] = weights[..] else {
-        return Err(Error::new(ErrorKind::InvalidOperation, "an observer has the weights W1, W2 and W3"));
-    };
-    let observer = Convergence { frequency, damping: 0.005, period: 0.2, weights: [w1, w2, w3] };
-    let elastic: Vec<f64> = (0..=400).map(|i| -0.2 + 2.4 * f64::from(i) / 400.0).collect();
-    let edges = observer.region(kappa, &elastic);
-    let side = |of: fn((f64, f64)) -> f64| edges.iter().map(|edge| edge.next.map(of)).collect::<Vec<_>>();
-    let (lower, upper) = (side(|next| next.0), side(|next| next.1));
-    let margin = observer.margin();
-    let told = json!({
-        "elastic": elastic,
-        "lower": lower,
-        "upper": upper,
-        "area": observer.area(kappa),
-        "gain_max": margin.map(|margin| margin.gain_max),
-        "gain_best": margin.map(|margin| margin.gain_best),
-        "radius": margin.map(|margin| margin.spectral_radius),
-    });
-    value(told).map_err(|failure| Error::new(ErrorKind::InvalidOperation, failure.to_string()))
 }

@@ -67,6 +67,12 @@ impl Command {
         self.matches.try_get_one::<T>(name).ok().flatten().cloned()
     }
 
+    /// The numbers of an option.
+    pub fn many(&self, name: &str) -> Vec<f64> {
+        let given = self.matches.try_get_many::<f64>(name).ok().flatten();
+        given.map_or_else(Vec::new, |given| given.copied().collect())
+    }
+
     /// Whether the command gives an option.
     pub fn is_given(&self, name: &str) -> bool {
         matches!(self.matches.value_source(name), Some(ValueSource::CommandLine))

@@ -4,7 +4,7 @@ use super::analysis::Tuned;
 use super::command::Command;
 use crate::failure::Failure;
 use crate::figure::Figure;
-use crate::{damping, map, plan, plot, tune};
+use crate::{damping, map, observer, plan, plot, tune};
 
 /// A figure with its name.
 type Named = (String, Figure);
@@ -18,6 +18,10 @@ impl Command {
             "tune" => self.tune_figures()?,
             "map" => self.map_figure()?,
             "damping" => self.damping_figure()?,
+            "observer" => {
+                let (of, kappas) = self.observer()?;
+                vec![("observer".to_owned(), observer::figure(&of, &kappas, of.margin()))]
+            }
             _ => return Err(self.failure("no verb that draws")),
         };
         let ends = |(name, _): &Named| name.ends_with(&format!("-{what}")) || name == what;

@@ -217,3 +217,79 @@ fn explained(error: &Error) -> String {
     let line = error.line().map_or(String::new(), |line| format!("line {line}: "));
     format!("{line}{error}")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filled(template: &str) -> Result<(String, Outcome), Failure> {
+        Arc::new(Results::default()).fill(template, Form::Markdown, |_| {})
+    }
+
+    #[test]
+    fn a_wrong_number_turns_a_verdict() {
+        let quiet = "{% set run = run('simulate scenarios/relay-quiet.toml --set duration=1000.0') %}";
+        let of = |printed: &str| {
+            let verdict = format!("{{{{ yes('pushes', run.pushes_right is near({printed}, 0.01)) }}}}");
+            filled(&format!("{quiet}{{{{ run.pushes_right }}}} {verdict}")).expect("a page")
+        };
+        let ((right, known), (wrong, other)) = (of("21"), of("22"));
+        assert_eq!([right.as_str(), wrong.as_str()], ["21 yes", "21 no"]);
+        assert!(known.verdicts[0].is_as_expected() && !other.verdicts[0].is_as_expected());
+        let refuted = filled("{{ no('more', 1 > 2) }}").expect("a page").1;
+        assert!(refuted.verdicts[0].is_as_expected());
+        // What is not there is near to nothing.
+        assert_eq!(filled("{{ yes('none', none is near(0, 1)) }}").expect("a page").0, "no");
+    }
+
+    #[test]
+    fn what_is_not_known_is_an_error() {
+        let wrong = [
+            ("{{ nothing }}", "undefined"),
+            ("{{ run('simulate scenarios/relay-quiet.toml --set duration=100.0').settling }}", "undefined"),
+            ("{{ 1|squared }}", "squared"),
+            ("{{ run('simulate scenarios/other.toml') }}", "no scenario of the papers"),
+            ("{{ run('simulate scenarios/relay-quiet.toml --sets duration=100.0') }}", "--sets"),
+            ("{{ run('simulate scenarios/relay-quiet.toml --set durations=100.0') }}", "durations"),
+            ("{{ figure('a', 'plan scenarios/rotation-sine.toml', 'colour', 'A') }}", "colour"),
+        ];
+        for (template, why) in wrong {
+            let error = filled(template).expect_err(template).to_string();
+            assert!(error.contains(why), "{template}: {error}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_printed_as_they_are_asked_for() {
+        let list = "[4, none, 1, 3, 2]";
+        let cases = [
+            ("1.97191e-5|sci(2)".to_owned(), "1.97e-5"),
+            ("0.774|percent(1)".to_owned(), "77.4 %"),
+            (
+                "18000.0|grouped ~ ' ' ~ 2526|grouped ~ ' ' ~ 1234567|grouped".to_owned(),
+                "18 000 2526 1 234 567",
+            ),
+            ("(0.0 * -1)|fixed(2)".to_owned(), "0.00"),
+            ("7.398419 is rounds_to('7.399')".to_owned(), "False"),
+            ("22.348647 is rounds_to('22.349')".to_owned(), "True"),
+            (
+                format!("{list}|median ~ ' ' ~ {list}|known ~ ' ' ~ {list}|above(2) ~ ' ' ~ {list}|most"),
+                "2.5 4 2 4.0",
+            ),
+            ("[1, none, 3]|sooner([2, 2, none])".to_owned(), "2"),
+            ("minima([0, 1, 2, 3], [3, 1, 2, 0])|join(' ')".to_owned(), "1.0"),
+            (
+                "stretches([0, 1, 2, 3, 4], [1, 1, none, 1, none], 2)|map('join', ' ')|join(', ')".to_owned(),
+                "0.0 1.0",
+            ),
+            ("'a={} b={}'|fill([1, 0.25])".to_owned(), "a=1.0 b=0.25"),
+        ];
+        for (expression, printed) in cases {
+            assert_eq!(
+                filled(&format!("{{{{ {expression} }}}}")).expect(&expression).0,
+                printed,
+                "{expression}"
+            );
+        }
+    }
+}

@@ -28,6 +28,11 @@ impl Command {
             "tune" => self.tune()?,
             "map" => self.map()?,
             "damping" => self.damping()?,
+            "observer" => {
+                let (of, kappas) = self.observer()?;
+                let areas: Vec<f64> = kappas.iter().map(|kappa| of.area(*kappa)).collect();
+                json!({"areas": areas, "turning": of.margin()})
+            }
             _ => return Err(self.failure("no verb of a page")),
         };
         told["command"] = json!(self.text);
