@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapError, WriteOptions, Writer};
 
-use super::proto::{Encoder, descriptor_set, full_name};
-use super::row::TopicRow;
+use super::foxglove::{Level, Log};
+use super::proto::{Encoder, descriptor_set};
+use super::row::{Stamp, TopicRow};
 use super::topics::index_of;
 use super::{Detail, Metrics, OutputName, Params, Record, RecordError, Sample, TOPICS, TakeRow};
 use crate::time::Instant;
@@ -46,6 +47,16 @@ pub enum RunEnd {
     Interrupted,
     /// It failed.
     Failed,
+}
+
+impl RunEnd {
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Complete => "ends",
+            Self::Interrupted => "was interrupted",
+            Self::Failed => "failed",
+        }
+    }
 }
 
 /// A run's log, written while it runs.
@@ -106,6 +117,12 @@ impl<W: Write + Seek> McapLog<W> {
         if !metrics.metrics.is_empty() {
             self.take(self.last, metrics)?;
         }
+        if end != RunEnd::Complete {
+            let timestamp = Stamp(self.epoch_ns + self.last.nanoseconds());
+            let message = format!("the run {} at {} s", end.verb(), self.last.seconds());
+            let (level, name) = (Level::Warning, "run".to_owned());
+            self.take(self.last, &Log { timestamp, level, message, name })?;
+        }
         let end = match end {
             RunEnd::Complete => "complete",
             RunEnd::Interrupted => "interrupted",
@@ -123,8 +140,8 @@ impl<W: Write + Seek> McapLog<W> {
             return Ok(channel);
         }
         let topic = &TOPICS[index];
-        let (name, data) = (full_name(topic.message), descriptor_set(topic));
-        let schema = self.writer.add_schema(&name, "protobuf", &data).map_err(failure)?;
+        let (name, data) = (topic.message, descriptor_set(topic));
+        let schema = self.writer.add_schema(name, "protobuf", &data).map_err(failure)?;
         let none = BTreeMap::new();
         let id = self.writer.add_channel(schema, topic.name, "protobuf", &none);
         Ok((id.map_err(failure)?, 0))
@@ -154,12 +171,16 @@ impl<W: Write + Seek> TakeRow for McapLog<W> {
 
 impl<W: Write + Seek> Record for McapLog<W> {
     fn dense(&self) -> bool {
-        self.detail == Detail::Full
+        self.detail >= Detail::Full
+    }
+
+    fn scene(&self) -> bool {
+        self.detail >= Detail::Scene
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         // Another record may want more.
-        if sample.is_dense() && !self.dense() { Ok(()) } else { self.take_sample(now, sample) }
+        if sample.detail() > self.detail { Ok(()) } else { self.take_sample(now, sample) }
     }
 }
 
@@ -203,6 +224,10 @@ impl LogFile {
 impl Record for LogFile {
     fn dense(&self) -> bool {
         self.log.dense()
+    }
+
+    fn scene(&self) -> bool {
+        self.log.scene()
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {

@@ -3,6 +3,7 @@
 //! In both, at one instant: the body arrives, the sensor measures, the estimator follows, the law decides, the actuator acts,
 //! the record is told. `docs/events.md` states the rules.
 
+mod journal;
 mod planar;
 mod spatial;
 

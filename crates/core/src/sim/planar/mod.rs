@@ -11,10 +11,12 @@ mod track;
 mod watch;
 
 use super::SimulationError;
+use super::journal::{Journal, opening};
 use crate::belief::Belief;
 use crate::body::{Sight, State};
 use crate::law::{Cause, Goal, Hold, Law};
 use crate::random::{Seed, Stream};
+use crate::record::foxglove::Level;
 use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::sensor::{Measurement, Sensor};
@@ -56,7 +58,10 @@ pub struct PlanarRun {
     next_dense: Option<Instant>,
     next_law: Instant,
     decisions: u32,
-    begun: bool,
+    journal: Journal,
+    /// The journal's first line, until it is written.
+    opening: Option<String>,
+    ended: bool,
 }
 
 impl PlanarRun {
@@ -84,21 +89,25 @@ impl PlanarRun {
             next_dense: None,
             next_law: Instant::START,
             decisions: 0,
-            begun: false,
+            journal: Journal::new(scenario),
+            opening: Some(opening(scenario, run)),
+            ended: false,
         }
     }
 
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
     pub fn run_until(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
         let until = until.min(self.end);
-        if !self.begun {
+        if let Some(opening) = self.opening.take() {
+            self.journal.tell(self.now, (Level::Info, "run"), opening, record)?;
             self.begin(record)?;
         }
         loop {
             let next = self.next();
             if next > until {
                 self.now = until;
-                return self.view().map(|_| ());
+                self.view()?;
+                return self.end(record);
             }
             if next > self.now {
                 self.now = next;
@@ -119,7 +128,6 @@ impl PlanarRun {
     }
 
     fn begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
-        self.begun = true;
         let sight = self.view()?;
         let measured = self.sensor.measure(self.now, (sight.angle, sight.rate), None, &mut self.noise);
         self.measured = measured;
@@ -135,6 +143,15 @@ impl PlanarRun {
         if record.dense() {
             self.next_dense = Some(self.now);
             self.next_law = self.now + Span::from_seconds(1.0);
+        }
+        Ok(())
+    }
+
+    /// Ends the run, if this is its end and it has not ended yet.
+    fn end(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        if self.now == self.end && !std::mem::replace(&mut self.ended, true) {
+            let line = "the end of the run".to_owned();
+            self.journal.tell(self.now, (Level::Info, "run"), line, record)?;
         }
         Ok(())
     }
@@ -165,7 +182,13 @@ impl PlanarRun {
         }
         if let Some(arrival) = self.arrival.take_if(|arrival| arrival.at == now) {
             let sight = self.view()?;
-            record.record(now, Sample::Arrival(&arrival.row(sight, self.body.state())))?;
+            let row = arrival.row(sight, self.body.state());
+            record.record(now, Sample::Arrival(&row))?;
+            let line = format!(
+                "the manoeuvre ends {:.3e} rad from its goal, with a vibration of {:.3e} rad",
+                row.angle_error_rad, row.angle_residual_rad
+            );
+            self.journal.tell(now, (Level::Info, "manoeuvre"), line, record)?;
         }
         let timeout = self.hold.until.filter(|until| *until == now).map(|_| Cause::Timeout);
         if let Some(cause) = tripped.map(Cause::Guard).or(timeout) {

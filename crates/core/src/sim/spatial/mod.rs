@@ -5,6 +5,7 @@
 //! record is told. Pulses end at exact instants within the cycle.
 
 mod jets;
+mod news;
 mod plant;
 mod tracking;
 
@@ -20,6 +21,7 @@ use crate::sensor::Readout;
 use crate::time::{Instant, Span};
 
 use jets::JetsAtWork;
+use news::News;
 use plant::Plant;
 use tracking::Observers;
 
@@ -60,6 +62,7 @@ pub struct SpatialRun {
     next_cycle: Instant,
     log_period: Span,
     next_dense: Option<Instant>,
+    news: News,
     begun: bool,
 }
 
@@ -80,6 +83,7 @@ impl SpatialRun {
             next_cycle: Instant::START,
             log_period: scenario.log.period,
             next_dense: None,
+            news: News::new(scenario, spatial, run),
             begun: false,
         }
     }
@@ -89,6 +93,7 @@ impl SpatialRun {
         let until = until.min(self.end);
         if !self.begun {
             self.begun = true;
+            self.news.begin(Instant::START, record)?;
             self.next_dense = record.dense().then_some(Instant::START);
         }
         loop {
@@ -96,7 +101,7 @@ impl SpatialRun {
             let next = due.into_iter().flatten().fold(self.next_cycle, Instant::min);
             if next > until {
                 self.body.view(until);
-                return Ok(());
+                return if until == self.end { Ok(self.news.end(until, record)?) } else { Ok(()) };
             }
             self.body.view(next);
             let ended = self.jets.end(next);
@@ -146,9 +151,11 @@ impl SpatialRun {
             error_rad: self.belief.angle,
         };
         record.record(now, Sample::Cycle(&cycle))?;
+        self.news.target(now, self.law.target(now), self.belief.angle, record)?;
         if let Estimation::Adaptive(observers) = &mut self.estimator {
             let tracking = observers.tracking(&self.body.modal_rates(), self.law.damped());
             record.record(now, Sample::Tracking(&tracking))?;
+            self.news.damping(now, self.law.damped(), self.belief.trusted, record)?;
             observers.advance(&self.jets.pulses());
         }
         self.next_cycle = now + self.period;
