@@ -134,7 +134,11 @@ impl Campaign {
     /// Simulates a run and gathers its metrics, beside another record.
     pub fn simulate(run: &Run, record: impl Record) -> Result<Metrics, SimulationError> {
         let mut both = (Gather::new(&run.scenario), record);
-        Simulation::new(&run.scenario, run.number).run(&mut both)?;
+        let mut simulation = Simulation::new(&run.scenario, run.number);
+        if both.scene() {
+            simulation.draw(&run.scenario);
+        }
+        simulation.run(&mut both)?;
         Ok(both.0.finish(&run.scenario))
     }
 

@@ -54,6 +54,7 @@ pub mod quantity;
 pub mod random;
 pub mod record;
 pub mod scenario;
+pub mod scene;
 pub mod sensor;
 mod sim;
 pub mod statistics;

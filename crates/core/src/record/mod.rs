@@ -133,7 +133,7 @@ pub trait Record {
         false
     }
 
-    /// Whether the record wants the scene.
+    /// Whether the record wants the scene, which a simulation has once it was asked to draw it.
     fn scene(&self) -> bool {
         false
     }

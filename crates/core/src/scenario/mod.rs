@@ -21,6 +21,7 @@ use crate::estimator::Estimator;
 use crate::law::{Goal, Law};
 use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::quantity::Positive;
+use crate::scene::SceneSpec;
 use crate::sensor::Sensor;
 use crate::structure::Fault;
 use crate::time::{Instant, Span};
@@ -105,6 +106,9 @@ pub struct Log {
     /// Period at which a full log holds the motion (s).
     #[serde(default = "tenth")]
     pub period: Span,
+    /// How a log with a scene draws the run.
+    #[serde(default, skip_serializing_if = "SceneSpec::is_default")]
+    pub scene: SceneSpec,
 }
 
 fn tenth() -> Span {
@@ -113,7 +117,7 @@ fn tenth() -> Span {
 
 impl Default for Log {
     fn default() -> Self {
-        Self { period: tenth() }
+        Self { period: tenth(), scene: SceneSpec::default() }
     }
 }
 

@@ -19,6 +19,7 @@ use crate::random::{Seed, Stream};
 use crate::record::foxglove::Level;
 use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
 use crate::scenario::Scenario;
+use crate::scene::{PlanarScene, PlanarView};
 use crate::sensor::{Measurement, Sensor};
 use crate::time::{Instant, Span};
 
@@ -57,6 +58,9 @@ pub struct PlanarRun {
     log_period: Span,
     next_dense: Option<Instant>,
     next_law: Instant,
+    /// The scene, and when its frames are due.
+    scene: Option<Box<PlanarScene>>,
+    next_frames: Option<Instant>,
     decisions: u32,
     journal: Journal,
     /// The journal's first line, until it is written.
@@ -88,11 +92,18 @@ impl PlanarRun {
             log_period: scenario.log.period,
             next_dense: None,
             next_law: Instant::START,
+            scene: None,
+            next_frames: None,
             decisions: 0,
             journal: Journal::new(scenario),
             opening: Some(opening(scenario, run)),
             ended: false,
         }
+    }
+
+    /// Draws this scene for records that want one.
+    pub fn draw(&mut self, scene: PlanarScene) {
+        self.scene = Some(Box::new(scene));
     }
 
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
@@ -144,6 +155,13 @@ impl PlanarRun {
             self.next_dense = Some(self.now);
             self.next_law = self.now + Span::from_seconds(1.0);
         }
+        match &self.scene {
+            Some(scene) if record.scene() => {
+                record.record(self.now, Sample::Scene(&scene.parts(self.journal.stamp(self.now))))?;
+                self.next_frames = Some(self.now);
+            }
+            _ => self.scene = None,
+        }
         Ok(())
     }
 
@@ -161,8 +179,8 @@ impl PlanarRun {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.watch.as_ref().map(|watch| watch.closes);
         let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
-        let due =
-            [trip, self.hold.until, self.drive.due(), self.next_sample, closes, arrives, self.next_dense];
+        let told = [self.next_dense, self.next_frames].into_iter().flatten().min();
+        let due = [trip, self.hold.until, self.drive.due(), self.next_sample, closes, arrives, told];
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
@@ -208,7 +226,36 @@ impl PlanarRun {
                 self.next_law += Span::from_seconds(1.0);
             }
         }
-        Ok(())
+        self.show(record)
+    }
+
+    /// Tells the frames of the scene when they are due, and its plumes when they are new.
+    fn show(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        if self.scene.is_none() {
+            return Ok(());
+        }
+        let (now, stamp) = (self.now, self.journal.stamp(self.now));
+        let sight = self.view()?;
+        let state = self.body.state();
+        let torque = self.drive.torque(now, sight.rate, state.rigid_rate).applied_nm;
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        if self.next_frames == Some(now) {
+            let sections = self.body.outputs().map_or_else(Vec::new, |outputs| outputs.outputs);
+            let sections: Vec<f64> = sections.into_iter().map(|output| output.value).collect();
+            let view = PlanarView {
+                time: now.seconds(),
+                angle: sight.angle,
+                rigid_angle: state.rigid_angle,
+                modes: &state.modes,
+                sections: &sections,
+            };
+            record.record(now, Sample::Frames(scene.frames(stamp, view)))?;
+            self.next_frames = Some(now + scene.period);
+        }
+        match scene.plumes(stamp, torque) {
+            Some(plumes) => Ok(record.record(now, Sample::Plumes(&plumes))?),
+            None => Ok(()),
+        }
     }
 
     /// Takes the sample of a sampled sensor, which the estimator follows.

@@ -17,6 +17,7 @@ use crate::law::PhasePlaneLaw;
 use crate::random::Seed;
 use crate::record::{AxisRate, Cycle, Jets, Rates, Record, Sample, SpatialMotion};
 use crate::scenario::{AxesEstimator, Scenario, SpatialLoop};
+use crate::scene::SpatialScene;
 use crate::sensor::Readout;
 use crate::time::{Instant, Span};
 
@@ -62,6 +63,9 @@ pub struct SpatialRun {
     next_cycle: Instant,
     log_period: Span,
     next_dense: Option<Instant>,
+    /// The scene, and when its frames are due.
+    scene: Option<Box<SpatialScene>>,
+    next_frames: Option<Instant>,
     news: News,
     begun: bool,
 }
@@ -83,9 +87,16 @@ impl SpatialRun {
             next_cycle: Instant::START,
             log_period: scenario.log.period,
             next_dense: None,
+            scene: None,
+            next_frames: None,
             news: News::new(scenario, spatial, run),
             begun: false,
         }
+    }
+
+    /// Draws this scene for records that want one.
+    pub fn draw(&mut self, scene: SpatialScene) {
+        self.scene = Some(Box::new(scene));
     }
 
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
@@ -95,9 +106,17 @@ impl SpatialRun {
             self.begun = true;
             self.news.begin(Instant::START, record)?;
             self.next_dense = record.dense().then_some(Instant::START);
+            match &self.scene {
+                Some(scene) if record.scene() => {
+                    let parts = scene.parts(self.news.stamp(Instant::START));
+                    record.record(Instant::START, Sample::Scene(&parts))?;
+                    self.next_frames = Some(Instant::START);
+                }
+                _ => self.scene = None,
+            }
         }
         loop {
-            let due = [self.jets.due(), self.next_dense];
+            let due = [self.jets.due(), self.next_dense, self.next_frames];
             let next = due.into_iter().flatten().fold(self.next_cycle, Instant::min);
             if next > until {
                 self.body.view(until);
@@ -115,6 +134,22 @@ impl SpatialRun {
                 record.record(next, Sample::SpatialMotion(&self.motion(next)))?;
                 self.next_dense = Some(next + self.log_period);
             }
+            self.show(next, record)?;
+        }
+    }
+
+    /// Tells the frames of the scene when they are due, and its plumes when they are new.
+    fn show(&mut self, now: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        let stamp = self.news.stamp(now);
+        if self.next_frames == Some(now) {
+            let SpatialState { turn, modes } = self.body.state();
+            record.record(now, Sample::Frames(scene.frames(stamp, &turn.attitude, modes)))?;
+            self.next_frames = Some(now + scene.period);
+        }
+        match scene.plumes(stamp, self.jets.burning()) {
+            Some(plumes) => Ok(record.record(now, Sample::Plumes(&plumes))?),
+            None => Ok(()),
         }
     }
 

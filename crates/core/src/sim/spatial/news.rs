@@ -5,6 +5,7 @@ use nalgebra::Quaternion;
 use crate::body::spatial::{AXES, angles};
 use crate::law::Damped;
 use crate::record::foxglove::Level;
+use crate::record::row::Stamp;
 use crate::record::{Record, RecordError};
 use crate::scenario::{Scenario, SpatialLoop};
 use crate::sim::journal::{Journal, opening};
@@ -40,6 +41,11 @@ impl News {
             resting: [false; 3],
             trusted: [true; 3],
         }
+    }
+
+    /// An instant as a date.
+    pub fn stamp(&self, now: Instant) -> Stamp {
+        self.journal.stamp(now)
     }
 
     /// Tells that the run begins, once.
