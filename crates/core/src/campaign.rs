@@ -8,6 +8,7 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::document::{Document, ScenarioError, key};
+use crate::layout::Layout;
 use crate::metrics::{Gather, Metrics};
 use crate::random::Seed;
 use crate::record::{OutputName, Provenance, Record};
@@ -187,7 +188,7 @@ impl Campaign {
                 .iter()
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),
-            layout: run.scenario.layout(),
+            layout: Some(Layout::of(&run.scenario)),
         }
     }
 

@@ -46,6 +46,7 @@ pub mod guard;
 mod integrate;
 mod label;
 pub mod law;
+pub mod layout;
 pub mod manoeuvre;
 pub mod metrics;
 mod one_of;

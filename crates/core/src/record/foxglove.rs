@@ -27,7 +27,14 @@ impl Level {
     /// The enumeration as a log column.
     pub const LABELS: Labels = Labels {
         name: "Log.Level",
-        docs: &[" Not told.", " For debugging.", " What happens.", " What should not be.", " A failure.", " The end."],
+        docs: &[
+            " Not told.",
+            " For debugging.",
+            " What happens.",
+            " What should not be.",
+            " A failure.",
+            " The end.",
+        ],
         values: &["unknown", "debug", "info", "warning", "error", "fatal"],
     };
 }

@@ -13,6 +13,7 @@ use super::proto::{Encoder, descriptor_set};
 use super::row::{Stamp, TopicRow};
 use super::topics::index_of;
 use super::{Detail, Metrics, OutputName, Params, Record, RecordError, Sample, TOPICS, TakeRow};
+use crate::layout::Layout;
 use crate::time::Instant;
 use crate::whole::discard;
 
@@ -34,8 +35,8 @@ pub struct Provenance {
     pub epoch_ns: u64,
     /// The observed coordinates, in the order in which they are logged.
     pub outputs: Vec<OutputName>,
-    /// A viewer layout for this kind of run.
-    pub layout: Option<&'static str>,
+    /// A viewer layout for the run.
+    pub layout: Option<Layout>,
 }
 
 /// How a run ended.
@@ -78,8 +79,9 @@ impl<W: Write + Seek> McapLog<W> {
             WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
         let mut writer = Writer::with_options(writer, options).map_err(failure)?;
         attach(&mut writer, "scenario.toml", "application/toml", &from.toml)?;
-        if let Some(layout) = from.layout {
-            attach(&mut writer, "layout.json", "application/json", layout)?;
+        if let Some(layout) = &from.layout {
+            let layout = layout.of_detail(detail).to_json();
+            attach(&mut writer, "layout.json", "application/json", &layout)?;
         }
         let metadata = [
             ("version", env!("CARGO_PKG_VERSION").to_owned()),

@@ -68,9 +68,11 @@ impl Sample<'_> {
     /// The least detail of a record that wants it.
     pub fn detail(self) -> Detail {
         match self {
-            Self::Motion(_) | Self::Law(_) | Self::Estimate(_) | Self::Tracking(_) | Self::SpatialMotion(_) => {
-                Detail::Full
-            }
+            Self::Motion(_)
+            | Self::Law(_)
+            | Self::Estimate(_)
+            | Self::Tracking(_)
+            | Self::SpatialMotion(_) => Detail::Full,
             Self::Scene(_) | Self::Frames(_) | Self::Plumes(_) => Detail::Scene,
             _ => Detail::Events,
         }

@@ -68,12 +68,15 @@ fn add_message(message: &Message, files: &mut Vec<FileDescriptorProto>) -> Strin
         enum_type: nested,
         ..DescriptorProto::default()
     };
-    add(files, FileDescriptorProto {
-        dependency: imports,
-        message_type: vec![descriptor],
-        source_code_info: Some(SourceCodeInfo { location: comments }),
-        ..file(package, name)
-    })
+    add(
+        files,
+        FileDescriptorProto {
+            dependency: imports,
+            message_type: vec![descriptor],
+            source_code_info: Some(SourceCodeInfo { location: comments }),
+            ..file(package, name)
+        },
+    )
 }
 
 /// Adds a file that is not there yet; returns its name.
@@ -101,11 +104,14 @@ fn enumeration(labels: &Labels) -> EnumDescriptorProto {
 fn add_enumeration(package: &str, labels: &Labels, files: &mut Vec<FileDescriptorProto>) -> String {
     let comment = |(number, doc): (usize, &&str)| comment(&[5, 0, 2, number as i32], &[doc]);
     let location = labels.docs.iter().enumerate().map(comment).collect();
-    add(files, FileDescriptorProto {
-        enum_type: vec![enumeration(labels)],
-        source_code_info: Some(SourceCodeInfo { location }),
-        ..file(package, labels.name)
-    })
+    add(
+        files,
+        FileDescriptorProto {
+            enum_type: vec![enumeration(labels)],
+            source_code_info: Some(SourceCodeInfo { location }),
+            ..file(package, labels.name)
+        },
+    )
 }
 
 /// Adds one of the messages of time that every reader knows.

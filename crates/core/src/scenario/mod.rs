@@ -299,18 +299,8 @@ impl Scenario {
         schemars::schema_for!(Scenario).to_value()
     }
 
-    /// A viewer layout for logs of this kind of scenario.
-    pub fn layout(&self) -> Option<&'static str> {
-        Some(if self.spatial.is_some() {
-            include_str!("../../../../scenarios/layouts/spatial.json")
-        } else if self.law.switches() {
-            include_str!("../../../../scenarios/layouts/relay.json")
-        } else if matches!(self.actuator, Actuator::Wheel(_))
-            || (matches!(self.law, Law::Pd(_)) && self.manoeuvre.is_none())
-        {
-            include_str!("../../../../scenarios/layouts/wheel.json")
-        } else {
-            include_str!("../../../../scenarios/layouts/rotation.json")
-        })
+    /// Whether the torque has more to it than the switchings of a law tell.
+    pub fn tells_torque(&self) -> bool {
+        !self.law.switches() || !self.disturbance.is_empty() || self.actuator != Actuator::Ideal
     }
 }

@@ -54,15 +54,16 @@ pub fn spatial_angle(spatial: &SpatialLoop) -> f64 {
     targets.chain([start]).map(angle).fold(spatial.law.dead_zone.get(), f64::max)
 }
 
-/// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, or what the initial
-/// state holds.
+/// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, but no more than
+/// the same push gives without a spring, or what the initial state holds.
 pub fn displacements(scenario: &Scenario) -> Vec<f64> {
     let model = &scenario.model;
+    let travel = angle(scenario);
     let moment = largest(scenario) / model.commanded_inertia();
     let of = |mode: &Mode| {
         let start = mode.start();
         let held = mode.amplitude(start);
-        held.max(2.0 * mode.excitability().abs() * moment)
+        held.max((2.0 * mode.excitability().abs() * moment).min(mode.gain.get().abs() * travel))
     };
     model.modes.iter().map(of).collect()
 }
@@ -100,7 +101,9 @@ mod tests {
 
     #[test]
     fn factors_are_round_and_never_reduce() {
-        for (estimate, factor) in [(0.0, 1.0), (2.0, 1.0), (0.4, 1.0), (0.01, 50.0), (2.4e-5, 20000.0), (0.07, 5.0)] {
+        for (estimate, factor) in
+            [(0.0, 1.0), (2.0, 1.0), (0.4, 1.0), (0.01, 50.0), (2.4e-5, 20000.0), (0.07, 5.0)]
+        {
             assert_eq!(turning(estimate), factor, "{estimate}");
         }
     }

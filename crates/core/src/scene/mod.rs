@@ -14,6 +14,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Positive;
+use crate::record::foxglove::FrameTransforms;
+use crate::scenario::Scenario;
 use crate::time::Span;
 
 pub use planar::{PlanarScene, PlanarView};
@@ -36,6 +38,30 @@ pub struct SceneSpec {
     /// How many times the rotation of the body is drawn as large as it is; left out, so many times that it shows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turning: Option<Positive>,
+}
+
+/// What a viewer has to know of a scene before it looks: how far it reaches (m), and the names of its frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extent {
+    /// Distance of the farthest part (m).
+    pub reach: f64,
+    /// The frames that move.
+    pub frames: Vec<String>,
+}
+
+impl Extent {
+    /// That of a scenario's scene.
+    pub fn of(scenario: &Scenario) -> Self {
+        match &scenario.spatial {
+            None => PlanarScene::new(scenario).extent(),
+            Some(spatial) => SpatialScene::new(scenario, spatial).extent(),
+        }
+    }
+
+    fn new(reach: f64, frames: &FrameTransforms) -> Self {
+        let frames = frames.transforms.iter().map(|frame| frame.child_frame_id.clone());
+        Self { reach, frames: frames.collect() }
+    }
 }
 
 impl SceneSpec {

@@ -3,8 +3,8 @@
 use super::pose::{from_z, place, point, pose, upright};
 use crate::body::spatial::Vector;
 use crate::record::foxglove::{
-    ArrowPrimitive, Color, CubePrimitive, CylinderPrimitive, FrameTransform, LinePrimitive, LineType, SceneEntity,
-    SceneUpdate, TextPrimitive,
+    ArrowPrimitive, Color, CubePrimitive, CylinderPrimitive, FrameTransform, LinePrimitive, LineType,
+    SceneEntity, SceneUpdate, TextPrimitive,
 };
 use crate::record::row::{Lifetime, Stamp};
 

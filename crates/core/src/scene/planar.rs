@@ -1,8 +1,10 @@
 //! The scene of a body with one angle: a hub that turns about z, with panels of sections that bend in the plane.
 
+use super::Extent;
 use super::magnification::{angle, bending, displacements, largest, turning};
 use super::part::{
-    BODY, GOAL, HUB, INERTIAL, MARK, NOZZLE, PANEL, WHEEL, axes, cone, cube, entity, frame, line, scene, words,
+    BODY, GOAL, HUB, INERTIAL, MARK, NOZZLE, PANEL, WHEEL, axes, cone, cube, entity, frame, line, scene,
+    words,
 };
 use super::plume::{Burning, Nozzle};
 use super::pose::{about_z, attitude};
@@ -165,6 +167,11 @@ impl PlanarScene {
 
     fn azimuth(&self, panel: u32) -> f64 {
         f64::from(panel) * (std::f64::consts::TAU / f64::from(self.count))
+    }
+
+    /// How far it reaches, and its frames.
+    pub fn extent(&self) -> Extent {
+        Extent::new(self.root + self.length(), &self.frames)
     }
 
     /// What the scene consists of.

@@ -45,7 +45,11 @@ impl Burning {
             return None;
         }
         let mut update = SceneUpdate {
-            deletions: vec![SceneEntityDeletion { timestamp: stamp, r#type: Deleted::All, id: String::new() }],
+            deletions: vec![SceneEntityDeletion {
+                timestamp: stamp,
+                r#type: Deleted::All,
+                id: String::new(),
+            }],
             entities: Vec::new(),
         };
         for (nozzle, part) in self.nozzles.iter().zip(&parts).filter(|(_, part)| **part > 0.0) {

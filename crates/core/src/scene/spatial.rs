@@ -5,10 +5,9 @@
 
 use nalgebra::Quaternion;
 
+use super::Extent;
 use super::magnification::{bending, modal, spatial_angle, turning};
-use super::part::{
-    BODY, BOOM, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, scene, words,
-};
+use super::part::{BODY, BOOM, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, scene, words};
 use super::plume::{Burning, Nozzle};
 use super::pose::{about, attitude, from_z, limited, magnified, place};
 use crate::actuator::Pair;
@@ -138,6 +137,11 @@ impl SpatialScene {
         1.1 * self.size / SECTIONS as f64
     }
 
+    /// How far it reaches, and its frames.
+    pub fn extent(&self) -> Extent {
+        Extent::new(1.2 * self.size, &self.frames)
+    }
+
     /// What the scene consists of.
     pub fn parts(&self, stamp: Stamp) -> SceneUpdate {
         let size = self.size;
@@ -185,7 +189,8 @@ impl SpatialScene {
         let near = self.points.iter().zip(&moved).find(|(point, _)| !point.is_distant());
         let hub = near.map_or(still, |(_, moved)| *moved);
         let mut placed = vec![(Vector::zeros(), magnified(q, self.turning))];
-        placed.extend(self.points.iter().zip(&moved).map(|(point, (u, theta))| (point.at + u, about(*theta))));
+        placed
+            .extend(self.points.iter().zip(&moved).map(|(point, (u, theta))| (point.at + u, about(*theta))));
         let distant = self.points.iter().zip(&moved).filter(|(point, _)| point.is_distant());
         for (point, end) in distant {
             placed.extend((0..SECTIONS).map(|section| {
@@ -196,10 +201,11 @@ impl SpatialScene {
         }
         // Each section of a wing is turned further than the one before by the same rule, on both sides.
         let tip = limited(hub.1 * -SWING, LARGEST);
-        let shape = |section: usize| libm::sin(std::f64::consts::FRAC_PI_2 * (section as f64 + 0.5) / SECTIONS as f64);
-        let steps = (0..SECTIONS).map(|section| {
-            shape(section) - if section == 0 { 0.0 } else { shape(section - 1) }
-        });
+        let shape = |section: usize| {
+            libm::sin(std::f64::consts::FRAC_PI_2 * (section as f64 + 0.5) / SECTIONS as f64)
+        };
+        let steps =
+            (0..SECTIONS).map(|section| shape(section) - if section == 0 { 0.0 } else { shape(section - 1) });
         let steps: Vec<_> = steps.map(|step| about(tip * step)).collect();
         let turned = steps.iter().chain(&steps);
         let (free, chained) = self.frames.transforms.split_at_mut(placed.len());

@@ -354,7 +354,7 @@ impl PlanarRun {
         let measured = self.next_sample.map(|_| self.belief.angle);
         let (attitude, rate, modes) = self.body.motion(measured);
         let envelope = self.watch.as_ref().map(|watch| watch.envelope(self.now));
-        let drive = self.drive.is_worth_telling().then(|| {
+        let drive = self.drive.is_worth_telling.then(|| {
             let (angle_rad, rate_rad_s) = self.drive.rigid_goal(&self.goal, self.now);
             let (rate, rigid) = (rate.rate_rad_s, rate.rigid_rad_s);
             (GoalMotion { angle_rad, rate_rad_s }, self.drive.torque(self.now, rate, rigid))

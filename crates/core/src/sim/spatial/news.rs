@@ -93,7 +93,7 @@ impl News {
         trusted: [bool; 3],
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
-        let (info, warning) = (Level::Info, Level::Warning);
+        let (debug, info, warning) = (Level::Debug, Level::Info, Level::Warning);
         for (axis, name) in AXES.into_iter().enumerate() {
             let changed = |before: &mut bool, now: bool| std::mem::replace(before, now) != now;
             let Damped { latched, resting, .. } = damped[axis];
@@ -112,8 +112,8 @@ impl News {
             }
             if changed(&mut self.latched[axis], latched) {
                 lines.push(match latched {
-                    true => (info, "damping", "the elastic rate is beyond its threshold"),
-                    false => (info, "damping", "the elastic rate is damped"),
+                    true => (debug, "damping", "the elastic rate is beyond its threshold"),
+                    false => (debug, "damping", "the elastic rate is damped"),
                 });
             }
             for (level, part, line) in lines {
