@@ -7,6 +7,7 @@ mod mcap;
 mod proto;
 mod recover;
 pub mod row;
+mod table;
 mod topics;
 mod trace;
 
