@@ -6,11 +6,10 @@ from typing import Any
 import flexsc
 import numpy as np
 import pytest
+from conftest import shipped
 from flexsc import LogError, Result, Scenario
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
-
-from conftest import shipped
 
 
 @pytest.fixture(scope="module")
@@ -160,7 +159,7 @@ def test_the_scene_is_read_by_all(tmp_path: Path) -> None:
     topics = decoded(path)
     [(_, scene)] = topics["/scene"]
     [words] = [text.text for entity in scene.entities for text in entity.texts]
-    assert words == "bending × 1, turning × 1 (schematic)"
+    assert words == "bending \N{MULTIPLICATION SIGN} 1, turning \N{MULTIPLICATION SIGN} 1 (schematic)"
     frames = [message for _, message in topics["/tf"]]
     assert [frame.child_frame_id for frame in frames[0].transforms[:3]] == ["body", "panel_1/1", "panel_1/2"]
     # The body's frame is where the engine's body is, at each period of the log.
