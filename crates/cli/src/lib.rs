@@ -9,6 +9,8 @@ mod failure;
 mod figure;
 mod grid;
 mod identify;
+#[cfg(feature = "live")]
+mod live;
 mod log;
 mod map;
 mod modes;

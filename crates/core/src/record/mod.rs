@@ -3,6 +3,7 @@
 mod columns;
 mod log;
 mod mcap;
+mod message;
 mod proto;
 mod recover;
 pub mod row;
@@ -18,7 +19,8 @@ use crate::time::Instant;
 
 pub use columns::{Column, Columns};
 pub use log::{Log, LogError};
-pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
+pub use mcap::{LogFile, McapLog, RunEnd};
+pub use message::{Encode, Message, Messages, Provenance};
 pub use recover::recover;
 pub use topics::{
     Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion,
@@ -186,7 +188,7 @@ pub enum Detail {
     Full,
 }
 
-/// A thing that takes rows of any topic: a log file, or columns in memory.
+/// A thing that takes rows of any topic: messages, or columns in memory.
 trait TakeRow {
     fn take<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
 

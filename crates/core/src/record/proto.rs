@@ -14,21 +14,23 @@ use crate::label::Labels;
 
 const PACKAGE: &str = "flexsc.v1";
 
-/// The full name of a message of ours.
-pub fn full_name(message: &str) -> String {
-    format!("{PACKAGE}.{message}")
-}
-
-/// The schema of a topic: a serialised `FileDescriptorSet` with its imports and comments.
-pub fn descriptor_set(topic: &Topic) -> Vec<u8> {
-    let mut files: Vec<FileDescriptorProto> = Vec::new();
-    for labels in enumerations(topic.fields) {
-        if files.iter().all(|file| file.name() != file_name(labels.name)) {
-            files.push(enumeration_file(labels));
-        }
+impl Topic {
+    /// The full name of its message.
+    pub fn schema_name(&self) -> String {
+        format!("{PACKAGE}.{}", self.message)
     }
-    files.push(message_file(topic, files.iter().map(|f| f.name().to_owned()).collect()));
-    FileDescriptorSet { file: files }.encode_to_vec()
+
+    /// Its schema: a serialised `FileDescriptorSet` with its imports and comments.
+    pub fn schema(&self) -> Vec<u8> {
+        let mut files: Vec<FileDescriptorProto> = Vec::new();
+        for labels in enumerations(self.fields) {
+            if files.iter().all(|file| file.name() != file_name(labels.name)) {
+                files.push(enumeration_file(labels));
+            }
+        }
+        files.push(message_file(self, files.iter().map(|f| f.name().to_owned()).collect()));
+        FileDescriptorSet { file: files }.encode_to_vec()
+    }
 }
 
 fn file_name(message: &str) -> String {
