@@ -217,7 +217,7 @@ fn a_viewer_gets_the_messages_of_the_log() {
     for (name, arguments) in runs {
         let dir = Dir::with(&[name]);
         let (set, speed) = arguments.split_once(" --speed ").expect("a speed");
-        let simulate = format!("simulate {name}.toml {set} --log full");
+        let simulate = format!("simulate {name}.toml {set} --log scene");
         dir.run(&format!("{simulate} -o alone")).exits(0);
         let (rows, schemas) = log(&dir, &format!("alone/{name}.mcap"));
         let mut run = dir.start(&format!("{simulate} -o out --live=127.0.0.1:0 --wait --speed {speed}"));

@@ -27,6 +27,7 @@ mod plot;
 mod relay;
 mod rivals;
 mod rotation;
+mod scene;
 mod spacecraft;
 mod spatial;
 mod station;

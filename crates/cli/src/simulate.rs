@@ -66,6 +66,8 @@ enum LogDetail {
     Events,
     /// Also the motion at each period of the scenario's log, and at every switching
     Full,
+    /// Also the scene for viewers in three dimensions: frames, shapes, plumes
+    Scene,
 }
 
 impl LogDetail {
@@ -74,6 +76,7 @@ impl LogDetail {
             Self::None => None,
             Self::Events => Some(Detail::Events),
             Self::Full => Some(Detail::Full),
+            Self::Scene => Some(Detail::Scene),
         }
     }
 }

@@ -8,6 +8,7 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::document::{Document, ScenarioError, key};
+use crate::layout::Layout;
 use crate::metrics::{Gather, Metrics};
 use crate::random::Seed;
 use crate::record::{OutputName, Provenance, Record};
@@ -134,7 +135,11 @@ impl Campaign {
     /// Simulates a run and gathers its metrics, beside another record.
     pub fn simulate(run: &Run, record: impl Record) -> Result<Metrics, SimulationError> {
         let mut both = (Gather::new(&run.scenario), record);
-        Simulation::new(&run.scenario, run.number).run(&mut both)?;
+        let mut simulation = Simulation::new(&run.scenario, run.number);
+        if both.scene() {
+            simulation.draw(&run.scenario);
+        }
+        simulation.run(&mut both)?;
         Ok(both.0.finish(&run.scenario))
     }
 
@@ -183,7 +188,7 @@ impl Campaign {
                 .iter()
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),
-            layout: run.scenario.layout(),
+            layout: Some(Layout::of(&run.scenario)),
         }
     }
 

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::metrics::Metrics;
-use flexsc_core::record::{Detail, Encode, Record, RecordError, Sample};
+use flexsc_core::record::{Detail, Encode, Record, RecordError, RunEnd, Sample};
 use flexsc_core::time::Instant;
 
 use clock::{Clock, LOOK, Speed};
@@ -81,7 +81,7 @@ impl Args {
         let provenance = Campaign::provenance(run);
         let topics = topics::expected(run, &provenance);
         let hub = Arc::new(Hub::new(run.scenario.name.clone(), clock, topics));
-        let messages = Encode::new(Publisher(hub.clone()), &provenance, Detail::Full);
+        let messages = Encode::new(Publisher(hub.clone()), &provenance, Detail::Scene);
         let messages = messages.map_err(|error| failed(io::Error::other(error)))?;
         say!("  live           ws://{bound}, {speed}");
         thread::spawn({
@@ -98,7 +98,7 @@ impl Live {
     pub fn finish(mut self, metrics: &Metrics) {
         if let Some(messages) = self.messages.take() {
             // Viewers take what they are given.
-            let _ = messages.finish(&metrics.to_row());
+            let _ = messages.finish(&metrics.to_row(), RunEnd::Complete);
         }
         if self.hub.clients() > 0 && !stop::asked() {
             say!("  live           the run has ended; Ctrl-C, or the last viewer's leave, ends the server");
@@ -117,6 +117,10 @@ impl Drop for Live {
 
 impl Record for Live {
     fn dense(&self) -> bool {
+        true
+    }
+
+    fn scene(&self) -> bool {
         true
     }
 

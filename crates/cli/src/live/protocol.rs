@@ -122,7 +122,7 @@ pub fn advertise<'a>(topics: impl Iterator<Item = (usize, &'a Topic)>) -> Messag
             "id": channel_of(index),
             "topic": topic.name,
             "encoding": "protobuf",
-            "schemaName": topic.schema_name(),
+            "schemaName": topic.message,
             "schemaEncoding": "protobuf",
             "schema": BASE64.encode(&topic.schema()),
         })

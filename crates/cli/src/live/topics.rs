@@ -12,9 +12,11 @@ use flexsc_core::{Scenario, Simulation};
 /// The topics of a run as indices into [`TOPICS`]: those of its first instant, and those of what may happen later.
 pub fn expected(run: &Run, from: &Provenance) -> BTreeSet<usize> {
     let mut topics = Topics::default();
-    if let Ok(mut messages) = Encode::new(&mut topics, from, Detail::Full) {
+    if let Ok(mut messages) = Encode::new(&mut topics, from, Detail::Scene) {
         // A run that fails at its start says so when it is made.
-        let _ = Simulation::new(&run.scenario, run.number).run_until(Instant::START, &mut messages);
+        let mut simulation = Simulation::new(&run.scenario, run.number);
+        simulation.draw(&run.scenario);
+        let _ = simulation.run_until(Instant::START, &mut messages);
     }
     let later = later(&run.scenario);
     topics.0.extend((0..TOPICS.len()).filter(|&index| later.contains(&TOPICS[index].name)));
@@ -65,11 +67,13 @@ mod tests {
             let run = Run { number: 0, scenario, drawn: Vec::new() };
             let from = Campaign::provenance(&run);
             let (expected, mut seen) = (expected(&run, &from), Topics::default());
-            let mut messages = Encode::new(&mut seen, &from, Detail::Full).expect("messages");
+            let mut messages = Encode::new(&mut seen, &from, Detail::Scene).expect("messages");
             // Long enough for an arrival, and for the windows of an adaptation.
             let seconds = if run.scenario.adaptation.is_some() { 1100.0 } else { 25.0 };
             let until = Instant::START + Span::from_seconds(seconds);
-            Simulation::new(&run.scenario, 0).run_until(until, &mut messages).expect("a run");
+            let mut simulation = Simulation::new(&run.scenario, 0);
+            simulation.draw(&run.scenario);
+            simulation.run_until(until, &mut messages).expect("a run");
             let name = |index: &usize| TOPICS[*index].name;
             let unknown: Vec<_> = seen.0.difference(&expected).map(name).collect();
             assert!(unknown.is_empty(), "{}: {unknown:?}", file.path().display());

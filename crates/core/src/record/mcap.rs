@@ -9,23 +9,12 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapError, WriteOptions, Writer};
 
 use super::message::{Encode, Message, Messages};
-use super::{Detail, Metrics, Provenance, Record, RecordError, Sample, TOPICS};
+use super::{Detail, Metrics, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
 use crate::time::Instant;
 use crate::whole::discard;
 
 /// A chunk is closed after so many messages: what a killed run loses at most.
 const MESSAGES_PER_FLUSH: u64 = 2000;
-
-/// How a run ended.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum RunEnd {
-    /// It reached its duration.
-    Complete,
-    /// The user stopped it.
-    Interrupted,
-    /// It failed.
-    Failed,
-}
 
 /// A run's log, written while it runs.
 pub struct McapLog<W: Write + Seek> {
@@ -39,8 +28,9 @@ impl<W: Write + Seek> McapLog<W> {
             WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
         let mut writer = Writer::with_options(writer, options).map_err(failure)?;
         attach(&mut writer, "scenario.toml", "application/toml", &from.toml)?;
-        if let Some(layout) = from.layout {
-            attach(&mut writer, "layout.json", "application/json", layout)?;
+        if let Some(layout) = &from.layout {
+            let layout = layout.of_detail(detail).to_json();
+            attach(&mut writer, "layout.json", "application/json", &layout)?;
         }
         let metadata = [
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
@@ -59,7 +49,7 @@ impl<W: Write + Seek> McapLog<W> {
 
     /// Writes the metrics, how the run ended, and the file's summary.
     pub fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
-        let (Channels { mut writer, .. }, last) = self.log.finish(metrics)?;
+        let (Channels { mut writer, .. }, last) = self.log.finish(metrics, end)?;
         let end = match end {
             RunEnd::Complete => "complete",
             RunEnd::Interrupted => "interrupted",
@@ -76,6 +66,10 @@ impl<W: Write + Seek> McapLog<W> {
 impl<W: Write + Seek> Record for McapLog<W> {
     fn dense(&self) -> bool {
         self.log.dense()
+    }
+
+    fn scene(&self) -> bool {
+        self.log.scene()
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
@@ -97,7 +91,7 @@ impl<W: Write + Seek> Channels<W> {
             return Ok(channel);
         }
         let topic = &TOPICS[index];
-        let schema = self.writer.add_schema(&topic.schema_name(), "protobuf", &topic.schema());
+        let schema = self.writer.add_schema(topic.message, "protobuf", &topic.schema());
         let none = BTreeMap::new();
         let id = self.writer.add_channel(schema.map_err(failure)?, topic.name, "protobuf", &none);
         Ok((id.map_err(failure)?, 0))
@@ -161,6 +155,10 @@ impl LogFile {
 impl Record for LogFile {
     fn dense(&self) -> bool {
         self.log.dense()
+    }
+
+    fn scene(&self) -> bool {
+        self.log.scene()
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {

@@ -1,9 +1,11 @@
 //! Messages: the rows of a run as the bytes that every log of it holds, wherever they go.
 
+use super::foxglove::{Level, Log};
 use super::proto::Encoder;
-use super::row::TopicRow;
+use super::row::{Stamp, TopicRow};
 use super::topics::index_of;
 use super::{Detail, Metrics, OutputName, Params, Record, RecordError, Sample, TakeRow};
+use crate::layout::Layout;
 use crate::time::Instant;
 
 /// What a log says about where it comes from.
@@ -21,8 +23,29 @@ pub struct Provenance {
     pub epoch_ns: u64,
     /// The observed coordinates, in the order in which they are logged.
     pub outputs: Vec<OutputName>,
-    /// A viewer layout for this kind of run.
-    pub layout: Option<&'static str>,
+    /// A viewer layout for the run.
+    pub layout: Option<Layout>,
+}
+
+/// How a run ended.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum RunEnd {
+    /// It reached its duration.
+    Complete,
+    /// The user stopped it.
+    Interrupted,
+    /// It failed.
+    Failed,
+}
+
+impl RunEnd {
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Complete => "ends",
+            Self::Interrupted => "was interrupted",
+            Self::Failed => "failed",
+        }
+    }
 }
 
 /// A message of a log.
@@ -67,10 +90,17 @@ impl<M: Messages> Encode<M> {
         Ok(encode)
     }
 
-    /// Ends the messages with the metrics, if there are any; tells where the messages went and the time of the last.
-    pub fn finish(mut self, metrics: &Metrics) -> Result<(M, Instant), RecordError> {
+    /// Ends the messages with the metrics, if there are any, and how the run ended, if before its time; tells where the
+    /// messages went, and the time of the last.
+    pub fn finish(mut self, metrics: &Metrics, end: RunEnd) -> Result<(M, Instant), RecordError> {
         if !metrics.metrics.is_empty() {
             self.take(self.last, metrics)?;
+        }
+        if end != RunEnd::Complete {
+            let timestamp = Stamp(self.epoch_ns + self.last.nanoseconds());
+            let message = format!("the run {} at {} s", end.verb(), self.last.seconds());
+            let (level, name) = (Level::Warning, "run".to_owned());
+            self.take(self.last, &Log { timestamp, level, message, name })?;
         }
         Ok((self.to, self.last))
     }
@@ -91,11 +121,15 @@ impl<M: Messages> TakeRow for Encode<M> {
 
 impl<M: Messages> Record for Encode<M> {
     fn dense(&self) -> bool {
-        self.detail == Detail::Full
+        self.detail >= Detail::Full
+    }
+
+    fn scene(&self) -> bool {
+        self.detail >= Detail::Scene
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         // Another record may want more.
-        if sample.is_dense() && !self.dense() { Ok(()) } else { self.take_sample(now, sample) }
+        if sample.detail() > self.detail { Ok(()) } else { self.take_sample(now, sample) }
     }
 }

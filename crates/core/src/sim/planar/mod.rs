@@ -11,12 +11,15 @@ mod track;
 mod watch;
 
 use super::SimulationError;
+use super::journal::{Journal, opening};
 use crate::belief::Belief;
 use crate::body::{Sight, State};
 use crate::law::{Cause, Goal, Hold, Law};
 use crate::random::{Seed, Stream};
+use crate::record::foxglove::Level;
 use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
 use crate::scenario::Scenario;
+use crate::scene::{PlanarScene, PlanarView};
 use crate::sensor::{Measurement, Sensor};
 use crate::time::{Instant, Span};
 
@@ -55,8 +58,14 @@ pub struct PlanarRun {
     log_period: Span,
     next_dense: Option<Instant>,
     next_law: Instant,
+    /// The scene, and when its frames are due.
+    scene: Option<Box<PlanarScene>>,
+    next_frames: Option<Instant>,
     decisions: u32,
-    begun: bool,
+    journal: Journal,
+    /// The journal's first line, until it is written.
+    opening: Option<String>,
+    ended: bool,
 }
 
 impl PlanarRun {
@@ -83,22 +92,33 @@ impl PlanarRun {
             log_period: scenario.log.period,
             next_dense: None,
             next_law: Instant::START,
+            scene: None,
+            next_frames: None,
             decisions: 0,
-            begun: false,
+            journal: Journal::new(scenario),
+            opening: Some(opening(scenario, run)),
+            ended: false,
         }
+    }
+
+    /// Draws this scene for records that want one.
+    pub fn draw(&mut self, scene: PlanarScene) {
+        self.scene = Some(Box::new(scene));
     }
 
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
     pub fn run_until(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
         let until = until.min(self.end);
-        if !self.begun {
+        if let Some(opening) = self.opening.take() {
+            self.journal.tell(self.now, (Level::Info, "run"), opening, record)?;
             self.begin(record)?;
         }
         loop {
             let next = self.next();
             if next > until {
                 self.now = until;
-                return self.view().map(|_| ());
+                self.view()?;
+                return self.end(record);
             }
             if next > self.now {
                 self.now = next;
@@ -119,7 +139,6 @@ impl PlanarRun {
     }
 
     fn begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
-        self.begun = true;
         let sight = self.view()?;
         let measured = self.sensor.measure(self.now, (sight.angle, sight.rate), None, &mut self.noise);
         self.measured = measured;
@@ -136,6 +155,22 @@ impl PlanarRun {
             self.next_dense = Some(self.now);
             self.next_law = self.now + Span::from_seconds(1.0);
         }
+        match &self.scene {
+            Some(scene) if record.scene() => {
+                record.record(self.now, Sample::Scene(&scene.parts(self.journal.stamp(self.now))))?;
+                self.next_frames = Some(self.now);
+            }
+            _ => self.scene = None,
+        }
+        Ok(())
+    }
+
+    /// Ends the run, if this is its end and it has not ended yet.
+    fn end(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        if self.now == self.end && !std::mem::replace(&mut self.ended, true) {
+            let line = "the end of the run".to_owned();
+            self.journal.tell(self.now, (Level::Info, "run"), line, record)?;
+        }
         Ok(())
     }
 
@@ -144,8 +179,8 @@ impl PlanarRun {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.watch.as_ref().map(|watch| watch.closes);
         let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
-        let due =
-            [trip, self.hold.until, self.drive.due(), self.next_sample, closes, arrives, self.next_dense];
+        let told = [self.next_dense, self.next_frames].into_iter().flatten().min();
+        let due = [trip, self.hold.until, self.drive.due(), self.next_sample, closes, arrives, told];
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
@@ -165,7 +200,13 @@ impl PlanarRun {
         }
         if let Some(arrival) = self.arrival.take_if(|arrival| arrival.at == now) {
             let sight = self.view()?;
-            record.record(now, Sample::Arrival(&arrival.row(sight, self.body.state())))?;
+            let row = arrival.row(sight, self.body.state());
+            record.record(now, Sample::Arrival(&row))?;
+            let line = format!(
+                "the manoeuvre ends {:.3e} rad from its goal, with a vibration of {:.3e} rad",
+                row.angle_error_rad, row.angle_residual_rad
+            );
+            self.journal.tell(now, (Level::Info, "manoeuvre"), line, record)?;
         }
         let timeout = self.hold.until.filter(|until| *until == now).map(|_| Cause::Timeout);
         if let Some(cause) = tripped.map(Cause::Guard).or(timeout) {
@@ -185,7 +226,36 @@ impl PlanarRun {
                 self.next_law += Span::from_seconds(1.0);
             }
         }
-        Ok(())
+        self.show(record)
+    }
+
+    /// Tells the frames of the scene when they are due, and its plumes when they are new.
+    fn show(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        if self.scene.is_none() {
+            return Ok(());
+        }
+        let (now, stamp) = (self.now, self.journal.stamp(self.now));
+        let sight = self.view()?;
+        let state = self.body.state();
+        let torque = self.drive.torque(now, sight.rate, state.rigid_rate).applied_nm;
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        if self.next_frames == Some(now) {
+            let sections = self.body.outputs().map_or_else(Vec::new, |outputs| outputs.outputs);
+            let sections: Vec<f64> = sections.into_iter().map(|output| output.value).collect();
+            let view = PlanarView {
+                time: now.seconds(),
+                angle: sight.angle,
+                rigid_angle: state.rigid_angle,
+                modes: &state.modes,
+                sections: &sections,
+            };
+            record.record(now, Sample::Frames(scene.frames(stamp, view)))?;
+            self.next_frames = Some(now + scene.period);
+        }
+        match scene.plumes(stamp, torque) {
+            Some(plumes) => Ok(record.record(now, Sample::Plumes(&plumes))?),
+            None => Ok(()),
+        }
     }
 
     /// Takes the sample of a sampled sensor, which the estimator follows.
@@ -284,7 +354,7 @@ impl PlanarRun {
         let measured = self.next_sample.map(|_| self.belief.angle);
         let (attitude, rate, modes) = self.body.motion(measured);
         let envelope = self.watch.as_ref().map(|watch| watch.envelope(self.now));
-        let drive = self.drive.is_worth_telling().then(|| {
+        let drive = self.drive.is_worth_telling.then(|| {
             let (angle_rad, rate_rad_s) = self.drive.rigid_goal(&self.goal, self.now);
             let (rate, rigid) = (rate.rate_rad_s, rate.rigid_rad_s);
             (GoalMotion { angle_rad, rate_rad_s }, self.drive.torque(self.now, rate, rigid))
