@@ -282,7 +282,7 @@ fn a_run_pauses_steps_and_goes_on() {
     late.ask(&json!({"op": "getParameters", "parameterNames": [], "id": "all"}));
     let values = late.text("parameterValues");
     assert_eq!(values["id"], "all");
-    let parameters = |paused: bool, speed: f64| json!([{"name": "/paused", "value": paused}, {"name": "/speed", "value": speed}]);
+    let parameters = |paused: bool, speed: f64| json!([{"name": "/paused", "value": paused}, {"name": "/speed", "type": "float64", "value": speed}]);
     assert_eq!(values["parameters"], parameters(true, 2.0));
     let set = |name: &str, value: Json| json!({"op": "setParameters", "parameters": [{"name": name, "value": value}]});
     viewer.ask(&set("/speed", json!(20)));

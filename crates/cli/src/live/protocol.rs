@@ -205,7 +205,11 @@ pub fn time(time_ns: u64) -> Message {
 
 /// The values of parameters.
 pub fn parameter_values(names: &[&str], id: Option<Json>, clock: &Clock) -> Message {
-    let value = |name: &&str| json!({"name": name, "value": parameter(name, clock)});
+    let value = |name: &&str| match parameter(name, clock) {
+        // Without its type a whole number is an integer to a viewer.
+        value if value.is_f64() => json!({"name": name, "type": "float64", "value": value}),
+        value => json!({"name": name, "value": value}),
+    };
     let mut values = json!({
         "op": "parameterValues",
         "parameters": names.iter().map(value).collect::<Vec<_>>(),
