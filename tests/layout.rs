@@ -51,7 +51,9 @@ fn named(value: &Value, found: &mut Vec<String>) {
     match value {
         Value::String(id) => found.push(id.clone()),
         Value::Object(object) => {
-            ["first", "second"].iter().filter_map(|key| object.get(*key)).for_each(|part| named(part, found))
+            for part in ["first", "second"].iter().filter_map(|key| object.get(*key)) {
+                named(part, found);
+            }
         }
         _ => panic!("{value}"),
     }
@@ -136,7 +138,9 @@ fn layouts_show_what_logs_have() {
     run("rotation-robust", "");
     run("wheel-ekf", "--set duration=30");
     run("iss-manoeuvre", "--set duration=30");
-    OTHERS.iter().for_each(|(scenario, options)| run(scenario, options));
+    for (scenario, options) in OTHERS {
+        run(scenario, options);
+    }
 }
 
 /// What is shipped is what the command writes for a log with a scene; `flexsc layout LOG` makes it anew.

@@ -155,8 +155,8 @@ fn points_move_as_the_shapes_say() {
             }
         }
         let at = frames.at(message, "tail");
-        for axis in 0..3 {
-            assert!((frames.translations[at][axis] - u[axis]).abs() < 1e-5, "{message} {axis}");
+        for (drawn, exact) in frames.translations[at].into_iter().zip(u) {
+            assert!((drawn - exact).abs() < 1e-5, "{message}: {drawn} {exact}");
         }
         let angle = theta.iter().map(|part| part * part).sum::<f64>().sqrt();
         let [x, y, z, w] = frames.rotations[at];

@@ -30,8 +30,8 @@ enum Shows {
     Message(String),
     /// Lines of the log.
     Log,
-    /// The scene.
-    Scene(Extent),
+    /// The scene, of these topics.
+    Scene(Extent, Vec<&'static str>),
 }
 
 /// A line of a plot.
@@ -98,7 +98,11 @@ impl Panel {
 
     /// The scene.
     pub fn scene(extent: Extent) -> Self {
-        Self { name: "scene", title: "Scene".to_owned(), shows: Shows::Scene(extent) }
+        Self {
+            name: "scene",
+            title: "Scene".to_owned(),
+            shows: Shows::Scene(extent, vec!["/scene", "/plumes"]),
+        }
     }
 
     /// The panel's name in a layout.
@@ -108,7 +112,7 @@ impl Panel {
             Shows::States(_) => "StateTransitions",
             Shows::Message(_) => "RawMessages",
             Shows::Log => "RosOut",
-            Shows::Scene(_) => "3D",
+            Shows::Scene(..) => "3D",
         };
         format!("{kind}!{}", self.name)
     }
@@ -116,7 +120,7 @@ impl Panel {
     /// How high it is, relative to others.
     pub fn weight(&self) -> u32 {
         match &self.shows {
-            Shows::Scene(_) | Shows::Plane(..) => 4,
+            Shows::Scene(..) | Shows::Plane(..) => 4,
             Shows::Plot(_) | Shows::Log | Shows::Message(_) => 2,
             Shows::States(_) => 1,
         }
@@ -135,7 +139,10 @@ impl Panel {
             Shows::States(lines) => Shows::States(kept(lines)?),
             Shows::Message(topic) => has(topic).then(|| self.shows.clone())?,
             Shows::Log => has("/log").then_some(Shows::Log)?,
-            Shows::Scene(_) => has("/scene").then(|| self.shows.clone())?,
+            Shows::Scene(extent, topics) => {
+                let topics: Vec<_> = topics.iter().copied().filter(|topic| has(topic)).collect();
+                (!topics.is_empty()).then(|| Shows::Scene(extent.clone(), topics))?
+            }
         };
         Some(Self { shows, ..self.clone() })
     }
@@ -156,7 +163,7 @@ impl Panel {
             }
             // From level 2 on: without what is for those who look for an error.
             Shows::Log => object(json!({ "searchTerms": [], "minLogLevel": 2, "topicToRender": "/log" })),
-            Shows::Scene(extent) => scene(extent),
+            Shows::Scene(extent, topics) => scene(extent, topics),
         };
         for key in ["foxglovePanelTitle", "lichtblickPanelTitle"] {
             config.insert(key.to_owned(), json!(self.title));
@@ -205,7 +212,8 @@ fn states(lines: &[Line]) -> Map<String, Value> {
     object(json!({ "isSynced": true, "showPoints": true, "paths": paths }))
 }
 
-fn scene(extent: &Extent) -> Map<String, Value> {
+fn scene(extent: &Extent, topics: &[&str]) -> Map<String, Value> {
+    let shown = |topic: &&str| ((*topic).to_owned(), json!({ "visible": true }));
     let hidden = |frame: &String| (format!("frame:{frame}"), json!({ "visible": false }));
     let reach = extent.reach;
     object(json!({
@@ -225,7 +233,7 @@ fn scene(extent: &Extent) -> Map<String, Value> {
         "followTf": "inertial",
         "scene": { "transforms": { "showLabel": false, "enablePreloading": true } },
         "transforms": extent.frames.iter().map(hidden).collect::<Map<_, _>>(),
-        "topics": { "/scene": { "visible": true }, "/plumes": { "visible": true } },
+        "topics": topics.iter().map(shown).collect::<Map<_, _>>(),
         "layers": { "grid": {
             "visible": true,
             "drawBehind": false,

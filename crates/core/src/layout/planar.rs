@@ -142,7 +142,7 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
             &[("frequency_rad_s", "as the law reads it"), ("true_frequency_rad_s", "true")],
         ),
         plot("deviation", "Its standard deviation (rad/s)", &[("frequency_sd_rad_s", "standard deviation")]),
-        plot("dominant", "Dominant mode (rad)", &[("displacement_rad", "as the law reads it")]),
+        Panel::plot("dominant", "Dominant mode (rad)", dominant(scenario)),
         plot("nis", "NIS and NEES", &[("nis", "NIS"), ("nees", "NEES")]),
         Panel::states(
             "lock",
@@ -155,4 +155,19 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
         ),
     ]);
     panels
+}
+
+/// The dominant mode, as the law reads it and as it really is.
+fn dominant(scenario: &Scenario) -> Vec<Line> {
+    let mut lines = vec![line("/estimator.displacement_rad", "as the law reads it")];
+    let excitability = |mode: usize| scenario.model.modes[mode].excitability().abs();
+    let modes = 0..scenario.model.modes.len();
+    // Without an estimator there is nothing to compare with.
+    if filters(scenario)
+        && let Some(mode) =
+            modes.reduce(|best, mode| if excitability(mode) > excitability(best) { mode } else { best })
+    {
+        lines.push(line(format!("/modes.modes[{mode}].displacement_rad"), "true"));
+    }
+    lines
 }

@@ -4,11 +4,13 @@
 //! each point and two wings, stand for it. Bending and turning are magnified, by factors that the scene itself shows.
 
 mod magnification;
+mod panels;
 mod part;
 mod planar;
 mod plume;
 mod pose;
 mod spatial;
+mod wheel;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -13,6 +13,7 @@ use super::pose::{about, attitude, from_z, limited, magnified, place};
 use crate::actuator::Pair;
 use crate::body::Phase;
 use crate::body::spatial::{Vector, vector};
+use crate::quantity::Positive;
 use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
 use crate::record::row::Stamp;
 use crate::scenario::{Scenario, SpatialLoop};
@@ -98,8 +99,8 @@ impl SpatialScene {
         let bent = bent.fold(0.0, f64::max);
         let mut made = Self {
             period: spec.period(scenario.log.period),
-            bending: spec.bending.map_or_else(|| bending(bent), |factor| factor.get()),
-            turning: spec.turning.map_or_else(|| turning(spatial_angle(spatial)), |factor| factor.get()),
+            bending: spec.bending.map_or_else(|| bending(bent), Positive::get),
+            turning: spec.turning.map_or_else(|| turning(spatial_angle(spatial)), Positive::get),
             size,
             groups: [&jets.groups.roll, &jets.groups.pitch, &jets.groups.yaw].map(pair),
             plumes: Burning::new(nozzles.collect(), 0.3 * size),

@@ -7,6 +7,7 @@
 mod arrival;
 mod drive;
 mod plant;
+mod show;
 mod track;
 mod watch;
 
@@ -19,7 +20,7 @@ use crate::random::{Seed, Stream};
 use crate::record::foxglove::Level;
 use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
 use crate::scenario::Scenario;
-use crate::scene::{PlanarScene, PlanarView};
+use crate::scene::PlanarScene;
 use crate::sensor::{Measurement, Sensor};
 use crate::time::{Instant, Span};
 
@@ -155,13 +156,7 @@ impl PlanarRun {
             self.next_dense = Some(self.now);
             self.next_law = self.now + Span::from_seconds(1.0);
         }
-        match &self.scene {
-            Some(scene) if record.scene() => {
-                record.record(self.now, Sample::Scene(&scene.parts(self.journal.stamp(self.now))))?;
-                self.next_frames = Some(self.now);
-            }
-            _ => self.scene = None,
-        }
+        self.set_the_scene(record)?;
         Ok(())
     }
 
@@ -227,35 +222,6 @@ impl PlanarRun {
             }
         }
         self.show(record)
-    }
-
-    /// Tells the frames of the scene when they are due, and its plumes when they are new.
-    fn show(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
-        if self.scene.is_none() {
-            return Ok(());
-        }
-        let (now, stamp) = (self.now, self.journal.stamp(self.now));
-        let sight = self.view()?;
-        let state = self.body.state();
-        let torque = self.drive.torque(now, sight.rate, state.rigid_rate).applied_nm;
-        let Some(scene) = &mut self.scene else { return Ok(()) };
-        if self.next_frames == Some(now) {
-            let sections = self.body.outputs().map_or_else(Vec::new, |outputs| outputs.outputs);
-            let sections: Vec<f64> = sections.into_iter().map(|output| output.value).collect();
-            let view = PlanarView {
-                time: now.seconds(),
-                angle: sight.angle,
-                rigid_angle: state.rigid_angle,
-                modes: &state.modes,
-                sections: &sections,
-            };
-            record.record(now, Sample::Frames(scene.frames(stamp, view)))?;
-            self.next_frames = Some(now + scene.period);
-        }
-        match scene.plumes(stamp, torque) {
-            Some(plumes) => Ok(record.record(now, Sample::Plumes(&plumes))?),
-            None => Ok(()),
-        }
     }
 
     /// Takes the sample of a sampled sensor, which the estimator follows.

@@ -128,9 +128,10 @@ impl Track {
         if std::mem::replace(&mut self.lost, lost) == lost {
             return Ok(());
         }
-        let (level, line) = match lost {
-            true => (Level::Warning, "the filter has lost the body"),
-            false => (Level::Info, "the filter follows the body again"),
+        let (level, line) = if lost {
+            (Level::Warning, "the filter has lost the body")
+        } else {
+            (Level::Info, "the filter follows the body again")
         };
         self.journal.tell(now, (level, "estimator"), line.to_owned(), record)
     }

@@ -99,21 +99,24 @@ impl News {
             let Damped { latched, resting, .. } = damped[axis];
             let mut lines = Vec::new();
             if changed(&mut self.trusted[axis], trusted[axis]) {
-                lines.push(match trusted[axis] {
-                    true => (info, "estimator", "the observer follows again"),
-                    false => (warning, "estimator", "the observer does not follow: no active damping"),
+                lines.push(if trusted[axis] {
+                    (info, "estimator", "the observer follows again")
+                } else {
+                    (warning, "estimator", "the observer does not follow: no active damping")
                 });
             }
             if changed(&mut self.resting[axis], resting) {
-                lines.push(match resting {
-                    true => (warning, "damping", "the pushes do not help: the watchdog lets them rest"),
-                    false => (info, "damping", "the watchdog lets the pushes go on"),
+                lines.push(if resting {
+                    (warning, "damping", "the pushes do not help: the watchdog lets them rest")
+                } else {
+                    (info, "damping", "the watchdog lets the pushes go on")
                 });
             }
             if changed(&mut self.latched[axis], latched) {
-                lines.push(match latched {
-                    true => (debug, "damping", "the elastic rate is beyond its threshold"),
-                    false => (debug, "damping", "the elastic rate is damped"),
+                lines.push(if latched {
+                    (debug, "damping", "the elastic rate is beyond its threshold")
+                } else {
+                    (debug, "damping", "the elastic rate is damped")
                 });
             }
             for (level, part, line) in lines {

@@ -1,7 +1,7 @@
-"""Reads logs with Rerun: `pip install rerun-sdk`, then `python rerun.py LOG... [--pictures DIR]`.
+"""Reads logs with Rerun: `pip install rerun-sdk`, then `python check_rerun.py LOG... [--pictures DIR]`.
 
-Each log is checked, converted and verified by Rerun's own command. Every topic must have been decoded by the schema in
-the file, what viewers know as what they know: frames as Transform3D, lines of the log as TextLog.
+Each log is checked, converted and verified by Rerun's own command. Every topic must have been decoded by the
+schema in the file, what viewers know as what they know: frames as Transform3D, lines of the log as TextLog.
 
 `--pictures` opens each log in Rerun's viewer and keeps a picture of it: on a machine without a screen, in
 `xvfb-run -s "-screen 0 1600x1000x24"` with a software Vulkan (Debian: xvfb, mesa-vulkan-drivers).
@@ -14,9 +14,6 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-
-# This file has the module's name: the module is looked for where packages are.
-sys.path = [path for path in sys.path if Path(path or ".").resolve() != Path(__file__).resolve().parent]
 
 KNOWN = {
     "/tf": {
@@ -42,7 +39,9 @@ def rerun(*arguments: str | Path) -> str:
 def components(recording: Path) -> dict[str, set[str]]:
     """The components of each entity, without those that describe the channel."""
     found: dict[str, set[str]] = {}
-    for entity, columns in re.findall(r" - (/\S*) - data columns: \[(.*)\]", rerun("rrd", "print", recording)):
+    for entity, columns in re.findall(
+        r" - (/\S*) - data columns: \[(.*)\]", rerun("rrd", "print", recording)
+    ):
         of = found.setdefault(entity, set())
         of.update(c for c in columns.split() if not c.startswith(("McapChannel:", "McapSchema:")))
     return {entity: of for entity, of in found.items() if not entity.startswith("/__")}
@@ -79,12 +78,14 @@ PLOTS = {
 
 
 def blueprint(recording: Path) -> Path:
-    """Plots of the motion beside the frames and the log."""
+    """Plots of the motion, and the log."""
     import rerun as rr
     import rerun.blueprint as rrb
     from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMapping
 
     said = rerun("rrd", "print", "-v", recording)
+    ends = rrb.TimeRangeBoundary.infinite()
+    whole_run = rrb.TimeAxis(view_range=rrb.TimeRange(start=ends, end=ends))
     plots = []
     for topic in PLOTS.keys() & components(recording).keys():
         [component] = components(recording)[topic]
@@ -97,12 +98,13 @@ def blueprint(recording: Path) -> Path:
                 selector=f".{field}",
             )
             lines.append(rr.SeriesLines(names=field).visualizer(mappings=[source]))
-        plots.append(rrb.TimeSeriesView(origin=topic, contents=topic, name=topic, overrides={topic: lines}))
-    frames = rrb.Spatial3DView(origin="/tf", contents="/tf", name="/tf", overrides={"/tf": rr.TransformAxes3D(1.0)})
-    views = rrb.Horizontal(
-        rrb.Vertical(frames, rrb.TextLogView(origin="/log", name="/log"), row_shares=[2, 1]),
-        rrb.Vertical(*sorted(plots, key=lambda plot: str(plot.name))),
-    )
+        plots.append(
+            rrb.TimeSeriesView(
+                origin=topic, contents=topic, name=topic, overrides={topic: lines}, axis_x=whole_run
+            )
+        )
+    lines_of_log = rrb.TextLogView(origin="/log", name="/log")
+    views = rrb.Grid(*sorted(plots, key=lambda plot: str(plot.name)), lines_of_log, grid_columns=2)
     path = recording.with_suffix(".rbl")
     identity = re.search(r'StoreId\(\s*Recording,\s*"([^"]+)"', said)
     assert identity, said[:500]

@@ -1,6 +1,6 @@
 // Reads logs with what Foxglove-compatible viewers read with: @mcap/core and protobufjs.
 //
-//   npm install && node check.mjs LOG...
+//   npm install && node check_mcap.mjs LOG...
 //
 // Every message is found by the index, decoded by the schema in the file, and in order of time.
 
