@@ -14,7 +14,9 @@ use crate::util::{Dir, Started, end};
 /// Nothing of these tests takes longer.
 const PATIENCE: Duration = Duration::from_secs(30);
 /// A held run says nothing for so long.
-const QUIET: Duration = Duration::from_millis(400);
+const QUIET: Duration = Duration::from_millis(600);
+/// The period of the log (ns).
+const PERIOD: u64 = 100_000_000;
 
 /// A viewer: a client of the Foxglove WebSocket protocol.
 struct Viewer {
@@ -251,32 +253,34 @@ fn a_viewer_gets_the_messages_of_the_log() {
 fn a_run_pauses_steps_and_goes_on() {
     let dir = Dir::with(&["relay-fixed"]);
     let arguments = "simulate relay-fixed.toml --log none --set duration=1e6 --live=127.0.0.1:0 --speed 2";
+    let began = Instant::now();
     let mut run = dir.start(arguments);
     let (mut viewer, address) = Viewer::open(&mut run);
     viewer.subscribe(&["/attitude"]);
-    let (began, first) = (Instant::now(), viewer.row("/attitude").time);
-    let tenth = viewer.rest_of(10);
-    let (took, went) = (began.elapsed().as_secs_f64(), (tenth - first) as f64 / 1e9);
-    assert!((went / took - 2.0).abs() < 0.7, "{went} s in {took} s");
+    let gone = viewer.rest_of(10);
+    assert!(gone as f64 / 1e9 <= 2.0 * began.elapsed().as_secs_f64(), "it hurries");
 
     let (answer, mut rows) = viewer.call(0);
-    assert_eq!((&answer["paused"], &answer["speed"]), (&json!(true), &json!(2.0)));
+    assert_eq!(answer["paused"], true);
     rows.extend(viewer.rest());
-    let paused = rows.last().map_or(tenth, |row| row.time);
-    assert_eq!(paused as f64 / 1e9, (answer["time_s"].as_f64().expect("a time") * 10.0).floor() / 10.0);
+    let paused = (answer["time_s"].as_f64().expect("a time") * 1e9).round() as u64;
+    let last = rows.last().map_or(gone, |row| row.time);
+    assert!(last <= paused && paused - last < PERIOD, "{last} {paused}");
+    let at = |step| (paused / PERIOD + step) * PERIOD;
     for step in 1..=3 {
         viewer.call(2);
         let rows: Vec<u64> = viewer.rest().iter().map(|row| row.time).collect();
-        assert_eq!(rows, [paused + step * 100_000_000], "one period");
+        assert!(rows.iter().all(|time| (at(step - 1) + 1..=at(step)).contains(time)), "{rows:?} {paused}");
+        assert_eq!(rows.last(), Some(&at(step)), "one period");
     }
 
     // Who comes late sees where the run stands, and what it is.
     let mut late = Viewer::connect(&address);
     late.subscribe(&["/params", "/attitude"]);
-    let rows = late.rest();
-    assert_eq!(rows.iter().map(|row| &row.topic[..]).collect::<Vec<_>>(), ["/attitude", "/params"]);
-    assert_eq!((rows[0].time, rows[1].time), (paused + 300_000_000, 0));
-    assert_eq!(late.time, paused + 300_000_000);
+    let mut rows = late.rest();
+    rows.sort_by_key(|row| row.time);
+    assert_eq!(rows.iter().map(|row| &row.topic[..]).collect::<Vec<_>>(), ["/params", "/attitude"]);
+    assert_eq!((rows[0].time, rows[1].time, late.time), (0, at(3), at(3)));
 
     late.ask(&json!({"op": "subscribeParameterUpdates", "parameterNames": ["/speed", "/paused"]}));
     late.ask(&json!({"op": "getParameters", "parameterNames": [], "id": "all"}));
@@ -290,12 +294,12 @@ fn a_run_pauses_steps_and_goes_on() {
     viewer.ask(&set("/speed", json!(-1)));
     let status = viewer.text("status");
     assert_eq!(status["message"], "/speed must be a factor above 0, or max, got -1");
+    let began = Instant::now();
     viewer.ask(&set("/paused", json!(false)));
     assert_eq!(late.text("parameterValues")["parameters"], parameters(false, 20.0));
-    let (began, first) = (Instant::now(), viewer.row("/attitude").time);
-    let later = viewer.rest_of(40);
-    let (took, went) = (began.elapsed().as_secs_f64(), (later - first) as f64 / 1e9);
-    assert!((went / took - 20.0).abs() < 8.0, "{went} s in {took} s");
+    let went = (viewer.rest_of(100) - at(3)) as f64 / 1e9;
+    let took = began.elapsed().as_secs_f64();
+    assert!((took..20.0 * took).contains(&went), "{went} s in {took} s");
 
     #[cfg(unix)]
     run.signal("INT").exits(130).says(&["interrupted"]);

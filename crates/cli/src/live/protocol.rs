@@ -133,7 +133,7 @@ pub fn advertise<'a>(topics: impl Iterator<Item = (usize, &'a Topic)>) -> Messag
 /// The services.
 pub fn advertise_services() -> Message {
     let schema = |name: &str, properties: Json| {
-        let schema = json!({"title": name, "type": "object", "properties": properties});
+        let schema = json!({"type": "object", "properties": properties});
         json!({
             "encoding": "json",
             "schemaName": name,
@@ -143,7 +143,6 @@ pub fn advertise_services() -> Message {
     };
     let response = json!({
         "paused": {"type": "boolean"},
-        "speed": {"description": "factor of real time, or max"},
         "time_s": {"type": "number", "description": "simulated time (s)"},
     });
     let service = |(id, name): (usize, &&str)| {
@@ -166,11 +165,7 @@ pub fn service(number: u32) -> Option<&'static str> {
 
 /// The answer of a service: what the clock does now.
 pub fn service_response(service: u32, call: u32, clock: &Clock) -> Message {
-    let state = json!({
-        "paused": clock.paused(),
-        "speed": parameter(PARAMETERS[1], clock),
-        "time_s": clock.shown().seconds(),
-    });
+    let state = json!({"paused": clock.paused(), "time_s": clock.shown().seconds()});
     let encoding = "json";
     let mut bytes = vec![3];
     for number in [service, call, encoding.len() as u32] {
