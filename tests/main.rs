@@ -16,6 +16,8 @@ mod determinism;
 mod events;
 mod filters;
 mod layout;
+#[cfg(feature = "live")]
+mod live;
 mod logs;
 mod loops;
 mod manoeuvres;

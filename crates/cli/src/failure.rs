@@ -30,6 +30,10 @@ pub enum Failure {
     /// A file could not be written.
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
+    /// A live run cannot be served.
+    #[cfg(feature = "live")]
+    #[error("cannot serve at {address}: {source}{}", hint(source))]
+    Serve { address: String, source: io::Error },
     /// A figure could not be drawn.
     #[error("cannot draw {}: {why}", path.display())]
     Draw { path: PathBuf, why: String },
@@ -62,5 +66,15 @@ impl Failure {
             Self::Interrupted(_) => 130,
             _ => 1,
         }
+    }
+}
+
+/// What helps where an address is taken.
+#[cfg(feature = "live")]
+fn hint(error: &io::Error) -> &'static str {
+    if error.kind() == io::ErrorKind::AddrInUse {
+        "\n\nhint: another run may be live there; --live=127.0.0.1:0 takes any free port"
+    } else {
+        ""
     }
 }

@@ -10,6 +10,8 @@ mod figure;
 mod grid;
 mod identify;
 mod layout;
+#[cfg(feature = "live")]
+mod live;
 mod log;
 mod map;
 mod modes;

@@ -4,6 +4,7 @@ mod columns;
 pub mod foxglove;
 mod log;
 mod mcap;
+mod message;
 mod proto;
 mod recover;
 pub mod row;
@@ -20,7 +21,8 @@ use crate::time::Instant;
 
 pub use columns::{Column, Columns};
 pub use log::{Log, LogError};
-pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
+pub use mcap::{LogFile, McapLog};
+pub use message::{Encode, Message, Messages, Provenance, RunEnd};
 pub use recover::recover;
 pub use topics::{
     Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion,
@@ -222,7 +224,7 @@ pub enum Detail {
     Scene,
 }
 
-/// A thing that takes rows of any topic: a log file, or columns in memory.
+/// A thing that takes rows of any topic: messages, or columns in memory.
 trait TakeRow {
     fn take<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
 

@@ -14,12 +14,14 @@ use crate::label::Labels;
 
 const GOOGLE: &str = "google.protobuf";
 
-/// The schema of a topic: a serialised `FileDescriptorSet` with its imports and comments.
-pub fn descriptor_set(topic: &Topic) -> Vec<u8> {
-    let mut files = Vec::new();
-    let message = Message { name: topic.message, doc: topic.doc, fields: topic.fields };
-    add_message(&message, &mut files);
-    FileDescriptorSet { file: files }.encode_to_vec()
+impl Topic {
+    /// Its schema: a serialised `FileDescriptorSet` with its imports and comments.
+    pub fn schema(&self) -> Vec<u8> {
+        let mut files = Vec::new();
+        let message = Message { name: self.message, doc: self.doc, fields: self.fields };
+        add_message(&message, &mut files);
+        FileDescriptorSet { file: files }.encode_to_vec()
+    }
 }
 
 /// Package and name of a message.
