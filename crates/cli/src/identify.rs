@@ -9,7 +9,7 @@ use flexsc_core::quantity::NonNegative;
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::{print, say};
+use crate::{print, progress, say};
 
 /// The sets of the study behind seed paper 4's scenarios, in hertz, and the rate at which each is identified.
 const SETS: [(&[(f64, f64)], f64); 5] = [
@@ -78,6 +78,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Arguments(format!("--rate must be 0 or more, got {}", args.rate)));
     };
     let mut rows = Vec::new();
+    let bar = progress::bar((sets.len() * args.off.len()) as u64, "rows");
     for (modes, rate_of_set) in &sets {
         for off in &args.off {
             let mut trial = Trial::of(modes.clone(), *off);
@@ -87,8 +88,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 return Err(Failure::Arguments(format!("the modes {why}")));
             }
             rows.push((modes, trial.table(args.runs)));
+            bar.inc(1);
         }
     }
+    bar.finish_and_clear();
     if args.json {
         let told = rows.iter().map(|(modes, row)| {
             let (frequencies, influences): (Vec<f64>, Vec<f64>) = modes.iter().copied().unzip();
