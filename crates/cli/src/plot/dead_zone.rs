@@ -1,6 +1,6 @@
 //! Figure `angle` under a law that switches: the angle at the end of the run, with the dead zone and where the law switched.
 
-use flexsc_core::law::Law;
+use flexsc_core::law::{Law, Sides};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -16,12 +16,19 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         seen.map(|s| (s.time, s.angle)).collect()
     };
     let borders: Vec<f64> = match &story.scenario.law {
-        Law::Relay(relay) => vec![relay.dead_zone.get(), -relay.dead_zone.get()],
+        Law::Relay(relay) => match relay.sides {
+            Sides::Two => vec![relay.dead_zone.get(), -relay.dead_zone.get()],
+            Sides::One => vec![relay.dead_zone.get()],
+        },
         Law::Pd(_) | Law::Open(_) | Law::PhasePlane(_) => Vec::new(),
     };
     let y = Axis::around("angle x", "rad", line.iter().map(|point| point.1).chain(borders.iter().copied()));
     let border = |(index, height): (usize, &f64)| {
-        let name = if index == 0 { "±ε" } else { "" };
+        let name = match (index, borders.len()) {
+            (0, 1) => "ε",
+            (0, _) => "±ε",
+            _ => "",
+        };
         Layer::new(name, colour::GREY, Shape::Dashes, vec![(shown.start, *height), (shown.end, *height)])
     };
     let mut layers: Vec<Layer> = borders.iter().enumerate().map(border).collect();

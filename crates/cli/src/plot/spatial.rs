@@ -204,7 +204,7 @@ pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
             ),
             Layer::new(name("threshold"), colour::BLACK, Shape::Line(0.8), of(|c| c.threshold_rad_s)),
             Layer::new("", colour::BLACK, Shape::Line(0.8), of(|c| -c.threshold_rad_s)),
-            Layer::new(name("fires"), colour::VERMILLION, mark, fired),
+            Layer::new("fires", colour::VERMILLION, mark, fired),
         ]
     };
     Figure {

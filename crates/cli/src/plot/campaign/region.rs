@@ -16,6 +16,10 @@ const COLOURS: [RGBColor; 8] = [
     RGBColor(33, 113, 181),
     RGBColor(8, 69, 148),
 ];
+/// Where there is no value.
+const NONE: RGBColor = RGBColor(170, 170, 170);
+/// Part of a cell by which it reaches into the next.
+const SEAM: f64 = 0.02;
 /// Positive values that lie further apart have classes of equal ratios.
 const FAR: f64 = 50.0;
 
@@ -40,7 +44,8 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
         for alike in column.chunk_by(|a, b| a.map(class) == b.map(class)) {
             let to = from + alike.len();
             if let Some(value) = alike[0] {
-                let (left, right, low, high) = (across[i], across[i + 1], up[from], up[to]);
+                let (left, low) = (across[i], up[from]);
+                let (right, high) = (beyond(&across, i + 1), beyond(&up, to));
                 let corners = [(left, low), (right, low), (right, high), (left, high), (f64::NAN, f64::NAN)];
                 areas[class(value)].extend(corners);
             }
@@ -52,7 +57,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
     let shades = areas.into_iter().zip(spread(used));
     let mut layers: Vec<Layer> =
         shades.map(|(points, shade)| Layer::new("", shade, Shape::Area(1.0), points)).collect();
-    layers.push(Layer::new("no value", colour::GREY, Shape::Area(0.6), none));
+    layers.push(Layer::new("no value", NONE, Shape::Area(1.0), none));
     let least = sorted.first().and_then(|least| metric.values.iter().position(|value| value == least));
     let least = least.map(|run| (first.values[run], second.values[run]));
     layers.push(Layer::new("least", colour::VERMILLION, Shape::Diamond, least.into_iter().collect()));
@@ -108,6 +113,11 @@ impl Classes {
         };
         self.edges.iter().map(text).collect()
     }
+}
+
+/// A border, a little further than it is: what is drawn later covers it, and no seam is left between cells.
+fn beyond(borders: &[f64], index: usize) -> f64 {
+    borders[index] + SEAM * (borders[index] - borders[index - 1])
 }
 
 fn distinct(values: &[f64]) -> Vec<f64> {
