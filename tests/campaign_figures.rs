@@ -185,7 +185,10 @@ fn the_worst_runs_can_be_repeated() {
     assert!(values.len() == 6 && values.is_sorted_by(|a, b| a >= b), "{values:?}");
     let mut duty = column(&dir, "relay/runs.csv", "duty");
     duty.sort_by(|a, b| b.total_cmp(a));
-    assert_eq!(values, duty);
+    // JSON here is read to some fifteen digits.
+    for (found, exact) in values.iter().zip(duty) {
+        near(*found, exact, 1e-12);
+    }
 }
 
 #[test]

@@ -67,7 +67,7 @@ impl Drawing {
         self.each(place).first().copied().unwrap_or_else(|| panic!("no number {text}"))
     }
 
-    /// The value across, by the numbers below the first panel, in the unit of the axis.
+    /// The value across, by the numbers below the last panel, in the unit of the axis.
     pub fn along(&self, x: f64) -> f64 {
         let number = |node: &Node<'_, '_>| {
             let text = node.text().filter(|_| node.has_tag_name("text"))?.trim().replace('−', "-");
@@ -76,7 +76,7 @@ impl Drawing {
         };
         let numbers = self.each(number);
         let row = |y: f64| numbers.iter().filter(|n| n.2.to_bits() == y.to_bits()).collect::<Vec<_>>();
-        let row = numbers.iter().map(|n| row(n.2)).find(|row| row.len() > 1).expect("an axis");
+        let row = numbers.iter().rev().map(|n| row(n.2)).find(|row| row.len() > 1).expect("an axis");
         let (first, last) = (row[0], row[row.len() - 1]);
         first.0 + (last.0 - first.0) * (x - first.1) / (last.1 - first.1)
     }

@@ -156,10 +156,8 @@ impl Axis {
         let size = self.range.start.abs().max(self.range.end.abs()) * 10_f64.powi(self.own());
         let half = (self.range.end - self.range.start) / 2.0;
         // Times are told in seconds up to 2500 s, and however late they are.
-        let fits = |(_, power): &&(&str, i32)| match self.unit {
-            "s" => (1.25..1250.0).contains(&(half / 10_f64.powi(*power))),
-            _ => (1.0..1000.0).contains(&(size / 10_f64.powi(*power))),
-        };
+        let measure = if self.unit == "s" { half } else { size };
+        let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(measure / 10_f64.powi(*power)));
         PREFIXES.iter().find(fits).copied().unwrap_or(("", self.own()))
     }
 

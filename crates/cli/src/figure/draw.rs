@@ -13,7 +13,7 @@ use plotters::style::{
 };
 
 use super::area::polygons;
-use super::line::{Point, Window, pieces, thin};
+use super::line::{Point, Window, pieces, straighten, thin};
 use super::{Figure, Layer, Panel, Shape, bar, colour};
 
 /// Width of every figure (px).
@@ -100,13 +100,13 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, height: u32) -> Result<(), Error> 
             Shape::Line(_) | Shape::Dashes => {
                 for piece in pieces(&points, &plot.window) {
                     let piece = thin(&piece, &plot.window, COLUMNS).into_iter().map(|p| plot.place(p));
-                    draw_line(area, layer, piece.collect())?;
+                    draw_line(area, layer, straighten(&piece.collect::<Vec<_>>()))?;
                 }
             }
             Shape::Area(_) => {
                 for polygon in polygons(&points, &plot.window, ACROSS) {
                     let corners: Vec<_> = polygon.into_iter().map(|p| plot.place(p)).collect();
-                    area.draw(&Polygon::new(corners, layer.style()))?;
+                    area.draw(&Polygon::new(straighten(&corners), layer.style()))?;
                 }
             }
             _ => {

@@ -72,7 +72,7 @@ fn prefix(file: &str) -> Option<String> {
     let stem = file.strip_suffix(".csv")?;
     let number = |text: &str| text.parse::<u64>().is_ok();
     let whole = match stem.rsplit('-').collect::<Vec<_>>()[..] {
-        [high, low, ..] if number(high) && number(low) => &stem[..stem.len() - high.len() - low.len() - 2],
+        [high, low, _, ..] if number(high) && number(low) => &stem[..stem.len() - high.len() - low.len() - 2],
         _ => stem,
     };
     let before = whole.strip_suffix("runs")?;
