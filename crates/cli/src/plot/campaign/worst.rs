@@ -103,8 +103,9 @@ pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) ->
             before = found.what;
         }
         let why = match found.value.parse() {
-            Ok(number) => short(number),
-            Err(_) => found.value.lines().next().unwrap_or_default().to_owned(),
+            // A count is told as it is.
+            Ok(number) if found.value.contains('.') => short(number),
+            _ => found.value.lines().next().unwrap_or_default().to_owned(),
         };
         let _ = writeln!(text, "    run {:<8}{why}", found.run);
         if let Some(command) = &found.command {
