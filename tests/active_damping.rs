@@ -8,7 +8,7 @@ use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::study::{close, metrics, numbers, scenario};
-use crate::util::Dir;
+use crate::util::{Dir, table};
 
 /// The metrics of runs 0 to 11.
 fn twelve(name: &str, set: &[(&str, &str)]) -> Vec<Metrics> {
@@ -97,11 +97,35 @@ fn what_is_off_is_identified_on_the_way() {
 fn a_turn_ends_quieter_for_a_few_percent_of_propellant() {
     let off = twelve("iss-manoeuvre", &[("law.phase_plane.damping.threshold", "[1, 1, 1]")]);
     let on = twelve("iss-manoeuvre", &[]);
-    within(median(&on, "fuel_kg") / median(&off, "fuel_kg"), [0.97, 1.06]);
+    within(median(&on, "fuel_kg") / median(&off, "fuel_kg"), [0.99, 1.05]);
     assert!(median(&on, "elastic_energy_peak_j") < 0.4 * median(&off, "elastic_energy_peak_j"));
     assert!(median(&on, "elastic_rate_rms_rad_s") < 0.4 * median(&off, "elastic_rate_rms_rad_s"));
     assert!(sorted(&on, "damping_cycles")[11] < 80.0);
     assert!(sorted(&off, "damping_cycles")[11] == 0.0);
+}
+
+/// The same where each run is wrong in its own way, by up to 30 % of the frequencies and 40 % of the influences.
+#[test]
+fn whatever_is_wrong_at_the_start_a_turn_ends_quieter() {
+    let dir = Dir::with(&["iss-manoeuvre"]);
+    let errors = "\n[uncertain]\n\"estimator.adaptive.frequency_error\" = { uniform = [-0.3, 0.3] }\n\
+                  \"estimator.adaptive.influence_error\" = { uniform = [-0.4, 0.4] }\n";
+    dir.write("wrong.toml", dir.text("iss-manoeuvre.toml") + errors);
+    dir.run("simulate wrong.toml --runs 12 -o wrong").exits(0);
+    let rows = table(&dir, "wrong/runs.csv");
+    let sorted = |name: &str| {
+        let mut values: Vec<f64> = rows.iter().map(|row| row[name].parse().expect("a number")).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    };
+    assert!(sorted("estimator.adaptive.frequency_error")[0] < -0.15);
+    // Off, the same turn takes 3.42 kg, 1.06 J and 1.24e-5 rad/s.
+    let (fuel, peak, rate) =
+        (sorted("fuel_kg"), sorted("elastic_energy_peak_j"), sorted("elastic_rate_rms_rad_s"));
+    within(0.5 * (fuel[5] + fuel[6]), [3.4, 3.59]);
+    within(fuel[11], [3.4, 3.9]);
+    assert!(peak[11] < 0.38, "{peak:?}");
+    assert!(0.5 * (rate[5] + rate[6]) < 3.8e-6 && rate[11] < 0.8e-5, "{rate:?}");
 }
 
 #[test]

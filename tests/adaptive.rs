@@ -2,7 +2,7 @@
 //!
 //! `flexsc identify` prints the whole table, 100 runs a row.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use flexsc_core::analysis::identification::Trial;
 use flexsc_core::estimator::adaptive::{
@@ -140,8 +140,19 @@ fn the_command_tells_how_often_modes_are_found() {
     let rows = told["rows"].as_array().expect("rows");
     assert_eq!(rows.len(), 2);
     let trial = Trial::of(vec![(1.556, 2.89)], 0.3);
-    assert_eq!(rows[1]["found"], serde_json::json!(trial.table(12)));
-    dir.run("identify --modes 1.556:2.89 --off 0.1 --runs 12").exits(0).says(&["0.2476", "12/12"]);
+    // Through text, whose numbers are read to the last place but one.
+    let exact = serde_json::json!(trial.table(12)).to_string();
+    let exact: serde_json::Value = serde_json::from_str(&exact).expect("JSON");
+    assert_eq!(rows[1]["found"], exact);
+    dir.run("identify --modes 1.556:2.89 --off 0.1 --runs 12 --figures drawn --format svg")
+        .exits(0)
+        .says(&["0.2476", "12/12"]);
+    let drawn = dir.text("drawn/identification.svg");
+    assert!(drawn.contains("0.2476 Hz, 10 % off") && drawn.contains("found, %"));
+    // Two modes that no run of 300 s tells apart.
+    let near = Trial::of(vec![(TAU * 0.6049, 1.5), (TAU * 0.6096, 1.6)], 0.05).table(4);
+    let apart = Trial::of(vec![(TAU * 0.2476, 2.89), (TAU * 0.6, 3.0)], 0.05).table(4);
+    assert!(near.persistence.expect("excited") < 0.05 && apart.persistence.expect("excited") > 0.7);
     for (bad, why) in [
         ("identify --modes 1.2", "must be W:MU,W:MU"),
         ("identify --modes 20:1", "got 20"),

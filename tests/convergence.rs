@@ -8,6 +8,7 @@ use flexsc_core::quantity::{Finite, Frequency};
 use flexsc_core::random::Seed;
 
 use crate::study::close;
+use crate::util::Dir;
 
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 const CYCLE: f64 = 0.2;
@@ -114,4 +115,29 @@ fn near_modes_are_not_told_apart() {
     assert_eq!(persistence(&[vec![1.0, 0.0]]), None);
     assert_eq!(persistence(&[vec![1.0], vec![1.0, 2.0]]), None);
     assert_eq!(persistence(&[]), None);
+}
+
+#[test]
+fn the_command_tells_when_the_observer_converges() {
+    let dir = Dir::new();
+    let told = dir.run("observer --frequency 1.2566370614 --kappa 0,1.5 --json").exits(0).json();
+    close(told["a"].as_f64().expect("A"), 1.934_735_096_8, 1e-9);
+    close(told["frozen"][1]["area"].as_f64().expect("an area"), 1.347, 0.01);
+    assert_eq!([0, 1].map(|i| told["frozen"][i]["converges"].as_bool()), [Some(true), Some(false)]);
+    close(told["turning"]["gain_max"].as_f64().expect("a gain"), 0.0429, 0.035);
+    let said = dir.run("observer --frequency 1.2566 --weights 0.05,-0.5,0.15 --figures drawn --format svg");
+    said.exits(0).says(&["converges with no W4", "0.2000 Hz"]);
+    let drawn = dir.text("drawn/observer.svg");
+    assert!(drawn.contains("W4 |g| = 1.5") && drawn.contains("W3") && drawn.contains("regressor turning"));
+    for (bad, why) in [
+        ("observer --frequency 16", "--frequency must be above 0 and below the Nyquist frequency of 15.7"),
+        ("observer --frequency 1 --weights 0.05,0.1", "--weights must be three numbers, W1,W2,W3, got 2"),
+        (
+            "observer --frequency 1 --weights 0.05,0.1,inf",
+            "--weights must be three numbers below 1000, got inf",
+        ),
+        ("observer --frequency 1 --kappa -1", "--kappa"),
+    ] {
+        dir.run(bad).exits(2).says(&[why]);
+    }
 }

@@ -35,6 +35,28 @@ fn last(trace: &Trace, topic: &str, name: &str) -> f64 {
     *column(trace, topic, name).last().expect("a row")
 }
 
+/// The slow modes, which hardly turn the gyro, keep their energy; what is told without them is theirs alone.
+#[test]
+fn the_energy_that_the_gyro_sees_is_told_apart() {
+    let study = scenario("iss-manoeuvre", &[("duration", "120"), ("log.period", "10")]);
+    let full = trace(&study);
+    let shapes = study.spatial.as_ref().map(|of| of.body.shapes(&of.gyro.point)).expect("a spatial loop");
+    let Some(Column::Rows(_, modes)) = full.topic("/vibrations").and_then(|rows| rows.get("modes")) else {
+        panic!("modes")
+    };
+    let energies = modes.numbers("energy_j").expect("a column");
+    // Modes 1 to 3, of 0.0978, 0.1063 and 0.2368 Hz, turn it by less than a tenth of what mode 5 does.
+    let most = shapes.iter().map(|(_, rotation)| rotation.norm()).fold(0.0, f64::max);
+    assert!(shapes.iter().zip(1..).all(|((_, shape), mode)| (shape.norm() < 0.1 * most) == (mode < 4)));
+    let (all, seen) = (column(&full, "/energy", "elastic_j"), column(&full, "/energy", "visible_j"));
+    for (row, modes) in energies.chunks(12).enumerate() {
+        assert!((seen[row] - modes[3..].iter().sum::<f64>()).abs() <= 1e-12 * all[row]);
+    }
+    let metrics = metrics(study);
+    assert_eq!(metrics.number("visible_energy_end_j"), seen.last().copied());
+    assert!(metrics.number("visible_energy_peak_j") < metrics.number("elastic_energy_peak_j"));
+}
+
 /// The whole loop against one that was written apart: jets of 0.05 to 0.2 s, a cycle late, without noise.
 #[test]
 fn the_manoeuvre_is_that_of_another_program() {

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from flexsc import observer_margin, observer_region, persistence, relay_damping
+from flexsc import identify, observer_margin, observer_region, persistence, relay_damping
 
 HERTZ = 2.0 * np.pi
 
@@ -69,3 +69,23 @@ def test_what_is_out_of_range() -> None:
         observer_margin(16.0)
     with pytest.raises(ValueError, match="damping must be 0 or more and below 1, got 1"):
         observer_region(1.0, [0.2], damping=1.0)
+
+
+def test_how_fast_modes_are_found() -> None:
+    modes = [(0.2476 * HERTZ, 2.89), (0.6 * HERTZ, 3.0)]
+    found = identify(modes, [0.05, 0.3], runs=12)
+    assert found["converged"].tolist() == [12.0, 12.0]
+    # 20 and 39 s in the study that the model comes from, at most 46 and 120 s.
+    assert np.all(found["time_median_s"] < [25.0, 45.0])
+    assert np.all(found["frequency_error"] < 5e-4)
+    for times, median, longest in zip(
+        found["times_s"], found["time_median_s"], found["time_longest_s"], strict=True
+    ):
+        assert times.tolist() == sorted(times)
+        assert (times[6], times[-1]) == (median, longest)
+    near = identify([(0.6049 * HERTZ, 1.5), (0.6096 * HERTZ, 1.6)], [0.05], runs=4)
+    assert near["persistence"][0] < 0.05 < found["persistence"][0]
+    with pytest.raises(ValueError, match="must have influences other than 0"):
+        identify([(1.0, 0.0)])
+    with pytest.raises(ValueError, match="runs and cycles must be 1 or more, got 0"):
+        identify(modes, runs=0)

@@ -13,7 +13,7 @@ pty = pytest.importorskip("pty")
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="terminals of POSIX")
 
 ESCAPE = b"\x1b"
-CAMPAIGN = ["simulate", str(SCENARIOS / "relay-sampled.toml"), "--runs", "300", "-o", "out"]
+CAMPAIGN = ["simulate", str(SCENARIOS / "relay-sampled.toml"), "--set", "duration=2000", "--runs", "300", "-o", "out"]
 MISTAKE = ["simulate", str(SCENARIOS / "relay-fixed.toml"), "--set", "law.relay.kt=1"]
 
 

@@ -12,6 +12,7 @@ mod identify;
 mod log;
 mod map;
 mod modes;
+mod observer;
 mod plan;
 mod plot;
 mod progress;
@@ -59,6 +60,8 @@ enum Verb {
     Damping(damping::Args),
     /// Tell how often and how fast an adaptive observer finds elastic modes, over many runs
     Identify(identify::Args),
+    /// Tell with which weights the recurrence observer of an elastic mode converges
+    Observer(observer::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
     /// Print a topic of a log as a table
@@ -97,6 +100,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Map(args) => map::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
+        Verb::Observer(args) => observer::run(&args),
         Verb::Plot(args) => plot::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),

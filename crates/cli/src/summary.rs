@@ -40,11 +40,12 @@ fn spatial(metrics: &Metrics) {
         _ => String::new(),
     };
     say!(
-        "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end",
+        "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end, {:.3e} J of it in modes that the gyro sees",
         number("elastic_energy_peak_j"),
         below("energy_below_10pct_at_s", "10 %"),
         below("energy_below_1pct_at_s", "1 %"),
         number("elastic_energy_end_j"),
+        number("visible_energy_end_j"),
     );
     say!("  at the gyro    {:.3e} rad/s rms over the last 200 s", number("elastic_rate_rms_rad_s"));
     say!("  pointing       {:.3e} rad from the target at the end", number("pointing_error_end_rad"));

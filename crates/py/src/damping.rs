@@ -1,11 +1,14 @@
 //! Active damping by relays, and the observer that it needs.
 
 use flexsc_core::analysis::damping::{Convergence, Relay, Study, persistence as least_eigenvalue};
+use flexsc_core::analysis::identification::Trial;
+use flexsc_core::quantity::NonNegative;
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;
 
+use crate::aside::aside;
 use crate::sampled::all_positive;
 
 /// Weights W1 to W3, natural frequency (rad/s), period (s), damping ratio.
@@ -48,6 +51,30 @@ pub fn observer_margin_json(observer: Recurrence, kappas: Vec<f64>) -> PyResult<
     let of = convergence(observer)?;
     let radii: Vec<f64> = kappas.iter().map(|kappa| of.spectral_radius(*kappa)).collect();
     Ok(json!({"margin": of.margin(), "spectral_radius": radii}).to_string())
+}
+
+#[pyfunction]
+pub fn identify_json(
+    py: Python<'_>,
+    modes: Vec<(f64, f64)>,
+    off: (f64, f64),
+    rate: f64,
+    extent: (u64, u32, u64),
+) -> PyResult<String> {
+    let (runs, cycles, seed) = extent;
+    let mut trial = Trial::of(modes, off.0);
+    (trial.off[1], trial.cycles, trial.seed) = (off.1, cycles, seed);
+    let Some(rate) = NonNegative::new(rate) else {
+        return Err(PyValueError::new_err(format!("rate must be 0 or more, got {rate}")));
+    };
+    trial.observer.rate = rate;
+    refused(trial.inconsistency().map(|why| ("modes", why)))?;
+    if runs == 0 || cycles == 0 {
+        return Err(PyValueError::new_err(format!(
+            "runs and cycles must be 1 or more, got {runs} and {cycles}"
+        )));
+    }
+    Ok(json!(aside(py, |_| trial.table(runs))?).to_string())
 }
 
 #[pyfunction]

@@ -40,7 +40,9 @@ use error::{log_error, scenario_error, simulation_error};
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::damping::{observer_margin_json, observer_region_json, persistence, relay_damping_json};
+    use super::damping::{
+        identify_json, observer_margin_json, observer_region_json, persistence, relay_damping_json,
+    };
     #[pymodule_export]
     use super::error::{LogError, ScenarioError, SimulationError};
     #[pymodule_export]

@@ -106,7 +106,11 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
         bar: None,
     };
     let x = time(0.0..story.end);
-    let panels = vec![panel(x.unnamed(), "elastic energy", "J", elastic), panel(x, "propellant", "kg", fuel)];
+    let mut energies = panel(x.unnamed(), "elastic energy", "J", elastic);
+    "all modes".clone_into(&mut energies.layers[0].name);
+    let visible = cycles.over_time(|cycle| cycle.visible_energy_j);
+    energies.layers.push(Layer::new("modes that the gyro sees", colour::ORANGE, Shape::Line(1.2), visible));
+    let panels = vec![energies, panel(x, "propellant", "kg", fuel)];
     Figure { title: title(story, "elastic energy and propellant"), panels, panel_height: 220 }
 }
 

@@ -6,10 +6,13 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::damping::Excitation;
 use crate::estimator::adaptive::{Gradient, Observer, Oscillator, Phase, Pulse, Tracker, bounds};
 use crate::quantity::{Finite, Frequency};
 use crate::random::{Seed, Stream};
 
+/// The cycle of the station's computer (s).
+pub const CYCLE: f64 = 0.2;
 /// Frequencies that are off by less than this part are found.
 const BAND: f64 = 0.02;
 /// Cycles of the longest burst, and of the longest pause after it.
@@ -44,10 +47,12 @@ pub struct Found {
     pub time: Option<f64>,
     /// Relative error of the frequency that is furthest off at the end, and of the influence.
     pub errors: [f64; 2],
+    /// Persistence of excitation over the run; none if a parameter was never excited.
+    pub persistence: Option<f64>,
 }
 
 /// What many runs found.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Part by which the frequencies were off at the start.
     pub off: f64,
@@ -63,6 +68,10 @@ pub struct Row {
     pub frequency_error: Option<f64>,
     /// See `frequency_error`.
     pub influence_error: Option<f64>,
+    /// The median persistence of excitation over a run: near 0, what was seen does not tell the modes apart.
+    pub persistence: Option<f64>,
+    /// When each run that converged did (s), from the first to the last.
+    pub times_s: Vec<f64>,
 }
 
 impl Trial {
@@ -74,7 +83,7 @@ impl Trial {
             off: [off, 0.4],
             acceleration: 2.05e-5,
             gyro: [2e-6, 1e-6],
-            cycle: 0.2,
+            cycle: CYCLE,
             cycles: 1500,
             seed: 1,
         }
@@ -108,8 +117,10 @@ impl Trial {
             self.observer.observer(&self.start(&mut seed.stream("errors")), &[1.0], self.cycle);
         let mut channel = Channel::new(self);
         let (mut bursts, mut noise) = (Bursts::new(seed), seed.stream("noise"));
+        let mut excitation = Excitation::new(observer.sensitivities().len());
         let mut last = 0;
         for cycle in 0..self.cycles {
+            excitation.add(&observer.sensitivities());
             observer.update(channel.measured(self.gyro, &mut noise));
             let found = observer.modes();
             if found.iter().zip(&self.modes).any(|(mode, (w, _))| off(mode.frequency, *w) > BAND) {
@@ -125,23 +136,26 @@ impl Trial {
             errors[1] = errors[1].max(off(mode.influence[0], *mu));
         }
         let time = (last + 1 < self.cycles).then_some(f64::from(last) * self.cycle);
-        Found { time, errors }
+        Found { time, errors, persistence: excitation.persistence() }
     }
 
     /// Runs on the threads of the current rayon pool.
     pub fn table(&self, runs: u64) -> Row {
         let found: Vec<Found> = (0..runs).into_par_iter().map(|number| self.run(number)).collect();
         let converged: Vec<&Found> = found.iter().filter(|found| found.time.is_some()).collect();
-        let times: Vec<f64> = converged.iter().filter_map(|found| found.time).collect();
+        let mut times_s: Vec<f64> = converged.iter().filter_map(|found| found.time).collect();
+        times_s.sort_by(f64::total_cmp);
         let error = |kind: usize| median(converged.iter().map(|found| found.errors[kind]).collect());
         Row {
             off: self.off[0],
             runs,
             converged: converged.len() as u64,
-            time_longest_s: times.iter().copied().max_by(f64::total_cmp),
-            time_median_s: median(times),
+            time_median_s: median(times_s.clone()),
+            time_longest_s: times_s.last().copied(),
             frequency_error: error(0),
             influence_error: error(1),
+            persistence: median(found.iter().filter_map(|found| found.persistence).collect()),
+            times_s,
         }
     }
 

@@ -131,6 +131,9 @@ metrics! {
     ELASTIC_PEAK = "elastic_energy_peak_j", "J",
         "Largest energy of motion and deformation of the elastic modes, at the starts of the law's cycles";
     ELASTIC_END = "elastic_energy_end_j", "J", "The same at the last cycle";
+    VISIBLE_PEAK = "visible_energy_peak_j", "J",
+        "Largest elastic energy of the modes that the gyro sees: those that turn it at least a tenth as much as the one that does most";
+    VISIBLE_END = "visible_energy_end_j", "J", "The same at the last cycle";
     BELOW_10 = "energy_below_10pct_at_s", "s",
         "First cycle at which the elastic energy is below a tenth of that at the start; null if there is none";
     BELOW_1 = "energy_below_1pct_at_s", "s",

@@ -2,7 +2,7 @@
 
 use super::{
     BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, POINTING_END,
-    Told, Value,
+    Told, VISIBLE_END, VISIBLE_PEAK, Value,
 };
 use crate::record::Cycle;
 use crate::scenario::Scenario;
@@ -21,6 +21,8 @@ pub struct Spatial {
     firings: (u64, u64),
     /// Elastic energy at the start, at its largest, and last (J).
     energy: (f64, f64, f64),
+    /// That of the modes that the gyro sees at its largest, and last (J).
+    visible: (f64, f64),
     /// When it was first below a tenth and a hundredth of that at the start (s).
     below: [f64; 2],
     /// Sum of the squared elastic rates of late cycles (rad²/s²), and how many they were.
@@ -36,6 +38,7 @@ impl Spatial {
             fuel: 0.0,
             firings: (0, 0),
             energy: (f64::NAN, 0.0, f64::NAN),
+            visible: (0.0, f64::NAN),
             below: [f64::NAN; 2],
             square: (0.0, 0),
             error: f64::NAN,
@@ -53,6 +56,7 @@ impl Spatial {
             self.energy.0 = energy;
         }
         self.energy = (self.energy.0, self.energy.1.max(energy), energy);
+        self.visible = (self.visible.0.max(cycle.visible_energy_j), cycle.visible_energy_j);
         for (below, part) in self.below.iter_mut().zip([0.1, 0.01]) {
             if below.is_nan() && energy < part * self.energy.0 {
                 *below = t;
@@ -74,6 +78,8 @@ impl Spatial {
             (&FIRING_CYCLES, Value::Count(self.firings.1)),
             (&ELASTIC_PEAK, Value::Number(self.energy.1)),
             (&ELASTIC_END, Value::Number(self.energy.2)),
+            (&VISIBLE_PEAK, Value::Number(self.visible.0)),
+            (&VISIBLE_END, Value::Number(self.visible.1)),
             (&BELOW_10, Value::Number(tenth)),
             (&BELOW_1, Value::Number(hundredth)),
             (&ELASTIC_RATE, Value::Number(libm::sqrt(self.square.0 / self.square.1 as f64))),

@@ -93,6 +93,8 @@ pub struct Cycle {
     pub pulses: u64,
     /// Energy of the elastic modes (J).
     pub elastic_energy_j: f64,
+    /// The same of the modes that the gyro sees (J).
+    pub visible_energy_j: f64,
     /// Rigid rates (rad/s).
     pub rigid_rate_rad_s: [f64; 3],
     /// Elastic part of the rates at the gyro (rad/s).

@@ -283,6 +283,8 @@ rows! {
         rotational_j: f64,
         /// Of the elastic modes, of motion and deformation (J).
         elastic_j: f64,
+        /// The same of the modes that the gyro sees: those that turn it at least a tenth as much as the one that does most (J).
+        visible_j: f64,
         /// Absolute value of the angular momentum (N m s).
         momentum_nm_s: f64,
     }

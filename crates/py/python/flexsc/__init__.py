@@ -21,7 +21,7 @@ from typing import Any
 
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, sweep
-from flexsc._damping import observer_margin, observer_region, persistence, relay_damping
+from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
@@ -52,6 +52,7 @@ __all__ = [
     "from_nastran",
     "from_state_space",
     "gain_region",
+    "identify",
     "metrics",
     "observer_margin",
     "observer_region",

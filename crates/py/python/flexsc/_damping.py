@@ -9,6 +9,8 @@ from flexsc import _native as engine
 from flexsc._loop import _columns, _floats
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
     import numpy.typing as npt
 
@@ -119,6 +121,54 @@ def observer_margin(
     names = ("gain_max", "gain_best", "spectral_radius")
     margin = found["margin"] or dict.fromkeys(names, float("nan"))
     return {**margin, "radii": np.array(found["spectral_radius"], dtype=np.float64)}
+
+
+def identify(
+    modes: Sequence[tuple[float, float]],
+    off: Numbers = (0.05, 0.1, 0.2, 0.3),
+    *,
+    influence_off: float = 0.4,
+    rate: float = 0.02,
+    runs: int = 100,
+    cycles: int = 1500,
+    seed: int = 1,
+) -> dict[str, Any]:
+    """How often and how fast the gradient observer finds modes under random bursts of thrusters.
+
+    The channel is the station's yaw: 2.05e-5 rad/s², cycles of 0.2 s, noise of 2e-6 and a resolution of
+    1e-6 rad/s.
+
+    Args:
+        modes: Natural frequency (rad/s) and influence of each mode.
+        off: Parts by which the frequencies are off at the start, up or down.
+        influence_off: Part by which the influences are.
+        rate: Rate of the identification, eta.
+        runs: Runs of each row.
+        cycles: Cycles of a run.
+        seed: Seed.
+
+    Returns:
+        Columns of shape (off,), NaN where no run converged: `off`, `runs`, `converged`, to 2 % of each
+        frequency, `time_median_s`, `time_longest_s`, `frequency_error`, `influence_error`, medians of the
+        relative errors at the end, and `persistence` of excitation; and `times_s`, for each row when each run
+        that converged did.
+
+    Raises:
+        ValueError: A number is out of its range.
+    """
+    import numpy as np
+
+    pairs = [(float(w), float(influence)) for w, influence in modes]
+
+    def row(part: float) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(
+            engine.identify_json(pairs, (part, influence_off), rate, (runs, cycles, seed))
+        )
+        return found
+
+    rows = [row(part) for part in _floats(off)]
+    times = [np.array(row.pop("times_s"), dtype=np.float64) for row in rows]
+    return {**_columns(rows), "times_s": times}
 
 
 def persistence(sensitivities: npt.ArrayLike) -> float:

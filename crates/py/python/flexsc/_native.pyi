@@ -16,6 +16,7 @@ __all__ = [
     "__version__",
     "campaign",
     "gain_regions_json",
+    "identify_json",
     "main",
     "metrics_json",
     "observer_margin_json",
@@ -139,6 +140,9 @@ def observer_region_json(
 ) -> str: ...
 def observer_margin_json(
     observer: tuple[tuple[float, float, float], float, float, float], kappas: Sequence[float]
+) -> str: ...
+def identify_json(
+    modes: Sequence[tuple[float, float]], off: tuple[float, float], rate: float, extent: tuple[int, int, int]
 ) -> str: ...
 def persistence(sensitivities: npt.NDArray[np.float64]) -> float: ...
 def schema_json() -> str: ...

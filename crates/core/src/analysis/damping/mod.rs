@@ -15,7 +15,7 @@ use serde::Serialize;
 
 pub use convergence::{Convergence, Edge};
 pub use decay::Decay;
-pub use excitation::persistence;
+pub use excitation::{Excitation, persistence};
 pub use floquet::Margin;
 pub use partition::{Partition, partition};
 

@@ -141,6 +141,7 @@ impl SpatialRun {
             jets: Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg: self.jets.fuel() },
             pulses: pulses as u64,
             elastic_energy_j: self.body.elastic_energy(),
+            visible_energy_j: self.body.visible_energy(),
             rigid_rate_rad_s: rigid.into(),
             elastic_rate_rad_s: elastic.into(),
             error_rad: self.belief.angle,

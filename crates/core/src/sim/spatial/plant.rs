@@ -7,6 +7,9 @@ use crate::time::Instant;
 
 use super::jets::Push;
 
+/// A mode is seen by a gyro that it turns by at least such a part of what the mode does that turns it most.
+const VISIBLE: f64 = 0.1;
+
 /// The body, and what pushes it.
 #[derive(Clone, Debug)]
 pub struct Plant {
@@ -14,6 +17,8 @@ pub struct Plant {
     elastic: Elastic,
     /// Rotations of the modes at the gyro.
     gyro: Vec<Vector>,
+    /// Whether the gyro sees each mode.
+    seen_by_gyro: Vec<bool>,
     /// The state when the jets changed last.
     departed: Instant,
     origin: SpatialState,
@@ -29,10 +34,13 @@ impl Plant {
         let rigid = Rigid::new(&spatial.body);
         let origin = SpatialState::start(&spatial.body, &rigid);
         let shapes = spatial.body.shapes(&spatial.gyro.point);
+        let gyro: Vec<Vector> = shapes.into_iter().map(|(_, rotation)| rotation).collect();
+        let most = gyro.iter().map(Vector::norm).fold(0.0, f64::max);
         Self {
             rigid,
             elastic: Elastic::new(&spatial.body, spatial.law.period.seconds()),
-            gyro: shapes.into_iter().map(|(_, rotation)| rotation).collect(),
+            seen_by_gyro: gyro.iter().map(|rotation| rotation.norm() >= VISIBLE * most).collect(),
+            gyro,
             departed: Instant::START,
             push: Push::default(),
             seen: Instant::START,
@@ -79,11 +87,19 @@ impl Plant {
         self.elastic.energies(&self.state.modes).sum()
     }
 
+    /// Energy of the modes that the gyro sees at the instant seen last (J): the slow ones that it hardly sees keep theirs
+    /// whatever the law does.
+    pub fn visible_energy(&self) -> f64 {
+        let energies = self.elastic.energies(&self.state.modes);
+        energies.zip(&self.seen_by_gyro).filter(|(_, seen)| **seen).map(|(energy, _)| energy).sum()
+    }
+
     /// The energies, as logged.
     pub fn energy(&self) -> Energy {
         Energy {
             rotational_j: self.rigid.energy(&self.state.turn),
             elastic_j: self.elastic_energy(),
+            visible_j: self.visible_energy(),
             momentum_nm_s: Rigid::momentum(&self.state.turn).norm(),
         }
     }

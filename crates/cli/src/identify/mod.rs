@@ -1,23 +1,28 @@
 //! `flexsc identify`: how often and how fast an adaptive observer finds elastic modes.
 
+mod figures;
+
 use std::f64::consts::TAU;
 use std::io::Write;
+use std::path::PathBuf;
 use std::str::FromStr;
 
-use flexsc_core::analysis::identification::{Row, Trial};
+use flexsc_core::analysis::identification::{CYCLE, Row, Trial};
 use flexsc_core::quantity::NonNegative;
 use serde_json::json;
 
 use crate::failure::Failure;
+use crate::figure::Format;
 use crate::{print, progress, say};
 
 /// The sets of the study behind seed paper 4's scenarios, in hertz, and the rate at which each is identified.
-const SETS: [(&[(f64, f64)], f64); 5] = [
+const SETS: [(&[(f64, f64)], f64); 6] = [
     (&[(0.2476, 2.89)], 0.02),
     (&[(0.2476, 2.89), (0.6, 3.0)], 0.02),
     (&[(0.2, 2.0), (0.5, 3.0), (1.1, 3.0)], 0.02),
     (&[(0.48, 2.0), (0.6, 3.0)], 0.02),
     (&[(0.55, 3.0), (0.605, 3.0)], 0.01),
+    (&[(0.6049, 1.5), (0.6096, 1.6)], 0.01),
 ];
 
 #[derive(clap::Args)]
@@ -44,6 +49,12 @@ pub struct Args {
     /// Seed
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Draw the figure into this directory, made if it is not there
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Form of the figure
+    #[arg(long, value_enum, default_value = "both", requires = "figures")]
+    format: Format,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -52,6 +63,9 @@ pub struct Args {
 /// Frequency and influence of each mode of a set.
 #[derive(Clone, Debug)]
 struct Modes(Vec<(f64, f64)>);
+
+/// What was found of each set of modes, from each start.
+type Rows<'a> = [(&'a Vec<(f64, f64)>, Row)];
 
 impl FromStr for Modes {
     type Err = String;
@@ -92,6 +106,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     bar.finish_and_clear();
+    if let Some(directory) = &args.figures {
+        figures::save(&rows, CYCLE * f64::from(args.cycles), directory, args.format)?;
+    }
     if args.json {
         let told = rows.iter().map(|(modes, row)| {
             let (frequencies, influences): (Vec<f64>, Vec<f64>) = modes.iter().copied().unzip();
@@ -103,39 +120,46 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn tell(args: &Args, rows: &[(&Vec<(f64, f64)>, Row)]) {
-    let whole = 0.2 * f64::from(args.cycles);
+/// The frequencies of modes in hertz.
+fn names(modes: &[(f64, f64)]) -> String {
+    let names: Vec<String> = modes.iter().map(|(w, _)| format!("{:.4}", w / TAU)).collect();
+    names.join(" + ")
+}
+
+fn tell(args: &Args, rows: &Rows<'_>) {
+    let whole = CYCLE * f64::from(args.cycles);
     say!(
         "identification   {} runs of {whole:.0} s a row; influences off by {} %; found is within 2 %",
         args.runs,
         100.0 * args.influence_off
     );
     say!(
-        "  {:<26}{:>10}{:>10}{:>12}{:>12}{:>14}{:>14}",
+        "  {:<26}{:>10}{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
         "frequencies, Hz",
         "off by",
         "found",
         "median, s",
         "longest, s",
         "frequency",
-        "influence"
+        "influence",
+        "persistence"
     );
     for (modes, row) in rows {
-        let names: Vec<String> = modes.iter().map(|(w, _)| format!("{:.4}", w / TAU)).collect();
         let cell = |value: Option<f64>, digits: usize| {
             value.map_or_else(|| "none".to_owned(), |value| format!("{value:.digits$}"))
         };
         let small =
             |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |value| format!("{value:.1e}"));
         say!(
-            "  {:<26}{:>9}%{:>10}{:>12}{:>12}{:>14}{:>14}",
-            names.join(" + "),
+            "  {:<26}{:>9}%{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
+            names(modes),
             100.0 * row.off,
             format!("{}/{}", row.converged, row.runs),
             cell(row.time_median_s, 1),
             cell(row.time_longest_s, 1),
             small(row.frequency_error),
             small(row.influence_error),
+            small(row.persistence),
         );
     }
 }

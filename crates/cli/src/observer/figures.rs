@@ -1,0 +1,92 @@
+//! The figure of the recurrence observer's convergence: the regions of its weights with a frozen regressor (seed paper 4,
+//! figure 2), and what a sample leaves of an error over the gain of the identification.
+
+use std::path::Path;
+
+use flexsc_core::analysis::damping::{Convergence, Margin};
+use plotters::style::RGBColor;
+
+use crate::failure::Failure;
+use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Point, Shape, band, colour};
+use crate::grid::Even;
+
+/// The least and the largest gain of the second panel, and how many there are.
+const GAINS: (f64, f64, u32) = (1e-3, 1.0, 400);
+/// Abscissae of a region.
+const STEPS: u32 = 800;
+/// Colours of the regions, in turn.
+const COLOURS: [RGBColor; 5] = [colour::SKY, colour::ORANGE, colour::GREEN, colour::BLUE, colour::VERMILLION];
+
+/// Draws the figure into a directory, with a region for each gain.
+pub fn save(
+    of: &Convergence,
+    kappas: &[f64],
+    margin: Option<Margin>,
+    directory: &Path,
+    format: Format,
+) -> Result<(), Failure> {
+    figure::save(directory, format, &[()], |()| "observer".to_owned(), |()| figure(of, kappas, margin))
+}
+
+fn figure(of: &Convergence, kappas: &[f64], margin: Option<Margin>) -> Figure {
+    let title = format!("convergence of the recurrence observer of {:.4} rad/s", of.frequency);
+    Figure { title, panels: vec![regions(of, kappas), radii(of, margin)], panel_height: 260 }
+}
+
+/// The regions of W2 and W3, and the observer's own weights.
+fn regions(of: &Convergence, kappas: &[f64]) -> Panel {
+    // |W1 + W2 - 1| < 1/B holds every region.
+    let (w1, (_, b)) = (of.weights[0], of.recurrence());
+    let (low, high) = (1.0 - w1 - 1.0 / b, 1.0 - w1 + 1.0 / b);
+    let step = (high - low) / f64::from(STEPS);
+    let abscissae: Vec<f64> = (0..STEPS).map(|i| low + step * (f64::from(i) + 0.5)).collect();
+    let mut layers = Vec::new();
+    let mut heights = vec![of.weights[2]];
+    for (index, &kappa) in kappas.iter().enumerate() {
+        let edges = of.region(kappa, &abscissae);
+        let side = |pick: fn((f64, f64)) -> f64| -> Vec<Point> {
+            edges.iter().map(|edge| (edge.elastic, edge.next.map_or(f64::NAN, pick))).collect()
+        };
+        let (lower, upper) = (side(|(low, _)| low), side(|(_, high)| high));
+        heights.extend(lower.iter().chain(&upper).map(|point| point.1));
+        let of_its_own = COLOURS[index % COLOURS.len()];
+        layers.push(Layer::new(
+            &format!("converges, W4 |g| = {kappa}"),
+            of_its_own,
+            Shape::Area(0.35),
+            band(&lower, &upper),
+        ));
+        layers.push(Layer::new("", of_its_own, Shape::Line(1.4), lower));
+        layers.push(Layer::new("", of_its_own, Shape::Line(1.4), upper));
+    }
+    layers.push(Layer::new("weights", colour::BLACK, Shape::Diamond, vec![(of.weights[1], of.weights[2])]));
+    let x = Axis::around("W2, regressor frozen", "", [low, high, of.weights[1]]);
+    Panel::new(x, Axis::around("W3", "", heights), layers)
+}
+
+/// What a sample leaves of an error over W4 V, the regressor turning.
+fn radii(of: &Convergence, margin: Option<Margin>) -> Panel {
+    let (low, high, count) = GAINS;
+    let Even(decades) = Even::new(low.log10(), high.log10(), count);
+    let line: Vec<Point> = decades
+        .iter()
+        .map(|decade| 10_f64.powf(*decade))
+        .map(|kappa| (kappa, of.spectral_radius(kappa)))
+        .collect();
+    let y = Axis::around("left of an error by a sample", "", line.iter().map(|point| point.1).chain([1.0]));
+    let mut layers = vec![
+        Layer::new(
+            "beyond this it diverges",
+            colour::VERMILLION,
+            Shape::Dashes,
+            vec![(low, 1.0), (high, 1.0)],
+        ),
+        Layer::new("", colour::BLUE, Shape::Line(1.6), line),
+    ];
+    if let Some(margin) = margin {
+        let best = vec![(margin.gain_best, margin.spectral_radius)];
+        layers.push(Layer::new("soonest", colour::GREEN, Shape::Disc, best));
+        layers.push(Layer::new("limit", colour::VERMILLION, Shape::Square, vec![(margin.gain_max, 1.0)]));
+    }
+    Panel::new(Axis::decades("W4 V, regressor turning", "", [low, high]), y, layers)
+}
