@@ -44,6 +44,15 @@ def nastran():
     run(python, "-m", "pytest", "tests/python/test_nastran.py", "-q")
 
 
+def papers():
+    """docs/papers.md is what the program computes."""
+    out = ROOT / "target" / "reproduce"
+    run(ROOT / "target" / "release" / "flexsc", "reproduce", "-o", out, "--docs", out)
+    made, kept = (path / "papers.md" for path in (out, ROOT / "docs"))
+    if made.read_bytes() != kept.read_bytes():
+        sys.exit(f"{kept} is not what `flexsc reproduce` makes: see {made}")
+
+
 def main():
     if sys.version_info < (3, 10):
         sys.exit("flexsc needs Python 3.10 or newer")
@@ -55,6 +64,7 @@ def main():
     run("cargo", "fmt", "--all", "--check")
     run("cargo", "clippy", "--release", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings")
     run("cargo", "test", "--release", "--quiet")
+    papers()
     run(python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", ".[test]")
     run(python, "-m", "ruff", "check", ".")
     run(python, "-m", "ruff", "format", "--check", ".")

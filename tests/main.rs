@@ -27,6 +27,7 @@ mod plan;
 mod plan_figures;
 mod plot;
 mod relay;
+mod reproduce;
 mod rivals;
 mod rotation;
 mod scene;

@@ -37,6 +37,12 @@ pub enum Failure {
     /// A figure could not be drawn.
     #[error("cannot draw {}: {why}", path.display())]
     Draw { path: PathBuf, why: String },
+    /// A page could not be filled.
+    #[error("{0}")]
+    Page(String),
+    /// What the papers say came out otherwise than it did.
+    #[error("{} not as expected: {}", if .0.len() == 1 { "a verdict is" } else { "verdicts are" }, .0.join("; "))]
+    Verdicts(Vec<String>),
     /// Stdout is closed.
     #[error("cannot write to stdout: {0}")]
     Stdout(io::Error),

@@ -19,6 +19,7 @@ mod observer;
 mod plan;
 mod plot;
 mod progress;
+mod reproduce;
 mod scenario;
 mod schema;
 mod simulate;
@@ -67,6 +68,8 @@ enum Verb {
     Observer(observer::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
+    /// Reproduce the papers that the studies come from: every figure and number, on one HTML page
+    Reproduce(reproduce::Args),
     /// Print a topic of a log as a table
     Export(export::Args),
     /// Look into logs, and save torn ones
@@ -107,6 +110,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),
         Verb::Plot(args) => plot::run(&args),
+        Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),
         Verb::Layout(args) => layout::run(&args),

@@ -31,7 +31,11 @@ impl Args {
 
 /// Reads a scenario file with some keys set.
 pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
-    let mut document = Document::load(path)?;
+    with(Document::load(path)?, set, seed)
+}
+
+/// A document's scenario with some keys set.
+pub fn with(mut document: Document, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
     for text in set {
         let Some((key, value)) = text.split_once('=') else {
             return Err(Failure::Arguments(format!(

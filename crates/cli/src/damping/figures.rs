@@ -13,7 +13,8 @@ pub fn save(rows: &[Damped], limit: f64, directory: &Path, format: Format) -> Re
     figure::save(directory, format, &[()], |()| "damping".to_owned(), |()| drawn(rows, limit))
 }
 
-fn drawn(rows: &[Damped], limit: f64) -> Figure {
+/// The figure.
+pub fn drawn(rows: &[Damped], limit: f64) -> Figure {
     let (low, high) = (rows.first(), rows.last());
     let range = low.map_or(0.0, |row| row.frequency_rad_s)..high.map_or(1.0, |row| row.frequency_rad_s);
     let x = |name: &str| Axis::exact(name, "rad/s", range.clone());

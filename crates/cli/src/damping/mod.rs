@@ -14,6 +14,8 @@ use crate::figure::Format;
 use crate::grid::Even;
 use crate::{print, say};
 
+pub use figures::drawn as figure;
+
 #[derive(clap::Args)]
 pub struct Args {
     /// Natural frequencies of the modes (rad/s)

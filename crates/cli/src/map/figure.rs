@@ -34,7 +34,8 @@ pub fn save(name: &str, cells: &[Cell], own: Point, directory: &Path, format: Fo
     figure::save(directory, format, &[()], |()| format!("{name}-map"), |()| figure(name, cells, own))
 }
 
-fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
+/// The map.
+pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
     let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
     frequencies.dedup();
     let periods = cells.iter().take(cells.len() / frequencies.len().max(1)).map(|cell| cell.period_s);

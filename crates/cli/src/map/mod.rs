@@ -15,6 +15,8 @@ use crate::grid::Even;
 use crate::tune::{Settled, sampled};
 use crate::{print, say, scenario};
 
+pub use figure::figure;
+
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]

@@ -28,7 +28,8 @@ pub fn save(
     figure::save(directory, format, &[()], |()| "observer".to_owned(), |()| figure(of, kappas, margin))
 }
 
-fn figure(of: &Convergence, kappas: &[f64], margin: Option<Margin>) -> Figure {
+/// The figure.
+pub fn figure(of: &Convergence, kappas: &[f64], margin: Option<Margin>) -> Figure {
     let title = format!("convergence of the recurrence observer of {:.4} rad/s", of.frequency);
     Figure { title, panels: vec![regions(of, kappas), radii(of, margin)], panel_height: 260 }
 }

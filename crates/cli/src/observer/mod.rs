@@ -13,6 +13,8 @@ use crate::failure::Failure;
 use crate::figure::Format;
 use crate::{print, say};
 
+pub use figures::figure;
+
 #[derive(clap::Args)]
 pub struct Args {
     /// Natural frequency of the mode (rad/s)

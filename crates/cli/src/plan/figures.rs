@@ -35,21 +35,14 @@ enum What {
 
 /// Draws the figures into a directory: `band` is how far off the frequencies may be.
 pub fn save(family: &Family, band: f64, directory: &Path, format: Format) -> Result<(), Failure> {
-    let all = [What::Torque, What::Angle, What::Output, What::Robustness];
-    // The hub's angle has its own figure.
-    let there: Vec<What> = all.into_iter().filter(|what| *what != What::Output || family.shown > 0).collect();
-    let name = |what: &What| match what {
-        What::Torque => format!("{}-plan-torque", family.name),
-        What::Angle => format!("{}-plan-angle", family.name),
-        What::Output => format!("{}-plan-{}", family.name, in_a_path(&family.coordinate().0)),
-        What::Robustness => format!("{}-plan-robustness", family.name),
-    };
-    figure::save(directory, format, &there, name, |what| match what {
-        What::Torque => family.torque(),
-        What::Angle => family.angle(),
-        What::Output => family.output(),
-        What::Robustness => family.robustness(band),
-    })
+    let name = |what: &What| family.name_of(*what);
+    figure::save(directory, format, &family.there(), name, |what| family.draw(*what, band))
+}
+
+/// The figures, each with its name.
+pub fn all(family: &Family, band: f64) -> Vec<(String, Figure)> {
+    let drawn = |what: What| (family.name_of(what), family.draw(what, band));
+    family.there().into_iter().map(drawn).collect()
 }
 
 /// A name without what parts directories.
@@ -58,6 +51,31 @@ fn in_a_path(name: &str) -> String {
 }
 
 impl Family<'_> {
+    /// The figures that there are.
+    fn there(&self) -> Vec<What> {
+        let all = [What::Torque, What::Angle, What::Output, What::Robustness];
+        // The hub's angle has its own figure.
+        all.into_iter().filter(|what| *what != What::Output || self.shown > 0).collect()
+    }
+
+    fn name_of(&self, what: What) -> String {
+        match what {
+            What::Torque => format!("{}-plan-torque", self.name),
+            What::Angle => format!("{}-plan-angle", self.name),
+            What::Output => format!("{}-plan-{}", self.name, in_a_path(&self.coordinate().0)),
+            What::Robustness => format!("{}-plan-robustness", self.name),
+        }
+    }
+
+    fn draw(&self, what: What, band: f64) -> Figure {
+        match what {
+            What::Torque => self.torque(),
+            What::Angle => self.angle(),
+            What::Output => self.output(),
+            What::Robustness => self.robustness(band),
+        }
+    }
+
     /// Name and unit of the shown coordinate.
     fn coordinate(&self) -> (String, String) {
         match self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index)) {

@@ -4,6 +4,9 @@ mod family;
 mod figures;
 mod table;
 
+pub use family::Family;
+pub use figures::all as figures;
+
 use std::borrow::Cow;
 use std::io::Write;
 use std::path::PathBuf;
@@ -17,7 +20,6 @@ use serde_json::json;
 use crate::failure::Failure;
 use crate::figure::Format;
 use crate::{print, say, scenario};
-use family::Family;
 
 #[derive(clap::Args)]
 pub struct Args {

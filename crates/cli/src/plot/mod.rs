@@ -59,6 +59,22 @@ pub struct Args {
     json: bool,
 }
 
+/// The figure of a log that is in memory, by its name; `path` is what errors call the log.
+pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> {
+    let what = What::from_str(name, false).map_err(Failure::Arguments)?;
+    let story = Story::read(log, path)?;
+    if !what.is_in(&story) {
+        return Err(Failure::Arguments(format!(
+            "{}: there is no figure `{name}` of this log",
+            path.display()
+        )));
+    }
+    let spatial = story.scenario.spatial.is_some();
+    let cycles = if spatial { Cycles::read(&story, log, path)? } else { Cycles::default() };
+    let motion = if spatial { Motion::default() } else { Motion::read(log)? };
+    Ok(what.figure(&story, &motion, &cycles))
+}
+
 pub fn run(args: &Args) -> Result<(), Failure> {
     if args.path.is_dir() {
         return campaign::run(args);

@@ -35,19 +35,34 @@ enum What {
     Settling,
 }
 
+const ALL: [What; 2] = [What::Region, What::Settling];
+
 /// Draws the figures into a directory.
 pub fn save(tuned: &Tuned, directory: &Path, format: Format) -> Result<(), Failure> {
-    let name = |what: &What| match what {
-        What::Region => format!("{}-tune-region", tuned.name),
-        What::Settling => format!("{}-tune-settling", tuned.name),
-    };
-    figure::save(directory, format, &[What::Region, What::Settling], name, |what| match what {
-        What::Region => tuned.region(),
-        What::Settling => tuned.settling(),
-    })
+    let name = |what: &What| tuned.name_of(*what);
+    figure::save(directory, format, &ALL, name, |what| tuned.draw(*what))
+}
+
+/// The figures, each with its name.
+pub fn all(tuned: &Tuned) -> Vec<(String, Figure)> {
+    ALL.into_iter().map(|what| (tuned.name_of(what), tuned.draw(what))).collect()
 }
 
 impl Tuned<'_> {
+    fn name_of(&self, what: What) -> String {
+        match what {
+            What::Region => format!("{}-tune-region", self.name),
+            What::Settling => format!("{}-tune-settling", self.name),
+        }
+    }
+
+    fn draw(&self, what: What) -> Figure {
+        match what {
+            What::Region => self.region(),
+            What::Settling => self.settling(),
+        }
+    }
+
     fn region(&self) -> Figure {
         let line = |value: &dyn Fn(&Region) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
         let lower = line(&|r| r.gain.map(|gain| gain.0));

@@ -16,7 +16,8 @@ use crate::failure::Failure;
 use crate::figure::Format;
 use crate::grid::{Even, Stepped};
 use crate::{print, scenario};
-use figures::Tuned;
+
+pub use figures::{Tuned, all as figures};
 
 #[derive(clap::Args)]
 pub struct Args {

@@ -87,7 +87,11 @@ impl Log {
     /// Reads a log file.
     pub fn open(path: &Path) -> Result<Self, LogError> {
         let io = |source| LogError::Io { path: path.to_owned(), source };
-        let bytes = fs::read(path).map_err(io)?;
+        Self::read(path, fs::read(path).map_err(io)?)
+    }
+
+    /// Reads a log that is in memory. `path` is what errors call it.
+    pub fn read(path: &Path, bytes: Vec<u8>) -> Result<Self, LogError> {
         let damaged = |source| LogError::Damaged { path: path.to_owned(), source };
         if !bytes.starts_with(mcap::MAGIC) {
             return Err(damaged(McapError::BadMagic));

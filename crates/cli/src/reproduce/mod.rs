@@ -1,0 +1,112 @@
+//! `flexsc reproduce`: every figure and number of the papers, on one HTML page, and in docs/papers.md.
+
+mod analysis;
+mod chart;
+mod command;
+mod draw;
+mod html;
+mod number;
+mod page;
+mod paper;
+mod shipped;
+mod tell;
+mod verdict;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant as WallInstant;
+
+use clap::ValueEnum;
+use flexsc_core::whole;
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+
+use crate::failure::Failure;
+use crate::{say, stop};
+use html::Section;
+use page::{Drawn, Form, Outcome, Results};
+use paper::Paper;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// The paper [default: all of them]
+    #[arg(value_enum)]
+    paper: Option<Paper>,
+    /// Directory for papers.html, made if it is not there
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+    /// Also write the same as papers.md of the documentation, with its figures images/NAME.svg, into this directory
+    #[arg(long, value_name = "DIR")]
+    docs: Option<PathBuf>,
+}
+
+/// A paper's section in both forms.
+struct Filled {
+    section: Section,
+    markdown: String,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let began = WallInstant::now();
+    stop::listen();
+    for directory in std::iter::once(&args.out).chain(&args.docs) {
+        std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
+    }
+    let papers = args.paper.as_ref().map_or(Paper::value_variants(), std::slice::from_ref);
+    let bar = ProgressBar::new_spinner();
+    let filled = papers.par_iter().map(|paper| fill(*paper, &bar)).collect::<Result<Vec<_>, _>>();
+    bar.finish_and_clear();
+    if stop::asked() {
+        return Err(Failure::Interrupted(String::new()));
+    }
+    let (sections, markdown): (Vec<Section>, Vec<String>) =
+        filled?.into_iter().map(|filled| (filled.section, filled.markdown)).unzip();
+    let took = began.elapsed().as_secs_f64();
+    write(&args.out.join("papers.html"), &html::page(&sections, took))?;
+    if let Some(docs) = &args.docs {
+        write(&docs.join("papers.md"), &format!("{HEAD}\n{}", markdown.join("\n")))?;
+        let images = docs.join("images");
+        std::fs::create_dir_all(&images).map_err(Failure::write(&images))?;
+        for Drawn { name, svg, .. } in sections.iter().flat_map(|section| &section.outcome.figures) {
+            let path = images.join(format!("{name}.svg"));
+            whole::write(&path, svg.as_bytes()).map_err(Failure::write(&path))?;
+        }
+    }
+    let all = || sections.iter().flat_map(|section| &section.outcome.verdicts);
+    say!("{} verdicts in {took:.1} s", all().count());
+    let told = |verdict: &verdict::Verdict| {
+        let known = if verdict.expected { "yes" } else { "no" };
+        format!("{}: {}, known as {known}", verdict.name, verdict.word())
+    };
+    let unexpected: Vec<String> = all().filter(|verdict| !verdict.is_as_expected()).map(told).collect();
+    if unexpected.is_empty() { Ok(()) } else { Err(Failure::Verdicts(unexpected)) }
+}
+
+const HEAD: &str = "# What the papers say, and what we measure\n\n\
+    <!-- Written by `flexsc reproduce -o . --docs docs` from crates/cli/src/reproduce/papers: change it there. -->\n";
+
+/// Computes a paper's section.
+fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
+    let results = Arc::new(Results::default());
+    let form = |form: Form| -> Result<(String, Outcome), Failure> {
+        let (bar, name) = (bar.clone(), paper.name());
+        let begin = move |command: &str| {
+            bar.set_message(format!("{name}: {command}"));
+            bar.tick();
+        };
+        results.fill(paper.template(), form, begin).map_err(|failure| match failure {
+            Failure::Page(why) => Failure::Page(format!("{}.md: {why}", paper.name())),
+            other => other,
+        })
+    };
+    let (text, outcome) = form(Form::Html)?;
+    let (markdown, _) = form(Form::Markdown)?;
+    Ok(Filled { section: Section { name: paper.name(), text, outcome, times: results.times() }, markdown })
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    whole::write(path, text.as_bytes()).map_err(Failure::write(path))?;
+    say!("{} ({:.0} kB)", path.display(), text.len() as f64 / 1e3);
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! Numbers as pages print them, and what pages make of lists of them.
+
+#![expect(clippy::needless_pass_by_value, reason = "templates hand their values over")]
+
+use flexsc_core::statistics::quantile as quantile_of;
+use minijinja::value::Value;
+use minijinja::{Environment, Error, ErrorKind};
+
+/// Adds the filters and tests of numbers to an environment.
+pub fn add_to(environment: &mut Environment) {
+    environment.add_filter("sci", |value: f64, digits: usize| format!("{value:.digits$e}"));
+    environment.add_filter("fixed", |value: f64, digits: usize| format!("{:.digits$}", positive_zero(value)));
+    environment.add_filter("percent", |value: f64, digits: usize| format!("{:.digits$} %", 100.0 * value));
+    environment.add_filter("grouped", grouped);
+    environment
+        .add_filter("zero_below", |value: f64, least: f64| if value.abs() < least { 0.0 } else { value });
+    // What is below is rounding.
+    environment.add_filter(
+        "small",
+        |value: f64| if value < 1e-12 { "0".to_owned() } else { format!("{value:.3e}") },
+    );
+    environment.add_filter("numbers", |list: Vec<Value>| finite(&list));
+    environment.add_filter("known", |list: Vec<Value>| finite(&list).len());
+    environment.add_filter("mean", |list: Vec<Value>| mean(&finite(&list)));
+    environment.add_filter("spread", |list: Vec<Value>| spread(&finite(&list)));
+    environment.add_filter("least", |list: Vec<Value>| some(finite(&list).into_iter().reduce(f64::min)));
+    environment.add_filter("most", |list: Vec<Value>| some(finite(&list).into_iter().reduce(f64::max)));
+    environment.add_filter("median", |list: Vec<Value>| quantile(&list, 0.5));
+    environment.add_filter("quantile", |list: Vec<Value>, part: f64| quantile(&list, part));
+    environment.add_filter("above", |list: Vec<Value>, limit: f64| {
+        finite(&list).iter().filter(|v| **v > limit).count()
+    });
+    environment.add_filter("below", |list: Vec<Value>, limit: f64| {
+        finite(&list).iter().filter(|v| **v < limit).count()
+    });
+    environment.add_filter("sooner", |a: Vec<Value>, b: Vec<Value>| pairs(&a, &b, |a, b| a < b));
+    environment.add_filter("equal", |a: Vec<Value>, b: Vec<Value>| pairs(&a, &b, |a, b| a == b));
+    environment.add_filter("first_below", |list: Vec<f64>, limit: f64| list.iter().position(|v| *v < limit));
+    environment.add_filter("last_below", |list: Vec<f64>, limit: f64| list.iter().rposition(|v| *v < limit));
+    environment.add_filter("acos", |value: f64| value.acos());
+    environment.add_filter("nth", |list: Vec<Value>, place: usize| list.into_iter().nth(place));
+    environment.add_filter("fill", fill);
+    environment.add_filter("as_schedule", as_schedule);
+    environment.add_filter("within", |list: Vec<Value>, keys: Vec<f64>, low: f64, high: f64| {
+        within(&list, &keys, low, high)
+    });
+    environment.add_filter("place", place);
+    environment.add_filter("from_place", |list: Vec<Value>, place: usize| {
+        list.into_iter().skip(place).collect::<Vec<_>>()
+    });
+    // Of a number that has none there is nothing to compare: the test fails.
+    environment.add_test("near", |value: Option<f64>, of: f64, part: f64| {
+        value.is_some_and(|value| (value - of).abs() <= part * of.abs())
+    });
+    environment.add_test("between", |value: Option<f64>, low: f64, high: f64| {
+        value.is_some_and(|value| low <= value && value <= high)
+    });
+    environment.add_test("rounds_to", rounds_to);
+}
+
+/// A whole number with its thousands apart.
+fn grouped(value: f64) -> String {
+    let digits = format!("{:.0}", value.abs());
+    let first = digits.len() % 3;
+    let mut text = if value < 0.0 { "-".to_owned() } else { String::new() };
+    // Four digits stand together, as in the rest of the text.
+    if digits.len() < 5 {
+        return text + &digits;
+    }
+    text.push_str(&digits[..first]);
+    for start in (first..digits.len()).step_by(3) {
+        if start > 0 {
+            text.push(' ');
+        }
+        text.push_str(&digits[start..start + 3]);
+    }
+    text
+}
+
+/// Whether a number, rounded to the digits of another as it is printed, is that one.
+fn rounds_to(value: Option<f64>, printed: &str) -> Result<bool, Error> {
+    let decimals = printed.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    if printed.parse::<f64>().is_err() {
+        let why = format!("`{printed}` is no number");
+        return Err(Error::new(ErrorKind::InvalidOperation, why));
+    }
+    Ok(value.is_some_and(|value| format!("{value:.decimals$}") == printed))
+}
+
+/// Without the sign that a small negative number keeps when it is rounded to 0.
+fn positive_zero(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value }
+}
+
+/// The numbers of a list: what is none, or not finite, is left out.
+fn finite(list: &[Value]) -> Vec<f64> {
+    let number = |value: &Value| f64::try_from(value.clone()).ok().filter(|value| value.is_finite());
+    list.iter().filter_map(number).collect()
+}
+
+fn some(value: Option<f64>) -> Value {
+    value.map_or(Value::from(()), Value::from)
+}
+
+fn mean(list: &[f64]) -> f64 {
+    list.iter().sum::<f64>() / list.len() as f64
+}
+
+/// Standard deviation over the mean.
+fn spread(list: &[f64]) -> f64 {
+    let mean = mean(list);
+    let squares: f64 = list.iter().map(|value| (value - mean) * (value - mean)).sum();
+    (squares / list.len() as f64).sqrt() / mean
+}
+
+/// The quantile of the numbers of a list, interpolated as the statistics of a campaign are.
+fn quantile(list: &[Value], part: f64) -> Value {
+    let mut sorted = finite(list);
+    sorted.sort_by(f64::total_cmp);
+    let quantile = quantile_of(&sorted, part);
+    some(Some(quantile).filter(|value| value.is_finite()))
+}
+
+/// How many pairs of two lists fulfil a condition.
+fn pairs(a: &[Value], b: &[Value], fits: impl Fn(f64, f64) -> bool) -> usize {
+    // What never happens is later than all else.
+    let number = |value: &Value| f64::try_from(value.clone()).unwrap_or(f64::INFINITY);
+    let both = a.iter().map(number).zip(b.iter().map(number));
+    both.filter(|(a, b)| fits(*a, *b)).count()
+}
+
+/// The values of a list whose keys lie within a range.
+fn within(list: &[Value], keys: &[f64], low: f64, high: f64) -> Vec<Value> {
+    let inside = |key: &f64| (low - 1e-9..=high + 1e-9).contains(key);
+    list.iter().zip(keys).filter(|(_, key)| inside(key)).map(|(value, _)| value.clone()).collect()
+}
+
+/// The key at which a list has this value.
+fn place(value: f64, list: Vec<Value>, keys: Vec<f64>) -> Value {
+    let number = |value: &Value| f64::try_from(value.clone()).ok();
+    some(
+        list.iter().position(|other| number(other) == Some(value)).and_then(|index| keys.get(index).copied()),
+    )
+}
+
+/// A command with values in the places of `{}`.
+fn fill(command: String, values: Vec<f64>) -> String {
+    values.iter().fold(command, |command, value| command.replacen("{}", &format!("{value:?}"), 1))
+}
+
+/// Frequencies (rad/s) and gains as the points of a schedule.
+fn as_schedule(points: Vec<Vec<f64>>) -> String {
+    let point = |point: &Vec<f64>| match point[..] {
+        [frequency, gain] => format!("{{frequency={frequency:.6}, gain={gain:.4}}}"),
+        _ => String::new(),
+    };
+    points.iter().map(point).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,68 @@
+//! The papers reproduced: a page that stands alone, and documentation that says what the program computes.
+
+use crate::util::Dir;
+
+const PAPERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/papers.md");
+
+/// A section of the documentation, by the number of its heading.
+fn section(text: &str, number: u32) -> String {
+    let heading = format!("## {number}. ");
+    let lines = text.lines().skip_while(|line| !line.starts_with(&heading));
+    let other = |line: &&str| line.starts_with("## ") && !line.starts_with(&heading);
+    let own: Vec<&str> = lines.take_while(|line| !other(line)).collect();
+    own.join("\n").trim_end().to_owned()
+}
+
+/// Reproduces a paper, and compares the documentation with what comes out. The others take long: `tests/all.py` does it.
+fn reproduced(paper: &str, number: u32) -> String {
+    let dir = Dir::new();
+    dir.run(&format!("reproduce {paper} -o page --docs docs")).exits(0).says(&["papers.html", "verdicts in"]);
+    let committed = std::fs::read_to_string(PAPERS).expect("documentation");
+    let (ours, committed) = (section(&dir.text("docs/papers.md"), number), section(&committed, number));
+    for (line, (ours, committed)) in ours.lines().zip(committed.lines()).enumerate() {
+        assert_eq!(ours, committed, "line {} of section {number} of docs/papers.md", line + 1);
+    }
+    assert_eq!(ours, committed);
+    for figure in committed.split("(images/").skip(1).filter_map(|rest| rest.split(')').next()) {
+        assert!(dir.has(&format!("docs/images/{figure}")), "{figure}");
+    }
+    dir.text("page/papers.html")
+}
+
+#[test]
+fn rotations_are_as_the_documentation_says() {
+    let page = reproduced("rotation", 2);
+    assert!(page.contains("<b class=\"no\">no</b>: it rounds to 7.398"), "the misprint is a verdict");
+    // A figure has its command below it, its drawing within the page.
+    assert_eq!(page.matches("<figure>").count(), page.matches("</svg>").count());
+    assert!(page.contains(
+        "flexsc plan scenarios/rotation-sine.toml --set manoeuvre.command.sine.suppress=4 --figures DIR"
+    ));
+}
+
+#[test]
+fn the_station_is_as_the_documentation_says() {
+    stands_alone(&reproduced("station", 4));
+}
+
+/// Nothing of a page is elsewhere: no address but names of XML's, no script, no style or image beside it.
+fn stands_alone(page: &str) {
+    for mark in ["src=", "url(", "@import", "<script", "<link", "<iframe", "<!--", "{{", "{%"] {
+        assert!(!page.contains(mark), "{mark}");
+    }
+    let addresses = page.split("://").count() - 1;
+    assert_eq!(addresses, page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
+    let targets = page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next());
+    for target in targets {
+        let name = target.strip_prefix('#').unwrap_or_else(|| panic!("{target} is elsewhere"));
+        assert!(page.contains(&format!("id=\"{name}\"")), "{target} is nowhere");
+    }
+    assert!(page.contains("<h2>4. Space station") && page.contains("<h2>What was run</h2>"));
+}
+
+#[test]
+fn papers_that_there_are_not_are_told() {
+    Dir::new().run("reproduce satellite -o page").exits(2).says(&["satellite", "relay", "rotation"]);
+    let dir = Dir::holding("page", "a file");
+    dir.run("reproduce station -o page").exits(1).says(&["cannot write page"]);
+}
