@@ -24,6 +24,7 @@ mod wheel;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use flexsc_core::record::Log;
 
 use crate::failure::Failure;
@@ -60,19 +61,14 @@ pub struct Args {
 }
 
 /// The figure of a log that is in memory, by its name; `path` is what errors call the log.
+///
+/// # Errors
+/// See [`figures`].
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> {
     let what = What::from_str(name, false).map_err(Failure::Arguments)?;
-    let story = Story::read(log, path)?;
-    if !what.is_in(&story) {
-        return Err(Failure::Arguments(format!(
-            "{}: there is no figure `{name}` of this log",
-            path.display()
-        )));
-    }
-    let spatial = story.scenario.spatial.is_some();
-    let cycles = if spatial { Cycles::read(&story, log, path)? } else { Cycles::default() };
-    let motion = if spatial { Motion::default() } else { Motion::read(log)? };
-    Ok(what.figure(&story, &motion, &cycles))
+    let drawn = drawn(log, path, &[what])?.into_iter().next();
+    let nothing = || Failure::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
+    drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -96,8 +92,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 /// # Errors
 /// A log that is not accepted, a figure that it does not have, and a run that cannot be repeated.
 pub fn figures(path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
-    let log = Log::open(path)?;
-    let story = Story::read(&log, path)?;
+    drawn(&Log::open(path)?, path, asked)
+}
+
+fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
+    let story = Story::read(log, path)?;
     let chosen = what::chosen(asked, &What::all_in(&story)).map_err(|(missing, there)| {
         let path = path.display();
         Failure::Arguments(format!(
@@ -108,14 +107,14 @@ pub fn figures(path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failu
     let moving = any(&[What::PhasePlane, What::Envelope, What::Modes, What::Angle]);
     let all = any(&[What::Wheel, What::Frequency, What::Estimate, What::Consistency, What::Extra]);
     let is_spatial = story.scenario.spatial.is_some();
-    let cycles = if is_spatial { Cycles::read(&story, &log, path)? } else { Cycles::default() };
+    let cycles = if is_spatial { Cycles::read(&story, log, path)? } else { Cycles::default() };
     let motion = if is_spatial {
         Motion::default()
     } else if all || !story.switches() {
-        story.motion(&log, path, 0.0, 0.0)?
+        story.motion(log, path, 0.0, 0.0)?
     } else if moving {
         let late = phase_plane::late(&story).min(swings(&story).start).min(torque::shown(&story).start);
-        story.motion(&log, path, phase_plane::early(&story), late)?
+        story.motion(log, path, phase_plane::early(&story), late)?
     } else {
         Motion::default()
     };
