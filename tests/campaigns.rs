@@ -7,7 +7,8 @@ fn a_campaign_writes_tables_and_logs() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     dir.run("simulate u.toml --runs 6 -o out --log events").exits(0).says(&["6 runs", "runs.csv"]);
     let logs = (0..6).map(|run| format!("u-{run}.mcap"));
-    let all: Vec<_> = ["runs.csv".to_owned(), "statistics.csv".to_owned()].into_iter().chain(logs).collect();
+    let all: Vec<_> =
+        ["runs.csv", "scenario.toml", "statistics.csv"].map(str::to_owned).into_iter().chain(logs).collect();
     assert_eq!(dir.names("out"), all);
     let rows = table(&dir, "out/runs.csv");
     assert_eq!(rows.len(), 6);
@@ -33,7 +34,8 @@ fn a_run_alone_is_the_run_of_the_campaign() {
     let before = (dir.read("out/runs.csv"), dir.read("out/statistics.csv"));
     dir.run("simulate u.toml --runs 3:4 -o out --log full").exits(0);
     assert_eq!((dir.read("out/runs.csv"), dir.read("out/statistics.csv")), before);
-    let names = ["runs-3-4.csv", "runs.csv", "statistics-3-4.csv", "statistics.csv", "u-3.mcap"];
+    let names =
+        ["runs-3-4.csv", "runs.csv", "scenario.toml", "statistics-3-4.csv", "statistics.csv", "u-3.mcap"];
     assert_eq!(dir.names("out"), names);
     assert_eq!(table(&dir, "out/runs-3-4.csv"), table(&dir, "out/runs.csv")[3..4]);
     // The log's own scenario, with what was drawn, makes the same run.
@@ -51,7 +53,7 @@ fn threads_change_nothing() {
     dir.run("simulate u.toml --runs 12 -o one --log full --jobs 1").exits(0);
     dir.run("simulate u.toml --runs 12 -o eight --log full --jobs 8").exits(0);
     let names = dir.names("one");
-    assert_eq!((names.len(), &names), (14, &dir.names("eight")));
+    assert_eq!((names.len(), &names), (15, &dir.names("eight")));
     for name in names {
         let same = dir.read(&format!("one/{name}")) == dir.read(&format!("eight/{name}"));
         assert!(same, "{name} differs");
@@ -107,4 +109,44 @@ fn a_sweep_varies_one_key() {
     }
     dir.run(&format!("{vary}=0.3:1.4:5")).exits(2).says(&["`law.relay.k_t`", "between 0 and 1, got 1.4"]);
     dir.run(&format!("{vary}t=0.3:0.4:5")).exits(2).says(&["unknown key `k_tt`"]);
+}
+
+#[test]
+fn sweeps_over_two_keys_combine_all_values() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let sweep = "sweep relay-fixed.toml --set duration=500 -o out --vary law.relay.k_t=0.3:0.4:3";
+    dir.run(&format!("{sweep} --vary law.relay.weak=1e-6:2e-6:2")).exits(0);
+    let rows = table(&dir, "out/runs.csv");
+    let number = |row: &std::collections::BTreeMap<String, String>, key: &str| {
+        row[key].parse::<f64>().expect("a number")
+    };
+    let found: Vec<_> =
+        rows.iter().map(|row| (number(row, "law.relay.k_t"), number(row, "law.relay.weak"))).collect();
+    let all = [(0.3, 1e-6), (0.3, 2e-6), (0.35, 1e-6), (0.35, 2e-6), (0.4, 1e-6), (0.4, 2e-6)];
+    assert_eq!(found.len(), all.len());
+    for (found, exact) in found.iter().zip(all) {
+        assert!((found.0 - exact.0).abs() < 1e-12 && (found.1 - exact.1).abs() < 1e-18, "{found:?}");
+    }
+    assert!(dir.text("out/runs.csv").starts_with("run,seed,law.relay.k_t,law.relay.weak,"));
+    dir.run(&format!("{sweep} --vary law.relay.k_t=0.1:0.2:2")).exits(2).says(&["can be varied once"]);
+    dir.run(&format!("{sweep} --vary law.relay.weak=1e-6:2e-6:9000000")).exits(2).says(&["at most 10000000"]);
+    dir.run(&format!("{sweep} --vary law.relay.weak=-1:2e-6:2")).exits(2).says(&["`law.relay.weak`"]);
+}
+
+#[test]
+fn the_scenario_beside_the_tables_is_that_of_the_runs() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 4 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
+    dir.run("simulate out/scenario.toml --runs 4 -o again").exits(0);
+    assert_eq!(dir.text("again/runs.csv"), dir.text("out/runs.csv"));
+    assert_eq!(dir.text("again/scenario.toml"), dir.text("out/scenario.toml"));
+    // Another campaign takes its place; a part of another one does not.
+    dir.run("simulate u.toml --runs 2:4 -o out").exits(2).says(&["out/scenario.toml", "another directory"]);
+    dir.run("simulate u.toml --runs 2:4 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
+    dir.run("simulate u.toml --runs 4 -o out").exits(0);
+    // What somebody wrote is never lost.
+    dir.write("scenario.toml", UNCERTAIN);
+    dir.run("simulate scenario.toml --runs 4 -o .").exits(2).says(&["./scenario.toml"]);
+    assert_eq!(dir.text("scenario.toml"), UNCERTAIN);
+    assert!(!dir.has("runs.csv"));
 }

@@ -1,21 +1,42 @@
-//! Viewer layouts: every path of every panel is a topic and a field of a log.
+//! Viewer layouts: one source for those that are shipped, attached and written, and every path of them in a log.
 
 use std::collections::BTreeSet;
 
-use flexsc_core::record::{Column, Columns, Log};
+use flexsc_core::Scenario;
+use flexsc_core::layout::Layout;
+use flexsc_core::record::{Column, Columns, Detail, Log};
 use serde_json::Value;
 
-use crate::util::Dir;
+use crate::util::{Dir, SCENARIOS};
 
-/// The paths that a layout's panels show.
+/// The scenarios whose layouts are shipped, by the layouts' names.
+const SHIPPED: [(&str, &str); 4] = [
+    ("relay", "relay-adaptive"),
+    ("rotation", "rotation-robust"),
+    ("wheel", "wheel-ekf"),
+    ("spatial", "iss-manoeuvre"),
+];
+
+/// Runs that have what the others have not: other estimators, actuators and bodies.
+const OTHERS: [(&str, &str); 6] = [
+    ("relay-sampled", "--set duration=1000"),
+    ("rotation-thrusters", ""),
+    ("rotation-nonlinear", ""),
+    ("wheel-fast-mode", "--set duration=20 --set actuator.wheel.rotor={inertia=1e-4}"),
+    ("iss-manoeuvre-off", "--set duration=60"),
+    ("iss-mismatch", "--set duration=60"),
+];
+
+/// What a layout's panels show: paths and topics.
 fn paths(value: &Value, found: &mut BTreeSet<String>) {
     match value {
         Value::Object(object) => {
             for (key, value) in object {
-                match value {
-                    Value::String(text) if key == "value" || key == "topicPath" => {
+                match (key.as_str(), value) {
+                    ("value" | "topicPath" | "topicToRender", Value::String(text)) => {
                         found.insert(text.clone());
                     }
+                    ("topics", Value::Object(topics)) => found.extend(topics.keys().cloned()),
                     _ => paths(value, found),
                 }
             }
@@ -25,63 +46,111 @@ fn paths(value: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
+/// The panels that a mosaic or a tab names.
+fn named(value: &Value, found: &mut Vec<String>) {
+    match value {
+        Value::String(id) => found.push(id.clone()),
+        Value::Object(object) => {
+            for part in ["first", "second"].iter().filter_map(|key| object.get(*key)) {
+                named(part, found);
+            }
+        }
+        _ => panic!("{value}"),
+    }
+}
+
 /// Whether columns have a field such as `modes[0].displacement_rad`.
 fn has(columns: &Columns, field: &str) -> bool {
     match field.split_once('[') {
-        None => columns.get(field).is_some(),
+        None => columns.get(field).is_some_and(|column| !column.is_empty()),
         Some((rows, rest)) => {
-            let Some((_, inner)) = rest.split_once("].") else { return false };
-            matches!(columns.get(rows), Some(Column::Rows(_, columns)) if has(columns, inner))
+            let Some((index, inner)) = rest.split_once("].") else { return false };
+            let index: u32 = index.parse().expect("an index");
+            matches!(columns.get(rows), Some(Column::Rows(counts, columns)) if counts[0] > index && has(columns, inner))
         }
     }
 }
 
-/// Every path of a layout must be a field of the log of a run.
-fn check(scenario: &str, options: &str, layout: &str) {
-    let dir = Dir::with(&[scenario]);
-    dir.run(&format!("simulate {scenario}.toml --log full {options}")).exits(0);
-    let log = Log::open(&dir.path(&format!("{scenario}.mcap"))).expect("a log");
-
+/// Every path of a layout must be a field of the log of a run, and every panel have its place.
+fn check(log: &Log, layout: &str) {
+    let layout: Value = serde_json::from_str(layout).expect("JSON");
     let mut found = BTreeSet::new();
-    paths(&serde_json::from_str(layout).expect("JSON"), &mut found);
-    assert!(found.len() > 10, "{found:?}");
+    paths(&layout["configById"], &mut found);
+    assert!(found.len() > 8, "{found:?}");
     for path in found {
+        if path.parse::<f64>().is_ok() {
+            continue;
+        }
         let (topic, field) = path.split_once('.').unwrap_or((&path, ""));
         let columns = log.columns(topic).unwrap_or_else(|error| panic!("{path}: {error}"));
         assert!(field.is_empty() || has(&columns, field), "{path}: no such field");
     }
+    let panels = layout["configById"].as_object().expect("panels");
+    let mut places = Vec::new();
+    named(&layout["layout"], &mut places);
+    for (id, config) in panels {
+        assert_eq!(config["foxglovePanelTitle"], config["lichtblickPanelTitle"], "{id}");
+        for tab in config["tabs"].as_array().into_iter().flatten() {
+            let before = places.len();
+            named(&tab["layout"], &mut places);
+            assert!((1..=9).contains(&(places.len() - before)), "{id}: {tab}");
+        }
+        // Viewers show nothing of a plane whose axes are of one topic.
+        let topic = |path: &Value| path.as_str().and_then(|path| path.split('.').next()).map(str::to_owned);
+        if let Some(x) = config.get("xAxisPath") {
+            for path in config["paths"].as_array().expect("paths") {
+                assert_ne!(topic(&path["value"]), topic(&x["value"]), "{id}");
+            }
+        }
+    }
+    places.sort();
+    let mut ids: Vec<&String> = panels.keys().collect();
+    ids.sort();
+    assert_eq!(places.iter().collect::<Vec<_>>(), ids);
+}
+
+fn attached(bytes: &[u8]) -> String {
+    let summary = mcap::Summary::read(bytes).expect("whole").expect("a summary");
+    let index =
+        summary.attachment_indexes.iter().find(|index| index.name == "layout.json").expect("attached");
+    String::from_utf8(mcap::read::attachment(bytes, index).expect("whole").data.into_owned()).expect("text")
+}
+
+/// What is attached to a log, and what the command writes for it, shows what the log has.
+fn run(scenario: &str, options: &str) {
+    let dir = Dir::with(&[scenario]);
+    for detail in ["events", "full", "scene"] {
+        dir.run(&format!("simulate {scenario}.toml --log {detail} {options}")).exits(0);
+        let name = format!("{scenario}.mcap");
+        let layout = attached(&dir.read(&name));
+        dir.run(&format!("layout {name} -o layout.json")).exits(0);
+        assert!(dir.text("layout.json") == layout, "{scenario} {detail}: attached and written differ");
+        assert_eq!(layout.contains("\"3D!scene\""), detail == "scene");
+        if detail != "events" {
+            check(&Log::open(&dir.path(&name)).expect("a log"), &layout);
+        }
+    }
 }
 
 #[test]
-fn every_path_is_a_field_of_a_log() {
-    check("relay-adaptive", "--set duration=1200", include_str!("../scenarios/layouts/relay.json"));
-    check("iss-manoeuvre", "--set duration=20", include_str!("../scenarios/layouts/spatial.json"));
-    check("rotation-robust", "--set duration=20", include_str!("../scenarios/layouts/rotation.json"));
-    let rotor = "--set actuator.wheel.rotor={inertia=1e-4}";
-    check(
-        "wheel-ekf",
-        &format!("--set duration=20 {rotor}"),
-        include_str!("../scenarios/layouts/wheel.json"),
-    );
-    check("rotation-nonlinear", "--set duration=13", include_str!("../scenarios/layouts/rotation.json"));
+fn layouts_show_what_logs_have() {
+    run("relay-adaptive", "--set duration=1200");
+    run("rotation-robust", "");
+    run("wheel-ekf", "--set duration=30");
+    run("iss-manoeuvre", "--set duration=30");
+    for (scenario, options) in OTHERS {
+        run(scenario, options);
+    }
 }
 
+/// What is shipped is what the command writes for a log with a scene; `flexsc layout LOG` makes it anew.
 #[test]
-fn a_log_holds_the_layout_of_its_kind() {
-    let dir = Dir::with(&["wheel-ekf", "wheel-fast-mode", "rotation-sine", "relay-fixed"]);
-    let layouts = [
-        ("wheel-ekf", include_str!("../scenarios/layouts/wheel.json")),
-        ("wheel-fast-mode", include_str!("../scenarios/layouts/wheel.json")),
-        ("rotation-sine", include_str!("../scenarios/layouts/rotation.json")),
-        ("relay-fixed", include_str!("../scenarios/layouts/relay.json")),
-    ];
-    for (name, layout) in layouts {
-        dir.run(&format!("simulate {name}.toml --set duration=1")).exits(0);
-        let bytes = dir.read(&format!("{name}.mcap"));
-        let summary = mcap::Summary::read(&bytes).expect("whole").expect("a summary");
-        let held = summary.attachment_indexes.iter().any(|index| {
-            mcap::read::attachment(&bytes, index).expect("whole").data.as_ref() == layout.as_bytes()
-        });
-        assert!(held, "{name}");
+fn shipped_layouts_are_those_of_their_scenarios() {
+    for (name, scenario) in SHIPPED {
+        let path = format!("{SCENARIOS}/{scenario}.toml");
+        let scenario = Scenario::load(path.as_ref()).expect("shipped");
+        let layout = Layout::of(&scenario).of_detail(Detail::Scene).to_json();
+        let shipped = std::fs::read_to_string(format!("{SCENARIOS}/layouts/{name}.json")).expect("shipped");
+        assert!(shipped == layout, "scenarios/layouts/{name}.json differs from what `flexsc layout` writes");
     }
 }

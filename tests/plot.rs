@@ -5,7 +5,7 @@ use resvg::usvg::roxmltree::{Document, Node};
 
 use crate::util::Dir;
 
-const FIGURES: [&str; 5] = ["phase-plane", "torque", "envelope", "gain", "modes"];
+const FIGURES: [&str; 6] = ["phase-plane", "torque", "angle", "envelope", "gain", "modes"];
 
 /// A directory with the log of a run.
 fn simulated(options: &str) -> Dir {
@@ -37,6 +37,7 @@ fn every_figure_is_drawn_in_both_forms() {
     let axes = [
         ["angle x, µrad", "rate dx/dt, µrad/s"],
         ["torque, µrad/s²", "time, s"],
+        ["angle x, µrad", "time, s"],
         ["envelope a, µrad", "elastic angle, µrad"],
         ["gain k_t", "mean envelope, µrad"],
         ["displacement, µrad", "time, s"],
@@ -96,7 +97,7 @@ fn runs_without_a_switching_can_be_drawn() {
 fn a_figure_that_is_not_there_is_bad_input() {
     let dir = simulated("--set duration=100");
     dir.run("plot relay-adaptive.mcap -o figures --what nonsense").exits(2).says(&["phase-plane"]);
-    let words = ["no figure `gain`", "hint: it has phase-plane, torque, envelope, modes"];
+    let words = ["no figure `gain`", "hint: it has phase-plane, torque, angle, envelope, modes"];
     dir.run("plot relay-adaptive.mcap -o figures --what torque,gain").exits(2).says(&words);
     assert!(!dir.has("figures"));
     dir.run("plot relay-adaptive.mcap -o figures --what torque --format png").exits(0);
@@ -108,7 +109,7 @@ fn rotations_have_figures_of_their_own() {
     let dir = Dir::with(&["rotation-robust", "rotation-thrusters"]);
     let axes = [
         ("torque", ["torque, N m", "time, s"]),
-        ("angle", ["angle, mrad", "beyond the goal, mrad"]),
+        ("angle", ["angle, rad", "beyond the goal, mrad"]),
         ("outputs", ["section_4, mrad", "time, s"]),
         ("modes", ["displacement, mrad", "time, s"]),
     ];
@@ -133,4 +134,73 @@ fn rotations_have_figures_of_their_own() {
     dir.run("plot rotation-robust.mcap --what phase-plane")
         .exits(2)
         .says(&["it has torque, angle, outputs, modes"]);
+}
+
+#[test]
+fn a_file_holds_one_figure_or_a_sheet_of_all() {
+    let dir = simulated("--set duration=2000");
+    dir.run("plot relay-adaptive.mcap -o figures").exits(0);
+    dir.run("plot relay-adaptive.mcap -o gain.svg --what gain").exits(0).says(&["gain.svg"]);
+    assert_eq!(dir.text("gain.svg"), svg(&dir, "gain"));
+    dir.run("plot relay-adaptive.mcap -o gain.PNG --what gain --format png").exits(0);
+    assert!(dir.read("gain.PNG") == dir.read("figures/relay-adaptive-gain.png"));
+    let told = dir.run("plot relay-adaptive.mcap -o all.svg --json").exits(0);
+    assert_eq!((told.err.as_str(), told.out.lines().count()), ("", 1));
+    assert_eq!(told.json()["figures"].as_array().map(Vec::len), Some(FIGURES.len()));
+    let sheet = dir.text("all.svg");
+    let document = Document::parse(&sheet).expect("well-formed XML");
+    let root = document.root_element();
+    let number = |node: &Node<'_, '_>, name: &str| -> u32 {
+        node.attribute(name).unwrap_or("0").parse().expect("a number")
+    };
+    let within: Vec<[u32; 4]> = root
+        .children()
+        .filter(|node| node.has_tag_name("svg"))
+        .map(|node| ["x", "y", "width", "height"].map(|name| number(&node, name)))
+        .collect();
+    assert_eq!(within.len(), FIGURES.len());
+    for (index, [x, y, width, height]) in within.iter().enumerate() {
+        assert!(x + width <= number(&root, "width") && y + height <= number(&root, "height"));
+        let apart =
+            |[a, b, w, h]: &[u32; 4]| x + width <= *a || a + w <= *x || y + height <= *b || b + h <= *y;
+        assert!(within[..index].iter().all(apart), "figures overlap: {within:?}");
+    }
+    dir.run("plot relay-adaptive.mcap -o all.png").exits(0);
+    assert_eq!(size(&dir.read("all.png")), ["width", "height"].map(|name| 2 * number(&root, name)));
+    dir.run("plot relay-adaptive.mcap -o all.png --format svg").exits(2).says(&["--format", "all.png"]);
+    dir.run("plot relay-adaptive.mcap --metric duty").exits(2).says(&["no directory of a campaign"]);
+}
+
+#[test]
+fn torn_and_interrupted_logs() {
+    let dir = simulated("--set duration=2000 --log full");
+    let whole = dir.read("relay-adaptive.mcap");
+    dir.write("torn.mcap", &whole[..whole.len() / 2]);
+    dir.run("plot torn.mcap -o torn.svg").exits(2).says(&["torn.mcap", "flexsc log recover"]);
+    assert!(!dir.has("torn.svg"));
+    // What was saved of it can be drawn.
+    dir.run("log recover torn.mcap --json").exits(0);
+    dir.run("plot torn-recovered.mcap -o saved.svg").exits(0);
+    assert!(dir.has("saved.svg"));
+    dir.write("none.mcap", "no log");
+    dir.run("plot none.mcap").exits(2).says(&["none.mcap"]);
+    dir.run("plot missing.mcap").exits(2).says(&["missing.mcap"]);
+}
+
+#[test]
+fn spatial_figures_have_units_that_people_use() {
+    let dir = Dir::with(&["iss-ringdown"]);
+    dir.run("simulate iss-ringdown.toml --set duration=60").exits(0);
+    dir.run("plot iss-ringdown.mcap --format svg -o figures").exits(0);
+    for (figure, words) in [
+        ("energy", ["elastic energy, J", "propellant, g"]),
+        ("tracking", ["roll, Hz", "estimated"]),
+        ("jets", ["yaw, ms", "time, s"]),
+        ("damping", ["predicted elastic rate", "threshold"]),
+    ] {
+        let svg = dir.text(&format!("figures/iss-ringdown-{figure}.svg"));
+        let document = Document::parse(&svg).expect("well-formed XML");
+        let texts: Vec<_> = document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
+        assert!(words.iter().all(|word| texts.contains(word)), "{figure}: {texts:?}");
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -131,6 +132,30 @@ pub struct Started {
 }
 
 impl Started {
+    /// The next line of stderr that holds a word.
+    pub fn line(&mut self, word: &str) -> String {
+        let err = self.child.as_mut().and_then(|child| child.stderr.as_mut()).expect("not yet waited for");
+        let (mut line, mut byte) = (Vec::new(), [0]);
+        // Byte by byte: what follows is left for the end.
+        while err.read(&mut byte).expect("readable") == 1 {
+            if byte != *b"\n" {
+                line.extend(byte);
+                continue;
+            }
+            let text = String::from_utf8(std::mem::take(&mut line)).expect("UTF-8");
+            if text.contains(word) {
+                return text;
+            }
+        }
+        panic!("flexsc {}: no line with `{word}`", self.arguments);
+    }
+
+    /// Waits for the end.
+    pub fn wait(mut self) -> Ran {
+        let child = self.child.take().expect("not yet waited for");
+        Ran::new(&self.arguments, child.wait_with_output().expect("waited for"))
+    }
+
     /// Sends a signal, such as `INT`, and waits for the end.
     pub fn signal(mut self, signal: &str) -> Ran {
         let child = self.child.take().expect("not yet waited for");

@@ -1,97 +1,9 @@
 //! The figures of wheels, filters and sampled loops: the right curves at the right places.
 
 use flexsc_core::record::Log;
-use resvg::usvg::roxmltree::{Document, Node};
 
+use crate::drawing::{BLACK, BLUE, Drawing, Point, SKY, VERMILLION, near};
 use crate::util::Dir;
-
-const BLUE: &str = "#0072B2";
-const SKY: &str = "#56B4E9";
-const VERMILLION: &str = "#D55E00";
-const BLACK: &str = "#000000";
-
-/// A point in the units of a figure's file.
-type Point = (f64, f64);
-
-/// A figure.
-struct Drawing(String);
-
-impl Drawing {
-    fn read(dir: &Dir, name: &str) -> Self {
-        Self(dir.text(&format!("figures/{name}.svg")))
-    }
-
-    /// Something of each element that has it.
-    fn each<T>(&self, of: impl Fn(&Node<'_, '_>) -> Option<T>) -> Vec<T> {
-        let document = Document::parse(&self.0).expect("well-formed XML");
-        document.descendants().filter_map(|node| of(&node)).collect()
-    }
-
-    fn texts(&self) -> Vec<String> {
-        self.each(|node| node.text().map(|text| text.trim().to_owned()))
-    }
-
-    #[track_caller]
-    fn shows(&self, words: &[&str]) {
-        let texts = self.texts();
-        for words in words {
-            assert!(texts.iter().any(|text| text == words), "no `{words}` in {texts:?}");
-        }
-    }
-
-    /// The points of all elements of a kind whose paint has a colour.
-    fn shapes(&self, kind: &str, paint: &str, colour: &str) -> Vec<Vec<Point>> {
-        self.each(|node| {
-            let is = node.has_tag_name(kind) && node.attribute(paint) == Some(colour);
-            is.then(|| points(node.attribute("points").unwrap_or_default()))
-        })
-    }
-
-    /// The line of a colour with the most points, the first of such.
-    fn line(&self, colour: &str) -> Vec<Point> {
-        let lines = self.shapes("polyline", "stroke", colour);
-        lines.into_iter().rev().max_by_key(Vec::len).expect("a line")
-    }
-
-    /// Where a number stands beside an axis.
-    fn number(&self, text: &str) -> Point {
-        let place = |node: &Node<'_, '_>| {
-            let is = node.has_tag_name("text") && node.text().map(str::trim) == Some(text);
-            let number = |name: &str| node.attribute(name)?.parse().ok();
-            is.then(|| Some((number("x")?, number("y")?)))?
-        };
-        self.each(place).first().copied().unwrap_or_else(|| panic!("no number {text}"))
-    }
-
-    /// The value at a height, by two numbers of the axis upwards of the first panel.
-    fn up(&self, y: f64, [low, high]: [&str; 2]) -> f64 {
-        let ([a, b], [from, to]) = ([low, high].map(|text| self.number(text).1), [low, high].map(value));
-        from + (to - from) * (y - a) / (b - a)
-    }
-
-    /// The value across, by two numbers of the axis to the right.
-    fn across(&self, x: f64, [low, high]: [&str; 2]) -> f64 {
-        let ([a, b], [from, to]) = ([low, high].map(|text| self.number(text).0), [low, high].map(value));
-        from + (to - from) * (x - a) / (b - a)
-    }
-}
-
-fn value(text: &str) -> f64 {
-    text.replace('−', "-").parse().expect("a number")
-}
-
-fn points(text: &str) -> Vec<Point> {
-    let point = |pair: &str| {
-        let (x, y) = pair.split_once(',').expect("a pair");
-        (value(x), value(y))
-    };
-    text.split_whitespace().map(point).collect()
-}
-
-#[track_caller]
-fn near(found: f64, exact: f64, tolerance: f64) {
-    assert!((found - exact).abs() <= tolerance, "{found} is not {exact}");
-}
 
 #[test]
 fn the_angle_is_drawn_with_its_band_and_when_it_has_settled() {

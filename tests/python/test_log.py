@@ -6,6 +6,7 @@ from typing import Any
 import flexsc
 import numpy as np
 import pytest
+from conftest import shipped
 from flexsc import LogError, Result, Scenario
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
@@ -55,7 +56,9 @@ def test_the_foreign_reader_sees_the_same_numbers(dense: Result, path: Path) -> 
             outer, _, inner = column.partition(".")
             if inner:
                 told = [[getattr(part, inner) for part in getattr(message, outer)] for _, message in messages]
-            elif values.dtype.kind == "U":
+            elif column == "timestamp":
+                told = [message.timestamp.ToNanoseconds() / 1e9 for _, message in messages]
+            elif values.dtype.kind == "U" and messages[0][1].DESCRIPTOR.fields_by_name[column].enum_type:
                 told = [labels(message, column) for _, message in messages]
                 values = np.char.upper(values)
             else:
@@ -146,3 +149,53 @@ def test_damaged_logs_are_errors_and_nothing_else(fixed: Scenario, tmp_path: Pat
     bad.write_bytes(b"time,angle\n")
     with pytest.raises(LogError, match="not a readable MCAP log"):
         flexsc.read_log(bad)
+
+
+def test_the_scene_is_read_by_all(tmp_path: Path) -> None:
+    path = tmp_path / "scene.mcap"
+    result = shipped("rotation-sine").with_({"duration": 6.0, "log.period": 0.1}).simulate(log="scene")
+    assert "tf" not in result  # columns hold what is measured, not what is drawn
+    result.to_mcap(path)
+    topics = decoded(path)
+    [(_, scene)] = topics["/scene"]
+    [words] = [text.text for entity in scene.entities for text in entity.texts]
+    assert words == "bending \N{MULTIPLICATION SIGN} 1, turning \N{MULTIPLICATION SIGN} 1 (schematic)"
+    frames = [message for _, message in topics["/tf"]]
+    assert [frame.child_frame_id for frame in frames[0].transforms[:3]] == ["body", "panel_1/1", "panel_1/2"]
+    # The body's frame is where the engine's body is, at each period of the log.
+    angle = [2 * np.arctan2(m.transforms[0].rotation.z, m.transforms[0].rotation.w) for m in frames]
+    np.testing.assert_allclose(angle, result["attitude"]["angle_rad"], rtol=0, atol=1e-6)
+    log = flexsc.read_log(path)
+    assert log["tf"]["transforms.rotation.z"].shape == (len(frames), 9)
+    assert log["log"]["message"].tolist() == [message.message for _, message in topics["/log"]]
+    assert log["plumes"]["entities.id"][0].tolist() == []
+
+
+def test_the_schemas_of_viewers_are_the_published_ones(tmp_path: Path) -> None:
+    import importlib
+
+    path = tmp_path / "scene.mcap"
+    shipped("rotation-sine").with_("duration", 1.0).simulate().to_mcap(path, log="scene")
+    compared: set[str] = set()
+
+    def compare(own: Any) -> None:
+        if not own.full_name.startswith("foxglove.") or own.full_name in compared:
+            return
+        compared.add(own.full_name)
+        module = importlib.import_module(f"foxglove_schemas_protobuf.{own.name}_pb2")
+        published = getattr(module, own.name).DESCRIPTOR
+        assert own.file.name == published.file.name
+        for field in own.fields:
+            other = published.fields_by_name[field.name]
+            assert (field.number, field.type, field.label) == (other.number, other.type, other.label)
+            if field.message_type:
+                assert field.message_type.full_name == other.message_type.full_name
+                compare(field.message_type)
+            if field.enum_type:
+                assert field.enum_type.full_name == other.enum_type.full_name
+                numbers = {value.name: value.number for value in field.enum_type.values}
+                assert numbers == {value.name: value.number for value in other.enum_type.values}
+
+    for topic in ("/log", "/tf", "/scene", "/plumes"):
+        compare(decoded(path)[topic][0][1].DESCRIPTOR)
+    assert {"foxglove.Log", "foxglove.FrameTransform", "foxglove.SceneUpdate", "foxglove.Color"} <= compared

@@ -43,9 +43,9 @@ def test_log_files_hold_what_is_asked_for(fixed: Scenario, tmp_path: Path) -> No
     assert "command" in flexsc.read_log(tmp_path / "default.mcap")
     short.simulate().to_mcap(tmp_path / "full.mcap", log="full")
     assert "attitude" in flexsc.read_log(tmp_path / "full.mcap")
-    with pytest.raises(ValueError, match="log must be 'events' or 'full'"):
+    with pytest.raises(ValueError, match="log must be 'events', 'full' or 'scene' for a file"):
         quiet.to_mcap(tmp_path / "none.mcap", log="none")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="log must be 'events', 'full' or 'none', got \"all\""):
+    with pytest.raises(ValueError, match="log must be 'events', 'full', 'scene' or 'none', got \"all\""):
         short.simulate(log="all")  # type: ignore[arg-type]
     with pytest.raises(LogError, match=r"cannot write .*nowhere"):
         quiet.to_mcap(tmp_path / "nowhere" / "x.mcap")
@@ -54,7 +54,7 @@ def test_log_files_hold_what_is_asked_for(fixed: Scenario, tmp_path: Path) -> No
 
 def test_columns_have_types_and_shapes(fixed: Scenario) -> None:
     result = fixed.with_("duration", 50.0).simulate(log="full")
-    assert set(result) == {"command", "law", "attitude", "rate", "modes", "envelope"}
+    assert set(result) == {"command", "law", "log", "attitude", "rate", "modes", "envelope"}
     command = result["command"]
     assert command["time_s"].dtype == np.float64
     assert command["time_fs"].dtype == np.int64

@@ -11,12 +11,17 @@ use flexsc_core::campaign::{Campaign, Outcome, Run, RunError};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::RecordError;
 use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
-use flexsc_core::whole::discard;
+use flexsc_core::whole::{self, discard};
 use serde_json::json;
 
 use crate::failure::Failure;
 use crate::table::Table;
 use crate::{print, progress, say, summary};
+
+/// The file that holds the scenario of a campaign, beside its tables.
+pub const SCENARIO: &str = "scenario.toml";
+/// How that file begins.
+const MARK: &str = "# What the runs beside it were drawn from, by flexsc";
 
 /// What of a campaign is run, and what is made of it.
 pub struct Job<'a> {
@@ -45,6 +50,7 @@ pub fn run(
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::Arguments(format!("--jobs: {error}")))?;
     let runs = job.range.end - job.range.start;
+    job.keep_scenario(study)?;
     let bar = progress::bar(runs, "runs");
     let mut table = job.table.map(|dir| Table::create(&dir.join(job.file("runs")))).transpose()?;
     let mut telling = Telling { study, json: job.json, table: table.as_mut(), all: Vec::new(), failed: None };
@@ -86,6 +92,27 @@ pub fn run(
 }
 
 impl Job<'_> {
+    /// Writes the scenario beside the tables, so that any run can be repeated from them alone.
+    fn keep_scenario(&self, study: &Campaign) -> Result<(), Failure> {
+        let Some(dir) = self.table else { return Ok(()) };
+        let path =
+            dir.join(self.prefix.map_or_else(|| SCENARIO.to_owned(), |name| format!("{name}-{SCENARIO}")));
+        let text = format!("{MARK} {}.\n{}", env!("CARGO_PKG_VERSION"), study.to_toml());
+        // Parts make up one campaign only if they are of one scenario; and a file that somebody wrote is not lost.
+        let stays =
+            |there: &[u8]| there != text.as_bytes() && (self.part || !there.starts_with(MARK.as_bytes()));
+        if fs::read(&path).is_ok_and(|there| stays(&there)) {
+            let path = path.display();
+            return Err(Failure::Arguments(format!(
+                "{path}: is there, and is not the scenario of these runs, with their seed and of this version\n\n\
+                 hint: give another directory"
+            )));
+        }
+        let partial = PathBuf::from(format!("{}.{}.partial", path.display(), self.range.start));
+        let written = whole::write(&partial, text.as_bytes()).and_then(|()| fs::rename(&partial, &path));
+        written.map_err(Failure::write(&path))
+    }
+
     fn file(&self, kind: &str) -> String {
         let prefix = self.prefix.map_or(String::new(), |name| format!("{name}-"));
         let part =
@@ -182,7 +209,7 @@ fn tell_statistics(statistics: &[Statistics], runs: usize) {
 }
 
 /// A number in at most ten characters.
-fn short(number: f64) -> String {
+pub fn short(number: f64) -> String {
     if number.is_nan() {
         "-".to_owned()
     } else if number == 0.0 || (1e-3..1e6).contains(&number.abs()) {

@@ -4,21 +4,33 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::Scenario;
+use serde_json::json;
 
 use crate::failure::Failure;
-use crate::say;
+use crate::{print, say};
 
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario files
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
+    /// Print one JSON object for each scenario on stdout
+    #[arg(long)]
+    json: bool,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     for path in &args.scenarios {
         let scenario = Scenario::load(path)?;
         let modes = scenario.mode_count();
+        if args.json {
+            let (file, duration) = (path.display().to_string(), scenario.duration.seconds());
+            let object = json!({
+                "file": file, "scenario": scenario.name, "duration_s": duration, "modes": modes, "accepted": true,
+            });
+            print(format!("{object}\n").as_bytes())?;
+            continue;
+        }
         say!("{}: accepted: {} s, {modes} modes", path.display(), scenario.duration.seconds());
     }
     Ok(())

@@ -1,13 +1,13 @@
 //! What can go wrong, and the exit code that says so.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use anstyle::{AnsiColor, Style};
 use flexsc_core::record::LogError;
 use flexsc_core::{ScenarioError, SimulationError};
 use thiserror::Error;
-
-use crate::say;
 
 /// Why the command did not do what it was asked.
 #[derive(Debug, Error)]
@@ -30,6 +30,10 @@ pub enum Failure {
     /// A file could not be written.
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
+    /// A live run cannot be served.
+    #[cfg(feature = "live")]
+    #[error("cannot serve at {address}: {source}{}", hint(source))]
+    Serve { address: String, source: io::Error },
     /// A figure could not be drawn.
     #[error("cannot draw {}: {why}", path.display())]
     Draw { path: PathBuf, why: String },
@@ -61,7 +65,8 @@ impl Failure {
         {
             return 0;
         }
-        say!("error: {self}");
+        // Colours go to terminals that have them only, and never where NO_COLOR is set.
+        let _ = anstream::stderr().lock().write_all(coloured(&self.to_string()).as_bytes());
         match self {
             Self::Log(LogError::Unwritable { .. }) => 1,
             Self::Scenario(_) | Self::Arguments(_) | Self::Log(_) => 2,
@@ -69,4 +74,30 @@ impl Failure {
             _ => 1,
         }
     }
+}
+
+/// What helps where an address is taken.
+#[cfg(feature = "live")]
+fn hint(error: &io::Error) -> &'static str {
+    if error.kind() == io::ErrorKind::AddrInUse {
+        "\n\nhint: another run may be live there; --live=127.0.0.1:0 takes any free port"
+    } else {
+        ""
+    }
+}
+
+/// What went wrong, with its first word and those of its hints in colours.
+fn coloured(text: &str) -> String {
+    let (error, hint) = (AnsiColor::Red.on_default().bold(), AnsiColor::Cyan.on_default().bold());
+    let word = |word: &str, style: Style| format!("{style}{word}{style:#}");
+    let mut all = word("error:", error);
+    for (index, line) in text.split('\n').enumerate() {
+        let start = if index == 0 { " " } else { "\n" };
+        let _ = match line.strip_prefix("hint:") {
+            Some(rest) => write!(all, "{start}{}{rest}", word("hint:", hint)),
+            None => write!(all, "{start}{line}"),
+        };
+    }
+    all.push('\n');
+    all
 }

@@ -9,6 +9,9 @@ mod failure;
 mod figure;
 mod grid;
 mod identify;
+mod layout;
+#[cfg(feature = "live")]
+mod live;
 mod log;
 mod map;
 mod modes;
@@ -71,6 +74,8 @@ enum Verb {
     Export(export::Args),
     /// Look into logs, and save torn ones
     Log(log::Args),
+    /// Write a layout for viewers that shows a log
+    Layout(layout::Args),
     /// Check scenario files
     Check(check::Args),
     /// Print the JSON Schema of scenarios, for editors, or what the metrics mean
@@ -108,6 +113,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::Log(args) => log::run(&args),
+        Verb::Layout(args) => layout::run(&args),
         Verb::Check(args) => check::run(&args),
         Verb::Schema(args) => schema::run(&args),
         Verb::Completions { shell } => {

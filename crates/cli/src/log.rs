@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 use flexsc_core::record::{Log, recover};
+use serde_json::json;
 
 use crate::failure::Failure;
 use crate::{print, say};
@@ -24,6 +25,9 @@ enum Verb {
         /// The log to write [default: the torn log's name with -recovered.mcap]
         #[arg(short, long, value_name = "FILE")]
         out: Option<PathBuf>,
+        /// Print one JSON object on stdout
+        #[arg(long)]
+        json: bool,
     },
     /// Print the scenario that a log was made from, with all its defaults
     Scenario {
@@ -34,7 +38,7 @@ enum Verb {
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     match &args.verb {
-        Verb::Recover { torn, out } => {
+        Verb::Recover { torn, out, json } => {
             let name = torn.display().to_string();
             let stem = name.trim_end_matches(".partial").trim_end_matches(".mcap");
             let whole = out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-recovered.mcap")));
@@ -42,6 +46,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 return Err(Failure::Arguments(format!("{name}: a log cannot be recovered into itself")));
             }
             let saved = recover(torn, &whole)?;
+            if *json {
+                let object = json!({"file": whole.display().to_string(), "messages": saved});
+                return print(format!("{object}\n").as_bytes());
+            }
             say!("{saved} messages saved in {}", whole.display());
             Ok(())
         }

@@ -6,8 +6,11 @@ use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar on the terminal over so many steps; invisible elsewhere.
+/// A bar on the terminal over so many steps; invisible elsewhere, and where escape sequences are not wanted.
 pub fn bar(steps: u64, unit: &str) -> ProgressBar {
+    if std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty()) {
+        return ProgressBar::hidden();
+    }
     let template = format!("{{bar:30}} {{human_pos}}/{{human_len}} {unit}, {{per_sec}}, {{eta}} left");
     let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(steps).with_style(style)

@@ -45,6 +45,9 @@ pub struct Args {
     /// Print one JSON object for each run on stdout
     #[arg(long)]
     json: bool,
+    #[cfg(feature = "live")]
+    #[command(flatten)]
+    live: crate::live::Args,
 }
 
 /// Which runs of a campaign, and whether it was given as a part.
@@ -63,6 +66,8 @@ enum LogDetail {
     Events,
     /// Also the motion at each period of the scenario's log, and at every switching
     Full,
+    /// Also the scene for viewers in three dimensions: frames, shapes, plumes
+    Scene,
 }
 
 impl LogDetail {
@@ -71,6 +76,7 @@ impl LogDetail {
             Self::None => None,
             Self::Events => Some(Detail::Events),
             Self::Full => Some(Detail::Full),
+            Self::Scene => Some(Detail::Scene),
         }
     }
 }
@@ -87,6 +93,11 @@ fn runs(text: &str) -> Result<Runs, String> {
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    #[cfg(feature = "live")]
+    if args.live.live.is_some() && args.scenarios.len() > 1 {
+        let count = args.scenarios.len();
+        return Err(Failure::Arguments(format!("--live follows one scenario, got {count}")));
+    }
     // Every scenario is checked before anything is written.
     let scenarios = args
         .scenarios
@@ -164,9 +175,13 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
     let name = scenario.name.clone();
     let run = Run { number: 0, scenario, drawn: Vec::new() };
     let path = args.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.mcap"));
+    #[cfg(feature = "live")]
+    let mut live = args.live.serve(&run)?;
+    #[cfg(not(feature = "live"))]
+    let mut live: Option<()> = None;
     let began = WallInstant::now();
     let mut progress = Progress::new(run.scenario.duration);
-    let record = (Stop, &mut progress);
+    let record = (Stop, (&mut progress, &mut live));
     let result = match args.log.unwrap_or(LogDetail::Events).detail() {
         None => Campaign::simulate(&run, record).map(|metrics| (metrics, None)),
         Some(detail) => logged(&run, &path, detail, record).map(|(metrics, bytes)| (metrics, Some(bytes))),
@@ -187,6 +202,10 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
         if let Some(bytes) = bytes {
             say!("  log            {} ({:.0} kB)", path.display(), bytes as f64 / 1e3);
         }
+    }
+    #[cfg(feature = "live")]
+    if let Some(live) = live {
+        live.finish(&metrics);
     }
     Ok(())
 }

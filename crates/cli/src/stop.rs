@@ -18,6 +18,12 @@ pub fn listen() {
     let _ = ctrlc::try_set_handler(ask);
 }
 
+/// Asks to stop, as Ctrl-C does.
+#[cfg(feature = "live")]
+pub fn ask() {
+    ASKED.store(true, Ordering::Relaxed);
+}
+
 /// Whether the user asked to stop.
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)

@@ -1,4 +1,4 @@
-//! `flexsc sweep`: a scenario once for each value of a key.
+//! `flexsc sweep`: a scenario once for each value of a key, or of several.
 
 use std::path::PathBuf;
 
@@ -15,9 +15,10 @@ const MOST_VALUES: u32 = 10_000_000;
 pub struct Args {
     /// Scenario file
     scenario: PathBuf,
-    /// The key, and its first value, last value and number of values, such as law.relay.k_t=0.28:0.40:2401
-    #[arg(long, value_name = "KEY=START:END:COUNT", value_parser = grid)]
-    vary: Grid,
+    /// A key, and its first value, last value and number of values, such as law.relay.k_t=0.28:0.40:2401; given again, every
+    /// combination with the values of another key
+    #[arg(long, required = true, value_name = "KEY=START:END:COUNT", value_parser = grid)]
+    vary: Vec<Grid>,
     /// Directory for the tables, made if it is not there
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -48,15 +49,24 @@ fn grid(text: &str) -> Result<Grid, String> {
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    let runs = args.vary.iter().try_fold(1_u64, |runs, grid| runs.checked_mul(grid.values.len() as u64));
+    let runs = runs.filter(|runs| *runs <= u64::from(MOST_VALUES)).ok_or_else(|| {
+        Failure::Arguments(format!("--vary: a sweep has at most {MOST_VALUES} combinations of values"))
+    })?;
+    if let Some(twice) =
+        args.vary.iter().enumerate().find(|(i, g)| args.vary[..*i].iter().any(|o| o.key == g.key))
+    {
+        return Err(Failure::Arguments(format!("--vary {}: a key can be varied once", twice.1.key)));
+    }
     let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
     let origin = args.scenario.display().to_string();
-    let study = Campaign::new(scenario, &origin, Some(args.vary.clone()))?;
+    let study = Campaign::new(scenario, &origin, args.vary.clone())?;
     if let Some(out) = &args.out {
         std::fs::create_dir_all(out).map_err(Failure::write(out))?;
     }
     stop::listen();
     let job = campaign::Job {
-        range: 0..args.vary.values.len() as u64,
+        range: 0..runs,
         part: false,
         table: args.out.as_deref(),
         prefix: None,

@@ -8,6 +8,7 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::document::{Document, ScenarioError, key};
+use crate::layout::Layout;
 use crate::metrics::{Gather, Metrics};
 use crate::random::Seed;
 use crate::record::{OutputName, Provenance, Record};
@@ -34,10 +35,11 @@ pub struct Campaign {
     scenario: Scenario,
     table: Table,
     origin: String,
-    grid: Option<Grid>,
+    grids: Vec<Grid>,
 }
 
-/// One key that takes these values: run i has value i.
+/// One key that takes these values. Run i of a campaign over one grid has value i; over several, their combinations are
+/// counted as numbers are, the last grid's values from run to run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// The key.
@@ -80,20 +82,35 @@ pub struct Outcome {
 }
 
 impl Campaign {
-    /// The campaign of a scenario over its `[uncertain]` keys and, with a grid, over that key too.
-    pub fn new(scenario: Scenario, origin: &str, grid: Option<Grid>) -> Result<Self, ScenarioError> {
+    /// The campaign of a scenario over its `[uncertain]` keys and, with grids, over their keys too.
+    pub fn new(
+        scenario: Scenario,
+        origin: &str,
+        grids: impl IntoIterator<Item = Grid>,
+    ) -> Result<Self, ScenarioError> {
         let scenario = scenario.with_own_modes();
         let mut table = scenario.to_table();
         // What was drawn is said by the keys themselves.
         table.remove("uncertain");
-        let campaign = Self { scenario, table, origin: origin.to_owned(), grid };
-        if let Some(grid) = &campaign.grid {
+        let grids = grids.into_iter().collect();
+        let campaign = Self { scenario, table, origin: origin.to_owned(), grids };
+        for grid in &campaign.grids {
             // A key that does not exist, or a range that is not accepted, fails all runs: say so at once.
             for value in grid.values.first().into_iter().chain(grid.values.last()) {
                 campaign.scenario_with(&[(&grid.key, campaign.like(&grid.key, *value))])?;
             }
         }
         Ok(campaign)
+    }
+
+    /// The scenario that the runs are drawn from, as TOML: the same campaign can be made from it. It needs no file, unless
+    /// the matrices of a structure vary.
+    pub fn to_toml(&self) -> String {
+        if self.keys().any(|key| key.starts_with("body.matrices")) {
+            self.scenario.to_toml()
+        } else {
+            self.scenario.self_contained().to_toml()
+        }
     }
 
     /// The scenario that the runs are drawn from.
@@ -103,8 +120,8 @@ impl Campaign {
 
     /// The keys that vary from run to run, in the order of [`Run::drawn`].
     pub fn keys(&self) -> impl Iterator<Item = &str> {
-        let grid = self.grid.iter().map(|grid| grid.key.as_str());
-        grid.chain(self.scenario.uncertain.keys().map(String::as_str))
+        let grids = self.grids.iter().map(|grid| grid.key.as_str());
+        grids.chain(self.scenario.uncertain.keys().map(String::as_str))
     }
 
     /// A run, with its keys drawn. It is the same whichever runs are made beside it.
@@ -116,8 +133,7 @@ impl Campaign {
         }
         let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
         if self.plans_first() {
-            let grid = &keys[..usize::from(self.grid.is_some())];
-            let model = self.scenario_with(grid)?.model;
+            let model = self.scenario_with(&keys[..self.grids.len()])?.model;
             // A body holds nothing that TOML cannot express.
             let model = Value::try_from(model).unwrap_or_else(|_| Value::Table(Table::new()));
             keys.push(("manoeuvre.model", model));
@@ -134,7 +150,11 @@ impl Campaign {
     /// Simulates a run and gathers its metrics, beside another record.
     pub fn simulate(run: &Run, record: impl Record) -> Result<Metrics, SimulationError> {
         let mut both = (Gather::new(&run.scenario), record);
-        Simulation::new(&run.scenario, run.number).run(&mut both)?;
+        let mut simulation = Simulation::new(&run.scenario, run.number);
+        if both.scene() {
+            simulation.draw(&run.scenario);
+        }
+        simulation.run(&mut both)?;
         Ok(both.0.finish(&run.scenario))
     }
 
@@ -183,14 +203,19 @@ impl Campaign {
                 .iter()
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),
-            layout: run.scenario.layout(),
+            layout: Some(Layout::of(&run.scenario)),
         }
     }
 
     fn draw(&self, number: u64) -> Vec<Value> {
-        let grid = self.grid.iter().map(|grid| {
-            // A run beyond the grid has no value: it fails, as any value that is not accepted.
-            let value = usize::try_from(number).ok().and_then(|index| grid.values.get(index));
+        // How many runs one value of a grid lasts: those of all grids after it.
+        let lasts =
+            |later: &[Grid]| later.iter().map(|grid| grid.values.len() as u64).product::<u64>().max(1);
+        let grids = self.grids.iter().enumerate().map(|(place, grid)| {
+            let index = number / lasts(&self.grids[place + 1..]);
+            let index = if place == 0 { index } else { index % grid.values.len().max(1) as u64 };
+            // A run beyond the first grid has no value: it fails, as any value that is not accepted.
+            let value = usize::try_from(index).ok().and_then(|index| grid.values.get(index));
             self.like(&grid.key, value.copied().unwrap_or(f64::NAN))
         });
         let seed = Seed { scenario: self.scenario.seed, run: number };
@@ -200,7 +225,7 @@ impl Campaign {
             let nominal = key::get(&self.table, key).unwrap_or(&Value::Float(f64::NAN));
             distribution.draw(nominal, &mut stream)
         });
-        grid.chain(drawn).collect()
+        grids.chain(drawn).collect()
     }
 
     /// A number as the type that a key has in the scenario.

@@ -52,7 +52,7 @@ pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
         .collect()
 }
 
-/// The quantile of sorted values; NaN without any.
+/// The quantile of sorted values, interpolated linearly between order statistics; NaN without any.
 pub fn quantile(sorted: &[f64], q: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = q * last as f64;

@@ -174,7 +174,11 @@ fn detail(log: &str) -> PyResult<Option<Detail>> {
         "none" => Ok(None),
         "events" => Ok(Some(Detail::Events)),
         "full" => Ok(Some(Detail::Full)),
-        _ => Err(PyValueError::new_err(format!("log must be 'events', 'full' or 'none', got {log:?}"))),
+        "scene" => Ok(Some(Detail::Scene)),
+        _ => {
+            let why = format!("log must be 'events', 'full', 'scene' or 'none', got {log:?}");
+            Err(PyValueError::new_err(why))
+        }
     }
 }
 
@@ -197,7 +201,7 @@ fn simulate<'py>(
 
 #[pyfunction]
 fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathBuf) -> PyResult<u64> {
-    let none = || PyValueError::new_err("log must be 'events' or 'full' for a file");
+    let none = || PyValueError::new_err("log must be 'events', 'full' or 'scene' for a file");
     let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
     let written = aside(py, |stop| {
         let mut file = LogFile::create(&path, &Campaign::provenance(&run), detail)?;

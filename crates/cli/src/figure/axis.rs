@@ -106,8 +106,18 @@ impl Axis {
     pub fn label(&self) -> String {
         match (self.name.as_str(), self.unit) {
             ("", _) | (_, "") => self.name.clone(),
+            // The kilogram has a prefix of its own.
+            (name, "kg") => match self.prefix().0 {
+                "M" => format!("{name}, t"),
+                prefix => format!("{name}, {prefix}g"),
+            },
             (name, unit) => format!("{name}, {}{unit}", self.prefix().0),
         }
+    }
+
+    /// How many of its own units the prefixed one is.
+    pub fn factor(&self) -> f64 {
+        10_f64.powi(self.prefix().1 - self.own())
     }
 
     /// At most about `most` ticks.
@@ -119,14 +129,18 @@ impl Axis {
             let at = (first..=last).rev().step_by(step as usize).map(|power| 10_f64.powi(power));
             return Ticks { at: at.collect(), form: Form::Power };
         }
-        let factor = 10_f64.powi(self.prefix().1);
+        let factor = self.factor();
         let (low, high) = (self.range.start / factor, self.range.end / factor);
         let rough = (high - low) / f64::from(most.max(1));
         let power = 10_f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].map(|nice| nice * power).into_iter().find(|step| *step >= rough);
-        let step = step.unwrap_or(10.0 * power);
         // A tick at an end of the range may lie a rounding beyond it.
-        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        let ends = |step: f64| ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        let steps = [0.5, 1.0, 2.0, 5.0, 10.0].map(|nice| nice * power);
+        let place = steps.iter().position(|step| *step >= rough).unwrap_or(4);
+        // One tick does not tell how far a value is.
+        let (first, last) = ends(steps[place]);
+        let step = if place > 0 && last - first < 1 { steps[place - 1] } else { steps[place] };
+        let (first, last) = ends(step);
         // A little tolerance: the logarithm of a power of ten may be rounded.
         let decimals = (-1e-9 - step.log10()).ceil().clamp(0.0, 12.0) as usize;
         Ticks {
@@ -136,12 +150,20 @@ impl Axis {
     }
 
     fn prefix(&self) -> (&'static str, i32) {
-        let half = (self.range.end - self.range.start) / 2.0;
-        let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(half / 10_f64.powi(*power)));
         if self.unit.is_empty() || self.scale == Scale::Logarithmic {
-            return ("", 0);
+            return ("", self.own());
         }
-        PREFIXES.iter().find(fits).copied().unwrap_or(("", 0))
+        let size = self.range.start.abs().max(self.range.end.abs()) * 10_f64.powi(self.own());
+        let half = (self.range.end - self.range.start) / 2.0;
+        // Times are told in seconds up to 2500 s, and however late they are.
+        let measure = if self.unit == "s" { half } else { size };
+        let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(measure / 10_f64.powi(*power)));
+        PREFIXES.iter().find(fits).copied().unwrap_or(("", self.own()))
+    }
+
+    /// The power of ten of the prefix that the unit has of its own.
+    fn own(&self) -> i32 {
+        if self.unit == "kg" { 3 } else { 0 }
     }
 }
 
@@ -207,6 +229,19 @@ mod tests {
         let gain = Axis::exact("k_t", "", 0.305..0.325);
         assert_eq!(gain.label(), "k_t");
         assert_eq!(texts(&gain, 5), ["0.305", "0.310", "0.315", "0.320", "0.325"]);
+        let turn = Axis::exact("angle", "rad", -0.1..1.67);
+        assert_eq!(
+            (turn.label().as_str(), texts(&turn, 4)),
+            ("angle, rad", ["0", "0.5", "1.0", "1.5"].map(str::to_owned).to_vec())
+        );
+        let propellant = |most: f64| Axis::exact("propellant", "kg", 0.0..most);
+        assert_eq!(propellant(0.19).label(), "propellant, g");
+        assert_eq!(texts(&propellant(0.19), 4), ["0", "50", "100", "150"]);
+        assert_eq!(propellant(3.7).label(), "propellant, kg");
+        assert_eq!(texts(&propellant(3.7), 4), ["0", "1", "2", "3"]);
+        assert_eq!(propellant(4200.0).label(), "propellant, t");
+        // Two ticks at least.
+        assert_eq!(texts(&Axis::exact("x", "m", -45.0..45.0), 4), ["−40", "−20", "0", "20", "40"]);
         let huge = Axis::exact("", "", -2e9..2e9);
         assert_eq!(texts(&huge, 2), ["−2.0e9", "0", "2.0e9"]);
     }

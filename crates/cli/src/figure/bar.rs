@@ -13,7 +13,7 @@ pub struct Bar {
     /// The colour of each class.
     pub colours: Vec<RGBColor>,
     /// The values between each class and the next.
-    pub edges: Vec<f64>,
+    pub edges: Vec<String>,
 }
 
 /// Height of the bar with its numbers (px).
@@ -35,7 +35,7 @@ pub fn draw(area: &Area<'_>, bar: &Bar, left: u32) -> Result<(), Error> {
     }
     for (index, edge) in bar.edges.iter().enumerate() {
         let below = at(across(index + 1), COLOUR + 11);
-        area.draw_text(&edge.to_string(), &text(10.0, HPos::Center, VPos::Center), below)?;
+        area.draw_text(edge, &text(10.0, HPos::Center, VPos::Center), below)?;
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ use plotters::style::{
 };
 
 use super::area::polygons;
-use super::line::{Point, Window, pieces, thin};
+use super::line::{Point, Window, pieces, straighten, thin};
 use super::{Figure, Layer, Panel, Shape, bar, colour};
 
 /// Width of every figure (px).
@@ -100,13 +100,13 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, height: u32) -> Result<(), Error> 
             Shape::Line(_) | Shape::Dashes => {
                 for piece in pieces(&points, &plot.window) {
                     let piece = thin(&piece, &plot.window, COLUMNS).into_iter().map(|p| plot.place(p));
-                    draw_line(area, layer, piece.collect())?;
+                    draw_line(area, layer, straighten(&piece.collect::<Vec<_>>()))?;
                 }
             }
             Shape::Area(_) => {
                 for polygon in polygons(&points, &plot.window, ACROSS) {
                     let corners: Vec<_> = polygon.into_iter().map(|p| plot.place(p)).collect();
-                    area.draw(&Polygon::new(corners, layer.style()))?;
+                    area.draw(&Polygon::new(straighten(&corners), layer.style()))?;
                 }
             }
             _ => {
@@ -144,8 +144,11 @@ fn draw_axes(area: &Area<'_>, panel: &Panel, plot: &Plot) -> Result<(), Error> {
     area.draw(&PathElement::new([corner, other[0], opposite, other[1], corner], frame))?;
     let below = at(LEFT + ACROSS / 2, LEGEND + plot.height + NUMBERS + NAME / 2 - 1);
     area.draw_text(&panel.x.label(), &text(12.0, HPos::Center, VPos::Center), below)?;
-    let upright = text(12.0, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
-    area.draw_text(&panel.y.label(), &upright, at(14, LEGEND + plot.height / 2))
+    // A letter is some 0.57 of the font's size wide; a long name becomes smaller.
+    let (name, room) = (panel.y.label(), f64::from(plot.height + LEGEND + NUMBERS / 2));
+    let size = (room / (0.57 * name.chars().count() as f64)).min(12.0);
+    let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
+    area.draw_text(&name, &upright, at(14, LEGEND + plot.height / 2))
 }
 
 fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<(), Error> {
@@ -183,6 +186,8 @@ fn draw_mark(area: &Area<'_>, layer: &Layer, (x, y): (i32, i32)) -> Result<(), E
         Shape::Triangle => &[(0, -42), (38, 26), (-38, 26)],
         Shape::Square => &[(-29, -29), (29, -29), (29, 29), (-29, 29)],
         Shape::Diamond => &[(0, -44), (44, 0), (0, 44), (-44, 0)],
+        Shape::Dot => return area.draw(&Circle::new((x, y), 16, layer.style())),
+        Shape::Ring => return area.draw(&Circle::new((x, y), 38, stroke(layer.colour, 1.2))),
         _ => return area.draw(&Circle::new((x, y), 32, layer.style())),
     };
     let corners: Vec<_> = corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();

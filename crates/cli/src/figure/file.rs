@@ -1,16 +1,18 @@
-//! Figures as files: SVG, PNG or both.
+//! Figures as files: SVG, PNG or both, each by itself or all on one sheet.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use flexsc_core::whole;
 use rayon::prelude::*;
+use serde_json::json;
 
 use super::Figure;
 use super::image::Renderer;
+use super::sheet::sheet;
 use crate::failure::Failure;
-use crate::say;
+use crate::{print, say};
 
 /// The form of figures.
 #[derive(Copy, Clone, PartialEq, Eq, ValueEnum)]
@@ -21,6 +23,60 @@ pub enum Format {
     Png,
     /// One file of each
     Both,
+}
+
+/// Where figures go.
+pub enum Target {
+    /// One file in the form that its name says; several figures make up a sheet.
+    File(PathBuf, Format),
+    /// A directory: a file for each figure and form.
+    Directory(PathBuf, Format),
+}
+
+impl Target {
+    /// What `-o` and `--format` say, or a directory if there is no `-o`.
+    pub fn new(out: Option<&Path>, otherwise: &Path, format: Option<Format>) -> Result<Self, Failure> {
+        let out = out.unwrap_or(otherwise);
+        let extension = out.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+        let said = match extension.as_deref().and_then(|extension| extension.to_str()) {
+            Some("svg") if !out.is_dir() => Some(Format::Svg),
+            Some("png") if !out.is_dir() => Some(Format::Png),
+            _ => None,
+        };
+        match (said, format) {
+            (None, format) => Ok(Self::Directory(out.to_owned(), format.unwrap_or(Format::Both))),
+            (Some(said), Some(format)) if format != said => Err(Failure::Arguments(format!(
+                "--format: {} says another form\n\nhint: give a directory, or leave out --format",
+                out.display()
+            ))),
+            (Some(said), _) => Ok(Self::File(out.to_owned(), said)),
+        }
+    }
+
+    /// Draws figures, each with its name, and writes them; `json` tells of each file on stdout. Nothing is written if one
+    /// cannot be drawn.
+    ///
+    /// # Errors
+    /// A figure that cannot be drawn, and a file or a directory that cannot be written.
+    pub fn save(&self, figures: &[(String, Figure)], json: bool) -> Result<(), Failure> {
+        match self {
+            Self::Directory(directory, format) => {
+                let figure = |(_, figure): &(String, Figure)| figure.svg();
+                save_drawn(directory, *format, figures, |(name, _)| name.clone(), figure, json)
+            }
+            Self::File(path, format) => {
+                let undrawn = |why| Failure::Draw { path: path.clone(), why };
+                let drawn = figures.par_iter().map(|(_, figure)| figure.svg()).collect::<Result<Vec<_>, _>>();
+                let svg = sheet(&drawn.map_err(undrawn)?);
+                let bytes = match format {
+                    Format::Svg | Format::Both => svg.into_bytes(),
+                    Format::Png => Renderer::new().png(&svg).map_err(undrawn)?,
+                };
+                let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
+                write(path, &bytes, &names, json)
+            }
+        }
+    }
 }
 
 /// Draws the figure of each item and writes it into a directory, which is made if it is not there. `name` is that of an
@@ -35,29 +91,45 @@ pub fn save<T: Sync>(
     name: impl Fn(&T) -> String + Sync,
     figure: impl Fn(&T) -> Figure + Sync,
 ) -> Result<(), Failure> {
+    save_drawn(directory, format, items, name, |item| figure(item).svg(), false)
+}
+
+fn save_drawn<T: Sync>(
+    directory: &Path,
+    format: Format,
+    items: &[T],
+    name: impl Fn(&T) -> String + Sync,
+    svg: impl Fn(&T) -> Result<String, String> + Sync,
+    json: bool,
+) -> Result<(), Failure> {
     std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
     let renderer = Renderer::new();
     let path = |item: &T, extension: &str| directory.join(format!("{}.{extension}", name(item)));
     let draw = |item: &T| -> Result<(String, Vec<u8>), Failure> {
         let undrawn = |why| Failure::Draw { path: path(item, "svg"), why };
-        let svg = figure(item).svg().map_err(undrawn)?;
+        let svg = svg(item).map_err(undrawn)?;
         let png = if format == Format::Svg { Vec::new() } else { renderer.png(&svg).map_err(undrawn)? };
         Ok((svg, png))
     };
     let drawn = items.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?;
     for (item, (svg, png)) in items.iter().zip(&drawn) {
+        let name = name(item);
         if format != Format::Png {
-            write(&path(item, "svg"), svg.as_bytes())?;
+            write(&path(item, "svg"), svg.as_bytes(), &[&name], json)?;
         }
         if format != Format::Svg {
-            write(&path(item, "png"), png)?;
+            write(&path(item, "png"), png, &[&name], json)?;
         }
     }
     Ok(())
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+fn write(path: &Path, bytes: &[u8], figures: &[&str], json: bool) -> Result<(), Failure> {
     whole::write(path, bytes).map_err(Failure::write(path))?;
+    if json {
+        let object = json!({"file": path.display().to_string(), "figures": figures, "bytes": bytes.len()});
+        return print(format!("{object}\n").as_bytes());
+    }
     say!("{} ({:.0} kB)", path.display(), bytes.len() as f64 / 1e3);
     Ok(())
 }

@@ -97,6 +97,35 @@ pub fn drop_close(points: &[Point], (width, height): (f64, f64), pixels: u32) ->
     kept
 }
 
+/// Leaves out points of the backend's coordinates where the line is straight to one unit, a tenth of a pixel (Ramer, Douglas
+/// and Peucker).
+pub fn straighten(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
+    let mut kept = vec![false; points.len()];
+    let mut spans = vec![(0, points.len().saturating_sub(1))];
+    while let Some((from, to)) = spans.pop() {
+        for end in [from, to] {
+            if let Some(end) = kept.get_mut(end) {
+                *end = true;
+            }
+        }
+        let off = |index: usize| distance(points[index], points[from], points[to]);
+        let farthest = (from + 1..to).map(|index| (off(index), index)).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, index)) = farthest.filter(|(off, _)| *off > 1.0) {
+            spans.extend([(from, index), (index, to)]);
+        }
+    }
+    points.iter().zip(kept).filter_map(|(point, kept)| kept.then_some(*point)).collect()
+}
+
+/// How far a point is from a segment.
+fn distance(point: (i32, i32), from: (i32, i32), to: (i32, i32)) -> f64 {
+    let apart = |a: (i32, i32), b: (i32, i32)| (f64::from(a.0 - b.0), f64::from(a.1 - b.1));
+    let ((x, y), (dx, dy)) = (apart(point, from), apart(to, from));
+    let square = dx * dx + dy * dy;
+    let part = if square > 0.0 { ((x * dx + y * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (x - part * dx).hypot(y - part * dy)
+}
+
 /// The line of a value that holds until the next one: it is `values[i]` from `times[i]` on, up to `end`.
 pub fn steps(values: impl IntoIterator<Item = Point>, end: f64) -> Vec<Point> {
     let mut line: Vec<Point> = Vec::new();
@@ -148,6 +177,23 @@ mod tests {
         let thinned = thin(&points, &UNIT, 300);
         assert!((300..800).contains(&thinned.len()));
         assert_eq!(thinned.last(), points.last());
+    }
+
+    #[test]
+    fn straight_parts_need_their_ends_only() {
+        let corner = [(0, 0), (10, 1), (20, 2), (30, 3), (40, 300), (50, 3)];
+        assert_eq!(straighten(&corner), [(0, 0), (30, 3), (40, 300), (50, 3)]);
+        let circle: Vec<(i32, i32)> = (0..=1000)
+            .map(|i| (f64::from(i) * 1e-3 * std::f64::consts::TAU).sin_cos())
+            .map(|(s, c)| ((3000.0 * c).round() as i32, (3000.0 * s).round() as i32))
+            .collect();
+        let kept = straighten(&circle);
+        assert!((60..250).contains(&kept.len()), "{}", kept.len());
+        for point in &circle {
+            assert!(kept.windows(2).any(|pair| distance(*point, pair[0], pair[1]) <= 1.0));
+        }
+        assert_eq!(straighten(&[(1, 2)]), [(1, 2)]);
+        assert!(straighten(&[]).is_empty());
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod draw;
 mod file;
 mod image;
 mod line;
+mod sheet;
 
 use plotters::style::RGBColor;
 
@@ -15,7 +16,7 @@ pub use area::band;
 pub use axis::{Axis, name_and_unit, round_to_nice};
 pub use bar::Bar;
 pub use contour::Field;
-pub use file::{Format, save};
+pub use file::{Format, Target, save};
 pub use line::{Point, steps};
 
 /// Colours that also the colour-blind tell apart (Okabe and Ito).
@@ -78,6 +79,10 @@ pub enum Shape {
     Area(f64),
     /// Discs at the points.
     Disc,
+    /// Small discs, for points that may be many.
+    Dot,
+    /// Rings at the points.
+    Ring,
     /// Triangles at the points.
     Triangle,
     /// Squares at the points.

@@ -13,7 +13,7 @@ use serde_json::json;
 
 use crate::failure::Failure;
 use crate::figure::Format;
-use crate::{print, say};
+use crate::{print, progress, say};
 
 /// The sets of the study behind seed paper 4's scenarios, in hertz, and the rate at which each is identified.
 const SETS: [(&[(f64, f64)], f64); 6] = [
@@ -92,6 +92,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Arguments(format!("--rate must be 0 or more, got {}", args.rate)));
     };
     let mut rows = Vec::new();
+    let bar = progress::bar((sets.len() * args.off.len()) as u64, "rows");
     for (modes, rate_of_set) in &sets {
         for off in &args.off {
             let mut trial = Trial::of(modes.clone(), *off);
@@ -101,8 +102,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 return Err(Failure::Arguments(format!("the modes {why}")));
             }
             rows.push((modes, trial.table(args.runs)));
+            bar.inc(1);
         }
     }
+    bar.finish_and_clear();
     if let Some(directory) = &args.figures {
         figures::save(&rows, CYCLE * f64::from(args.cycles), directory, args.format)?;
     }

@@ -56,7 +56,7 @@ pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
     let bar = Bar {
         name: "spectral radius".to_owned(),
         colours: COLOURS[lowest..=highest].to_vec(),
-        edges: EDGES[lowest..highest].to_vec(),
+        edges: EDGES[lowest..highest].iter().map(f64::to_string).collect(),
     };
     let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
     let title = format!("{name}: stability of the sampled loop");

@@ -7,6 +7,9 @@ use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 
 /// What counts as settled if a scenario does not say: a part of the distance when the goal begins.
 const PART: f64 = 0.05;
+/// Less than this part of the goal is rounding, and shown as nothing on an axis that ends here (rad).
+const ROUNDING: f64 = 1e-13;
+const SMALL: f64 = 2e-9;
 /// The second panel of a body that is brought to angle 0 shows so many bands to each side.
 const BANDS: f64 = 4.0;
 
@@ -19,11 +22,16 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let marks = |y: &Axis| settled.iter().flat_map(|settled| settled.layers(story, y)).collect::<Vec<_>>();
     let panels = if story.scenario.plan.is_some() {
         let whole = Axis::around("angle", "rad", motion.angle.iter().chain(&motion.goal).copied());
-        let beyond = Axis::around("beyond the goal", "rad", error.iter().copied());
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let beyond = if largest(&error) > ROUNDING * largest(&motion.goal) {
+            Axis::around("beyond the goal", "rad", error.iter().copied())
+        } else {
+            Axis::exact("beyond the goal", "rad", -SMALL..SMALL)
+        };
         let mut above: Vec<Layer> = arrival(story, &whole).into_iter().collect();
         above.extend([
-            Layer::new("goal of a rigid body", colour::ORANGE, Shape::Line(1.2), over_time(&motion.goal)),
             Layer::new("hub", colour::BLACK, Shape::Line(1.4), over_time(&motion.angle)),
+            Layer::new("goal of a rigid body", colour::ORANGE, Shape::Dashes, over_time(&motion.goal)),
         ]);
         let mut below: Vec<Layer> = arrival(story, &beyond).into_iter().chain(marks(&beyond)).collect();
         below.push(Layer::new("", colour::BLUE, Shape::Line(1.2), over_time(&error)));

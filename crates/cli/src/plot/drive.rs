@@ -33,7 +33,8 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     main.push(("planned", colour::BLACK, planned));
     let mut rest: Vec<(&str, _, &[f64])> = Vec::new();
     if acts(disturbance) {
-        rest.push(("disturbance", colour::VERMILLION, disturbance));
+        // Lighter than the feedback, also in print without colours.
+        rest.push(("disturbance", colour::ORANGE, disturbance));
     }
     if acts(feedback) {
         rest.push(("feedback", colour::BLUE, feedback));

@@ -14,7 +14,7 @@ pub fn figure(story: &Story) -> Figure {
         of_kind.map(|step| (step.time, step.gain)).collect()
     };
     let kinds = [
-        ("begin", colour::GREY, Shape::Disc),
+        ("begin", colour::BLACK, Shape::Ring),
         ("keep", colour::GREEN, Shape::Disc),
         ("turn", colour::VERMILLION, Shape::Triangle),
         ("ignore", colour::ORANGE, Shape::Square),

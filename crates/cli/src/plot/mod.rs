@@ -1,7 +1,9 @@
-//! `flexsc plot`: the figures of a log, as SVG and PNG.
+//! `flexsc plot`: the figures of a log or of a campaign, as SVG and PNG.
 
 mod angle;
+mod campaign;
 mod consistency;
+mod dead_zone;
 mod drive;
 mod envelope;
 mod estimate;
@@ -16,185 +18,108 @@ mod phase_plane;
 mod spatial;
 mod story;
 mod torque;
+mod what;
 mod wheel;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use flexsc_core::estimator::Estimator;
-use flexsc_core::law::Law;
 use flexsc_core::record::Log;
 
 use crate::failure::Failure;
-use crate::figure::{Axis, Figure, Format, Layer, Shape, colour, round_to_nice, save};
+use crate::figure::{Axis, Figure, Format, Layer, Shape, Target, colour, round_to_nice};
 use motion::Motion;
 use spatial::Cycles;
 use story::Story;
+pub use what::What;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Log file
-    log: PathBuf,
-    /// Directory for the figures, made if it is not there [default: that of the log]
-    #[arg(short, long, value_name = "DIR")]
+    /// Log file, or directory of a campaign
+    #[arg(value_name = "LOG|DIR")]
+    path: PathBuf,
+    /// Directory for the figures, made if it is not there, or one FILE.svg or FILE.png for all of them [default: where the
+    /// log or the campaign is]
+    #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
-    /// Figures to draw [default: all that the log has]
+    /// Figures to draw [default: all that the log has; the natural ones of a campaign]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
     what: Vec<What>,
-    /// Form of the figures
-    #[arg(long, value_enum, default_value = "both")]
-    format: Format,
-}
-
-/// A figure.
-#[derive(Copy, Clone, PartialEq, ValueEnum)]
-enum What {
-    /// Rate against angle, with the law's switching lines
-    PhasePlane,
-    /// Torque: of a law that switches at the end of the run, else over all of it
-    Torque,
-    /// Angle of the hub with its goal, the distance between them, and when it has settled
-    Angle,
-    /// Each observed coordinate
-    Outputs,
-    /// Envelope of the elastic modes with its window means, and the elastic angle at the end of the run
-    Envelope,
-    /// What the adaptation decided, and the gain
-    Gain,
-    /// Each elastic mode: under a law that switches at the end of the run, else over all of it
-    Modes,
-    /// Of a spatial body: angles beyond the target
-    Pointing,
-    /// Of a spatial body: rates, rigid and at the gyro
-    Rates,
-    /// Of a spatial body: energy of the elastic modes, and propellant
-    Energy,
-    /// Of a spatial body: for how long the jets fire
-    Jets,
-    /// Of a spatial body: natural frequencies as adaptive observers estimate them, and as they are
-    Tracking,
-    /// Of a spatial body: elastic rates that active damping acts on, its thresholds, and its pulses
-    Damping,
-    /// Speed and momentum of the flywheel, with its limits
-    Wheel,
-    /// Frequency of the dominant mode as a filter estimates it, and what it really is
-    Frequency,
-    /// Displacement of the dominant mode as a filter estimates it, and what it really is
-    Estimate,
-    /// Whether a filter knows how large its errors are: NIS and NEES with their 95 % bands
-    Consistency,
-    /// Gain of the extra loop, and the frequency that it follows
-    Extra,
+    /// Form of the figures [default: both, or what FILE says]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Of a campaign: metrics to draw, and to list the worst runs of [default: the main ones that vary]
+    #[arg(long, value_delimiter = ',', value_name = "METRICS")]
+    metric: Vec<String>,
+    /// Of a campaign: how many of the worst runs are listed for each metric
+    #[arg(long, default_value_t = 3, value_name = "N")]
+    worst: usize,
+    /// Print one JSON object on stdout for each file, and for each of the worst runs
+    #[arg(long)]
+    json: bool,
 }
 
 /// The figure of a log that is in memory, by its name; `path` is what errors call the log.
+///
+/// # Errors
+/// See [`figures`].
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> {
     let what = What::from_str(name, false).map_err(Failure::Arguments)?;
-    let story = Story::read(log, path)?;
-    if !what.is_in(&story) {
-        return Err(Failure::Arguments(format!(
-            "{}: there is no figure `{name}` of this log",
-            path.display()
-        )));
-    }
-    let spatial = story.scenario.spatial.is_some();
-    let cycles = if spatial { Cycles::read(&story, log, path)? } else { Cycles::default() };
-    let motion = if spatial { Motion::default() } else { Motion::read(log)? };
-    Ok(what.figure(&story, &motion, &cycles))
+    let drawn = drawn(log, path, &[what])?.into_iter().next();
+    let nothing = || Failure::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
+    drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let log = Log::open(&args.log)?;
-    let story = Story::read(&log, &args.log)?;
-    let there: Vec<_> = What::value_variants().iter().copied().filter(|what| what.is_in(&story)).collect();
-    if let Some(missing) = args.what.iter().find(|what| !there.contains(what)) {
-        let names: Vec<_> = there.iter().map(|what| what.name()).collect();
-        return Err(Failure::Arguments(format!(
-            "{}: there is no figure `{}` of this log\n\nhint: it has {}",
-            args.log.display(),
-            missing.name(),
-            names.join(", ")
-        )));
+    if args.path.is_dir() {
+        return campaign::run(args);
     }
-    let chosen = if args.what.is_empty() { &there } else { &args.what };
+    if !args.metric.is_empty() {
+        let path = args.path.display();
+        return Err(Failure::Arguments(format!("--metric: {path} is no directory of a campaign")));
+    }
+    let beside = args.path.parent().unwrap_or(Path::new(""));
+    let target = Target::new(args.out.as_deref(), beside, args.format)?;
+    let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
+    let figures = figures(&args.path, &args.what)?;
+    let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{}", what.name()), figure));
+    target.save(&named.collect::<Vec<_>>(), args.json)
+}
+
+/// Figures of a log: those named, or all that it has.
+///
+/// # Errors
+/// A log that is not accepted, a figure that it does not have, and a run that cannot be repeated.
+pub fn figures(path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
+    drawn(&Log::open(path)?, path, asked)
+}
+
+fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
+    let story = Story::read(log, path)?;
+    let chosen = what::chosen(asked, &What::all_in(&story)).map_err(|(missing, there)| {
+        let path = path.display();
+        Failure::Arguments(format!(
+            "{path}: there is no figure `{missing}` of this log\n\nhint: it has {there}"
+        ))
+    })?;
     let any = |of: &[What]| of.iter().any(|what| chosen.contains(what));
-    let moving = any(&[What::PhasePlane, What::Envelope, What::Modes]);
+    let moving = any(&[What::PhasePlane, What::Envelope, What::Modes, What::Angle]);
     let all = any(&[What::Wheel, What::Frequency, What::Estimate, What::Consistency, What::Extra]);
     let is_spatial = story.scenario.spatial.is_some();
-    let cycles = if is_spatial { Cycles::read(&story, &log, &args.log)? } else { Cycles::default() };
+    let cycles = if is_spatial { Cycles::read(&story, log, path)? } else { Cycles::default() };
     let motion = if is_spatial {
         Motion::default()
     } else if all || !story.switches() {
-        story.motion(&log, &args.log, 0.0, 0.0)?
+        story.motion(log, path, 0.0, 0.0)?
     } else if moving {
-        let late = phase_plane::late(&story).min(swings(&story).start);
-        story.motion(&log, &args.log, phase_plane::early(&story), late)?
+        let late = phase_plane::late(&story).min(swings(&story).start).min(torque::shown(&story).start);
+        story.motion(log, path, phase_plane::early(&story), late)?
     } else {
         Motion::default()
     };
-
-    let beside = args.log.parent().unwrap_or(Path::new(""));
-    let directory = args.out.as_deref().unwrap_or(beside);
-    let name = args.log.file_stem().unwrap_or_default().to_string_lossy();
-    let file = |what: &What| format!("{name}-{}", what.name());
-    save(directory, args.format, chosen, file, |what| what.figure(&story, &motion, &cycles))
-}
-
-impl What {
-    /// Whether a log has what the figure shows.
-    fn is_in(self, story: &Story) -> bool {
-        let spatial = story.scenario.spatial.is_some();
-        match self {
-            Self::PhasePlane => story.switches(),
-            Self::Torque => !spatial,
-            Self::Angle => !story.switches() && !spatial,
-            Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
-            Self::Envelope => {
-                story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
-            }
-            Self::Gain => !story.steps.is_empty(),
-            Self::Modes => !story.scenario.model.modes.is_empty(),
-            Self::Pointing | Self::Rates | Self::Energy | Self::Jets => spatial,
-            Self::Tracking => matches!(story.scenario.estimator, Some(Estimator::Adaptive(_))),
-            Self::Damping => {
-                matches!(&story.scenario.law, Law::PhasePlane(law) if law.damping.is_some())
-            }
-            Self::Wheel => wheel::rotor(story).is_some(),
-            Self::Frequency | Self::Estimate | Self::Consistency => {
-                story.scenario.estimator.as_ref().is_some_and(Estimator::filters)
-            }
-            Self::Extra => extra::of(story).is_some(),
-        }
-    }
-
-    fn figure(self, story: &Story, motion: &Motion, cycles: &Cycles) -> Figure {
-        match self {
-            Self::PhasePlane => phase_plane::figure(story, motion),
-            Self::Torque if story.switches() => torque::figure(story),
-            Self::Torque => drive::figure(story, motion),
-            Self::Angle => angle::figure(story, motion),
-            Self::Outputs => outputs::figure(story, motion),
-            Self::Envelope => envelope::figure(story, motion),
-            Self::Gain => gain::figure(story),
-            Self::Modes => modes::figure(story, motion),
-            Self::Pointing => spatial::pointing(story, cycles),
-            Self::Rates => spatial::rates(story, cycles),
-            Self::Energy => spatial::energy(story, cycles),
-            Self::Jets => spatial::jets(story, cycles),
-            Self::Tracking => spatial::tracking(story, cycles),
-            Self::Damping => spatial::damping(story, cycles),
-            Self::Wheel => wheel::figure(story, motion),
-            Self::Frequency => frequency::figure(story, motion),
-            Self::Estimate => estimate::figure(story, motion),
-            Self::Consistency => consistency::figure(story, motion),
-            Self::Extra => extra::figure(story, motion),
-        }
-    }
-
-    fn name(self) -> String {
-        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
-    }
+    let drawn = chosen.into_iter().filter_map(|what| Some((what, what.figure(&story, &motion, &cycles)?)));
+    Ok(drawn.collect())
 }
 
 /// The title of a figure: what it shows, of which run.

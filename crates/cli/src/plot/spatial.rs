@@ -11,7 +11,10 @@ use flexsc_core::time::{Instant, Span};
 use super::story::{Story, unusable};
 use super::{time, title};
 use crate::failure::Failure;
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
+
+/// More marks than these are small.
+const MANY: usize = 100;
 
 /// The cycles of a run.
 #[derive(Default)]
@@ -38,7 +41,7 @@ impl Cycles {
         Ok(cycles)
     }
 
-    fn over_time(&self, of: impl Fn(&Cycle) -> f64) -> Vec<Point> {
+    pub fn over_time(&self, of: impl Fn(&Cycle) -> f64) -> Vec<Point> {
         self.0.iter().map(|(time, cycle)| (*time, of(cycle))).collect()
     }
 }
@@ -113,13 +116,35 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
 
 /// For how long the jets fire in each cycle.
 pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
+    let on =
+        |cycle: &Cycle, axis: usize| [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis];
+    let period = cycles.0.get(1).map_or(0.0, |(time, _)| time - cycles.0[0].0);
     let line = |axis: usize| {
-        let on = |cycle: &Cycle| [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis];
-        vec![Layer::new("", colour::VERMILLION, Shape::Line(1.0), cycles.over_time(on))]
+        // The outline of each row of cycles with pulses, and nothing between them.
+        let mut points = Vec::new();
+        for row in cycles.0.chunk_by(|a, b| (on(&a.1, axis) == 0.0) == (on(&b.1, axis) == 0.0)) {
+            let Some((first, _)) = row.first().filter(|(_, cycle)| on(cycle, axis) != 0.0) else { continue };
+            let last = row.last().map_or(*first, |(time, _)| time + period);
+            points.push((*first, 0.0));
+            points.extend(steps(row.iter().map(|(time, cycle)| (*time, on(cycle, axis))), last));
+            points.extend([(last, 0.0), (f64::NAN, f64::NAN)]);
+        }
+        let zero = vec![(0.0, 0.0), (story.end, 0.0)];
+        vec![
+            Layer::new("", colour::GREY, Shape::Line(0.8), zero),
+            Layer::new("", colour::VERMILLION, Shape::Line(0.8), points),
+        ]
     };
+    // One scale for all axes: one whose jets do not fire has none of its own.
+    let longest = cycles.0.iter().flat_map(|(_, cycle)| (0..3).map(|axis| on(cycle, axis).abs()));
+    let longest = 1.1 * longest.fold(0.0, f64::max);
+    let mut panels = panels(story, "s", line);
+    for panel in &mut panels {
+        panel.y = Axis::exact(&panel.y.name, "s", -longest..longest);
+    }
     Figure {
         title: title(story, "time to fire in each cycle, with the sign of the push"),
-        panels: panels(story, "s", line),
+        panels,
         panel_height: 160,
     }
 }
@@ -143,7 +168,7 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
             let truth = Layer::new(
                 name("true"),
                 colour::BLACK,
-                Shape::Line(1.0),
+                Shape::Dashes,
                 ends(of(mode, |of| of.true_frequency_rad_s)),
             );
             let estimate = Layer::new(
@@ -152,15 +177,15 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
                 Shape::Line(1.2),
                 of(mode, |of| of.frequency_rad_s),
             );
-            layers.extend([truth, estimate]);
+            layers.extend([estimate, truth]);
         }
         layers
     };
-    Figure {
-        title: title(story, "natural frequencies of the tracked modes"),
-        panels: panels(story, "Hz", lines),
-        panel_height: 180,
+    let mut panels = panels(story, "", lines);
+    for panel in &mut panels {
+        panel.y.name.push_str(", Hz");
     }
+    Figure { title: title(story, "natural frequencies of the tracked modes"), panels, panel_height: 180 }
 }
 
 /// The elastic rates that active damping acts on, with its thresholds and its pulses.
@@ -172,6 +197,8 @@ pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
         let name = |name| if axis == 0 { name } else { "" };
         let fires = |(_, tracking): &&(f64, Tracking)| tracking.channels[axis].damping_on_s != 0.0;
         let fired = cycles.1.iter().filter(fires).map(|(time, t)| (*time, t.channels[axis].acted_on_rad_s));
+        let fired: Vec<Point> = fired.collect();
+        let mark = if fired.len() > MANY { Shape::Dot } else { Shape::Disc };
         vec![
             Layer::new(
                 name("predicted elastic rate"),
@@ -181,11 +208,11 @@ pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
             ),
             Layer::new(name("threshold"), colour::BLACK, Shape::Line(0.8), of(|c| c.threshold_rad_s)),
             Layer::new("", colour::BLACK, Shape::Line(0.8), of(|c| -c.threshold_rad_s)),
-            Layer::new("", colour::VERMILLION, Shape::Disc, fired.collect()),
+            Layer::new("fires", colour::VERMILLION, mark, fired),
         ]
     };
     Figure {
-        title: title(story, "elastic rates that active damping acts on; dots where it fires"),
+        title: title(story, "elastic rates that active damping acts on"),
         panels: panels(story, "rad/s", lines),
         panel_height: 180,
     }

@@ -7,13 +7,18 @@ use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_n
 /// So many switchings are shown, about: five cycles of a two-sided relay.
 const SWITCHINGS: usize = 30;
 
-pub fn figure(story: &Story) -> Figure {
+/// The end of the run that is shown (s): all of it if there are few switchings.
+pub fn shown(story: &Story) -> std::ops::Range<f64> {
     let first = story.switchings.len().checked_sub(SWITCHINGS).map_or(0.0, |i| story.switchings[i].time);
     let span = round_to_nice(story.end - first);
     let from = if first > 0.0 { (story.end - span).max(0.0) } else { 0.0 };
+    from..story.end
+}
+
+pub fn figure(story: &Story) -> Figure {
     let commands = story.switchings.iter().map(|s| (s.time, s.torque));
     let line = steps([(0.0, story.start.0)].into_iter().chain(commands), story.end);
-    let x = time(from..story.end);
+    let x = time(shown(story));
 
     // One panel for the strong torque, and another where the weak one can be seen, if it is much weaker.
     let levels = line.iter().map(|(_, torque)| torque.abs()).filter(|torque| *torque > 0.0);

@@ -28,8 +28,31 @@ pub enum Column {
 impl Columns {
     /// Empty columns for these fields.
     pub fn new(fields: &[Field]) -> Self {
-        let column = |field: &Field| (field.name.to_owned(), Column::new(field.kind));
-        Self { columns: fields.iter().map(column).collect() }
+        let mut columns = Self::default();
+        columns.add("", fields);
+        columns
+    }
+
+    /// Adds empty columns; those of a row within the row have its name before theirs: `rotation.x`.
+    fn add(&mut self, before: &str, fields: &[Field]) {
+        for field in fields {
+            let name = format!("{before}{}", field.name);
+            let column = match field.kind {
+                Kind::Number | Kind::Time(_) => Column::Numbers(Vec::new()),
+                Kind::Count | Kind::Flag => Column::Counts(Vec::new()),
+                Kind::Label(labels) => {
+                    let owned = labels.values.iter().map(|&l| l.to_owned()).collect();
+                    Column::Labels(Vec::new(), owned)
+                }
+                Kind::Text => Column::Texts(Vec::new()),
+                Kind::Rows(message) => Column::Rows(Vec::new(), Self::new(message.fields)),
+                Kind::Row(message) => {
+                    self.add(&format!("{name}."), message.fields);
+                    continue;
+                }
+            };
+            self.columns.push((name, column));
+        }
     }
 
     /// The column of this name.
@@ -62,19 +85,6 @@ impl Columns {
 }
 
 impl Column {
-    fn new(kind: Kind) -> Self {
-        match kind {
-            Kind::Number => Self::Numbers(Vec::new()),
-            Kind::Count => Self::Counts(Vec::new()),
-            Kind::Label(labels) => {
-                let owned = labels.values.iter().map(|&l| l.to_owned()).collect();
-                Self::Labels(Vec::new(), owned)
-            }
-            Kind::Text => Self::Texts(Vec::new()),
-            Kind::Rows(_, fields) => Self::Rows(Vec::new(), Columns::new(fields)),
-        }
-    }
-
     /// How many values there are.
     pub fn len(&self) -> usize {
         match self {
@@ -125,6 +135,18 @@ impl Sink for Filler<'_> {
         }
     }
 
+    fn flag(&mut self, value: bool) {
+        self.count(u64::from(value));
+    }
+
+    fn time(&mut self, nanoseconds: u64) {
+        self.number(seconds(nanoseconds));
+    }
+
+    fn row<R: Row>(&mut self, row: &R) {
+        row.put(self);
+    }
+
     fn rows<R: Row>(&mut self, rows: &[R]) {
         if let Some((_, Column::Rows(counts, columns))) = self.columns.next() {
             counts.push(rows.len() as u32);
@@ -133,4 +155,9 @@ impl Sink for Filler<'_> {
             }
         }
     }
+}
+
+/// Nanoseconds in seconds.
+pub fn seconds(nanoseconds: u64) -> f64 {
+    nanoseconds as f64 / 1e9
 }

@@ -6,13 +6,10 @@ use std::path::{Path, PathBuf};
 
 use mcap::sans_io::{LinearReaderOptions, MessageReadEvent, MessageReader};
 use mcap::{McapError, Message};
-use prost_reflect::{
-    DescriptorPool, DynamicMessage, FieldDescriptor, Kind, MessageDescriptor, ReflectMessage,
-};
 use thiserror::Error;
 
-use super::topics::label_of;
-use super::{Column, Columns};
+use super::Columns;
+use super::table::Table;
 
 /// No chunk or record of a log is larger (bytes); ours are of 1 MiB.
 pub const LARGEST: usize = 256 << 20;
@@ -194,73 +191,6 @@ impl Iterator for Messages<'_> {
                 }
                 Ok(MessageReadEvent::Message(message)) => return Some(Ok(message)),
                 Err(error) => return Some(Err(error)),
-            }
-        }
-    }
-}
-
-/// The rows of one topic as they are read.
-struct Table {
-    descriptor: MessageDescriptor,
-    columns: Columns,
-    times: Vec<f64>,
-}
-
-impl Table {
-    /// An empty table for the messages of a schema.
-    fn of(schema: Option<&mcap::Schema<'_>>) -> Result<Self, String> {
-        let schema = schema.ok_or("no schema")?;
-        let pool = DescriptorPool::decode(&*schema.data).map_err(|error| error.to_string())?;
-        let descriptor = pool.get_message_by_name(&schema.name).ok_or("no message in its schema")?;
-        Ok(Self { columns: empty(&descriptor), descriptor, times: Vec::new() })
-    }
-
-    fn push(&mut self, message: &[u8]) -> Result<(), String> {
-        let row = DynamicMessage::decode(self.descriptor.clone(), message);
-        push(&mut self.columns, &self.descriptor, &row.map_err(|error| error.to_string())?);
-        Ok(())
-    }
-
-    fn into_columns(self) -> Columns {
-        let Self { mut columns, times, .. } = self;
-        if columns.get("time_s").is_none() {
-            columns.columns.insert(0, ("time_s".to_owned(), Column::Numbers(times)));
-        }
-        columns
-    }
-}
-
-fn empty(message: &MessageDescriptor) -> Columns {
-    let column = |field: FieldDescriptor| {
-        let column = match field.kind() {
-            Kind::Double | Kind::Float => Column::Numbers(Vec::new()),
-            Kind::Enum(of) => {
-                let labels = of.values().map(|value| label_of(value.name())).collect();
-                Column::Labels(Vec::new(), labels)
-            }
-            Kind::Message(of) => Column::Rows(Vec::new(), empty(&of)),
-            Kind::String => Column::Texts(Vec::new()),
-            _ => Column::Counts(Vec::new()),
-        };
-        (field.name().to_owned(), column)
-    };
-    Columns { columns: message.fields().map(column).collect() }
-}
-
-fn push(columns: &mut Columns, descriptor: &MessageDescriptor, row: &DynamicMessage) {
-    for ((_, column), field) in columns.columns.iter_mut().zip(descriptor.fields()) {
-        let value = row.get_field(&field);
-        match column {
-            Column::Numbers(values) => values.push(value.as_f64().unwrap_or(f64::NAN)),
-            Column::Counts(values) => values.push(value.as_u64().unwrap_or(0)),
-            Column::Labels(values, _) => values.push(value.as_enum_number().unwrap_or(0) as u8),
-            Column::Texts(values) => values.push(value.as_str().unwrap_or_default().to_owned()),
-            Column::Rows(counts, inner) => {
-                let rows = value.as_list().unwrap_or_default();
-                counts.push(rows.len() as u32);
-                for row in rows.iter().filter_map(|row| row.as_message()) {
-                    push(inner, &row.descriptor(), row);
-                }
             }
         }
     }

@@ -8,56 +8,17 @@ use std::path::{Path, PathBuf};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapError, WriteOptions, Writer};
 
-use super::proto::{Encoder, descriptor_set, full_name};
-use super::row::TopicRow;
-use super::topics::index_of;
-use super::{Detail, Metrics, OutputName, Params, Record, RecordError, Sample, TOPICS, TakeRow};
+use super::message::{Encode, Message, Messages};
+use super::{Detail, Metrics, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
 use crate::time::Instant;
 use crate::whole::discard;
 
 /// A chunk is closed after so many messages: what a killed run loses at most.
 const MESSAGES_PER_FLUSH: u64 = 2000;
 
-/// What a log says about where it comes from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Provenance {
-    /// Name of the scenario.
-    pub scenario: String,
-    /// The scenario with all defaults and drawn values, as TOML.
-    pub toml: String,
-    /// Seed of the scenario.
-    pub seed: u64,
-    /// Number of the run.
-    pub run: u64,
-    /// Date of the run's start in nanoseconds since 1970 UTC; 0 if the scenario has none.
-    pub epoch_ns: u64,
-    /// The observed coordinates, in the order in which they are logged.
-    pub outputs: Vec<OutputName>,
-    /// A viewer layout for this kind of run.
-    pub layout: Option<&'static str>,
-}
-
-/// How a run ended.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum RunEnd {
-    /// It reached its duration.
-    Complete,
-    /// The user stopped it.
-    Interrupted,
-    /// It failed.
-    Failed,
-}
-
 /// A run's log, written while it runs.
 pub struct McapLog<W: Write + Seek> {
-    writer: Writer<W>,
-    detail: Detail,
-    epoch_ns: u64,
-    /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`].
-    channels: Vec<Option<(u16, u32)>>,
-    since_flush: u64,
-    last: Instant,
-    buffer: Vec<u8>,
+    log: Encode<Channels<W>>,
 }
 
 impl<W: Write + Seek> McapLog<W> {
@@ -67,8 +28,9 @@ impl<W: Write + Seek> McapLog<W> {
             WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
         let mut writer = Writer::with_options(writer, options).map_err(failure)?;
         attach(&mut writer, "scenario.toml", "application/toml", &from.toml)?;
-        if let Some(layout) = from.layout {
-            attach(&mut writer, "layout.json", "application/json", layout)?;
+        if let Some(layout) = &from.layout {
+            let layout = layout.of_detail(detail).to_json();
+            attach(&mut writer, "layout.json", "application/json", &layout)?;
         }
         let metadata = [
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
@@ -81,67 +43,68 @@ impl<W: Write + Seek> McapLog<W> {
         ];
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
         write_metadata(&mut writer, "flexsc.run", metadata.into())?;
-        let mut log = Self {
-            writer,
-            detail,
-            epoch_ns: from.epoch_ns,
-            channels: vec![None; TOPICS.len()],
-            since_flush: 0,
-            last: Instant::START,
-            buffer: Vec::new(),
-        };
-        let params = Params {
-            scenario: from.scenario.clone(),
-            seed: from.seed,
-            run: from.run,
-            toml: from.toml.clone(),
-            outputs: from.outputs.clone(),
-        };
-        log.take(Instant::START, &params)?;
-        Ok(log)
+        let channels = Channels { writer, of: vec![None; TOPICS.len()], since_flush: 0 };
+        Ok(Self { log: Encode::new(channels, from, detail)? })
     }
 
     /// Writes the metrics, how the run ended, and the file's summary.
-    pub fn finish(mut self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
-        if !metrics.metrics.is_empty() {
-            self.take(self.last, metrics)?;
-        }
+    pub fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
+        let (Channels { mut writer, .. }, last) = self.log.finish(metrics, end)?;
         let end = match end {
             RunEnd::Complete => "complete",
             RunEnd::Interrupted => "interrupted",
             RunEnd::Failed => "failed",
         };
-        let metadata = [("end", end.to_owned()), ("time_s", self.last.to_string())];
+        let metadata = [("end", end.to_owned()), ("time_s", last.to_string())];
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
-        write_metadata(&mut self.writer, "flexsc.end", metadata.into())?;
-        self.writer.finish().map_err(failure)?;
-        Ok(self.writer.into_inner())
+        write_metadata(&mut writer, "flexsc.end", metadata.into())?;
+        writer.finish().map_err(failure)?;
+        Ok(writer.into_inner())
+    }
+}
+
+impl<W: Write + Seek> Record for McapLog<W> {
+    fn dense(&self) -> bool {
+        self.log.dense()
     }
 
+    fn scene(&self) -> bool {
+        self.log.scene()
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        self.log.record(now, sample)
+    }
+}
+
+/// The channels of a file, made with their first message.
+struct Channels<W: Write + Seek> {
+    writer: Writer<W>,
+    /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`].
+    of: Vec<Option<(u16, u32)>>,
+    since_flush: u64,
+}
+
+impl<W: Write + Seek> Channels<W> {
     fn channel(&mut self, index: usize) -> Result<(u16, u32), RecordError> {
-        if let Some(channel) = self.channels[index] {
+        if let Some(channel) = self.of[index] {
             return Ok(channel);
         }
         let topic = &TOPICS[index];
-        let (name, data) = (full_name(topic.message), descriptor_set(topic));
-        let schema = self.writer.add_schema(&name, "protobuf", &data).map_err(failure)?;
+        let schema = self.writer.add_schema(topic.message, "protobuf", &topic.schema());
         let none = BTreeMap::new();
-        let id = self.writer.add_channel(schema, topic.name, "protobuf", &none);
+        let id = self.writer.add_channel(schema.map_err(failure)?, topic.name, "protobuf", &none);
         Ok((id.map_err(failure)?, 0))
     }
 }
 
-impl<W: Write + Seek> TakeRow for McapLog<W> {
-    fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
-        let index = const { index_of(R::TOPIC.name) };
-        let (channel_id, sequence) = self.channel(index)?;
-        self.channels[index] = Some((channel_id, sequence.wrapping_add(1)));
-        self.buffer.clear();
-        Encoder::encode(row, &mut self.buffer);
-        let log_time = self.epoch_ns + now.nanoseconds();
+impl<W: Write + Seek> Messages for Channels<W> {
+    fn take(&mut self, message: Message<'_>) -> Result<(), RecordError> {
+        let (channel_id, sequence) = self.channel(message.topic)?;
+        self.of[message.topic] = Some((channel_id, sequence.wrapping_add(1)));
+        let log_time = message.time_ns;
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
-        self.writer.write_to_known_channel(&header, &self.buffer).map_err(failure)?;
-        self.last = now;
+        self.writer.write_to_known_channel(&header, message.data).map_err(failure)?;
         self.since_flush += 1;
         // Only after a message: a chunk without one would start at time 0 for a viewer.
         if self.since_flush == MESSAGES_PER_FLUSH {
@@ -149,17 +112,6 @@ impl<W: Write + Seek> TakeRow for McapLog<W> {
             self.writer.flush().map_err(failure)?;
         }
         Ok(())
-    }
-}
-
-impl<W: Write + Seek> Record for McapLog<W> {
-    fn dense(&self) -> bool {
-        self.detail == Detail::Full
-    }
-
-    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        // Another record may want more.
-        if sample.is_dense() && !self.dense() { Ok(()) } else { self.take_sample(now, sample) }
     }
 }
 
@@ -203,6 +155,10 @@ impl LogFile {
 impl Record for LogFile {
     fn dense(&self) -> bool {
         self.log.dense()
+    }
+
+    fn scene(&self) -> bool {
+        self.log.scene()
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {

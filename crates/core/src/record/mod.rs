@@ -1,11 +1,14 @@
 //! The record: the only way out of a simulation.
 
 mod columns;
+pub mod foxglove;
 mod log;
 mod mcap;
+mod message;
 mod proto;
 mod recover;
 pub mod row;
+mod table;
 mod topics;
 mod trace;
 
@@ -18,7 +21,8 @@ use crate::time::Instant;
 
 pub use columns::{Column, Columns};
 pub use log::{Log, LogError};
-pub use mcap::{LogFile, McapLog, Provenance, RunEnd};
+pub use mcap::{LogFile, McapLog};
+pub use message::{Encode, Message, Messages, Provenance, RunEnd};
 pub use recover::recover;
 pub use topics::{
     Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion,
@@ -53,15 +57,28 @@ pub enum Sample<'a> {
     Tracking(&'a Tracking),
     /// The motion of a spatial body at one instant, at each period of a dense record.
     SpatialMotion(&'a SpatialMotion),
+    /// A line for people: what happened.
+    Log(&'a foxglove::Log),
+    /// What a scene consists of, once.
+    Scene(&'a foxglove::SceneUpdate),
+    /// Where the parts of the scene are.
+    Frames(&'a foxglove::FrameTransforms),
+    /// The plumes of the scene, at each change.
+    Plumes(&'a foxglove::Plumes),
 }
 
 impl Sample<'_> {
-    /// Whether only a dense record wants it.
-    pub fn is_dense(self) -> bool {
-        matches!(
-            self,
-            Self::Motion(_) | Self::Law(_) | Self::Estimate(_) | Self::Tracking(_) | Self::SpatialMotion(_)
-        )
+    /// The least detail of a record that wants it.
+    pub fn detail(self) -> Detail {
+        match self {
+            Self::Motion(_)
+            | Self::Law(_)
+            | Self::Estimate(_)
+            | Self::Tracking(_)
+            | Self::SpatialMotion(_) => Detail::Full,
+            Self::Scene(_) | Self::Frames(_) | Self::Plumes(_) => Detail::Scene,
+            _ => Detail::Events,
+        }
     }
 }
 
@@ -123,6 +140,11 @@ pub trait Record {
         false
     }
 
+    /// Whether the record wants the scene, which a simulation has once it was asked to draw it.
+    fn scene(&self) -> bool {
+        false
+    }
+
     /// Takes a sample.
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError>;
 }
@@ -150,6 +172,10 @@ impl<R: Record + ?Sized> Record for &mut R {
         (**self).dense()
     }
 
+    fn scene(&self) -> bool {
+        (**self).scene()
+    }
+
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         (**self).record(now, sample)
     }
@@ -159,6 +185,10 @@ impl<R: Record + ?Sized> Record for &mut R {
 impl<R: Record> Record for Option<R> {
     fn dense(&self) -> bool {
         self.as_ref().is_some_and(Record::dense)
+    }
+
+    fn scene(&self) -> bool {
+        self.as_ref().is_some_and(Record::scene)
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
@@ -172,6 +202,10 @@ impl<A: Record, B: Record> Record for (A, B) {
         self.0.dense() || self.1.dense()
     }
 
+    fn scene(&self) -> bool {
+        self.0.scene() || self.1.scene()
+    }
+
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         self.0.record(now, sample)?;
         self.1.record(now, sample)
@@ -179,16 +213,18 @@ impl<A: Record, B: Record> Record for (A, B) {
 }
 
 /// How much of a run is recorded.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detail {
     /// Switchings, window means, adaptation: all that changes.
     #[default]
     Events,
     /// Also the motion at each period of the scenario's log, and at every switching.
     Full,
+    /// Also the scene: frames and shapes for viewers in three dimensions.
+    Scene,
 }
 
-/// A thing that takes rows of any topic: a log file, or columns in memory.
+/// A thing that takes rows of any topic: messages, or columns in memory.
 trait TakeRow {
     fn take<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
 
@@ -202,6 +238,10 @@ trait TakeRow {
             Sample::Arrival(arrival) => self.take(now, arrival),
             Sample::Estimate(estimate) => self.take(now, estimate),
             Sample::Tracking(tracking) => self.take(now, tracking),
+            Sample::Log(line) => self.take(now, line),
+            Sample::Scene(scene) => self.take(now, scene),
+            Sample::Frames(frames) => self.take(now, frames),
+            Sample::Plumes(plumes) => self.take(now, plumes),
             Sample::Cycle(Cycle { pulses: 0, .. }) => Ok(()),
             Sample::Cycle(cycle) => self.take(now, &cycle.jets),
             Sample::SpatialMotion(motion) => {

@@ -1,6 +1,6 @@
 //! Rows as protobuf: the schema that a log carries, and the bytes of a row.
 
-use prost::Message;
+use prost::Message as _;
 use prost::encoding::{WireType, encode_key, encode_varint};
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::source_code_info::Location;
@@ -9,118 +9,152 @@ use prost_types::{
     FileDescriptorProto, FileDescriptorSet, SourceCodeInfo,
 };
 
-use super::row::{Field, Kind, Row, Sink, Topic};
+use super::row::{Field, Kind, Message, Row, Sink, Topic};
 use crate::label::Labels;
 
-const PACKAGE: &str = "flexsc.v1";
+const GOOGLE: &str = "google.protobuf";
 
-/// The full name of a message of ours.
-pub fn full_name(message: &str) -> String {
-    format!("{PACKAGE}.{message}")
-}
-
-/// The schema of a topic: a serialised `FileDescriptorSet` with its imports and comments.
-pub fn descriptor_set(topic: &Topic) -> Vec<u8> {
-    let mut files: Vec<FileDescriptorProto> = Vec::new();
-    for labels in enumerations(topic.fields) {
-        if files.iter().all(|file| file.name() != file_name(labels.name)) {
-            files.push(enumeration_file(labels));
-        }
+impl Topic {
+    /// Its schema: a serialised `FileDescriptorSet` with its imports and comments.
+    pub fn schema(&self) -> Vec<u8> {
+        let mut files = Vec::new();
+        let message = Message { name: self.message, doc: self.doc, fields: self.fields };
+        add_message(&message, &mut files);
+        FileDescriptorSet { file: files }.encode_to_vec()
     }
-    files.push(message_file(topic, files.iter().map(|f| f.name().to_owned()).collect()));
-    FileDescriptorSet { file: files }.encode_to_vec()
 }
 
-fn file_name(message: &str) -> String {
-    format!("flexsc/v1/{}.proto", message.to_lowercase())
+/// Package and name of a message.
+fn parts(full: &str) -> (&str, &str) {
+    full.rsplit_once('.').unwrap_or(("", full))
 }
 
-fn enumerations(fields: &'static [Field]) -> Vec<&'static Labels> {
-    let of = |field: &Field| match field.kind {
-        Kind::Label(labels) => vec![labels],
-        Kind::Rows(_, inner) => enumerations(inner),
-        _ => vec![],
-    };
-    fields.iter().flat_map(of).collect()
-}
-
-fn file(name: &str) -> FileDescriptorProto {
+/// A file that defines this message or enumeration, and nothing else.
+fn file(package: &str, name: &str) -> FileDescriptorProto {
+    // The published files of `foxglove` have the messages' own names.
+    let stem = if package == "foxglove" { name.to_owned() } else { name.to_lowercase() };
     FileDescriptorProto {
-        name: Some(file_name(name)),
-        package: Some(PACKAGE.to_owned()),
+        name: Some(format!("{}/{stem}.proto", package.replace('.', "/"))),
+        package: Some(package.to_owned()),
         syntax: Some("proto3".to_owned()),
         ..FileDescriptorProto::default()
     }
 }
 
-fn enumeration_file(labels: &Labels) -> FileDescriptorProto {
+/// Adds a message's file after those that it imports; returns the file's name.
+fn add_message(message: &Message, files: &mut Vec<FileDescriptorProto>) -> String {
+    let (package, name) = parts(message.name);
+    let mut imports = Vec::new();
+    let mut nested = Vec::new();
+    for field in message.fields {
+        let import = match field.kind {
+            Kind::Row(inner) | Kind::Rows(inner) => add_message(inner, files),
+            Kind::Time(name) => add_time(name, files),
+            Kind::Label(labels) if labels.name.contains('.') => {
+                nested.push(enumeration(labels));
+                continue;
+            }
+            Kind::Label(labels) => add_enumeration(package, labels, files),
+            Kind::Number | Kind::Count | Kind::Text | Kind::Flag => continue,
+        };
+        if !imports.contains(&import) {
+            imports.push(import);
+        }
+    }
+    let fields = || message.fields.iter().zip(0..);
+    let mut comments = vec![comment(&[4, 0], message.doc)];
+    comments.extend(fields().map(|(field, n)| comment(&[4, 0, 2, n], field.doc)));
+    let descriptor = DescriptorProto {
+        name: Some(name.to_owned()),
+        field: fields().map(|(field, index)| descriptor(package, field, index + 1)).collect(),
+        enum_type: nested,
+        ..DescriptorProto::default()
+    };
+    add(
+        files,
+        FileDescriptorProto {
+            dependency: imports,
+            message_type: vec![descriptor],
+            source_code_info: Some(SourceCodeInfo { location: comments }),
+            ..file(package, name)
+        },
+    )
+}
+
+/// Adds a file that is not there yet; returns its name.
+fn add(files: &mut Vec<FileDescriptorProto>, file: FileDescriptorProto) -> String {
+    let name = file.name().to_owned();
+    if files.iter().all(|other| other.name() != name) {
+        files.push(file);
+    }
+    name
+}
+
+fn enumeration(labels: &Labels) -> EnumDescriptorProto {
     let value = |(number, label): (usize, &&str)| EnumValueDescriptorProto {
         name: Some(Labels::identifier(label)),
         number: Some(number as i32),
         options: None,
     };
+    EnumDescriptorProto {
+        name: Some(parts(labels.name).1.to_owned()),
+        value: labels.values.iter().enumerate().map(value).collect(),
+        ..EnumDescriptorProto::default()
+    }
+}
+
+fn add_enumeration(package: &str, labels: &Labels, files: &mut Vec<FileDescriptorProto>) -> String {
     let comment = |(number, doc): (usize, &&str)| comment(&[5, 0, 2, number as i32], &[doc]);
-    FileDescriptorProto {
-        enum_type: vec![EnumDescriptorProto {
-            name: Some(labels.name.to_owned()),
-            value: labels.values.iter().enumerate().map(value).collect(),
-            ..EnumDescriptorProto::default()
-        }],
-        source_code_info: Some(SourceCodeInfo {
-            location: labels.docs.iter().enumerate().map(comment).collect(),
-        }),
-        ..file(labels.name)
-    }
+    let location = labels.docs.iter().enumerate().map(comment).collect();
+    add(
+        files,
+        FileDescriptorProto {
+            enum_type: vec![enumeration(labels)],
+            source_code_info: Some(SourceCodeInfo { location }),
+            ..file(package, labels.name)
+        },
+    )
 }
 
-fn message_file(topic: &Topic, dependency: Vec<String>) -> FileDescriptorProto {
-    let mut messages = vec![message(topic.message, topic.fields)];
-    let mut comments = vec![comment(&[4, 0], topic.doc)];
-    comments.extend(field_comments(0, topic.fields));
-    for field in topic.fields {
-        if let Kind::Rows(name, inner) = field.kind {
-            comments.extend(field_comments(messages.len() as i32, inner));
-            messages.push(message(name, inner));
-        }
-    }
-    FileDescriptorProto {
-        dependency,
-        message_type: messages,
-        source_code_info: Some(SourceCodeInfo { location: comments }),
-        ..file(topic.message)
-    }
-}
-
-fn message(name: &str, fields: &[Field]) -> DescriptorProto {
-    DescriptorProto {
+/// Adds one of the messages of time that every reader knows.
+fn add_time(name: &str, files: &mut Vec<FileDescriptorProto>) -> String {
+    let field = |(name, number, of): (&str, i32, Type)| FieldDescriptorProto {
         name: Some(name.to_owned()),
-        field: fields.iter().zip(1..).map(|(field, number)| descriptor(field, number)).collect(),
+        number: Some(number),
+        label: Some(Label::Optional as i32),
+        r#type: Some(of as i32),
+        json_name: Some(name.to_owned()),
+        ..FieldDescriptorProto::default()
+    };
+    let fields = [("seconds", 1, Type::Int64), ("nanos", 2, Type::Int32)];
+    let message = DescriptorProto {
+        name: Some(name.to_owned()),
+        field: fields.into_iter().map(field).collect(),
         ..DescriptorProto::default()
-    }
+    };
+    add(files, FileDescriptorProto { message_type: vec![message], ..file(GOOGLE, name) })
 }
 
-fn descriptor(field: &Field, number: i32) -> FieldDescriptorProto {
+fn descriptor(package: &str, field: &Field, number: i32) -> FieldDescriptorProto {
     let (of, type_name) = match field.kind {
         Kind::Number => (Type::Double, None),
         Kind::Count => (Type::Uint64, None),
         Kind::Text => (Type::String, None),
-        Kind::Label(labels) => (Type::Enum, Some(labels.name)),
-        Kind::Rows(name, _) => (Type::Message, Some(name)),
+        Kind::Flag => (Type::Bool, None),
+        Kind::Time(name) => (Type::Message, Some(format!(".{GOOGLE}.{name}"))),
+        Kind::Label(labels) => (Type::Enum, Some(format!(".{package}.{}", labels.name))),
+        Kind::Row(message) | Kind::Rows(message) => (Type::Message, Some(format!(".{}", message.name))),
     };
-    let repeated = matches!(field.kind, Kind::Rows(..));
+    let repeated = matches!(field.kind, Kind::Rows(_));
     FieldDescriptorProto {
         name: Some(field.name.to_owned()),
         number: Some(number),
         label: Some(if repeated { Label::Repeated } else { Label::Optional } as i32),
         r#type: Some(of as i32),
-        type_name: type_name.map(|name| format!(".{PACKAGE}.{name}")),
+        type_name,
         json_name: Some(field.name.to_owned()),
         ..FieldDescriptorProto::default()
     }
-}
-
-fn field_comments(message: i32, fields: &'static [Field]) -> impl Iterator<Item = Location> {
-    fields.iter().zip(0..).map(move |(field, n)| comment(&[4, message, 2, n], field.doc))
 }
 
 fn comment(path: &[i32], doc: &[&str]) -> Location {
@@ -178,6 +212,24 @@ impl Sink for Encoder<'_> {
 
     fn text(&mut self, text: &str) {
         self.bytes(text.as_bytes());
+    }
+
+    fn flag(&mut self, value: bool) {
+        self.count(u64::from(value));
+    }
+
+    fn time(&mut self, nanoseconds: u64) {
+        let mut inner = Vec::with_capacity(16);
+        let mut parts = Encoder { field: 0, buffer: &mut inner };
+        parts.count(nanoseconds / 1_000_000_000);
+        parts.count(nanoseconds % 1_000_000_000);
+        self.bytes(&inner);
+    }
+
+    fn row<R: Row>(&mut self, row: &R) {
+        let mut inner = Vec::new();
+        Encoder::encode(row, &mut inner);
+        self.bytes(&inner);
     }
 
     fn rows<R: Row>(&mut self, rows: &[R]) {

@@ -7,7 +7,7 @@ use crate::label::Labels;
 pub struct Topic {
     /// Name with its leading slash.
     pub name: &'static str,
-    /// Name of the message in the package `flexsc.v1`.
+    /// Full name of the message: `flexsc.v1.Command`.
     pub message: &'static str,
     /// What it tells.
     pub doc: &'static [&'static str],
@@ -37,8 +37,25 @@ pub enum Kind {
     Label(&'static Labels),
     /// A text.
     Text,
-    /// Rows within the row: a message name, and the fields of each.
-    Rows(&'static str, &'static [Field]),
+    /// Yes or no.
+    Flag,
+    /// A date or a span of time, as this message of the package `google.protobuf`.
+    Time(&'static str),
+    /// A row within the row.
+    Row(&'static Message),
+    /// Any number of rows within the row.
+    Rows(&'static Message),
+}
+
+/// What a row is as a message.
+#[derive(Debug)]
+pub struct Message {
+    /// Full name: `flexsc.v1.ModeMotion`.
+    pub name: &'static str,
+    /// What it tells, line by line.
+    pub doc: &'static [&'static str],
+    /// Its fields.
+    pub fields: &'static [Field],
 }
 
 /// Something with fields.
@@ -68,6 +85,12 @@ pub trait Sink {
     fn label(&mut self, index: usize, labels: &'static Labels);
     /// Takes a text.
     fn text(&mut self, text: &str);
+    /// Takes a yes or a no.
+    fn flag(&mut self, value: bool);
+    /// Takes a date (ns since 1970, or since the start of a run without a date) or a span of time (ns).
+    fn time(&mut self, nanoseconds: u64);
+    /// Takes a row within the row.
+    fn row<R: Row>(&mut self, row: &R);
     /// Takes rows within the row.
     fn rows<R: Row>(&mut self, rows: &[R]);
 }
@@ -104,9 +127,46 @@ impl Cell for String {
     }
 }
 
-/// Declares row types, and topics for those that have a name.
+impl Cell for bool {
+    const KIND: Kind = Kind::Flag;
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.flag(*self);
+    }
+}
+
+/// A date on the time base of a log: nanoseconds since 1970 UTC, or since the start of a run whose scenario has no date.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stamp(pub u64);
+
+impl Cell for Stamp {
+    const KIND: Kind = Kind::Time("Timestamp");
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.time(self.0);
+    }
+}
+
+/// A span of time in nanoseconds; 0 for no end.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Lifetime(pub u64);
+
+impl Cell for Lifetime {
+    const KIND: Kind = Kind::Time("Duration");
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.time(self.0);
+    }
+}
+
+/// A field's name: one that is a word of the language has a prefix in it.
+pub const fn plain(name: &'static str) -> &'static str {
+    match name.as_bytes() {
+        [b'r', b'#', ..] => name.split_at(2).1,
+        _ => name,
+    }
+}
+
+/// Declares row types of a package, and topics for those that have a name.
 macro_rules! rows {
-    ($($(#[doc = $doc:literal])* $name:ident $(= $topic:literal)? {
+    (package $package:literal; $($(#[doc = $doc:literal])* $name:ident $(= $topic:literal)? {
         $($(#[doc = $field_doc:literal])* $field:ident: $of:ty),+ $(,)?
     })+) => {
         $(
@@ -120,7 +180,7 @@ macro_rules! rows {
                 const DOC: &'static [&'static str] = &[$($doc),*];
                 const FIELDS: &'static [$crate::record::row::Field] = &[
                     $($crate::record::row::Field {
-                        name: stringify!($field),
+                        name: $crate::record::row::plain(stringify!($field)),
                         doc: &[$($field_doc),*],
                         kind: <$of as $crate::record::row::Cell>::KIND,
                     }),+
@@ -132,11 +192,23 @@ macro_rules! rows {
                 }
             }
 
+            impl $name {
+                const MESSAGE: $crate::record::row::Message = $crate::record::row::Message {
+                    name: concat!($package, ".", stringify!($name)),
+                    doc: <$name as $crate::record::row::Row>::DOC,
+                    fields: <$name as $crate::record::row::Row>::FIELDS,
+                };
+            }
+
+            impl $crate::record::row::Cell for $name {
+                const KIND: $crate::record::row::Kind = $crate::record::row::Kind::Row(&<$name>::MESSAGE);
+                fn put<S: $crate::record::row::Sink>(&self, sink: &mut S) {
+                    sink.row(self);
+                }
+            }
+
             impl $crate::record::row::Cell for Vec<$name> {
-                const KIND: $crate::record::row::Kind = $crate::record::row::Kind::Rows(
-                    stringify!($name),
-                    <$name as $crate::record::row::Row>::FIELDS,
-                );
+                const KIND: $crate::record::row::Kind = $crate::record::row::Kind::Rows(&<$name>::MESSAGE);
                 fn put<S: $crate::record::row::Sink>(&self, sink: &mut S) {
                     sink.rows(self);
                 }
@@ -145,15 +217,15 @@ macro_rules! rows {
             $(impl $crate::record::row::TopicRow for $name {
                 const TOPIC: $crate::record::row::Topic = $crate::record::row::Topic {
                     name: $topic,
-                    message: stringify!($name),
+                    message: concat!($package, ".", stringify!($name)),
                     doc: <$name as $crate::record::row::Row>::DOC,
                     fields: <$name as $crate::record::row::Row>::FIELDS,
                 };
             })?
         )+
 
-        /// All topics, in the order in which they are declared.
-        pub const TOPICS: &[$crate::record::row::Topic] = &[
+        /// The topics declared here, in their order.
+        pub const DECLARED: &[$crate::record::row::Topic] = &[
             $($({
                 const _: &str = $topic;
                 <$name as $crate::record::row::TopicRow>::TOPIC

@@ -1,6 +1,7 @@
 //! The topics of a log: what each row holds, with its units.
 
-use super::row::{label_cells, rows};
+use super::foxglove::{self, Level, Plumes};
+use super::row::{Topic, TopicRow, label_cells, rows};
 use crate::adaptation::Decision;
 use crate::label::{Labels, labels};
 use crate::law::Phase;
@@ -19,6 +20,8 @@ labels! {
 label_cells!(Phase, Trigger, Decision);
 
 rows! {
+    package "flexsc.v1";
+
     /// A switching: the law changed its state, and from this instant on commands this torque.
     Command = "/command" {
         /// Time since the start, rounded to a double (s).
@@ -388,6 +391,23 @@ rows! {
     }
 }
 
+const COUNT: usize = DECLARED.len() + foxglove::DECLARED.len() + 1;
+
+/// All topics.
+pub const TOPICS: &[Topic] = {
+    const ALL: [Topic; COUNT] = {
+        let mut all = [Plumes::TOPIC; COUNT];
+        let mut index = 0;
+        while index + 1 < COUNT {
+            let other = index >= DECLARED.len();
+            all[index] = if other { foxglove::DECLARED[index - DECLARED.len()] } else { DECLARED[index] };
+            index += 1;
+        }
+        all
+    };
+    &ALL
+};
+
 /// The position of a topic in [`TOPICS`], found when the program is compiled.
 pub const fn index_of(name: &str) -> usize {
     let mut index = 0;
@@ -415,7 +435,7 @@ impl Command {
 
 /// The label of an enumeration's value, by its identifier in the schema of a log.
 pub fn label_of(identifier: &str) -> String {
-    let all = [&Phase::LABELS, &Trigger::LABELS, &Decision::LABELS];
+    let all = [&Phase::LABELS, &Trigger::LABELS, &Decision::LABELS, &Level::LABELS];
     let mut labels = all.iter().flat_map(|of| of.values);
     let label = labels.find(|label| Labels::identifier(label) == identifier);
     label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())

@@ -51,11 +51,13 @@ impl TakeRow for Trace {
 
 impl Record for Trace {
     fn dense(&self) -> bool {
-        self.detail == Detail::Full
+        self.detail >= Detail::Full
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         // Another record may want more.
-        if sample.is_dense() && !self.dense() { Ok(()) } else { self.take_sample(now, sample) }
+        // What only viewers draw is no column.
+        let wanted = self.detail.min(Detail::Full);
+        if sample.detail() > wanted { Ok(()) } else { self.take_sample(now, sample) }
     }
 }

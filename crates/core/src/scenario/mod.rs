@@ -21,6 +21,7 @@ use crate::estimator::Estimator;
 use crate::law::{Goal, Law};
 use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::quantity::Positive;
+use crate::scene::SceneSpec;
 use crate::sensor::Sensor;
 use crate::structure::Fault;
 use crate::time::{Instant, Span};
@@ -105,6 +106,9 @@ pub struct Log {
     /// Period at which a full log holds the motion (s).
     #[serde(default = "tenth")]
     pub period: Span,
+    /// How a log with a scene draws the run.
+    #[serde(default, skip_serializing_if = "SceneSpec::is_default")]
+    pub scene: SceneSpec,
 }
 
 fn tenth() -> Span {
@@ -113,7 +117,7 @@ fn tenth() -> Span {
 
 impl Default for Log {
     fn default() -> Self {
-        Self { period: tenth() }
+        Self { period: tenth(), scene: SceneSpec::default() }
     }
 }
 
@@ -295,18 +299,8 @@ impl Scenario {
         schemars::schema_for!(Scenario).to_value()
     }
 
-    /// A viewer layout for logs of this kind of scenario.
-    pub fn layout(&self) -> Option<&'static str> {
-        Some(if self.spatial.is_some() {
-            include_str!("../../../../scenarios/layouts/spatial.json")
-        } else if self.law.switches() {
-            include_str!("../../../../scenarios/layouts/relay.json")
-        } else if matches!(self.actuator, Actuator::Wheel(_))
-            || (matches!(self.law, Law::Pd(_)) && self.manoeuvre.is_none())
-        {
-            include_str!("../../../../scenarios/layouts/wheel.json")
-        } else {
-            include_str!("../../../../scenarios/layouts/rotation.json")
-        })
+    /// Whether the torque has more to it than the switchings of a law tell.
+    pub fn tells_torque(&self) -> bool {
+        !self.law.switches() || !self.disturbance.is_empty() || self.actuator != Actuator::Ideal
     }
 }

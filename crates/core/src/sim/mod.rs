@@ -3,6 +3,7 @@
 //! In both, at one instant: the body arrives, the sensor measures, the estimator follows, the law decides, the actuator acts,
 //! the record is told. `docs/events.md` states the rules.
 
+mod journal;
 mod planar;
 mod spatial;
 
@@ -10,6 +11,7 @@ use thiserror::Error;
 
 use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
+use crate::scene::{PlanarScene, SpatialScene};
 use crate::time::Instant;
 
 pub use planar::PlanarRun;
@@ -52,6 +54,15 @@ impl Simulation {
         match &scenario.spatial {
             None => Self::Planar(Box::new(PlanarRun::new(scenario, run))),
             Some(spatial) => Self::Spatial(Box::new(SpatialRun::new(scenario, spatial, run))),
+        }
+    }
+
+    /// Makes the run draw its scene for records that want it; before it begins.
+    pub fn draw(&mut self, scenario: &Scenario) {
+        match (self, &scenario.spatial) {
+            (Self::Planar(run), _) => run.draw(PlanarScene::new(scenario)),
+            (Self::Spatial(run), Some(spatial)) => run.draw(SpatialScene::new(scenario, spatial)),
+            (Self::Spatial(_), None) => {}
         }
     }
 

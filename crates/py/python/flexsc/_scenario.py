@@ -165,13 +165,14 @@ class Scenario:
         """
         return Plan(self._native, band)
 
-    def simulate(self, run: int = 0, log: Literal["events", "full", "none"] = "events") -> Result:
+    def simulate(self, run: int = 0, log: Literal["events", "full", "scene", "none"] = "events") -> Result:
         """Simulate the scenario as it stands. Other Python threads go on meanwhile.
 
         Args:
             run: Number of the run: another number, other noise.
             log: `events` keeps all that changes (switchings, window means, adaptation), `full` also the
                 motion at each period of the scenario's log and at every switching, `none` the metrics only.
+                `scene` is `full` for columns; a file that is written of it has the scene for viewers, too.
 
         Raises:
             SimulationError: The state is no longer finite, or the law switches without end.
@@ -258,7 +259,9 @@ class Result(_Topics):
     def _columns(self, topic: str) -> dict[str, npt.NDArray[Any]]:
         return self._topics[topic]
 
-    def to_mcap(self, path: str | os.PathLike[str], log: Literal["events", "full"] | None = None) -> int:
+    def to_mcap(
+        self, path: str | os.PathLike[str], log: Literal["events", "full", "scene"] | None = None
+    ) -> int:
         """Write the run's log, the same bytes as the command's, and return their number.
 
         The run is simulated again. `log` is what the log holds; left out, what the result holds, and at least

@@ -121,6 +121,8 @@ def arrays(columns: Mapping[str, _Column]) -> dict[str, npt.NDArray[Any]]:
 def _by_row(values: npt.NDArray[Any], counts: npt.NDArray[Any]) -> npt.NDArray[Any]:
     import numpy as np
 
+    if not len(counts):
+        return values
     if values.ndim == 1 and (counts == counts[0]).all():
         return values.reshape(len(counts), int(counts[0]))
     return objects(np.split(values, np.cumsum(counts)[:-1]))

@@ -22,8 +22,8 @@ pub struct Drive {
     /// Angle (rad) and rate (rad/s) at which the manoeuvre begins, and what a unit of its command accelerates (kg m²).
     from: (f64, f64),
     inertia: f64,
-    /// Whether the law is one that switches.
-    switching: bool,
+    /// Whether the torque is worth telling: it has more to it than switchings.
+    pub is_worth_telling: bool,
     disturbances: Vec<Disturbing>,
     /// The instants, latest first, at which the waveform breaks, a disturbance changes or the drift has a kink.
     edges: Vec<Instant>,
@@ -56,7 +56,7 @@ impl Drive {
             waveform,
             from: (scenario.model.angle.get(), scenario.model.rate.get()),
             inertia: scenario.planned_for().commanded_inertia(),
-            switching: scenario.law.switches(),
+            is_worth_telling: scenario.tells_torque(),
             disturbances: scenario
                 .disturbance
                 .iter()
@@ -161,11 +161,6 @@ impl Drive {
             },
             _ => Input { constant: self.held + disturbance, waveform: None },
         }
-    }
-
-    /// Whether the torque has more to it than the switchings of a law tell.
-    pub fn is_worth_telling(&self) -> bool {
-        !self.switching || !self.disturbances.is_empty() || self.actuator != Actuator::Ideal
     }
 
     /// Angle (rad) and rate (rad/s) where the body shall be: on the manoeuvre, where it would be if it were rigid.

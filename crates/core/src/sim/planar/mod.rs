@@ -7,16 +7,20 @@
 mod arrival;
 mod drive;
 mod plant;
+mod show;
 mod track;
 mod watch;
 
 use super::SimulationError;
+use super::journal::{Journal, opening};
 use crate::belief::Belief;
 use crate::body::{Sight, State};
 use crate::law::{Cause, Goal, Hold, Law};
 use crate::random::{Seed, Stream};
+use crate::record::foxglove::Level;
 use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
 use crate::scenario::Scenario;
+use crate::scene::PlanarScene;
 use crate::sensor::{Measurement, Sensor};
 use crate::time::{Instant, Span};
 
@@ -55,8 +59,14 @@ pub struct PlanarRun {
     log_period: Span,
     next_dense: Option<Instant>,
     next_law: Instant,
+    /// The scene, and when its frames are due.
+    scene: Option<Box<PlanarScene>>,
+    next_frames: Option<Instant>,
     decisions: u32,
-    begun: bool,
+    journal: Journal,
+    /// The journal's first line, until it is written.
+    opening: Option<String>,
+    ended: bool,
 }
 
 impl PlanarRun {
@@ -83,22 +93,33 @@ impl PlanarRun {
             log_period: scenario.log.period,
             next_dense: None,
             next_law: Instant::START,
+            scene: None,
+            next_frames: None,
             decisions: 0,
-            begun: false,
+            journal: Journal::new(scenario),
+            opening: Some(opening(scenario, run)),
+            ended: false,
         }
+    }
+
+    /// Draws this scene for records that want one.
+    pub fn draw(&mut self, scene: PlanarScene) {
+        self.scene = Some(Box::new(scene));
     }
 
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
     pub fn run_until(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
         let until = until.min(self.end);
-        if !self.begun {
+        if let Some(opening) = self.opening.take() {
+            self.journal.tell(self.now, (Level::Info, "run"), opening, record)?;
             self.begin(record)?;
         }
         loop {
             let next = self.next();
             if next > until {
                 self.now = until;
-                return self.view().map(|_| ());
+                self.view()?;
+                return self.end(record);
             }
             if next > self.now {
                 self.now = next;
@@ -119,7 +140,6 @@ impl PlanarRun {
     }
 
     fn begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
-        self.begun = true;
         let sight = self.view()?;
         let measured = self.sensor.measure(self.now, (sight.angle, sight.rate), None, &mut self.noise);
         self.measured = measured;
@@ -136,6 +156,16 @@ impl PlanarRun {
             self.next_dense = Some(self.now);
             self.next_law = self.now + Span::from_seconds(1.0);
         }
+        self.set_the_scene(record)?;
+        Ok(())
+    }
+
+    /// Ends the run, if this is its end and it has not ended yet.
+    fn end(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        if self.now == self.end && !std::mem::replace(&mut self.ended, true) {
+            let line = "the end of the run".to_owned();
+            self.journal.tell(self.now, (Level::Info, "run"), line, record)?;
+        }
         Ok(())
     }
 
@@ -144,8 +174,8 @@ impl PlanarRun {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.watch.as_ref().map(|watch| watch.closes);
         let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
-        let due =
-            [trip, self.hold.until, self.drive.due(), self.next_sample, closes, arrives, self.next_dense];
+        let told = [self.next_dense, self.next_frames].into_iter().flatten().min();
+        let due = [trip, self.hold.until, self.drive.due(), self.next_sample, closes, arrives, told];
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
@@ -165,7 +195,13 @@ impl PlanarRun {
         }
         if let Some(arrival) = self.arrival.take_if(|arrival| arrival.at == now) {
             let sight = self.view()?;
-            record.record(now, Sample::Arrival(&arrival.row(sight, self.body.state())))?;
+            let row = arrival.row(sight, self.body.state());
+            record.record(now, Sample::Arrival(&row))?;
+            let line = format!(
+                "the manoeuvre ends {:.3e} rad from its goal, with a vibration of {:.3e} rad",
+                row.angle_error_rad, row.angle_residual_rad
+            );
+            self.journal.tell(now, (Level::Info, "manoeuvre"), line, record)?;
         }
         let timeout = self.hold.until.filter(|until| *until == now).map(|_| Cause::Timeout);
         if let Some(cause) = tripped.map(Cause::Guard).or(timeout) {
@@ -185,7 +221,7 @@ impl PlanarRun {
                 self.next_law += Span::from_seconds(1.0);
             }
         }
-        Ok(())
+        self.show(record)
     }
 
     /// Takes the sample of a sampled sensor, which the estimator follows.
@@ -284,7 +320,7 @@ impl PlanarRun {
         let measured = self.next_sample.map(|_| self.belief.angle);
         let (attitude, rate, modes) = self.body.motion(measured);
         let envelope = self.watch.as_ref().map(|watch| watch.envelope(self.now));
-        let drive = self.drive.is_worth_telling().then(|| {
+        let drive = self.drive.is_worth_telling.then(|| {
             let (angle_rad, rate_rad_s) = self.drive.rigid_goal(&self.goal, self.now);
             let (rate, rigid) = (rate.rate_rad_s, rate.rigid_rad_s);
             (GoalMotion { angle_rad, rate_rad_s }, self.drive.torque(self.now, rate, rigid))

@@ -6,8 +6,10 @@ use crate::body::{Drift, State};
 use crate::estimator::Estimator;
 use crate::estimator::kalman::{Filter, Prediction, Setting, Told};
 use crate::random::Seed;
+use crate::record::foxglove::Level;
 use crate::record::{self, ModeEstimate, Record, RecordError, Sample};
 use crate::scenario::Scenario;
+use crate::sim::journal::Journal;
 use crate::time::Instant;
 
 /// The estimator at work.
@@ -24,6 +26,9 @@ pub struct Track {
     impulse: f64,
     /// The last sample.
     sampled: Option<Instant>,
+    /// Whether the filter had lost the body then.
+    lost: bool,
+    journal: Journal,
 }
 
 /// Who looks.
@@ -70,6 +75,8 @@ impl Track {
             since: Instant::START,
             impulse: 0.0,
             sampled: None,
+            lost: false,
+            journal: Journal::new(scenario),
         })
     }
 
@@ -107,10 +114,26 @@ impl Track {
                 told
             }
         };
+        self.tell_lock(now, record)?;
         match self.row(t, state, told) {
             Some(row) if record.dense() => record.record(now, Sample::Estimate(&row)),
             _ => Ok(()),
         }
+    }
+
+    /// Tells when the filter loses the body, and when it follows again.
+    fn tell_lock(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        let Eye::Filter(filter) = &self.eye else { return Ok(()) };
+        let lost = filter.is_lost();
+        if std::mem::replace(&mut self.lost, lost) == lost {
+            return Ok(());
+        }
+        let (level, line) = if lost {
+            (Level::Warning, "the filter has lost the body")
+        } else {
+            (Level::Info, "the filter follows the body again")
+        };
+        self.journal.tell(now, (level, "estimator"), line.to_owned(), record)
     }
 
     /// What an ideal observer knows.

@@ -4,8 +4,10 @@ use crate::adaptation::{Adaptation, Search};
 use crate::body::State;
 use crate::estimator::{Estimator, Observer};
 use crate::random::{Seed, Stream};
+use crate::record::foxglove::Level;
 use crate::record::{self, ModeEnvelope, Record, RecordError, Sample, WindowMean};
 use crate::scenario::Scenario;
+use crate::sim::journal::{Journal, adapted};
 use crate::time::{Instant, Span};
 
 /// The observer at work, window by window.
@@ -20,6 +22,7 @@ pub struct Watch {
     /// Mean of the window that was closed last (rad).
     pub mean: f64,
     search: Option<(Search, Stream)>,
+    journal: Journal,
 }
 
 impl Watch {
@@ -37,6 +40,7 @@ impl Watch {
             index: 0,
             mean: f64::NAN,
             search,
+            journal: Journal::new(scenario),
         })
     }
 
@@ -69,7 +73,7 @@ impl Watch {
         record.record(now, Sample::Window(&row))?;
         let Some((search, stream)) = &mut self.search else { return Ok(()) };
         let Some(step) = search.learn(now, self.mean, stream.uniform()) else { return Ok(()) };
-        *gain = step.gain;
+        let before = std::mem::replace(gain, step.gain);
         let row = record::Adaptation {
             window: row.window,
             decision: step.decision,
@@ -78,7 +82,9 @@ impl Watch {
             gain: step.gain,
             settled: u64::from(step.settled),
         };
-        record.record(now, Sample::Adaptation(&row))
+        record.record(now, Sample::Adaptation(&row))?;
+        let line = adapted(row.window, row.decision, before, row.gain);
+        self.journal.tell(now, (Level::Info, "adaptation"), line, record)
     }
 
     /// The envelope now, as logged.

@@ -123,6 +123,11 @@ impl JetsAtWork {
         push
     }
 
+    /// The signs of the pulses that burn about each axis, 0 for none.
+    pub fn burning(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 })
+    }
+
     /// Propellant until the end of the pulses that burn (kg).
     pub fn fuel(&self) -> f64 {
         self.fuel

@@ -5,6 +5,7 @@
 //! record is told. Pulses end at exact instants within the cycle.
 
 mod jets;
+mod news;
 mod plant;
 mod tracking;
 
@@ -16,10 +17,12 @@ use crate::law::PhasePlaneLaw;
 use crate::random::Seed;
 use crate::record::{AxisRate, Cycle, Jets, Rates, Record, Sample, SpatialMotion};
 use crate::scenario::{AxesEstimator, Scenario, SpatialLoop};
+use crate::scene::SpatialScene;
 use crate::sensor::Readout;
 use crate::time::{Instant, Span};
 
 use jets::JetsAtWork;
+use news::News;
 use plant::Plant;
 use tracking::Observers;
 
@@ -60,6 +63,10 @@ pub struct SpatialRun {
     next_cycle: Instant,
     log_period: Span,
     next_dense: Option<Instant>,
+    /// The scene, and when its frames are due.
+    scene: Option<Box<SpatialScene>>,
+    next_frames: Option<Instant>,
+    news: News,
     begun: bool,
 }
 
@@ -80,8 +87,16 @@ impl SpatialRun {
             next_cycle: Instant::START,
             log_period: scenario.log.period,
             next_dense: None,
+            scene: None,
+            next_frames: None,
+            news: News::new(scenario, spatial, run),
             begun: false,
         }
+    }
+
+    /// Draws this scene for records that want one.
+    pub fn draw(&mut self, scene: SpatialScene) {
+        self.scene = Some(Box::new(scene));
     }
 
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
@@ -89,14 +104,23 @@ impl SpatialRun {
         let until = until.min(self.end);
         if !self.begun {
             self.begun = true;
+            self.news.begin(Instant::START, record)?;
             self.next_dense = record.dense().then_some(Instant::START);
+            match &self.scene {
+                Some(scene) if record.scene() => {
+                    let parts = scene.parts(self.news.stamp(Instant::START));
+                    record.record(Instant::START, Sample::Scene(&parts))?;
+                    self.next_frames = Some(Instant::START);
+                }
+                _ => self.scene = None,
+            }
         }
         loop {
-            let due = [self.jets.due(), self.next_dense];
+            let due = [self.jets.due(), self.next_dense, self.next_frames];
             let next = due.into_iter().flatten().fold(self.next_cycle, Instant::min);
             if next > until {
                 self.body.view(until);
-                return Ok(());
+                return if until == self.end { Ok(self.news.end(until, record)?) } else { Ok(()) };
             }
             self.body.view(next);
             let ended = self.jets.end(next);
@@ -110,6 +134,22 @@ impl SpatialRun {
                 record.record(next, Sample::SpatialMotion(&self.motion(next)))?;
                 self.next_dense = Some(next + self.log_period);
             }
+            self.show(next, record)?;
+        }
+    }
+
+    /// Tells the frames of the scene when they are due, and its plumes when they are new.
+    fn show(&mut self, now: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        let stamp = self.news.stamp(now);
+        if self.next_frames == Some(now) {
+            let SpatialState { turn, modes } = self.body.state();
+            record.record(now, Sample::Frames(scene.frames(stamp, &turn.attitude, modes)))?;
+            self.next_frames = Some(now + scene.period);
+        }
+        match scene.plumes(stamp, self.jets.burning()) {
+            Some(plumes) => Ok(record.record(now, Sample::Plumes(&plumes))?),
+            None => Ok(()),
         }
     }
 
@@ -147,9 +187,11 @@ impl SpatialRun {
             error_rad: self.belief.angle,
         };
         record.record(now, Sample::Cycle(&cycle))?;
+        self.news.target(now, self.law.target(now), self.belief.angle, record)?;
         if let Estimation::Adaptive(observers) = &mut self.estimator {
             let tracking = observers.tracking(&self.body.modal_rates(), self.law.damped());
             record.record(now, Sample::Tracking(&tracking))?;
+            self.news.damping(now, self.law.damped(), self.belief.trusted, record)?;
             observers.advance(&self.jets.pulses());
         }
         self.next_cycle = now + self.period;

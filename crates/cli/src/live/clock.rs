@@ -1,0 +1,257 @@
+//! The clock of a live run: how long simulated time has to wait for the wall's clock.
+
+use std::fmt;
+use std::str::FromStr;
+use std::time::{Duration, Instant as WallInstant};
+
+use flexsc_core::time::{Instant, Span};
+
+/// How often a held run looks whether it may go on.
+pub const LOOK: Duration = Duration::from_millis(50);
+/// A run that cannot keep up with its speed does not catch up more than this (s of the wall's clock).
+const LARGEST_LAG: f64 = 0.1;
+
+/// How many times faster than real time; infinite without any waiting.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Speed(f64);
+
+impl Speed {
+    /// Real time.
+    pub const REAL: Self = Self(1.0);
+
+    /// A factor.
+    pub fn factor(factor: f64) -> Result<Self, String> {
+        if factor > 0.0 && factor.is_finite() {
+            Ok(Self(factor))
+        } else {
+            Err(format!("must be a factor above 0, or max, got {factor}"))
+        }
+    }
+
+    /// The factor, if it is finite.
+    pub fn finite(self) -> Option<f64> {
+        self.0.is_finite().then_some(self.0)
+    }
+
+    /// So many times this speed.
+    pub fn times(self, factor: f64) -> Self {
+        Self::factor(self.0 * factor).unwrap_or(self)
+    }
+}
+
+impl FromStr for Speed {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse() {
+            _ if text == "max" => Ok(Self(f64::INFINITY)),
+            Ok(factor) => Self::factor(factor),
+            Err(_) => Err(format!("must be a factor above 0, or max, got `{text}`")),
+        }
+    }
+}
+
+impl fmt::Display for Speed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.finite() {
+            Some(factor) => write!(f, "{factor} times real time"),
+            None => f.write_str("as fast as possible"),
+        }
+    }
+}
+
+/// When simulated time may go on.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    begun: bool,
+    paused: bool,
+    speed: Speed,
+    /// The period of the log, which is what a step goes on by.
+    period: Span,
+    /// The latest instant that was let through, and the first period of the log after it.
+    shown: Instant,
+    next: Instant,
+    /// How far a paused run may go on.
+    until: Instant,
+    /// Where simulated time would be (s) at an instant of the wall's clock, unless it is held.
+    position: f64,
+    wall: WallInstant,
+}
+
+impl Clock {
+    /// A clock that has yet to begin.
+    pub fn new(speed: Speed, period: Span, wall: WallInstant) -> Self {
+        Self {
+            begun: false,
+            paused: false,
+            speed,
+            period,
+            shown: Instant::START,
+            next: Instant::START + period,
+            until: Instant::START,
+            position: 0.0,
+            wall,
+        }
+    }
+
+    /// Lets the run begin, if it has not.
+    pub fn begin(&mut self, wall: WallInstant) {
+        if !self.begun {
+            self.begun = true;
+            self.wall = wall;
+        }
+    }
+
+    /// How long to wait before what happens at an instant; no time at all lets it through.
+    pub fn wait(&mut self, at: Instant, wall: WallInstant) -> Option<Duration> {
+        if !self.begun || (self.paused && at > self.until) {
+            return Some(LOOK);
+        }
+        if !self.paused && self.speed.finite().is_some() {
+            self.advance(wall);
+            let ahead = (at.seconds() - self.position) / self.speed.0;
+            if ahead > 0.0 {
+                return Some(Duration::try_from_secs_f64(ahead).unwrap_or(LOOK).min(LOOK));
+            }
+            self.position = self.position.min(at.seconds() + LARGEST_LAG * self.speed.0);
+        }
+        self.shown = at;
+        while self.next <= at {
+            self.next += self.period;
+        }
+        None
+    }
+
+    /// Whether the run is paused.
+    pub fn paused(&self) -> bool {
+        self.paused
+    }
+
+    /// The speed at which the run goes on when it is not paused.
+    pub fn speed(&self) -> Speed {
+        self.speed
+    }
+
+    /// The latest instant that was let through.
+    pub fn shown(&self) -> Instant {
+        self.shown
+    }
+
+    /// Pauses.
+    pub fn pause(&mut self) {
+        if !self.paused {
+            self.paused = true;
+            self.until = self.shown;
+        }
+    }
+
+    /// Goes on.
+    pub fn resume(&mut self, wall: WallInstant) {
+        if self.paused {
+            self.paused = false;
+            self.move_to_shown(wall);
+        }
+    }
+
+    /// Goes on to the next period of the log, and pauses there.
+    pub fn step(&mut self) {
+        self.pause();
+        self.until = if self.until > self.shown { self.until + self.period } else { self.next };
+    }
+
+    /// Goes on at another speed.
+    pub fn set_speed(&mut self, speed: Speed, wall: WallInstant) {
+        if self.speed.finite().is_some() {
+            self.advance(wall);
+        } else {
+            self.move_to_shown(wall);
+        }
+        self.speed = speed;
+    }
+
+    fn advance(&mut self, wall: WallInstant) {
+        self.position += wall.saturating_duration_since(self.wall).as_secs_f64() * self.speed.0;
+        self.wall = wall;
+    }
+
+    fn move_to_shown(&mut self, wall: WallInstant) {
+        self.position = self.shown.seconds();
+        self.wall = wall;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An instant of simulated time.
+    fn at(seconds: f64) -> Instant {
+        Instant::START + Span::from_seconds(seconds)
+    }
+
+    /// A clock that has begun, at a speed, with a period of 0.1 s.
+    fn clock(speed: &str) -> (Clock, WallInstant) {
+        let wall = WallInstant::now();
+        let speed = speed.parse().expect("a speed");
+        let mut clock = Clock::new(speed, Span::from_seconds(0.1), wall);
+        assert_eq!(clock.wait(at(0.0), wall), Some(LOOK), "it has not begun");
+        clock.begin(wall);
+        assert_eq!(clock.wait(at(0.0), wall), None);
+        (clock, wall)
+    }
+
+    /// Milliseconds to wait, rounded.
+    fn ms(clock: &mut Clock, seconds: f64, wall: WallInstant) -> Option<u64> {
+        clock.wait(at(seconds), wall).map(|time| (time.as_secs_f64() * 1e3).round() as u64)
+    }
+
+    #[test]
+    fn time_goes_by_the_wall_and_the_speed() {
+        let (mut clock, wall) = clock("10");
+        let after = |ms| wall + Duration::from_millis(ms);
+        assert_eq!(ms(&mut clock, 0.1, after(4)), Some(6));
+        assert_eq!(ms(&mut clock, 0.1, after(10)), None);
+        clock.set_speed(Speed::REAL, after(10));
+        assert_eq!(ms(&mut clock, 0.12, after(20)), Some(10));
+        clock.set_speed("max".parse().expect("a speed"), after(20));
+        assert_eq!(clock.wait(at(1e3), after(20)), None);
+        clock.set_speed(Speed::REAL, after(20));
+        assert_eq!(ms(&mut clock, 1e3 + 0.02, after(30)), Some(10));
+    }
+
+    #[test]
+    fn a_paused_run_goes_on_by_steps() {
+        let (mut clock, wall) = clock("max");
+        assert_eq!(clock.wait(at(0.15), wall), None);
+        clock.pause();
+        assert_eq!(clock.wait(at(0.15), wall), None, "the same instant");
+        assert_eq!(clock.wait(at(0.16), wall), Some(LOOK));
+        clock.step();
+        assert_eq!(clock.wait(at(0.16), wall), None);
+        assert_eq!(clock.wait(at(0.2), wall), None);
+        assert_eq!(clock.wait(at(0.21), wall), Some(LOOK));
+        clock.step();
+        clock.step();
+        assert_eq!(clock.wait(at(0.4), wall), None);
+        assert_eq!(clock.wait(at(0.41), wall), Some(LOOK));
+        clock.resume(wall);
+        assert_eq!(clock.wait(at(9.0), wall), None);
+    }
+
+    #[test]
+    fn a_pause_takes_no_simulated_time() {
+        let (mut clock, wall) = clock("1");
+        clock.pause();
+        clock.resume(wall + Duration::from_secs(60));
+        assert_eq!(ms(&mut clock, 0.01, wall + Duration::from_secs(60)), Some(10));
+    }
+
+    #[test]
+    fn what_was_missed_is_not_caught_up() {
+        let (mut clock, wall) = clock("1");
+        let late = wall + Duration::from_secs(60);
+        assert_eq!(clock.wait(at(0.1), late), None);
+        assert_eq!(clock.wait(at(0.2), late), None);
+        assert!(clock.wait(at(0.3), late).is_some());
+    }
+}

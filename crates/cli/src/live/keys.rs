@@ -1,0 +1,96 @@
+//! What the user types while a run is live: a line is a command.
+
+use std::io::{self, BufRead, IsTerminal, Write};
+use std::sync::Arc;
+use std::thread;
+use std::time::Instant as WallInstant;
+
+use super::clock::{Clock, Speed};
+use super::hub::Hub;
+use crate::{say, stop};
+
+/// What can be typed.
+const HELP: &str = "Enter pauses and goes on, `.` steps, `+` and `-` or a factor set the speed, `q` stops";
+
+/// A command.
+#[derive(Debug, PartialEq)]
+enum Key {
+    Toggle,
+    Step,
+    Faster,
+    Slower,
+    Speed(Speed),
+    Stop,
+    Unknown,
+}
+
+impl Key {
+    fn of(line: &str) -> Self {
+        match line.trim() {
+            "" => Self::Toggle,
+            "." => Self::Step,
+            "+" => Self::Faster,
+            "-" => Self::Slower,
+            "q" => Self::Stop,
+            text => text.parse().map_or(Self::Unknown, Self::Speed),
+        }
+    }
+
+    fn press(self, clock: &mut Clock) {
+        let (wall, speed) = (WallInstant::now(), clock.speed());
+        match self {
+            Self::Toggle if clock.paused() => clock.resume(wall),
+            Self::Toggle => clock.pause(),
+            Self::Step => clock.step(),
+            Self::Faster => clock.set_speed(speed.times(2.0), wall),
+            Self::Slower => clock.set_speed(speed.times(0.5), wall),
+            Self::Speed(speed) => clock.set_speed(speed, wall),
+            Self::Stop | Self::Unknown => {}
+        }
+    }
+}
+
+/// Listens to the terminal, if there is one.
+pub fn listen(hub: Arc<Hub>) {
+    if !io::stdin().is_terminal() {
+        return;
+    }
+    say!("  keys           {HELP}");
+    // The thread waits for a line that may never come, and ends with the program.
+    thread::spawn(move || {
+        for line in io::stdin().lock().lines().map_while(Result::ok) {
+            match Key::of(&line) {
+                Key::Stop => return stop::ask(),
+                Key::Unknown => say!("  {HELP}"),
+                key => {
+                    let clock = hub.change(|clock| key.press(clock));
+                    let state = if clock.paused() { "paused, " } else { "" };
+                    say!("  at {:.3} s     {state}{}", clock.shown().seconds(), clock.speed());
+                }
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_commands() {
+        let speed = |text: &str| Key::Speed(text.parse().expect("a speed"));
+        let lines = ["\n", ".", "+", "-", "q", " 2.5 ", "max", "-3", "faster"];
+        let keys = [
+            Key::Toggle,
+            Key::Step,
+            Key::Faster,
+            Key::Slower,
+            Key::Stop,
+            speed("2.5"),
+            speed("max"),
+            Key::Unknown,
+            Key::Unknown,
+        ];
+        assert_eq!(lines.map(Key::of), keys);
+    }
+}

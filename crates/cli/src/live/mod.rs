@@ -1,0 +1,145 @@
+//! `flexsc simulate --live`: a run in real time for viewers that speak the Foxglove WebSocket protocol.
+//!
+//! The run is a record like any other: it is held until its clock lets an instant through, and its messages are those of
+//! a log, byte for byte.
+
+mod client;
+mod clock;
+mod hub;
+mod keys;
+mod protocol;
+mod topics;
+
+use std::io::{self, Write};
+use std::net::{TcpListener, ToSocketAddrs};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant as WallInstant};
+
+use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::metrics::Metrics;
+use flexsc_core::record::{Detail, Encode, Record, RecordError, RunEnd, Sample};
+use flexsc_core::time::Instant;
+
+use clock::{Clock, LOOK, Speed};
+use hub::{Hub, Publisher};
+
+use crate::failure::Failure;
+use crate::{say, stop};
+
+/// How long clients may take for what is left when the server closes.
+const FLUSH: Duration = Duration::from_secs(5);
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Serve the run to viewers such as Foxglove and Lichtblick while it goes on, in real time
+    #[arg(
+        long,
+        value_name = "HOST:PORT",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "127.0.0.1:8765",
+        value_parser = address,
+        conflicts_with = "runs",
+    )]
+    pub live: Option<String>,
+    /// So many times faster than real time, or max
+    #[arg(long, value_name = "FACTOR", requires = "live")]
+    speed: Option<Speed>,
+    /// Begin when a viewer has subscribed to a topic
+    #[arg(long, requires = "live")]
+    wait: bool,
+}
+
+fn address(text: &str) -> Result<String, String> {
+    match text.to_socket_addrs() {
+        Ok(_) => Ok(text.to_owned()),
+        Err(error) => Err(format!("must be a host and a port, such as 127.0.0.1:8765: {error}")),
+    }
+}
+
+/// A run that viewers follow.
+pub struct Live {
+    hub: Arc<Hub>,
+    messages: Option<Encode<Publisher>>,
+}
+
+impl Args {
+    /// Begins to serve, if asked to.
+    pub fn serve(&self, run: &Run) -> Result<Option<Live>, Failure> {
+        let Some(address) = &self.live else { return Ok(None) };
+        let failed = |source| Failure::Serve { address: address.clone(), source };
+        let listener = TcpListener::bind(address).map_err(failed)?;
+        listener.set_nonblocking(true).map_err(failed)?;
+        let bound = listener.local_addr().map_err(failed)?;
+        let wall = WallInstant::now();
+        let speed = self.speed.unwrap_or(Speed::REAL);
+        let mut clock = Clock::new(speed, run.scenario.log.period, wall);
+        if !self.wait {
+            clock.begin(wall);
+        }
+        let provenance = Campaign::provenance(run);
+        let topics = topics::expected(run, &provenance);
+        let hub = Arc::new(Hub::new(run.scenario.name.clone(), clock, topics));
+        let messages = Encode::new(Publisher(hub.clone()), &provenance, Detail::Scene);
+        let messages = messages.map_err(|error| failed(io::Error::other(error)))?;
+        say!("  live           ws://{bound}, {speed}");
+        thread::spawn({
+            let hub = hub.clone();
+            move || accept(&hub, &listener)
+        });
+        keys::listen(hub.clone());
+        Ok(Some(Live { hub, messages: Some(messages) }))
+    }
+}
+
+impl Live {
+    /// Tells the metrics, and serves on as long as there are viewers.
+    pub fn finish(mut self, metrics: &Metrics) {
+        if let Some(messages) = self.messages.take() {
+            // Viewers take what they are given.
+            let _ = messages.finish(&metrics.to_row(), RunEnd::Complete);
+        }
+        if self.hub.clients() > 0 && !stop::asked() {
+            say!("  live           the run has ended; Ctrl-C, or the last viewer's leave, ends the server");
+        }
+        while self.hub.clients() > 0 && !stop::asked() {
+            thread::sleep(LOOK);
+        }
+    }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        self.hub.close(FLUSH);
+    }
+}
+
+impl Record for Live {
+    fn dense(&self) -> bool {
+        true
+    }
+
+    fn scene(&self) -> bool {
+        true
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        self.hub.pace(now)?;
+        self.messages.record(now, sample)
+    }
+}
+
+/// Takes in clients, each on a thread of its own, until the hub closes.
+fn accept(hub: &Arc<Hub>, listener: &TcpListener) {
+    while !hub.closing() {
+        match listener.accept() {
+            Ok((stream, _)) => {
+                let hub = hub.clone();
+                thread::spawn(move || client::serve(&hub, stream));
+            }
+            // Nobody there, or somebody who has gone again.
+            Err(_) => thread::sleep(LOOK),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The topics that a run will have. Viewers must know them before there is a message, or they would miss the first ones.
+
+use std::collections::BTreeSet;
+
+use flexsc_core::campaign::Run;
+use flexsc_core::estimator::Estimator;
+use flexsc_core::law::Law;
+use flexsc_core::record::{Detail, Encode, Message, Messages, Provenance, RecordError, TOPICS};
+use flexsc_core::time::Instant;
+use flexsc_core::{Scenario, Simulation};
+
+/// The topics of a run as indices into [`TOPICS`]: those of its first instant, and those of what may happen later.
+pub fn expected(run: &Run, from: &Provenance) -> BTreeSet<usize> {
+    let mut topics = Topics::default();
+    if let Ok(mut messages) = Encode::new(&mut topics, from, Detail::Scene) {
+        // A run that fails at its start says so when it is made.
+        let mut simulation = Simulation::new(&run.scenario, run.number);
+        simulation.draw(&run.scenario);
+        let _ = simulation.run_until(Instant::START, &mut messages);
+    }
+    let later = later(&run.scenario);
+    topics.0.extend((0..TOPICS.len()).filter(|&index| later.contains(&TOPICS[index].name)));
+    topics.0
+}
+
+/// The topics of what happens within a run or at its end.
+fn later(scenario: &Scenario) -> Vec<&'static str> {
+    let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
+    let topics = [
+        ("/command", !matches!(scenario.law, Law::Open(_) | Law::PhasePlane(_))),
+        ("/envelope_mean", envelope.is_some()),
+        ("/adaptation", scenario.adaptation.is_some()),
+        ("/arrival", scenario.plan.is_some()),
+        ("/jets", scenario.spatial.is_some()),
+        ("/metrics", true),
+    ];
+    topics.into_iter().filter(|(_, there)| *there).map(|(name, _)| name).collect()
+}
+
+/// Notes the topics of messages.
+#[derive(Default)]
+struct Topics(BTreeSet<usize>);
+
+impl Messages for &mut Topics {
+    fn take(&mut self, message: Message<'_>) -> Result<(), RecordError> {
+        self.0.insert(message.topic);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use flexsc_core::campaign::Campaign;
+    use flexsc_core::time::Span;
+
+    use super::*;
+
+    #[test]
+    fn the_topics_of_every_shipped_scenario_are_known_beforehand() {
+        let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
+        let mut names = BTreeSet::new();
+        for file in std::fs::read_dir(directory).expect("scenarios").flatten() {
+            if file.path().extension().is_none_or(|extension| extension != "toml") {
+                continue;
+            }
+            let scenario = Scenario::load(&file.path()).expect("a scenario");
+            let run = Run { number: 0, scenario, drawn: Vec::new() };
+            let from = Campaign::provenance(&run);
+            let (expected, mut seen) = (expected(&run, &from), Topics::default());
+            let mut messages = Encode::new(&mut seen, &from, Detail::Scene).expect("messages");
+            // Long enough for an arrival, and for the windows of an adaptation.
+            let seconds = if run.scenario.adaptation.is_some() { 1100.0 } else { 25.0 };
+            let until = Instant::START + Span::from_seconds(seconds);
+            let mut simulation = Simulation::new(&run.scenario, 0);
+            simulation.draw(&run.scenario);
+            simulation.run_until(until, &mut messages).expect("a run");
+            let name = |index: &usize| TOPICS[*index].name;
+            let unknown: Vec<_> = seen.0.difference(&expected).map(name).collect();
+            assert!(unknown.is_empty(), "{}: {unknown:?}", file.path().display());
+            names.extend(seen.0.iter().map(name));
+        }
+        let all: BTreeSet<_> = TOPICS.iter().map(|topic| topic.name).collect();
+        assert_eq!(
+            all.difference(&names).collect::<Vec<_>>(),
+            [&"/metrics", &"/wheel"],
+            "the last of all, and what no shipped scenario has"
+        );
+    }
+}

@@ -1,0 +1,28 @@
+//! Figure `curve`: metrics of a sweep over its key.
+
+use super::table::{Key, Metric, Runs};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+/// So many values are marked each.
+const MARKS: usize = 100;
+
+pub fn figure(runs: &Runs, metrics: &[&Metric], key: &Key) -> Figure {
+    let mut order: Vec<usize> = (0..key.values.len()).collect();
+    order.sort_by(|a, b| key.values[*a].total_cmp(&key.values[*b]));
+    let panel = |(index, metric): (usize, &&Metric)| {
+        let (name, unit) = metric.label();
+        let line: Vec<Point> = order.iter().map(|run| (key.values[*run], metric.values[*run])).collect();
+        let ends = order.first().map_or(0.0, |run| key.values[*run])
+            ..order.last().map_or(1.0, |run| key.values[*run]);
+        let x = Axis::exact(&key.name, "", ends);
+        let mut layers = vec![Layer::new("", colour::BLUE, Shape::Line(1.2), line.clone())];
+        if line.len() <= MARKS {
+            layers.push(Layer::new("", colour::BLUE, Shape::Dot, line));
+        }
+        let x = if index + 1 == metrics.len() { x } else { x.unnamed() };
+        Panel::new(x, Axis::around(&name, unit, metric.values.iter().copied()), layers)
+    };
+    let panels = metrics.iter().enumerate().map(panel).collect();
+    let title = format!("{}: metrics over {} ({} runs)", runs.name, key.name, runs.numbers.len());
+    Figure { title, panels, panel_height: 180 }
+}

@@ -1,0 +1,192 @@
+//! Figure `fan`: the main signals of many runs over time, from their logs: the median, and where half and nine tenths of the
+//! runs are.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use flexsc_core::record::Log;
+use flexsc_core::statistics::quantile;
+use rayon::prelude::*;
+
+use super::super::motion::Motion;
+use super::super::spatial::Cycles;
+use super::super::story::Story;
+use super::super::time;
+use crate::failure::Failure;
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+use crate::progress;
+
+/// Quantiles are taken at so many instants, evenly apart.
+const INSTANTS: usize = 801;
+
+/// A signal of a run over time.
+struct Signal {
+    name: String,
+    unit: &'static str,
+    line: Vec<Point>,
+    /// Whether a value holds until the next; else it is straight between them.
+    held: bool,
+}
+
+/// Name, unit, and values at the instants.
+type Sampled = (String, &'static str, Vec<f64>);
+
+/// The logs of a directory by the names of their scenarios, each with two runs at least.
+pub fn logs(directory: &Path, files: &[String]) -> Result<BTreeMap<String, Vec<PathBuf>>, Failure> {
+    let paths = files.iter().filter(|file| Path::new(file).extension().is_some_and(|e| e == "mcap"));
+    let paths: Vec<PathBuf> = paths.map(|file| directory.join(file)).collect();
+    let name = |path: &PathBuf| {
+        Log::open(path).map(|log| log.metadata().get("scenario").cloned().unwrap_or_default())
+    };
+    let names = paths.par_iter().map(name).collect::<Result<Vec<_>, _>>()?;
+    let mut logs: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    for (name, path) in names.into_iter().zip(paths) {
+        logs.entry(name).or_default().push(path);
+    }
+    logs.retain(|_, paths| paths.len() > 1);
+    Ok(logs)
+}
+
+/// # Errors
+/// A log that is not accepted, and a run that cannot be repeated.
+pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, Failure> {
+    let first = Story::read(&Log::open(&paths[0])?, &paths[0])?;
+    let end = first.scenario.duration.seconds();
+    let instants: Vec<f64> = (0..INSTANTS).map(|i| end * i as f64 / (INSTANTS - 1) as f64).collect();
+    let bar = progress::bar(paths.len() as u64, "logs");
+    let sampled = |path: &PathBuf| -> Result<Vec<Sampled>, Failure> {
+        let signals = signals(path)?;
+        bar.inc(1);
+        Ok(signals
+            .into_iter()
+            .map(|signal| (signal.name.clone(), signal.unit, signal.at(&instants)))
+            .collect())
+    };
+    let runs = paths.par_iter().map(sampled).collect::<Result<Vec<_>, _>>()?;
+    bar.finish_and_clear();
+    let count = runs.iter().map(Vec::len).min().unwrap_or(0);
+    let panel = |signal: usize| {
+        let (name, unit, _) = &runs[0][signal];
+        let quantiles: Vec<[f64; 5]> = (0..INSTANTS)
+            .map(|instant| {
+                let values = runs.iter().map(|run| run[signal].2[instant]).filter(|value| value.is_finite());
+                let mut values: Vec<f64> = values.collect();
+                values.sort_by(f64::total_cmp);
+                [0.05, 0.25, 0.5, 0.75, 0.95].map(|q| quantile(&values, q))
+            })
+            .collect();
+        let line = |q: usize| -> Vec<Point> {
+            instants.iter().copied().zip(quantiles.iter().map(|quantiles| quantiles[q])).collect()
+        };
+        let named = |name: &'static str| if signal == 0 { name } else { "" };
+        let layers = vec![
+            Layer::new(named("5 to 95 %"), colour::SKY, Shape::Area(0.3), band(&line(0), &line(4))),
+            Layer::new(named("25 to 75 %"), colour::BLUE, Shape::Area(0.4), band(&line(1), &line(3))),
+            Layer::new(named("median"), colour::BLACK, Shape::Line(1.4), line(2)),
+        ];
+        let shown = quantiles.iter().flatten().copied();
+        let positive = shown.clone().all(|value| value.is_nan() || value >= 0.0);
+        let y = if positive { Axis::from_zero(name, unit, shown) } else { Axis::around(name, unit, shown) };
+        let x = time(0.0..end);
+        Panel::new(if signal + 1 == count { x } else { x.unnamed() }, y, layers)
+    };
+    let panels = (0..count).map(panel).collect();
+    Ok(Figure { title: format!("{name}: {} runs over time", paths.len()), panels, panel_height: 180 })
+}
+
+/// What is shown of a run.
+fn signals(path: &Path) -> Result<Vec<Signal>, Failure> {
+    let log = Log::open(path)?;
+    let story = Story::read(&log, path)?;
+    let signal = |name: &str, unit, line, held| Signal { name: name.to_owned(), unit, line, held };
+    let mut signals = Vec::new();
+    if story.scenario.spatial.is_some() {
+        let cycles = Cycles::read(&story, &log, path)?;
+        let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        signals.push(signal("pointing error", "rad", cycles.over_time(|c| length(c.error_rad)), false));
+        signals.push(signal("elastic energy", "J", cycles.over_time(|c| c.elastic_energy_j), false));
+        signals.push(signal("propellant", "kg", cycles.over_time(|c| c.jets.fuel_kg), false));
+    } else if story.switches() {
+        if !story.means.is_empty() {
+            let ends = story.means.iter().flat_map(|mean| [(mean.from, mean.value), (mean.to, mean.value)]);
+            signals.push(signal("mean envelope", "rad", ends.collect(), true));
+        }
+        if story.scenario.adaptation.is_some() {
+            let steps = story.steps.iter().map(|step| (step.time, step.gain));
+            let gains = [(0.0, story.start.1)].into_iter().chain(steps).chain([last(&story)]);
+            signals.push(signal("gain k_t", "", gains.collect(), true));
+        }
+        let counts = story.switchings.iter().enumerate().map(|(index, s)| (s.time, (index + 1) as f64));
+        let all = (story.end, story.switchings.len() as f64);
+        let counts = [(0.0, 0.0)].into_iter().chain(counts).chain([all]).collect();
+        signals.push(signal("switchings so far", "", counts, true));
+    } else {
+        let motion = story.motion(&log, path, 0.0, 0.0)?;
+        signals.extend(of_rotation(&story, &motion));
+    }
+    Ok(signals)
+}
+
+/// The gain at the end.
+fn last(story: &Story) -> Point {
+    (story.end, story.steps.last().map_or(story.start.1, |step| step.gain))
+}
+
+fn of_rotation(story: &Story, motion: &Motion) -> Vec<Signal> {
+    let over_time = |values: &mut dyn Iterator<Item = f64>| motion.time.iter().copied().zip(values).collect();
+    let mut beyond = motion.angle.iter().zip(&motion.goal).map(|(angle, goal)| angle - goal);
+    let mut signals = vec![Signal {
+        name: "angle error".to_owned(),
+        unit: "rad",
+        line: over_time(&mut beyond),
+        held: false,
+    }];
+    if let (Some(output), Some(values)) = (story.scenario.model.outputs.last(), motion.outputs.last()) {
+        let (name, unit) = crate::figure::name_and_unit(&output.name, &output.unit);
+        signals.push(Signal { name, unit, line: over_time(&mut values.iter().copied()), held: false });
+    }
+    if !motion.estimates.is_empty() {
+        let error = motion.estimates.iter().map(|e| (e.time, e.read_frequency - e.true_frequency));
+        let name = "frequency error".to_owned();
+        signals.push(Signal { name, unit: "rad/s", line: error.collect(), held: true });
+    }
+    signals
+}
+
+impl Signal {
+    /// Its values at some instants, which grow; NaN where it has none.
+    fn at(&self, instants: &[f64]) -> Vec<f64> {
+        let mut values = Vec::with_capacity(instants.len());
+        for now in instants {
+            // A log counts time in whole nanoseconds.
+            let after = self.line.partition_point(|point| point.0 <= now + 1e-9);
+            let value = match (after.checked_sub(1).map(|index| self.line[index]), self.line.get(after)) {
+                (Some((time, value)), _) if self.held && (after < self.line.len() || time >= now - 1e-6) => {
+                    value
+                }
+                (Some((time, value)), None) if time >= now - 1e-6 => value,
+                (Some((from, before)), Some((to, value))) if !self.held => {
+                    before + (value - before) * (now - from) / (to - from)
+                }
+                _ => f64::NAN,
+            };
+            values.push(value);
+        }
+        values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signals_are_read_at_instants() {
+        let line = vec![(1.0, 10.0), (2.0, 20.0), (4.0, 0.0)];
+        let signal = |held| Signal { name: String::new(), unit: "", line: line.clone(), held };
+        let instants = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0];
+        let texts = |held| signal(held).at(&instants).iter().map(f64::to_string).collect::<Vec<_>>();
+        assert_eq!(texts(false), ["NaN", "10", "15", "20", "10", "0", "NaN"]);
+        assert_eq!(texts(true), ["NaN", "10", "10", "20", "20", "0", "NaN"]);
+    }
+}

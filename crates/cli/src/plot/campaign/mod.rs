@@ -1,0 +1,178 @@
+//! The figures of a campaign's directory, and its worst runs.
+
+mod curve;
+mod distribution;
+mod fan;
+mod region;
+mod scatter;
+mod table;
+mod worst;
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+
+use super::Args;
+use super::what::{What, chosen};
+use crate::failure::Failure;
+use crate::figure::{Figure, Target};
+use crate::{print, say};
+use table::{Metric, Runs};
+
+/// What is drawn of a campaign if no metric is named: the first of these that vary.
+const MAIN: [&str; 20] = [
+    "envelope_late_mean_rad",
+    "gain_final",
+    "cycle_period_s",
+    "torque_impulse_per_hour_nm_s",
+    "switchings",
+    "settling_time_s",
+    "angle_error_late_rad",
+    "angle_residual_rad",
+    "frequency_error_rms_rad_s",
+    "nees_mean",
+    "peak_torque_nm",
+    "angle_error_peak_rad",
+    "spectral_radius",
+    "pointing_error_end_rad",
+    "elastic_rate_rms_rad_s",
+    "fuel_kg",
+    "elastic_energy_end_j",
+    "elastic_energy_peak_j",
+    "energy_below_10pct_at_s",
+    "firings",
+];
+/// So many of them.
+const MOST: usize = 4;
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let directory = args.path.as_path();
+    let target = Target::new(args.out.as_deref(), directory, args.format)?;
+    let files = files(directory)?;
+    let tables = table::read(directory, &files)?;
+    let fans = if args.what.is_empty() || args.what.contains(&What::Fan) {
+        fan::logs(directory, &files)?
+    } else {
+        BTreeMap::new()
+    };
+    if tables.is_empty() && fans.is_empty() {
+        return Err(Failure::Arguments(format!(
+            "{}: no table of a campaign, `runs.csv`, and not several logs of one scenario\n\n\
+             hint: `flexsc simulate SCENARIO --runs 1000 -o {}` makes one",
+            directory.display(),
+            directory.display()
+        )));
+    }
+    let mut there: Vec<What> = tables.iter().flat_map(drawable).collect();
+    there.extend((!fans.is_empty()).then_some(What::Fan));
+    let all = chosen(&args.what, &there).map_err(|(missing, there)| {
+        let path = directory.display();
+        Failure::Arguments(format!("{path}: there is no figure `{missing}` of it\n\nhint: it has {there}"))
+    })?;
+    let mut figures = Vec::new();
+    for runs in &tables {
+        let metrics = metrics(args, runs)?;
+        let natural = natural(runs);
+        let wanted = |what: &&What| !args.what.is_empty() || natural.contains(what);
+        for what in drawable(runs).iter().filter(|what| all.contains(what)).filter(wanted) {
+            figures.extend(drawn(*what, runs, &metrics));
+        }
+        let listed = if args.json { worst::lines } else { worst::table };
+        if args.worst > 0 {
+            print(listed(runs, directory, &metrics, args.worst).as_bytes())?;
+        }
+        if runs.scenario.is_none() && !args.json {
+            say!(
+                "{}: no scenario.toml beside the table: no run can be repeated from it",
+                directory.display()
+            );
+        }
+    }
+    for (name, paths) in &fans {
+        figures.push((format!("{name}-fan"), fan::figure(name, paths)?));
+    }
+    if figures.is_empty() {
+        return Err(Failure::Arguments(format!(
+            "{}: no metric varies from run to run\n\nhint: --metric names one to draw all the same",
+            directory.display()
+        )));
+    }
+    target.save(&figures, args.json)
+}
+
+/// The names of the files in a directory, sorted.
+fn files(directory: &Path) -> Result<Vec<String>, Failure> {
+    let unread = |error: std::io::Error| Failure::Arguments(format!("{}: {error}", directory.display()));
+    let entries =
+        std::fs::read_dir(directory).map_err(unread)?.collect::<Result<Vec<_>, _>>().map_err(unread)?;
+    let mut names: Vec<String> =
+        entries.into_iter().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    Ok(names)
+}
+
+/// The figures that a table has.
+fn drawable(runs: &Runs) -> Vec<What> {
+    let swept = runs.swept().len();
+    [
+        (What::Curve, swept == 1),
+        (What::Region, swept == 2),
+        (What::Distribution, true),
+        (What::Scatter, !scatter::keys(runs).is_empty()),
+    ]
+    .into_iter()
+    .filter_map(|(what, is)| is.then_some(what))
+    .collect()
+}
+
+/// Those of them that are drawn if none is named.
+fn natural(runs: &Runs) -> Vec<What> {
+    match runs.swept().len() {
+        1 if runs.drawn().is_empty() => vec![What::Curve],
+        2 if runs.drawn().is_empty() => vec![What::Region],
+        _ => vec![What::Distribution, What::Scatter],
+    }
+}
+
+/// The metrics that are named, or else the main ones that vary.
+fn metrics<'a>(args: &Args, runs: &'a Runs) -> Result<Vec<&'a Metric>, Failure> {
+    let named = |name: &str| runs.metrics.iter().find(|metric| metric.meaning.name == name);
+    if args.metric.is_empty() {
+        // What only repeats a key tells nothing.
+        let tells =
+            |metric: &&Metric| metric.varies() && runs.keys.iter().all(|key| key.values != metric.values);
+        let main: Vec<_> = MAIN.into_iter().filter_map(named).filter(tells).collect();
+        let any = runs.metrics.iter().filter(tells);
+        let found: Vec<_> = if main.is_empty() { any.collect() } else { main };
+        return Ok(found.into_iter().take(MOST).collect());
+    }
+    let metric = |name: &String| {
+        named(name).ok_or_else(|| {
+            let names: Vec<_> = runs.metrics.iter().map(|metric| metric.meaning.name).collect();
+            let (path, names) = (args.path.display(), names.join(", "));
+            Failure::Arguments(format!(
+                "{path}: there is no metric `{name}` that is a number\n\nhint: it has {names}"
+            ))
+        })
+    };
+    args.metric.iter().map(metric).collect()
+}
+
+/// The figures of a kind, with their names.
+fn drawn(what: What, runs: &Runs, metrics: &[&Metric]) -> Vec<(String, Figure)> {
+    let name = |metric: &Metric| format!("{}-{}-{}", runs.name, what.name(), metric.meaning.name);
+    let each = |figure: &dyn Fn(&Metric) -> Option<Figure>| {
+        metrics.iter().filter_map(|metric| Some((name(metric), figure(metric)?))).collect()
+    };
+    match what {
+        What::Distribution => each(&|metric| Some(distribution::figure(runs, metric))),
+        What::Scatter => each(&|metric| Some(scatter::figure(runs, metric))),
+        What::Region => each(&|metric| region::figure(runs, metric)),
+        What::Curve => {
+            let key = runs.swept().into_iter().next().filter(|_| !metrics.is_empty());
+            let curve = key.map(|key| curve::figure(runs, metrics, key));
+            curve.map(|figure| (format!("{}-{}", runs.name, what.name()), figure)).into_iter().collect()
+        }
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,229 @@
+//! The tables of a directory: `runs.csv`, its parts `runs-LO-HI.csv`, and those of several scenarios, `NAME-runs.csv`.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use flexsc_core::Scenario;
+use flexsc_core::metrics::{self, Meaning};
+
+use crate::campaign::SCENARIO;
+use crate::failure::Failure;
+
+/// The runs of a campaign, by their numbers.
+pub struct Runs {
+    /// The scenario's name, or else the directory's.
+    pub name: String,
+    /// What the runs were drawn from, and its file; none beside tables of before it was kept.
+    pub scenario: Option<(Scenario, PathBuf)>,
+    /// Numbers of the runs.
+    pub numbers: Vec<u64>,
+    /// The keys that vary.
+    pub keys: Vec<Key>,
+    /// The metrics that are numbers.
+    pub metrics: Vec<Metric>,
+    /// Why each run failed; empty if it did not.
+    pub errors: Vec<String>,
+}
+
+/// A key that varies.
+pub struct Key {
+    pub name: String,
+    /// Its values as TOML, and as numbers.
+    pub texts: Vec<String>,
+    pub values: Vec<f64>,
+    /// Whether a sweep varies it; else it is drawn.
+    pub swept: bool,
+}
+
+/// A metric.
+pub struct Metric {
+    pub meaning: &'static Meaning,
+    /// Its values as the table has them, and as numbers; NaN where a run has none.
+    pub texts: Vec<String>,
+    pub values: Vec<f64>,
+}
+
+/// The cells of a row, by their columns.
+type Row = BTreeMap<String, String>;
+
+/// The columns of a table and its rows by the number of their run, each with the file that it is of.
+#[derive(Default)]
+struct Rows {
+    header: Vec<String>,
+    rows: BTreeMap<u64, (Row, PathBuf)>,
+}
+
+/// The campaigns of a directory, by their names.
+///
+/// # Errors
+/// A table that cannot be read, or that is none of a campaign; parts that contradict one another.
+pub fn read(directory: &Path, files: &[String]) -> Result<Vec<Runs>, Failure> {
+    let mut tables: BTreeMap<String, Rows> = BTreeMap::new();
+    for file in files {
+        if let Some(prefix) = prefix(file) {
+            tables.entry(prefix).or_default().read(&directory.join(file))?;
+        }
+    }
+    tables.into_iter().map(|(prefix, rows)| rows.into_runs(directory, &prefix)).collect()
+}
+
+/// What the name of a table begins with, if a file is one: nothing, or `NAME-`.
+fn prefix(file: &str) -> Option<String> {
+    let stem = file.strip_suffix(".csv")?;
+    let number = |text: &str| text.parse::<u64>().is_ok();
+    let whole = match stem.rsplit('-').collect::<Vec<_>>()[..] {
+        [high, low, _, ..] if number(high) && number(low) => &stem[..stem.len() - high.len() - low.len() - 2],
+        _ => stem,
+    };
+    let before = whole.strip_suffix("runs")?;
+    (before.is_empty() || before.ends_with('-')).then(|| before.to_owned())
+}
+
+fn refused(path: &Path, why: &str) -> Failure {
+    Failure::Arguments(format!("{}: {why}", path.display()))
+}
+
+impl Rows {
+    fn read(&mut self, path: &Path) -> Result<(), Failure> {
+        let wrong = |error: csv::Error| refused(path, &format!("is no table of a campaign: {error}"));
+        let mut reader = csv::Reader::from_path(path).map_err(wrong)?;
+        let header: Vec<String> = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();
+        if header.first().map(String::as_str) != Some("run")
+            || header.last().map(String::as_str) != Some("error")
+        {
+            return Err(refused(path, "is no table of a campaign: its columns must be `run`, ..., `error`"));
+        }
+        // A part of nothing but failures has no metrics: the longer header tells them.
+        let within = |short: &[String], long: &[String]| short.iter().all(|column| long.contains(column));
+        if within(&self.header, &header) {
+            self.header.clone_from(&header);
+        } else if !within(&header, &self.header) {
+            return Err(refused(path, "has other columns than the other parts of the campaign"));
+        }
+        for record in reader.records() {
+            let record = record.map_err(wrong)?;
+            let line = record.position().map_or(0, csv::Position::line);
+            let row: Row = header.iter().cloned().zip(record.iter().map(str::to_owned)).collect();
+            let Ok(number) = record[0].parse() else {
+                let why = format!("line {line}: `run` must be the number of a run, got `{}`", &record[0]);
+                return Err(refused(path, &why));
+            };
+            match self.rows.get(&number) {
+                Some((there, other)) if *there != row => {
+                    let why = format!("run {number} is another than in {}", other.display());
+                    return Err(refused(path, &why));
+                }
+                _ => self.rows.insert(number, (row, path.to_owned())),
+            };
+        }
+        Ok(())
+    }
+
+    fn into_runs(self, directory: &Path, prefix: &str) -> Result<Runs, Failure> {
+        if self.rows.is_empty() {
+            return Err(refused(&directory.join(format!("{prefix}runs.csv")), "there is no run in it"));
+        }
+        let path = directory.join(format!("{prefix}{SCENARIO}"));
+        let scenario = if path.is_file() { Some((Scenario::load(&path)?, path)) } else { None };
+        let absolute = std::path::absolute(directory).unwrap_or_default();
+        let folder = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let name = match (&scenario, prefix.strip_suffix('-')) {
+            (Some((scenario, _)), _) => scenario.name.clone(),
+            (None, Some(prefix)) => prefix.to_owned(),
+            (None, None) => folder,
+        };
+        let column = |name: &str| -> Vec<String> {
+            self.rows.values().map(|(row, _)| row.get(name).cloned().unwrap_or_default()).collect()
+        };
+        let number = |text: &String| text.parse::<f64>().unwrap_or(f64::NAN);
+        let (mut keys, mut all) = (Vec::new(), Vec::new());
+        for header in self.header.iter().filter(|name| !is_about(name)) {
+            let texts = column(header);
+            let values: Vec<f64> = texts.iter().map(number).collect();
+            if let Some(meaning) = metrics::ALL.iter().find(|meaning| meaning.name == *header) {
+                // Words and lists are no numbers.
+                if texts.iter().zip(&values).all(|(text, value)| text.is_empty() || !value.is_nan()) {
+                    all.push(Metric { meaning, texts, values });
+                }
+            } else {
+                let drawn = scenario.as_ref().map(|(scenario, _)| scenario.uncertain.contains_key(header));
+                let swept = !drawn.unwrap_or_else(|| !values.is_sorted());
+                keys.push(Key { name: header.clone(), texts, values, swept });
+            }
+        }
+        let errors = column("error");
+        Ok(Runs { name, scenario, numbers: self.rows.into_keys().collect(), keys, metrics: all, errors })
+    }
+}
+
+/// Whether a column tells about a run, and is neither a key nor a metric.
+fn is_about(column: &str) -> bool {
+    ["run", "seed", "error"].contains(&column)
+}
+
+impl Runs {
+    /// The keys that a sweep varies.
+    pub fn swept(&self) -> Vec<&Key> {
+        self.keys.iter().filter(|key| key.swept).collect()
+    }
+
+    /// The keys that are drawn.
+    pub fn drawn(&self) -> Vec<&Key> {
+        self.keys.iter().filter(|key| !key.swept).collect()
+    }
+}
+
+impl Metric {
+    /// Its values that there are, sorted.
+    pub fn sorted(&self) -> Vec<f64> {
+        let mut values: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    }
+
+    /// Whether runs differ in it.
+    pub fn varies(&self) -> bool {
+        let sorted = self.sorted();
+        sorted.first() != sorted.last()
+    }
+
+    /// Its name in words, without the unit, and the unit.
+    pub fn label(&self) -> (String, &'static str) {
+        let unit = self.meaning.unit;
+        let suffix = match unit {
+            "rad" => "_rad",
+            "rad/s" => "_rad_s",
+            "s" => "_s",
+            "J" => "_j",
+            "kg" => "_kg",
+            "N m" => "_nm",
+            "N m s" => "_nm_s",
+            _ => "",
+        };
+        let name = self.meaning.name;
+        let name = name.strip_suffix(suffix).unwrap_or(name).replace('_', " ");
+        // Prefixes are those of single units.
+        if unit.contains('²') { (format!("{name}, {unit}"), "") } else { (name, unit) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_known_by_their_names() {
+        for (file, expected) in [
+            ("runs.csv", Some("")),
+            ("runs-0-500.csv", Some("")),
+            ("relay-fixed-runs.csv", Some("relay-fixed-")),
+            ("relay-2-runs-10-20.csv", Some("relay-2-")),
+            ("statistics.csv", None),
+            ("runs.csv.partial", None),
+            ("overruns.csv", None),
+            ("3-4.csv", None),
+        ] {
+            assert_eq!(prefix(file).as_deref(), expected, "{file}");
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! The worst runs of a campaign, and the command that repeats each with its log.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::table::{Metric, Runs};
+use crate::campaign::short;
+
+/// Metrics of which more is better.
+const MORE: [&str; 4] =
+    ["envelope_reduction", "envelope_frozen_reduction", "nis_inside_95", "lock_lost_at_s"];
+/// Metrics that are 1 where all is well.
+const ONE: [&str; 2] = ["nees_mean", "nis_mean"];
+/// Metrics without a value if something never happened that should have.
+const NEVER: [&str; 3] = ["settling_time_s", "energy_below_10pct_at_s", "energy_below_1pct_at_s"];
+
+/// How bad a value is; none if a metric is neither good nor bad, or has no value.
+fn badness(metric: &Metric, index: usize) -> Option<f64> {
+    let (name, value) = (metric.meaning.name, metric.values[index]);
+    let neutral = ["gain_", "cycle_", "pushes_"].iter().any(|start| name.starts_with(start));
+    let bad = match name {
+        _ if neutral => f64::NAN,
+        _ if MORE.contains(&name) => -value,
+        _ if ONE.contains(&name) => value.ln().abs(),
+        _ if NEVER.contains(&name) && value.is_nan() => f64::INFINITY,
+        _ => value.abs(),
+    };
+    (!bad.is_nan()).then_some(bad)
+}
+
+/// A run that is worth a look.
+struct Worst<'a> {
+    /// The metric, or `error`.
+    what: &'a str,
+    run: u64,
+    /// The value, or why the run failed.
+    value: &'a str,
+    command: Option<String>,
+}
+
+fn worst<'a>(runs: &'a Runs, directory: &Path, metrics: &[&'a Metric], most: usize) -> Vec<Worst<'a>> {
+    let ran = |index: &usize| runs.errors[*index].is_empty();
+    let told = |what, index: usize, value| {
+        let command = runs.scenario.as_ref().map(|(_, path)| command(runs, directory, path, index));
+        Worst { what, run: runs.numbers[index], value, command }
+    };
+    let all = 0..runs.numbers.len();
+    let failed = all.clone().filter(|index| !ran(index)).take(most);
+    let mut worst: Vec<Worst<'a>> =
+        failed.map(|index| told("error", index, runs.errors[index].as_str())).collect();
+    for metric in metrics {
+        let bad = all.clone().filter(ran).filter_map(|index| Some((badness(metric, index)?, index)));
+        let mut bad: Vec<(f64, usize)> = bad.collect();
+        bad.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        for (_, index) in bad.into_iter().take(most) {
+            let value = match metric.texts[index].as_str() {
+                "" => "never",
+                text => text,
+            };
+            worst.push(told(metric.meaning.name, index, value));
+        }
+    }
+    worst
+}
+
+/// The command that repeats a run, with its log and a table of its own.
+fn command(runs: &Runs, directory: &Path, scenario: &Path, index: usize) -> String {
+    let number = runs.numbers[index];
+    let mut command = format!("flexsc simulate {}", quoted(&scenario.display().to_string()));
+    for key in runs.swept() {
+        let _ = write!(command, " --set {}", quoted(&format!("{}={}", key.name, key.texts[index])));
+    }
+    let own: PathBuf = directory.join(format!("run-{number}"));
+    let _ = write!(
+        command,
+        " --runs {number}:{} --log full -o {}",
+        number + 1,
+        quoted(&own.display().to_string())
+    );
+    command
+}
+
+/// A word as a shell takes it for one.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:+,@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+/// The table for people.
+pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) -> String {
+    let worst = worst(runs, directory, metrics, most);
+    let mut text = format!("{}: the worst of {} runs\n", runs.name, runs.numbers.len());
+    let mut before = "";
+    for found in &worst {
+        if found.what != before {
+            let _ = writeln!(text, "  {}", if found.what == "error" { "failed" } else { found.what });
+            before = found.what;
+        }
+        let why = match found.value.parse() {
+            // A count is told as it is.
+            Ok(number) if found.value.contains('.') => short(number),
+            _ => found.value.lines().next().unwrap_or_default().to_owned(),
+        };
+        let _ = writeln!(text, "    run {:<8}{why}", found.run);
+        if let Some(command) = &found.command {
+            let _ = writeln!(text, "      {command}");
+        }
+    }
+    text
+}
+
+/// A line for machines for each.
+pub fn lines(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) -> String {
+    let line = |found: Worst<'_>| {
+        // Numbers as the table has them.
+        let value = found.value.parse::<f64>().map_or_else(|_| json!(found.value), |value| json!(value));
+        let worst = json!({
+            "scenario": runs.name, "metric": found.what, "run": found.run, "value": value, "command": found.command,
+        });
+        format!("{}\n", json!({ "worst": worst }))
+    };
+    worst(runs, directory, metrics, most).into_iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_for_shells() {
+        assert_eq!(quoted("out/scenario.toml"), "out/scenario.toml");
+        assert_eq!(quoted("body.planar.modes[0].gain=1e-3"), "'body.planar.modes[0].gain=1e-3'");
+        assert_eq!(quoted("it's"), "'it'\\''s'");
+    }
+}

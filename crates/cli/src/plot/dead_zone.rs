@@ -1,0 +1,42 @@
+//! Figure `angle` under a law that switches: the angle at the end of the run, with the dead zone and where the law switched.
+
+use flexsc_core::law::{Law, Sides};
+
+use super::motion::Motion;
+use super::story::Story;
+use super::{time, title, torque};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+pub fn figure(story: &Story, motion: &Motion) -> Figure {
+    let shown = torque::shown(story);
+    let line = motion.time.iter().copied().zip(motion.angle.iter().copied());
+    let line: Vec<Point> = line.filter(|(time, _)| *time >= shown.start - 1e-9).collect();
+    let points = |timeout: bool| -> Vec<Point> {
+        let seen = story.switchings.iter().filter(|s| s.timeout == timeout && s.time >= shown.start);
+        seen.map(|s| (s.time, s.angle)).collect()
+    };
+    let borders: Vec<f64> = match &story.scenario.law {
+        Law::Relay(relay) => match relay.sides {
+            Sides::Two => vec![relay.dead_zone.get(), -relay.dead_zone.get()],
+            Sides::One => vec![relay.dead_zone.get()],
+        },
+        Law::Pd(_) | Law::Open(_) | Law::PhasePlane(_) => Vec::new(),
+    };
+    let y = Axis::around("angle x", "rad", line.iter().map(|point| point.1).chain(borders.iter().copied()));
+    let border = |(index, height): (usize, &f64)| {
+        let name = match (index, borders.len()) {
+            (0, 1) => "ε",
+            (0, _) => "±ε",
+            _ => "",
+        };
+        Layer::new(name, colour::GREY, Shape::Dashes, vec![(shown.start, *height), (shown.end, *height)])
+    };
+    let mut layers: Vec<Layer> = borders.iter().enumerate().map(border).collect();
+    layers.extend([
+        Layer::new("angle", colour::BLACK, Shape::Line(1.2), line),
+        Layer::new("switching by guard", colour::VERMILLION, Shape::Disc, points(false)),
+        Layer::new("by timeout", colour::BLUE, Shape::Diamond, points(true)),
+    ]);
+    let panels = vec![Panel::new(time(shown), y, layers)];
+    Figure { title: title(story, "angle"), panels, panel_height: 300 }
+}

@@ -1,0 +1,142 @@
+//! The figures that there are, and which of them a log has.
+
+use clap::ValueEnum;
+use flexsc_core::estimator::Estimator;
+use flexsc_core::law::Law;
+
+use super::motion::Motion;
+use super::spatial::{self, Cycles};
+use super::story::Story;
+use super::{
+    angle, consistency, dead_zone, drive, envelope, estimate, extra, frequency, gain, modes, outputs,
+    phase_plane, torque, wheel,
+};
+use crate::figure::Figure;
+
+/// A figure.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
+pub enum What {
+    /// Rate against angle, with the law's switching lines
+    PhasePlane,
+    /// Torque: of a law that switches at the end of the run, else over all of it
+    Torque,
+    /// Angle of the hub: under a law that switches at the end of the run, else with its goal and when it has settled
+    Angle,
+    /// Each observed coordinate
+    Outputs,
+    /// Envelope of the elastic modes with its window means, and the elastic angle at the end of the run
+    Envelope,
+    /// What the adaptation decided, and the gain
+    Gain,
+    /// Each elastic mode: under a law that switches at the end of the run, else over all of it
+    Modes,
+    /// Of a spatial body: angles beyond the target
+    Pointing,
+    /// Of a spatial body: rates, rigid and at the gyro
+    Rates,
+    /// Of a spatial body: energy of the elastic modes, and propellant
+    Energy,
+    /// Of a spatial body: for how long the jets fire
+    Jets,
+    /// Of a spatial body: natural frequencies as adaptive observers estimate them, and as they are
+    Tracking,
+    /// Of a spatial body: elastic rates that active damping acts on, its thresholds, and its pulses
+    Damping,
+    /// Speed and momentum of the flywheel, with its limits
+    Wheel,
+    /// Frequency of the dominant mode as a filter estimates it, and what it really is
+    Frequency,
+    /// Displacement of the dominant mode as a filter estimates it, and what it really is
+    Estimate,
+    /// Whether a filter knows how large its errors are: NIS and NEES with their 95 % bands
+    Consistency,
+    /// Gain of the extra loop, and the frequency that it follows
+    Extra,
+    /// Of a campaign: histogram and empirical distribution of each metric, with its median and its 5 and 95 %
+    Distribution,
+    /// Of a campaign: each metric against the keys that were drawn
+    Scatter,
+    /// Of a campaign: median, 25 to 75 % and 5 to 95 % of the main signals over time, from its logs
+    Fan,
+    /// Of a sweep over one key: each metric over it
+    Curve,
+    /// Of a sweep over two keys: each metric as a map
+    Region,
+}
+
+impl What {
+    /// Those of a log.
+    pub fn all_in(story: &Story) -> Vec<Self> {
+        Self::value_variants().iter().copied().filter(|what| what.is_in(story)).collect()
+    }
+
+    /// Whether a log has what the figure shows.
+    fn is_in(self, story: &Story) -> bool {
+        let spatial = story.scenario.spatial.is_some();
+        match self {
+            Self::PhasePlane => story.switches(),
+            Self::Torque | Self::Angle => !spatial,
+            Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
+            Self::Envelope => {
+                story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
+            }
+            Self::Gain => !story.steps.is_empty(),
+            Self::Modes => !story.scenario.model.modes.is_empty(),
+            Self::Pointing | Self::Rates | Self::Energy | Self::Jets => spatial,
+            Self::Tracking => matches!(story.scenario.estimator, Some(Estimator::Adaptive(_))),
+            Self::Damping => {
+                matches!(&story.scenario.law, Law::PhasePlane(law) if law.damping.is_some())
+            }
+            Self::Wheel => wheel::rotor(story).is_some(),
+            Self::Frequency | Self::Estimate | Self::Consistency => {
+                story.scenario.estimator.as_ref().is_some_and(Estimator::filters)
+            }
+            Self::Extra => extra::of(story).is_some(),
+            Self::Distribution | Self::Scatter | Self::Fan | Self::Curve | Self::Region => false,
+        }
+    }
+
+    /// The figure of a log; none of what only a campaign has.
+    pub fn figure(self, story: &Story, motion: &Motion, cycles: &Cycles) -> Option<Figure> {
+        Some(match self {
+            Self::PhasePlane => phase_plane::figure(story, motion),
+            Self::Torque if story.switches() => torque::figure(story),
+            Self::Torque => drive::figure(story, motion),
+            Self::Angle if story.switches() => dead_zone::figure(story, motion),
+            Self::Angle => angle::figure(story, motion),
+            Self::Outputs => outputs::figure(story, motion),
+            Self::Envelope => envelope::figure(story, motion),
+            Self::Gain => gain::figure(story),
+            Self::Modes => modes::figure(story, motion),
+            Self::Pointing => spatial::pointing(story, cycles),
+            Self::Rates => spatial::rates(story, cycles),
+            Self::Energy => spatial::energy(story, cycles),
+            Self::Jets => spatial::jets(story, cycles),
+            Self::Tracking => spatial::tracking(story, cycles),
+            Self::Damping => spatial::damping(story, cycles),
+            Self::Wheel => wheel::figure(story, motion),
+            Self::Frequency => frequency::figure(story, motion),
+            Self::Estimate => estimate::figure(story, motion),
+            Self::Consistency => consistency::figure(story, motion),
+            Self::Extra => extra::figure(story, motion),
+            Self::Distribution | Self::Scatter | Self::Fan | Self::Curve | Self::Region => return None,
+        })
+    }
+
+    /// How `--what` calls it.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+}
+
+/// Those that are chosen of those that there are: all if none is.
+pub fn chosen(asked: &[What], there: &[What]) -> Result<Vec<What>, (String, String)> {
+    match asked.iter().find(|what| !there.contains(what)) {
+        Some(missing) => {
+            let names: Vec<_> = there.iter().map(|what| what.name()).collect();
+            Err((missing.name(), names.join(", ")))
+        }
+        None if asked.is_empty() => Ok(there.to_vec()),
+        None => Ok(asked.to_vec()),
+    }
+}

@@ -1,0 +1,136 @@
+//! Viewer layouts: the panels that show a run in Foxglove-compatible viewers, made from its scenario.
+//!
+//! A layout is made with all that a log of the scenario can hold, and then keeps the panels whose topics a log has. What is
+//! attached to a log, what `flexsc layout` writes and what is shipped come from here.
+
+mod mosaic;
+mod panel;
+mod planar;
+mod spatial;
+
+use serde_json::{Map, Value, json};
+
+use crate::actuator::Actuator;
+use crate::estimator::Estimator;
+use crate::record::Detail;
+use crate::scenario::Scenario;
+
+use panel::Panel;
+
+/// Above so many panels a layout has tabs.
+const MOST_PANELS: usize = 8;
+
+/// A layout.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    tabs: Vec<Tab>,
+    /// The topics of a log, with the least detail that has each.
+    topics: Vec<(&'static str, Detail)>,
+}
+
+/// Panels that belong together.
+#[derive(Clone, Debug, PartialEq)]
+struct Tab {
+    title: &'static str,
+    panels: Vec<Panel>,
+}
+
+impl Layout {
+    /// The layout of a scenario's logs, with all that they can show.
+    pub fn of(scenario: &Scenario) -> Self {
+        let tabs = match &scenario.spatial {
+            None => planar::tabs(scenario),
+            Some(spatial) => spatial::tabs(scenario, spatial),
+        };
+        Self { tabs, topics: topics(scenario) }
+    }
+
+    /// What is left of it for a log of this detail.
+    #[must_use]
+    pub fn of_detail(&self, detail: Detail) -> Self {
+        let has = |topic: &str| self.topics.iter().any(|(own, least)| *own == topic && *least <= detail);
+        self.of_topics(has)
+    }
+
+    /// What is left of it for a log that has these topics.
+    #[must_use]
+    pub fn of_topics(&self, has: impl Fn(&str) -> bool) -> Self {
+        let tabs = self.tabs.iter().map(|tab| {
+            let panels = tab.panels.iter().filter_map(|panel| panel.with_topics(&has)).collect();
+            Tab { title: tab.title, panels }
+        });
+        let tabs = tabs.filter(|tab: &Tab| !tab.panels.is_empty()).collect();
+        Self { tabs, topics: self.topics.clone() }
+    }
+
+    /// The layout as JSON, in the form that viewers import.
+    pub fn to_json(&self) -> String {
+        let panels = || self.tabs.iter().flat_map(|tab| &tab.panels);
+        let mut configs: Map<String, Value> = panels().map(|panel| (panel.id(), panel.config())).collect();
+        let layout = if panels().count() <= MOST_PANELS {
+            mosaic::of(&panels().collect::<Vec<_>>())
+        } else {
+            let tab = |tab: &Tab| {
+                let layout = mosaic::of(&tab.panels.iter().collect::<Vec<_>>());
+                json!({ "title": tab.title, "layout": layout })
+            };
+            let tabs: Vec<Value> = self.tabs.iter().map(tab).collect();
+            configs.insert("Tab!run".to_owned(), json!({ "activeTabIdx": 0, "tabs": tabs }));
+            json!("Tab!run")
+        };
+        let layout = json!({
+            "configById": configs,
+            "globalVariables": {},
+            "userNodes": {},
+            "playbackConfig": { "speed": 1 },
+            "layout": layout,
+        });
+        // What was just made is a tree of texts and finite numbers.
+        serde_json::to_string_pretty(&layout).unwrap_or_default() + "\n"
+    }
+}
+
+/// The topics of a complete log of a scenario, with the least detail that has each.
+fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
+    use Detail::{Events, Full, Scene};
+    let mut topics =
+        vec![("/params", Events), ("/log", Events), ("/metrics", Events), ("/scene", Scene), ("/tf", Scene)];
+    let mut add = |there: bool, topic: &'static str, detail: Detail| {
+        if there {
+            topics.push((topic, detail));
+        }
+    };
+    let estimator = scenario.estimator.as_ref();
+    if scenario.spatial.is_some() {
+        add(true, "/jets", Events);
+        for topic in ["/pointing", "/rates", "/vibrations", "/energy"] {
+            add(true, topic, Full);
+        }
+        add(matches!(estimator, Some(Estimator::Adaptive(_))), "/tracking", Full);
+        add(true, "/plumes", Scene);
+        return topics;
+    }
+    let plan = scenario.plan.as_ref();
+    let wheel = match &scenario.actuator {
+        Actuator::Wheel(wheel) => Some(wheel),
+        _ => None,
+    };
+    add(true, "/law", Events);
+    add(scenario.law.switches() || (plan.is_some() && planar::feeds_back(scenario)), "/command", Events);
+    let window = estimator.and_then(Estimator::envelope).map(|envelope| envelope.window);
+    let closes = window.is_some_and(|window| window <= scenario.duration);
+    add(closes, "/envelope_mean", Events);
+    add(closes && scenario.adaptation.is_some(), "/adaptation", Events);
+    add(plan.is_some_and(|plan| plan.time <= scenario.duration.seconds()), "/arrival", Events);
+    for topic in ["/attitude", "/rate", "/modes"] {
+        add(true, topic, Full);
+    }
+    add(!scenario.model.outputs.is_empty(), "/outputs", Full);
+    add(scenario.tells_torque(), "/goal", Full);
+    add(scenario.tells_torque(), "/torque", Full);
+    add(wheel.is_some_and(|wheel| wheel.rotor.is_some()), "/wheel", Full);
+    add(window.is_some(), "/envelope", Full);
+    add(planar::filters(scenario), "/estimator", Full);
+    add(wheel.is_none(), "/plumes", Scene);
+    topics
+}

@@ -1,0 +1,256 @@
+//! Panels: what each kind shows, and its configuration as viewers read it.
+
+use serde_json::{Map, Value, json};
+
+use crate::scene::Extent;
+
+/// Colours that people without full sight of colours can tell apart.
+const COLORS: [&str; 7] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#8C8C8C"];
+/// No plot has more lines of one kind.
+pub const MOST_LINES: usize = 6;
+
+/// A panel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    name: &'static str,
+    title: String,
+    shows: Shows,
+}
+
+/// What a panel shows.
+#[derive(Clone, Debug, PartialEq)]
+enum Shows {
+    /// Values over time.
+    Plot(Vec<Line>),
+    /// Values over another value.
+    Plane(Vec<Line>, String),
+    /// States over time.
+    States(Vec<Line>),
+    /// The last message of a topic.
+    Message(String),
+    /// Lines of the log.
+    Log,
+    /// The scene, of these topics.
+    Scene(Extent, Vec<&'static str>),
+}
+
+/// A line of a plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    path: String,
+    label: String,
+    /// Points that are not joined.
+    dots: bool,
+    thick: bool,
+}
+
+/// A line of a value, with its label.
+pub fn line(path: impl Into<String>, label: impl Into<String>) -> Line {
+    Line { path: path.into(), label: label.into(), dots: false, thick: false }
+}
+
+impl Line {
+    /// The same as points.
+    pub fn dots(self) -> Self {
+        Self { dots: true, ..self }
+    }
+
+    /// The same, thick.
+    pub fn thick(self) -> Self {
+        Self { thick: true, ..self }
+    }
+
+    /// Its topic; none of a number, which is a horizontal line.
+    fn topic(&self) -> Option<&str> {
+        self.path.starts_with('/').then(|| topic(&self.path))
+    }
+}
+
+fn topic(path: &str) -> &str {
+    path.split_once('.').map_or(path, |(topic, _)| topic)
+}
+
+impl Panel {
+    /// Values over time.
+    pub fn plot(name: &'static str, title: impl Into<String>, lines: Vec<Line>) -> Self {
+        Self { name, title: title.into(), shows: Shows::Plot(lines) }
+    }
+
+    /// Values over another value. Its topic must not be that of the values, or viewers show nothing.
+    pub fn plane(name: &'static str, title: impl Into<String>, x: &str, lines: Vec<Line>) -> Self {
+        Self { name, title: title.into(), shows: Shows::Plane(lines, x.to_owned()) }
+    }
+
+    /// States over time.
+    pub fn states(name: &'static str, title: impl Into<String>, lines: Vec<Line>) -> Self {
+        Self { name, title: title.into(), shows: Shows::States(lines) }
+    }
+
+    /// The last message of a topic.
+    pub fn message(name: &'static str, title: impl Into<String>, topic: &str) -> Self {
+        Self { name, title: title.into(), shows: Shows::Message(topic.to_owned()) }
+    }
+
+    /// Lines of the log.
+    pub fn log() -> Self {
+        Self { name: "log", title: "What happened".to_owned(), shows: Shows::Log }
+    }
+
+    /// The scene.
+    pub fn scene(extent: Extent) -> Self {
+        Self {
+            name: "scene",
+            title: "Scene".to_owned(),
+            shows: Shows::Scene(extent, vec!["/scene", "/plumes"]),
+        }
+    }
+
+    /// The panel's name in a layout.
+    pub fn id(&self) -> String {
+        let kind = match &self.shows {
+            Shows::Plot(_) | Shows::Plane(..) => "Plot",
+            Shows::States(_) => "StateTransitions",
+            Shows::Message(_) => "RawMessages",
+            Shows::Log => "RosOut",
+            Shows::Scene(..) => "3D",
+        };
+        format!("{kind}!{}", self.name)
+    }
+
+    /// How high it is, relative to others.
+    pub fn weight(&self) -> u32 {
+        match &self.shows {
+            Shows::Scene(..) | Shows::Plane(..) => 4,
+            Shows::Plot(_) | Shows::Log | Shows::Message(_) => 2,
+            Shows::States(_) => 1,
+        }
+    }
+
+    /// What is left of it where a log has these topics, if anything.
+    pub fn with_topics(&self, has: &impl Fn(&str) -> bool) -> Option<Self> {
+        let kept = |lines: &[Line]| -> Option<Vec<Line>> {
+            // Horizontal lines alone show nothing.
+            lines.iter().any(|line| line.topic().is_some_and(has)).then_some(())?;
+            Some(lines.iter().filter(|line| line.topic().is_none_or(has)).cloned().collect())
+        };
+        let shows = match &self.shows {
+            Shows::Plot(lines) => Shows::Plot(kept(lines)?),
+            Shows::Plane(lines, x) => Shows::Plane(kept(lines).filter(|_| has(topic(x)))?, x.clone()),
+            Shows::States(lines) => Shows::States(kept(lines)?),
+            Shows::Message(topic) => has(topic).then(|| self.shows.clone())?,
+            Shows::Log => has("/log").then_some(Shows::Log)?,
+            Shows::Scene(extent, topics) => {
+                let topics: Vec<_> = topics.iter().copied().filter(|topic| has(topic)).collect();
+                (!topics.is_empty()).then(|| Shows::Scene(extent.clone(), topics))?
+            }
+        };
+        Some(Self { shows, ..self.clone() })
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> Value {
+        let mut config = match &self.shows {
+            Shows::Plot(lines) => plot(lines, json!("timestamp")),
+            Shows::Plane(lines, x) => {
+                let mut config = plot(lines, json!("custom"));
+                let path = json!({ "value": x, "enabled": true, "timestampMethod": "receiveTime" });
+                config.insert("xAxisPath".to_owned(), path);
+                config
+            }
+            Shows::States(lines) => states(lines),
+            Shows::Message(topic) => {
+                object(json!({ "topicPath": topic, "diffEnabled": false, "expansion": "all" }))
+            }
+            // From level 2 on: without what is for those who look for an error.
+            Shows::Log => object(json!({ "searchTerms": [], "minLogLevel": 2, "topicToRender": "/log" })),
+            Shows::Scene(extent, topics) => scene(extent, topics),
+        };
+        for key in ["foxglovePanelTitle", "lichtblickPanelTitle"] {
+            config.insert(key.to_owned(), json!(self.title));
+        }
+        Value::Object(config)
+    }
+}
+
+fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(object) => object,
+        _ => Map::new(),
+    }
+}
+
+fn plot(lines: &[Line], x_axis: Value) -> Map<String, Value> {
+    let path = |(index, line): (usize, &Line)| {
+        let limit = line.topic().is_none();
+        json!({
+            "value": line.path,
+            "enabled": true,
+            "timestampMethod": "receiveTime",
+            "label": line.label,
+            "color": if limit { COLORS[6] } else { COLORS[index % 6] },
+            "showLine": !line.dots,
+            "lineSize": if line.thick { 2.5 } else if limit { 1.0 } else { 1.5 },
+        })
+    };
+    let mut config = object(json!({
+        "paths": lines.iter().enumerate().map(path).collect::<Vec<_>>(),
+        "showXAxisLabels": true,
+        "showYAxisLabels": true,
+        "showLegend": true,
+        "legendDisplay": "floating",
+        "showPlotValuesInLegend": false,
+        "isSynced": true,
+        "sidebarDimension": 240,
+    }));
+    config.insert("xAxisVal".to_owned(), x_axis);
+    config
+}
+
+fn states(lines: &[Line]) -> Map<String, Value> {
+    let path = |line: &Line| json!({ "value": line.path, "label": line.label, "enabled": true, "timestampMethod": "receiveTime" });
+    let paths: Vec<Value> = lines.iter().map(path).collect();
+    object(json!({ "isSynced": true, "showPoints": true, "paths": paths }))
+}
+
+fn scene(extent: &Extent, topics: &[&str]) -> Map<String, Value> {
+    let shown = |topic: &&str| ((*topic).to_owned(), json!({ "visible": true }));
+    let hidden = |frame: &String| (format!("frame:{frame}"), json!({ "visible": false }));
+    let reach = extent.reach;
+    object(json!({
+        "cameraState": {
+            "perspective": true,
+            "distance": 2.6 * reach,
+            "phi": 50,
+            "thetaOffset": 35,
+            "targetOffset": [0, 0, 0],
+            "target": [0, 0, 0],
+            "targetOrientation": [0, 0, 0, 1],
+            "fovy": 45,
+            "near": 0.01 * reach,
+            "far": 100.0 * reach,
+        },
+        "followMode": "follow-pose",
+        "followTf": "inertial",
+        "scene": { "transforms": { "showLabel": false, "enablePreloading": true } },
+        "transforms": extent.frames.iter().map(hidden).collect::<Map<_, _>>(),
+        "topics": topics.iter().map(shown).collect::<Map<_, _>>(),
+        "layers": { "grid": {
+            "visible": true,
+            "drawBehind": false,
+            "frameLocked": true,
+            "label": "Grid",
+            "instanceId": "grid",
+            "layerId": "foxglove.Grid",
+            "frameId": "inertial",
+            "size": 4.0 * reach,
+            "divisions": 20,
+            "lineWidth": 1,
+            "color": "#248eff30",
+            "position": [0, 0, -0.4 * reach],
+            "rotation": [0, 0, 0],
+            "order": 1,
+        } },
+        "publish": {},
+        "imageMode": {},
+    }))
+}

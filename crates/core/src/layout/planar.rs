@@ -1,0 +1,173 @@
+//! The panels of a body with one angle.
+
+use super::Tab;
+use super::panel::{Line, MOST_LINES, Panel, line};
+use crate::estimator::Estimator;
+use crate::law::Law;
+use crate::scenario::Scenario;
+use crate::scene::Extent;
+
+/// Whether a filter acts at samples.
+pub fn filters(scenario: &Scenario) -> bool {
+    let estimator = scenario.estimator.as_ref();
+    estimator.is_some_and(|estimator| {
+        matches!(
+            estimator,
+            Estimator::Kalman(_) | Estimator::ExtendedKalman(_) | Estimator::UnscentedKalman(_)
+        )
+    })
+}
+
+/// Whether the law feeds back after a manoeuvre, if there is one.
+pub fn feeds_back(scenario: &Scenario) -> bool {
+    matches!(scenario.law, Law::Pd(_))
+}
+
+/// The tabs of a scenario.
+pub fn tabs(scenario: &Scenario) -> Vec<Tab> {
+    let log = vec![
+        Panel::log(),
+        Panel::message("arrival", "End of the manoeuvre", "/arrival"),
+        Panel::message("metrics", "Metrics", "/metrics"),
+    ];
+    vec![
+        Tab { title: "Motion", panels: motion(scenario) },
+        Tab { title: "Estimator", panels: estimator(scenario) },
+        Tab { title: "Log", panels: log },
+    ]
+}
+
+fn motion(scenario: &Scenario) -> Vec<Panel> {
+    let relay = scenario.law.switches();
+    let mut panels = vec![Panel::scene(Extent::of(scenario))];
+    if relay {
+        let title = "Phase plane: angle (rad) and rate (rad/s)";
+        let lines = vec![line("/rate.rate_rad_s", "motion")];
+        panels.push(Panel::plane("phase", title, "/attitude.angle_rad", lines));
+    }
+    panels.extend([
+        Panel::plot("angle", "Angle (rad)", angles(scenario)),
+        Panel::plot(
+            "rate",
+            "Rate (rad/s)",
+            vec![
+                line("/rate.rate_rad_s", "hub"),
+                line("/rate.rigid_rad_s", "rigid"),
+                line("/goal.rate_rad_s", "goal"),
+            ],
+        ),
+        Panel::plot("modes", "Elastic modes (rad)", modes(scenario)),
+        Panel::plot("outputs", "Observed coordinates", outputs(scenario)),
+        Panel::plot("torque", "Torque", torques(scenario)),
+        Panel::plot("wheel", "Wheel speed (rad/s)", vec![line("/wheel.speed_rad_s", "speed")]),
+    ]);
+    let state = if relay { "/command.state" } else { "/law.state" };
+    panels.push(Panel::states("law", "State of the law", vec![line(state, "law")]));
+    panels
+}
+
+fn angles(scenario: &Scenario) -> Vec<Line> {
+    let mut lines = vec![line("/attitude.angle_rad", "hub"), line("/attitude.rigid_rad", "rigid")];
+    if scenario.sensor.period().is_some() {
+        lines.push(line("/attitude.measured_rad", "measured"));
+    }
+    lines.push(line("/goal.angle_rad", "goal"));
+    if let Law::Relay(relay) = &scenario.law {
+        let zone = relay.dead_zone.get();
+        lines.push(line("/command.angle_rad", "switchings").dots());
+        lines.push(line(zone.to_string(), "dead zone"));
+        lines.push(line((-zone).to_string(), "dead zone"));
+    }
+    lines
+}
+
+fn modes(scenario: &Scenario) -> Vec<Line> {
+    let count = scenario.model.modes.len();
+    let each = (0..count.min(MOST_LINES))
+        .map(|mode| line(format!("/modes.modes[{mode}].displacement_rad"), format!("mode {mode}")));
+    let sum = (count != 1).then(|| line("/modes.elastic_rad", "sum"));
+    sum.into_iter().chain(each).collect()
+}
+
+fn outputs(scenario: &Scenario) -> Vec<Line> {
+    let outputs = scenario.model.outputs.iter().enumerate().take(MOST_LINES);
+    let of = |(index, output): (usize, &crate::body::Output)| {
+        line(format!("/outputs.outputs[{index}].value"), format!("{} ({})", output.name, output.unit))
+    };
+    outputs.map(of).collect()
+}
+
+fn torques(scenario: &Scenario) -> Vec<Line> {
+    if !scenario.tells_torque() {
+        return vec![line("/command.torque_nm", "torque").dots(), line("/law.torque_nm", "each second")];
+    }
+    let mut lines = vec![line("/torque.applied_nm", "applied")];
+    if scenario.plan.is_some() {
+        lines.push(line("/torque.feedforward_nm", "planned"));
+    }
+    lines.push(line("/torque.feedback_nm", "commanded by the law"));
+    if !scenario.disturbance.is_empty() {
+        lines.push(line("/torque.disturbance_nm", "disturbance"));
+    }
+    lines
+}
+
+fn estimator(scenario: &Scenario) -> Vec<Panel> {
+    let mut panels = vec![Panel::plot(
+        "envelope",
+        "Envelope of the elastic modes (rad)",
+        vec![
+            line("/envelope.envelope_rad", "envelope"),
+            line("/envelope_mean.mean_rad", "window mean").thick(),
+        ],
+    )];
+    if scenario.law.switches() {
+        let lines =
+            vec![line("/envelope_mean.gain", "in each window").thick(), line("/law.gain", "each second")];
+        panels.push(Panel::plot("gain", "Braking gain k_t", lines));
+    }
+    panels.push(Panel::states(
+        "search",
+        "Search for the gain",
+        vec![line("/adaptation.decision", "decision")],
+    ));
+    let plot = |name, title: &str, lines: &[(&str, &str)]| {
+        let lines = lines.iter().map(|(field, label)| line(format!("/estimator.{field}"), *label));
+        Panel::plot(name, title, lines.collect())
+    };
+    panels.extend([
+        plot(
+            "frequency",
+            "Frequency of the dominant mode (rad/s)",
+            &[("frequency_rad_s", "as the law reads it"), ("true_frequency_rad_s", "true")],
+        ),
+        plot("deviation", "Its standard deviation (rad/s)", &[("frequency_sd_rad_s", "standard deviation")]),
+        Panel::plot("dominant", "Dominant mode (rad)", dominant(scenario)),
+        plot("nis", "NIS and NEES", &[("nis", "NIS"), ("nees", "NEES")]),
+        Panel::states(
+            "lock",
+            "Lock and gate",
+            vec![
+                line("/estimator.lock", "lock"),
+                line("/estimator.gated", "gated"),
+                line("/estimator.measured", "measured"),
+            ],
+        ),
+    ]);
+    panels
+}
+
+/// The dominant mode, as the law reads it and as it really is.
+fn dominant(scenario: &Scenario) -> Vec<Line> {
+    let mut lines = vec![line("/estimator.displacement_rad", "as the law reads it")];
+    let excitability = |mode: usize| scenario.model.modes[mode].excitability().abs();
+    let modes = 0..scenario.model.modes.len();
+    // Without an estimator there is nothing to compare with.
+    if filters(scenario)
+        && let Some(mode) =
+            modes.reduce(|best, mode| if excitability(mode) > excitability(best) { mode } else { best })
+    {
+        lines.push(line(format!("/modes.modes[{mode}].displacement_rad"), "true"));
+    }
+    lines
+}

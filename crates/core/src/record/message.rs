@@ -1,0 +1,135 @@
+//! Messages: the rows of a run as the bytes that every log of it holds, wherever they go.
+
+use super::foxglove::{Level, Log};
+use super::proto::Encoder;
+use super::row::{Stamp, TopicRow};
+use super::topics::index_of;
+use super::{Detail, Metrics, OutputName, Params, Record, RecordError, Sample, TakeRow};
+use crate::layout::Layout;
+use crate::time::Instant;
+
+/// What a log says about where it comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Provenance {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// The scenario with all defaults and drawn values, as TOML.
+    pub toml: String,
+    /// Seed of the scenario.
+    pub seed: u64,
+    /// Number of the run.
+    pub run: u64,
+    /// Date of the run's start in nanoseconds since 1970 UTC; 0 if the scenario has none.
+    pub epoch_ns: u64,
+    /// The observed coordinates, in the order in which they are logged.
+    pub outputs: Vec<OutputName>,
+    /// A viewer layout for the run.
+    pub layout: Option<Layout>,
+}
+
+/// How a run ended.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum RunEnd {
+    /// It reached its duration.
+    Complete,
+    /// The user stopped it.
+    Interrupted,
+    /// It failed.
+    Failed,
+}
+
+impl RunEnd {
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Complete => "ends",
+            Self::Interrupted => "was interrupted",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// A message of a log.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Message<'a> {
+    /// Its topic, as an index into [`TOPICS`](super::TOPICS).
+    pub topic: usize,
+    /// Its time in simulated nanoseconds past the epoch.
+    pub time_ns: u64,
+    /// The row as protobuf, of the topic's schema.
+    pub data: &'a [u8],
+}
+
+/// Where messages go: a file, a viewer.
+pub trait Messages {
+    /// Takes the next message. Times never go back.
+    fn take(&mut self, message: Message<'_>) -> Result<(), RecordError>;
+}
+
+/// A record that turns a run into messages.
+pub struct Encode<M> {
+    to: M,
+    detail: Detail,
+    epoch_ns: u64,
+    last: Instant,
+    buffer: Vec<u8>,
+}
+
+impl<M: Messages> Encode<M> {
+    /// The messages of a run, beginning with its parameters.
+    pub fn new(to: M, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
+        let mut encode =
+            Self { to, detail, epoch_ns: from.epoch_ns, last: Instant::START, buffer: Vec::new() };
+        let params = Params {
+            scenario: from.scenario.clone(),
+            seed: from.seed,
+            run: from.run,
+            toml: from.toml.clone(),
+            outputs: from.outputs.clone(),
+        };
+        encode.take(Instant::START, &params)?;
+        Ok(encode)
+    }
+
+    /// Ends the messages with the metrics, if there are any, and how the run ended, if before its time; tells where the
+    /// messages went, and the time of the last.
+    pub fn finish(mut self, metrics: &Metrics, end: RunEnd) -> Result<(M, Instant), RecordError> {
+        if !metrics.metrics.is_empty() {
+            self.take(self.last, metrics)?;
+        }
+        if end != RunEnd::Complete {
+            let timestamp = Stamp(self.epoch_ns + self.last.nanoseconds());
+            let message = format!("the run {} at {} s", end.verb(), self.last.seconds());
+            let (level, name) = (Level::Warning, "run".to_owned());
+            self.take(self.last, &Log { timestamp, level, message, name })?;
+        }
+        Ok((self.to, self.last))
+    }
+}
+
+impl<M: Messages> TakeRow for Encode<M> {
+    fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
+        self.buffer.clear();
+        Encoder::encode(row, &mut self.buffer);
+        self.last = now;
+        self.to.take(Message {
+            topic: const { index_of(R::TOPIC.name) },
+            time_ns: self.epoch_ns + now.nanoseconds(),
+            data: &self.buffer,
+        })
+    }
+}
+
+impl<M: Messages> Record for Encode<M> {
+    fn dense(&self) -> bool {
+        self.detail >= Detail::Full
+    }
+
+    fn scene(&self) -> bool {
+        self.detail >= Detail::Scene
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        // Another record may want more.
+        if sample.detail() > self.detail { Ok(()) } else { self.take_sample(now, sample) }
+    }
+}

@@ -1,0 +1,110 @@
+//! Magnification: how many times as large as they are bending and turning are drawn, where the scenario does not say.
+//!
+//! A run does not know its largest motion beforehand. What its actuator can do, and how it begins, tell the order.
+
+use crate::actuator::Actuator;
+use crate::body::Mode;
+use crate::body::spatial::{SpatialMode, turned};
+use crate::law::Law;
+use crate::quantity::Finite;
+use crate::scenario::{Scenario, SpatialLoop};
+
+/// The bending that shall show (rad), and the turning.
+const BENDING: f64 = 0.35;
+const TURNING: f64 = 0.5;
+
+/// 1, 2 or 5 times a power of ten, at most so many times what makes an estimate reach a wanted angle (rad); at least 1.
+fn round_factor(wanted: f64, estimate: f64) -> f64 {
+    let factor = wanted / estimate;
+    if !factor.is_finite() || factor <= 1.0 {
+        return 1.0;
+    }
+    let decade = libm::pow(10.0, libm::floor(libm::log10(factor)));
+    [5.0, 2.0].into_iter().find(|step| step * decade <= factor).unwrap_or(1.0) * decade
+}
+
+/// Factor for the bending of panels whose angles are estimated to be this (rad).
+pub fn bending(estimate: f64) -> f64 {
+    round_factor(BENDING, estimate)
+}
+
+/// Factor for the turning of a body by about this angle (rad).
+pub fn turning(estimate: f64) -> f64 {
+    round_factor(TURNING, estimate)
+}
+
+/// The angle by which a body of one angle turns, about (rad).
+pub fn angle(scenario: &Scenario) -> f64 {
+    let start = scenario.model.angle.get();
+    let zone = match &scenario.law {
+        Law::Relay(relay) => relay.dead_zone.get(),
+        _ => 0.0,
+    };
+    start.abs().max(scenario.goal().angle.abs()).max(zone)
+}
+
+/// The angle by which a spatial body turns, about (rad).
+pub fn spatial_angle(spatial: &SpatialLoop) -> f64 {
+    let targets = spatial.law.targets.iter().map(|target| {
+        let [roll, pitch, yaw] = [target.roll, target.pitch, target.yaw].map(Finite::get);
+        turned(roll, pitch, yaw)
+    });
+    let start = spatial.body.attitude.get();
+    let angle = |q: nalgebra::Quaternion<f64>| 2.0 * libm::acos(q.w.abs().min(1.0));
+    targets.chain([start]).map(angle).fold(spatial.law.dead_zone.get(), f64::max)
+}
+
+/// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, but no more than
+/// the same push gives without a spring, or what the initial state holds.
+pub fn displacements(scenario: &Scenario) -> Vec<f64> {
+    let model = &scenario.model;
+    let travel = angle(scenario);
+    let moment = largest(scenario) / model.commanded_inertia();
+    let of = |mode: &Mode| {
+        let start = mode.start();
+        let held = mode.amplitude(start);
+        held.max((2.0 * mode.excitability().abs() * moment).min(mode.gain.get().abs() * travel))
+    };
+    model.modes.iter().map(of).collect()
+}
+
+/// The largest torque, about (N m; rad/s² where the motion is commanded).
+pub fn largest(scenario: &Scenario) -> f64 {
+    let planned = scenario.plan.as_ref().map_or(0.0, |plan| plan.peak().value.abs());
+    let by_law = match &scenario.law {
+        Law::Relay(relay) => relay.strong.get(),
+        Law::Pd(pd) if scenario.plan.is_none() => pd.k_p.get() * scenario.model.angle.get().abs(),
+        _ => 0.0,
+    };
+    match &scenario.actuator {
+        Actuator::Wheel(wheel) => wheel.gain.get() * wheel.shaped(by_law),
+        Actuator::Thrusters(thrusters) => thrusters.torque.get(),
+        _ => planned.max(by_law),
+    }
+}
+
+/// The same of the modes of a spatial body (m sqrt(kg)), under the jets of any axis.
+pub fn modal(spatial: &SpatialLoop) -> Vec<f64> {
+    let mode = |(index, mode): (usize, &SpatialMode)| {
+        let w = mode.frequency.get();
+        let groups = spatial.groups.iter().flatten();
+        let force = groups.map(|group| group.forces[index].abs()).fold(0.0, f64::max);
+        let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
+        held.max(2.0 * force / (w * w))
+    };
+    spatial.body.modes.iter().enumerate().map(mode).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_are_round_and_never_reduce() {
+        for (estimate, factor) in
+            [(0.0, 1.0), (2.0, 1.0), (0.4, 1.0), (0.01, 50.0), (2.4e-5, 20000.0), (0.07, 5.0)]
+        {
+            assert_eq!(turning(estimate), factor, "{estimate}");
+        }
+    }
+}

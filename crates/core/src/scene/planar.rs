@@ -1,0 +1,195 @@
+//! The scene of a body with one angle: a hub that turns about z, with panels of sections that bend in the plane.
+
+use super::Extent;
+use super::magnification::{angle, bending, largest, turning};
+use super::panels::Panels;
+use super::part::{
+    BODY, GOAL, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, line, scene, words,
+};
+use super::plume::{Burning, Nozzle};
+use super::pose::{about_z, attitude};
+use super::wheel::{Wheel, disc};
+use crate::body::Phase;
+use crate::body::spatial::Vector;
+use crate::quantity::Positive;
+use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneEntity, SceneUpdate};
+use crate::record::row::Stamp;
+use crate::scenario::Scenario;
+use crate::time::Span;
+
+/// A torque is drawn in so many steps, and as nothing below this part of the largest.
+const STEPS: f64 = 4.0;
+const LEAST: f64 = 0.01;
+
+/// Where the body is.
+#[derive(Copy, Clone, Debug)]
+pub struct PlanarView<'a> {
+    /// Time since the start (s).
+    pub time: f64,
+    /// Angle of the hub, elastic part included (rad).
+    pub angle: f64,
+    /// Angle of the body as if it were rigid (rad).
+    pub rigid_angle: f64,
+    /// The modes.
+    pub modes: &'a [Phase],
+    /// The angles of the sections relative to the hub (rad), of a body that has sections.
+    pub sections: &'a [f64],
+}
+
+/// The scene.
+#[derive(Clone, Debug)]
+pub struct PlanarScene {
+    /// Period of the frames.
+    pub period: Span,
+    bending: f64,
+    turning: f64,
+    goal: Option<f64>,
+    panels: Panels,
+    wheel: Option<Wheel>,
+    plumes: Option<Burning>,
+    /// The largest torque so far (N m).
+    largest: f64,
+    frames: FrameTransforms,
+}
+
+impl PlanarScene {
+    /// The scene of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let spec = &scenario.log.scene;
+        let panels = Panels::of(scenario);
+        let mut scene = Self {
+            period: spec.period(scenario.log.period),
+            bending: spec.bending.map_or_else(|| bending(panels.bent), Positive::get),
+            turning: spec.turning.map_or_else(|| turning(angle(scenario)), Positive::get),
+            goal: scenario.plan.as_ref().map(|_| scenario.goal().angle),
+            panels,
+            wheel: Wheel::of(scenario),
+            plumes: None,
+            largest: largest(scenario),
+            frames: FrameTransforms { transforms: Vec::new() },
+        };
+        if scene.wheel.is_none() {
+            scene.plumes = Some(scene.thrusters());
+        }
+        scene.frames.transforms = scene.at_rest();
+        scene
+    }
+
+    /// The half edge of the hub (m).
+    fn half(&self) -> f64 {
+        (0.8 * self.panels.root).max(0.06 * self.panels.length())
+    }
+
+    /// Two pairs of thrusters, each a couple about z: those that push to positive rates first.
+    fn thrusters(&self) -> Burning {
+        let half = self.half();
+        let side = |name: &str, y: f64, x: f64| Nozzle {
+            frame: BODY.to_owned(),
+            name: name.to_owned(),
+            at: Vector::new(0.6 * half * x, 1.15 * half * y, 0.0),
+            direction: Vector::new(x, 0.0, 0.0),
+        };
+        let plus = [side("plus 1", 1.0, 1.0), side("plus 2", -1.0, -1.0)];
+        let minus = [side("minus 1", 1.0, -1.0), side("minus 2", -1.0, 1.0)];
+        Burning::new(plus.into_iter().chain(minus).collect(), 0.45 * self.panels.length())
+    }
+
+    /// The frames of a body that is not turned and not bent.
+    fn at_rest(&self) -> Vec<FrameTransform> {
+        let mut frames = vec![frame(INERTIAL, BODY, Vector::zeros())];
+        if self.wheel.is_some() {
+            frames.push(frame(BODY, "wheel", Vector::z() * (1.3 * self.half())));
+        }
+        for panel in 0..self.panels.count {
+            let (sin, cos) = libm::sincos(self.panels.azimuth(panel));
+            let mut parent = (BODY.to_owned(), Vector::new(cos, sin, 0.0) * self.panels.root);
+            for (section, length) in self.panels.lengths.iter().enumerate() {
+                let child = section_frame(panel, section);
+                frames.push(frame(&parent.0, &child, parent.1));
+                parent = (child, Vector::x() * *length);
+            }
+        }
+        frames
+    }
+
+    /// How far it reaches, and its frames.
+    pub fn extent(&self) -> Extent {
+        Extent::new(self.panels.root + self.panels.length(), &self.frames)
+    }
+
+    /// What the scene consists of.
+    pub fn parts(&self, stamp: Stamp) -> SceneUpdate {
+        let (half, length) = (self.half(), self.panels.length());
+        let mut hub = entity(stamp, BODY, "hub");
+        hub.cubes.push(cube(Vector::zeros(), Vector::repeat(2.0 * half), HUB));
+        hub.arrows = axes(2.2 * half);
+        for nozzle in self.plumes.iter().flat_map(Burning::nozzles) {
+            let back = nozzle.at - nozzle.direction * (0.5 * half);
+            hub.cylinders.push(cone(back, nozzle.at, [0.12 * half, 0.4 * half], NOZZLE));
+        }
+        let mut entities = vec![hub, self.surroundings(stamp)];
+        if self.wheel.is_some() {
+            entities.push(disc(stamp, half));
+        }
+        for panel in 0..self.panels.count {
+            for (section, long) in self.panels.lengths.iter().enumerate() {
+                let mut plate = entity(stamp, &section_frame(panel, section), &section_frame(panel, section));
+                let size = Vector::new(0.97 * long, 0.012 * length, 0.22 * length);
+                plate.cubes.push(cube(Vector::x() * (0.5 * long), size, PANEL));
+                entities.push(plate);
+            }
+        }
+        scene(entities)
+    }
+
+    /// Lines at angle 0 and at the goal, and words on the magnification.
+    fn surroundings(&self, stamp: Stamp) -> SceneEntity {
+        let reach = 1.15 * (self.panels.root + self.panels.length());
+        let mut entity = entity(stamp, INERTIAL, "surroundings");
+        entity.lines.push(line(Vector::x() * -reach, Vector::x() * reach, HUB));
+        if let Some(goal) = self.goal {
+            let (sin, cos) = libm::sincos(self.turning * goal);
+            entity.lines.push(line(Vector::zeros(), Vector::new(cos, sin, 0.0) * reach, GOAL));
+        }
+        let text = format!("bending × {}, turning × {} (schematic)", self.bending, self.turning);
+        entity.texts.push(words(Vector::z() * (0.45 * reach), text));
+        entity
+    }
+
+    /// Where the frames are.
+    pub fn frames(&mut self, stamp: Stamp, view: PlanarView<'_>) -> &FrameTransforms {
+        let bent = self.panels.angles(self.bending, view);
+        let azimuths: Vec<f64> = (0..self.panels.count).map(|panel| self.panels.azimuth(panel)).collect();
+        let turned = self.wheel.as_ref().map(|wheel| wheel.angle(view));
+        let mut frames = self.frames.transforms.iter_mut();
+        let mut turn = |by: f64| {
+            if let Some(frame) = frames.next() {
+                (frame.timestamp, frame.rotation) = (stamp, attitude(&about_z(by)));
+            }
+        };
+        turn(self.turning * view.angle);
+        turned.into_iter().for_each(&mut turn);
+        for azimuth in azimuths {
+            let mut before = -azimuth;
+            for angle in &bent {
+                turn(angle - before);
+                before = *angle;
+            }
+        }
+        &self.frames
+    }
+
+    /// The plumes under a torque (N m), if they are new.
+    pub fn plumes(&mut self, stamp: Stamp, torque: f64) -> Option<Plumes> {
+        let plumes = self.plumes.as_mut()?;
+        self.largest = self.largest.max(torque.abs());
+        let part = if self.largest > 0.0 { torque.abs() / self.largest } else { 0.0 };
+        let part = if part < LEAST { 0.0 } else { libm::ceil(STEPS * part) / STEPS };
+        let (plus, minus) = if torque > 0.0 { (part, 0.0) } else { (0.0, part) };
+        plumes.change(stamp, vec![plus, plus, minus, minus])
+    }
+}
+
+fn section_frame(panel: u32, section: usize) -> String {
+    format!("panel_{}/{}", panel + 1, section + 1)
+}

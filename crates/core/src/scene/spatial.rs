@@ -1,0 +1,283 @@
+//! The scene of a body with three axes: a hub, a boom to each of its points, two wings, and jets at the points.
+//!
+//! The booms bend as the modes say at their ends: a cubic between them. The shapes tell nothing of the wings, which swing
+//! against the rotation of the hub.
+
+use nalgebra::Quaternion;
+
+use super::Extent;
+use super::magnification::{bending, modal, spatial_angle, turning};
+use super::part::{BODY, BOOM, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, scene, words};
+use super::plume::{Burning, Nozzle};
+use super::pose::{about, attitude, from_z, limited, magnified, place};
+use crate::actuator::Pair;
+use crate::body::Phase;
+use crate::body::spatial::{Vector, vector};
+use crate::quantity::Positive;
+use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
+use crate::record::row::Stamp;
+use crate::scenario::{Scenario, SpatialLoop};
+use crate::time::Span;
+
+/// Sections of a boom, and of a wing.
+const SECTIONS: usize = 6;
+/// A body without distant points is drawn as if there were one this far off (m).
+const SIZE: f64 = 10.0;
+/// Points nearer to the centre of mass than this (m) are part of the hub.
+const NEAR: f64 = 1.0;
+/// How many times as much as the hub the wings bend, the other way.
+const SWING: f64 = 2.0;
+/// Nothing is drawn as bent by more (rad).
+const LARGEST: f64 = 1.2;
+
+/// A point of the structure, and what the modes do there.
+#[derive(Clone, Debug)]
+struct Point {
+    name: String,
+    at: Vector,
+    /// Translation (1/sqrt(kg)) and rotation (rad/(m sqrt(kg))) of each mode.
+    shapes: Vec<(Vector, Vector)>,
+}
+
+impl Point {
+    /// Translation (m) and rotation (rad), for modes with these phases.
+    fn moved(&self, modes: &[Phase]) -> (Vector, Vector) {
+        let zero = (Vector::zeros(), Vector::zeros());
+        self.shapes.iter().zip(modes).fold(zero, |(u, theta), ((f, phi), mode)| {
+            (u + f * mode.displacement, theta + phi * mode.displacement)
+        })
+    }
+
+    fn is_distant(&self) -> bool {
+        self.at.norm() > NEAR
+    }
+}
+
+/// The scene.
+#[derive(Clone, Debug)]
+pub struct SpatialScene {
+    /// Period of the frames.
+    pub period: Span,
+    bending: f64,
+    turning: f64,
+    /// Distance of the farthest point (m).
+    size: f64,
+    points: Vec<Point>,
+    /// Which nozzles burn for plus and for minus about each axis.
+    groups: [[Vec<usize>; 2]; 3],
+    plumes: Burning,
+    frames: FrameTransforms,
+}
+
+impl SpatialScene {
+    /// The scene of a loop.
+    pub fn new(scenario: &Scenario, spatial: &SpatialLoop) -> Self {
+        let (spec, body, jets) = (&scenario.log.scene, &spatial.body, &spatial.jets);
+        let point = |point: &crate::body::spatial::NamedPoint| Point {
+            name: point.name.clone(),
+            at: vector(&point.position),
+            shapes: body.shapes(&point.name),
+        };
+        let points: Vec<Point> = body.points.iter().map(point).collect();
+        let farthest = points.iter().map(|point| point.at.norm()).fold(0.0, f64::max);
+        let size = if farthest > NEAR { farthest } else { SIZE };
+        let nozzles = jets.thrusters.iter().map(|thruster| Nozzle {
+            frame: thruster.point.clone(),
+            name: thruster.name.clone(),
+            at: vector(&thruster.offset),
+            direction: -vector(&thruster.direction).normalize(),
+        });
+        let own = |names: &[String]| -> Vec<usize> {
+            names.iter().filter_map(|name| jets.thrusters.iter().position(|t| t.name == *name)).collect()
+        };
+        let pair = |pair: &Pair| [own(&pair.plus), own(&pair.minus)];
+        let reached = modal(spatial);
+        let bent = points.iter().map(|point| {
+            let rotations = point.shapes.iter().zip(&reached);
+            rotations.map(|((_, rotation), q)| rotation.norm() * q).sum::<f64>()
+        });
+        let bent = bent.fold(0.0, f64::max);
+        let mut made = Self {
+            period: spec.period(scenario.log.period),
+            bending: spec.bending.map_or_else(|| bending(bent), Positive::get),
+            turning: spec.turning.map_or_else(|| turning(spatial_angle(spatial)), Positive::get),
+            size,
+            groups: [&jets.groups.roll, &jets.groups.pitch, &jets.groups.yaw].map(pair),
+            plumes: Burning::new(nozzles.collect(), 0.3 * size),
+            frames: FrameTransforms { transforms: Vec::new() },
+            points,
+        };
+        made.frames.transforms = made.at_rest();
+        made
+    }
+
+    fn at_rest(&self) -> Vec<FrameTransform> {
+        let mut frames = vec![frame(INERTIAL, BODY, Vector::zeros())];
+        for point in &self.points {
+            frames.push(frame(BODY, &point.name, point.at));
+        }
+        for point in self.points.iter().filter(|point| point.is_distant()) {
+            frames.extend((0..SECTIONS).map(|section| {
+                let along = section as f64 / SECTIONS as f64;
+                frame(BODY, &boom_frame(point, section), point.at * along)
+            }));
+        }
+        for (wing, side) in [1.0, -1.0].into_iter().enumerate() {
+            let mut parent = (BODY.to_owned(), Vector::y() * (side * 0.1 * self.size));
+            for section in 0..SECTIONS {
+                let child = wing_frame(wing, section);
+                frames.push(frame(&parent.0, &child, parent.1));
+                parent = (child, Vector::y() * (side * self.panel()));
+            }
+        }
+        frames
+    }
+
+    /// Length of a section of a wing (m).
+    fn panel(&self) -> f64 {
+        1.1 * self.size / SECTIONS as f64
+    }
+
+    /// How far it reaches, and its frames.
+    pub fn extent(&self) -> Extent {
+        Extent::new(1.2 * self.size, &self.frames)
+    }
+
+    /// What the scene consists of.
+    pub fn parts(&self, stamp: Stamp) -> SceneUpdate {
+        let size = self.size;
+        let mut hub = entity(stamp, BODY, "hub");
+        hub.cubes.push(cube(Vector::zeros(), Vector::repeat(0.2 * size), HUB));
+        hub.arrows = axes(0.35 * size);
+        let mut entities = vec![hub];
+        for point in self.points.iter().filter(|point| point.is_distant()) {
+            let long = point.at.norm() / SECTIONS as f64;
+            entities.extend((0..SECTIONS).map(|section| {
+                let name = boom_frame(point, section);
+                let mut part = entity(stamp, &name, &name);
+                let end = Vector::z() * (0.97 * long);
+                part.cylinders.push(cone(Vector::zeros(), end, [0.09 * size; 2], BOOM));
+                part
+            }));
+        }
+        for (wing, side) in [1.0, -1.0].into_iter().enumerate() {
+            entities.extend((0..SECTIONS).map(|section| {
+                let name = wing_frame(wing, section);
+                let mut part = entity(stamp, &name, &name);
+                let middle = Vector::y() * (0.5 * side * self.panel());
+                let edges = Vector::new(0.3 * size, 0.96 * self.panel(), 0.01 * size);
+                part.cubes.push(cube(middle, edges, PANEL));
+                part
+            }));
+        }
+        for nozzle in self.plumes.nozzles() {
+            let mut part = entity(stamp, &nozzle.frame, &nozzle.name);
+            let back = nozzle.at - nozzle.direction * (0.03 * size);
+            part.cylinders.push(cone(back, nozzle.at, [0.01 * size, 0.035 * size], NOZZLE));
+            entities.push(part);
+        }
+        let mut surroundings = entity(stamp, INERTIAL, "surroundings");
+        let text = format!("bending × {}, turning × {} (schematic)", self.bending, self.turning);
+        surroundings.texts.push(words(Vector::z() * (0.8 * size), text));
+        entities.push(surroundings);
+        scene(entities)
+    }
+
+    /// Where the frames are, at an attitude and with modes of these phases.
+    pub fn frames(&mut self, stamp: Stamp, q: &Quaternion<f64>, modes: &[Phase]) -> &FrameTransforms {
+        let moved: Vec<_> = self.points.iter().map(|point| self.drawn(point, modes)).collect();
+        let still = (Vector::zeros(), Vector::zeros());
+        let near = self.points.iter().zip(&moved).find(|(point, _)| !point.is_distant());
+        let hub = near.map_or(still, |(_, moved)| *moved);
+        let mut placed = vec![(Vector::zeros(), magnified(q, self.turning))];
+        placed
+            .extend(self.points.iter().zip(&moved).map(|(point, (u, theta))| (point.at + u, about(*theta))));
+        let distant = self.points.iter().zip(&moved).filter(|(point, _)| point.is_distant());
+        for (point, end) in distant {
+            placed.extend((0..SECTIONS).map(|section| {
+                let along = section as f64 / SECTIONS as f64;
+                let (u, theta) = between(point.at, hub, *end, along);
+                (point.at * along + u, about(theta) * from_z(point.at.normalize()))
+            }));
+        }
+        // Each section of a wing is turned further than the one before by the same rule, on both sides.
+        let tip = limited(hub.1 * -SWING, LARGEST);
+        let shape = |section: usize| {
+            libm::sin(std::f64::consts::FRAC_PI_2 * (section as f64 + 0.5) / SECTIONS as f64)
+        };
+        let steps =
+            (0..SECTIONS).map(|section| shape(section) - if section == 0 { 0.0 } else { shape(section - 1) });
+        let steps: Vec<_> = steps.map(|step| about(tip * step)).collect();
+        let turned = steps.iter().chain(&steps);
+        let (free, chained) = self.frames.transforms.split_at_mut(placed.len());
+        for (frame, (at, turned)) in free.iter_mut().zip(placed) {
+            (frame.timestamp, frame.translation, frame.rotation) = (stamp, place(at), attitude(&turned));
+        }
+        for (frame, turned) in chained.iter_mut().zip(turned) {
+            (frame.timestamp, frame.rotation) = (stamp, attitude(turned));
+        }
+        &self.frames
+    }
+
+    /// How a point moves as drawn: by how much (m), and by which rotation (rad).
+    fn drawn(&self, point: &Point, modes: &[Phase]) -> (Vector, Vector) {
+        let (u, theta) = point.moved(modes);
+        (limited(u * self.bending, LARGEST * self.size), limited(theta * self.bending, LARGEST))
+    }
+
+    /// The plumes where the jets of each axis push this way, if they are new.
+    pub fn plumes(&mut self, stamp: Stamp, signs: [f64; 3]) -> Option<Plumes> {
+        let mut parts = vec![0.0; self.plumes.nozzles().len()];
+        for (pair, sign) in self.groups.iter().zip(signs).filter(|(_, sign)| *sign != 0.0) {
+            pair[usize::from(sign < 0.0)].iter().for_each(|nozzle| parts[*nozzle] = 1.0);
+        }
+        self.plumes.change(stamp, parts)
+    }
+}
+
+/// Translation and rotation of a straight boom to a point, at a part of its length, between those of its ends: a cubic
+/// whose slopes are the rotations.
+fn between(to: Vector, from: (Vector, Vector), end: (Vector, Vector), s: f64) -> (Vector, Vector) {
+    let (slope0, slope1) = (from.1.cross(&to), end.1.cross(&to));
+    let (s2, s3) = (s * s, s * s * s);
+    let u = from.0 * (2.0 * s3 - 3.0 * s2 + 1.0)
+        + slope0 * (s3 - 2.0 * s2 + s)
+        + end.0 * (3.0 * s2 - 2.0 * s3)
+        + slope1 * (s3 - s2);
+    let slope = (end.0 - from.0) * (6.0 * s - 6.0 * s2)
+        + slope0 * (3.0 * s2 - 4.0 * s + 1.0)
+        + slope1 * (3.0 * s2 - 2.0 * s);
+    let direction = to.normalize();
+    let twist = from.1.dot(&direction) * (1.0 - s) + end.1.dot(&direction) * s;
+    (u, direction.cross(&slope) / to.norm() + direction * twist)
+}
+
+fn boom_frame(point: &Point, section: usize) -> String {
+    format!("boom_{}/{}", point.name, section + 1)
+}
+
+fn wing_frame(wing: usize, section: usize) -> String {
+    format!("wing_{}/{}", wing + 1, section + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_boom_is_bent_as_its_ends_say() {
+        let to = Vector::new(-30.0, 0.0, 0.0);
+        let from = (Vector::new(0.0, 0.1, -0.2), Vector::new(0.02, 0.01, 0.03));
+        let end = (Vector::new(0.0, -0.5, 0.4), Vector::new(-0.01, 0.04, -0.02));
+        for (s, exact) in [(0.0, from), (1.0, end)] {
+            let (u, theta) = between(to, from, end, s);
+            assert!((u - exact.0).norm() < 1e-15 && (theta - exact.1).norm() < 1e-15, "{s}: {u} {theta}");
+        }
+        // The rotation across the boom is the slope of its displacement.
+        let (s, h) = (0.3, 1e-6);
+        let at = |s: f64| between(to, from, end, s);
+        let slope = (at(s + h).0 - at(s - h).0) / (2.0 * h * 30.0);
+        let across = at(s).1.cross(&to.normalize());
+        assert!((across - slope).norm() < 1e-9, "{across} {slope}");
+    }
+}

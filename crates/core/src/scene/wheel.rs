@@ -1,0 +1,54 @@
+//! The wheel of a body with one angle: a disc that turns as its momentum says.
+
+use super::PlanarView;
+use super::part::{MARK, WHEEL, cone, cube, entity};
+use crate::actuator::Actuator;
+use crate::body::spatial::Vector;
+use crate::record::foxglove::SceneEntity;
+use crate::record::row::Stamp;
+use crate::scenario::Scenario;
+
+/// A wheel without a rotor of its own is drawn with this part of the body's inertia.
+const ROTOR: f64 = 0.02;
+
+/// A wheel: its speed at the start (rad/s), and how many times as much as the body it turns the other way.
+#[derive(Clone, Debug)]
+pub struct Wheel {
+    speed: f64,
+    ratio: f64,
+    /// Angle and rate of the body at the start (rad, rad/s).
+    from: (f64, f64),
+}
+
+impl Wheel {
+    /// That of a scenario, if it has one.
+    pub fn of(scenario: &Scenario) -> Option<Self> {
+        let Actuator::Wheel(wheel) = &scenario.actuator else { return None };
+        let model = &scenario.model;
+        let (speed, inertia) = match &wheel.rotor {
+            Some(rotor) => (rotor.speed.get(), rotor.inertia.get()),
+            None => (0.0, ROTOR * model.inertia.get()),
+        };
+        let from = (model.angle.get(), model.rate.get());
+        Some(Self { speed, ratio: model.commanded_inertia() / inertia, from })
+    }
+
+    /// The angle by which it has turned (rad): the integral of its speed, which is what the body's momentum leaves it.
+    pub fn angle(&self, view: PlanarView<'_>) -> f64 {
+        let (angle, rate) = self.from;
+        self.speed * view.time - self.ratio * (view.rigid_angle - angle - rate * view.time)
+    }
+}
+
+/// A disc on a hub with this half edge (m), with a mark that shows how it turns.
+pub fn disc(stamp: Stamp, half: f64) -> SceneEntity {
+    let mut disc = entity(stamp, "wheel", "wheel");
+    let (low, high) = (Vector::z() * (-0.15 * half), Vector::z() * (0.15 * half));
+    disc.cylinders.push(cone(low, high, [2.6 * half; 2], WHEEL));
+    disc.cubes.push(cube(
+        Vector::new(0.65 * half, 0.0, 0.16 * half),
+        Vector::new(1.25 * half, 0.18 * half, 0.08 * half),
+        MARK,
+    ));
+    disc
+}

@@ -1,0 +1,237 @@
+//! The figures of campaigns: their numbers are those of the tables, and the worst runs can be repeated.
+
+use serde_json::Value as Json;
+
+use crate::drawing::{BLACK, BLUE, Drawing, VERMILLION, near};
+use crate::util::{Dir, UNCERTAIN, has_extension, table};
+
+/// Quantile of some values as NumPy has it.
+fn quantile(values: &[f64], q: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let place = q * (sorted.len() - 1) as f64;
+    let (low, part) = (place.floor() as usize, place.fract());
+    sorted[low] + part * (sorted[(low + 1).min(sorted.len() - 1)] - sorted[low])
+}
+
+/// The numbers of a column.
+fn column(dir: &Dir, file: &str, name: &str) -> Vec<f64> {
+    table(dir, file).iter().map(|row| row[name].parse().expect("a number")).collect()
+}
+
+/// The worst runs, as `plot --json` tells of them.
+fn worst(dir: &Dir, arguments: &str) -> Vec<Json> {
+    let out = dir.run(&format!("plot {arguments} --json")).exits(0).out;
+    let lines = out.lines().map(|line| serde_json::from_str::<Json>(line).expect("an object"));
+    lines.filter_map(|line| line.get("worst").cloned()).collect()
+}
+
+#[test]
+fn distributions_have_the_quantiles_of_the_table() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 60 -o out").exits(0);
+    dir.run(
+        "plot out -o figures --format svg --metric gain_initial,envelope_late_mean_rad --what distribution",
+    )
+    .exits(0);
+    assert_eq!(
+        dir.names("figures"),
+        ["u-distribution-envelope_late_mean_rad.svg", "u-distribution-gain_initial.svg"]
+    );
+    for (metric, label, unit) in
+        [("gain_initial", "gain initial", 1.0), ("envelope_late_mean_rad", "envelope late mean, µrad", 1e-6)]
+    {
+        let drawing = Drawing::read(&dir, &format!("u-distribution-{metric}"));
+        drawing.shows(&["median", "5 and 95 %", "part of the runs", "runs", label]);
+        let values = column(&dir, "out/runs.csv", metric);
+        let range = quantile(&values, 1.0) - quantile(&values, 0.0);
+        // Upright lines: beside those of the legends, two of the median, and dashes of the others.
+        let upright =
+            |line: &Vec<(f64, f64)>| line.iter().all(|point| point.0.to_bits() == line[0].0.to_bits());
+        let lines = drawing.shapes("polyline", "stroke", VERMILLION);
+        let mut at: Vec<f64> =
+            lines.iter().filter(|line| upright(line)).map(|line| drawing.along(line[0].0) * unit).collect();
+        at.sort_by(f64::total_cmp);
+        at.dedup();
+        assert_eq!(at.len(), 3, "{at:?}");
+        for (found, q) in at.iter().zip([0.05, 0.5, 0.95]) {
+            near(*found, quantile(&values, q), 1e-3 * range);
+        }
+        // The empirical distribution steps at each value.
+        let curve = drawing.line(BLUE);
+        let steps =
+            curve.windows(2).filter(|pair| pair[0].1 > pair[1].1).map(|pair| drawing.along(pair[1].0) * unit);
+        let mut sorted = values.clone();
+        sorted.sort_by(f64::total_cmp);
+        for step in steps {
+            let nearest = sorted.iter().map(|value| (value - step).abs()).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 2e-3 * range, "{step}");
+        }
+    }
+}
+
+#[test]
+fn scatters_show_what_was_drawn_and_fans_what_was_logged() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 9 -o out --log events").exits(0);
+    let told = dir.run("plot out -o figures --format svg").exits(0).prints(&["u: the worst of 9 runs"]);
+    assert!(told.contains("flexsc simulate out/scenario.toml --runs "), "{told}");
+    assert!(dir.names("figures").contains(&"u-fan.svg".to_owned()), "{:?}", dir.names("figures"));
+    let scatter = Drawing::read(&dir, "u-scatter-envelope_late_mean_rad");
+    scatter.shows(&["law.relay.k_t", "body.planar.rate", "envelope late mean, µrad"]);
+    let dots = scatter
+        .each(|node| (node.has_tag_name("circle") && node.attribute("fill") == Some(BLUE)).then_some(()));
+    // Two panels with a legend each.
+    assert_eq!(dots.len(), 2 * (9 + 1));
+
+    let fan = Drawing::read(&dir, "u-fan");
+    fan.shows(&["5 to 95 %", "25 to 75 %", "median", "mean envelope, µrad", "time, s"]);
+    let last = |run: usize| -> f64 {
+        let json = table(&dir, "out/runs.csv")[run]["envelope_window_means_rad"].clone();
+        let means: Vec<f64> = serde_json::from_str(&json).expect("numbers");
+        means[means.len() - 1]
+    };
+    let median = quantile(&(0..9).map(last).collect::<Vec<_>>(), 0.5);
+    let lines = fan.shapes("polyline", "stroke", BLACK);
+    let line = lines.iter().find(|line| line.len() > 10).expect("a line");
+    let (low, high) = ("10", "20");
+    near(fan.up(line[line.len() - 1].1, [low, high]) * 1e-6, median, 1e-7);
+    dir.run("plot out --what fan,curve").exits(2).says(&["no figure `curve`", "distribution, scatter, fan"]);
+    // Logs alone have their fan.
+    for file in ["runs.csv", "statistics.csv", "scenario.toml"] {
+        std::fs::remove_file(dir.path(&format!("out/{file}"))).expect("there");
+    }
+    dir.run("plot out -o fan.svg").exits(0);
+    assert_eq!(dir.text("fan.svg"), fan.0);
+}
+
+#[test]
+fn sweeps_have_curves_and_maps() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let sweep = "sweep relay-fixed.toml --set duration=1500 --vary law.relay.k_t=0.30:0.36:7";
+    dir.run(&format!("{sweep} -o one")).exits(0);
+    dir.run("plot one -o figures/one.svg --metric torque_impulse_per_hour_nm_s").exits(1).says(&["figures"]);
+    dir.run("plot one -o one.svg --metric torque_impulse_per_hour_nm_s").exits(0);
+    let curve = Drawing::at(&dir, "one.svg");
+    curve.shows(&["law.relay.k_t", "torque impulse per hour, mN m s"]);
+    let dots = curve.each(|node| {
+        let is = node.has_tag_name("circle") && node.attribute("fill") == Some(BLUE);
+        is.then(|| node.attribute("cx").and_then(|x| x.parse::<f64>().ok()))?
+    });
+    let keys = column(&dir, "one/runs.csv", "law.relay.k_t");
+    assert_eq!(dots.len(), keys.len());
+    for (dot, key) in dots.iter().zip(keys) {
+        near(curve.along(*dot), key, 1e-4);
+    }
+
+    dir.run(&format!("{sweep} --vary law.relay.weak=8e-7:1.6e-6:5 -o two")).exits(0);
+    dir.run("plot two -o two.svg --metric envelope_late_mean_rad").exits(0);
+    let map = Drawing::at(&dir, "two.svg");
+    map.shows(&["law.relay.k_t", "law.relay.weak", "least", "envelope late mean, µrad"]);
+    let rows = table(&dir, "two/runs.csv");
+    let number = |row: usize, name: &str| rows[row][name].parse::<f64>().expect("a number");
+    let least = (0..rows.len()).min_by(|a, b| {
+        let value = |row: &usize| number(*row, "envelope_late_mean_rad");
+        value(a).total_cmp(&value(b))
+    });
+    let diamond = &map.shapes("polygon", "fill", VERMILLION)[1];
+    let middle = diamond.iter().map(|point| point.0).sum::<f64>() / 4.0;
+    near(map.along(middle), number(least.expect("a row"), "law.relay.k_t"), 1e-4);
+}
+
+#[test]
+fn the_worst_runs_can_be_repeated() {
+    let dir = Dir::with(&["relay-sampled", "rotation-robust", "iss-ringdown", "relay-fixed"]);
+    dir.run("simulate relay-sampled.toml --runs 6 --seed 3 --set duration=2000 -o relay").exits(0);
+    dir.run("simulate rotation-robust.toml --runs 4 -o rotation").exits(0);
+    dir.run("simulate iss-ringdown.toml --runs 3 --set duration=40 -o station").exits(0);
+    let two = "--vary law.relay.k_t=0.31:0.35:3 --vary body.planar.modes[0].damping=0:0.01:2";
+    dir.run(&format!("sweep relay-fixed.toml --set duration=1500 {two} -o sweep")).exits(0);
+    for name in ["relay", "rotation", "station", "sweep"] {
+        let found = worst(&dir, &format!("{name} -o {name}.svg --worst 1"));
+        assert!(!found.is_empty(), "{name}");
+        for worst in &found {
+            let command = worst["command"].as_str().expect("a command");
+            let arguments = command.strip_prefix("flexsc ").expect("of flexsc").replace('\'', "");
+            dir.run(&arguments).exits(0);
+            let run = worst["run"].as_u64().expect("a number");
+            let own = dir.text(&format!("{name}/run-{run}/runs-{run}-{}.csv", run + 1));
+            let own = own.lines().nth(1).expect("a row");
+            let whole = dir.text(&format!("{name}/runs.csv"));
+            if name == "sweep" {
+                // Its key is set, and no column.
+                let metrics =
+                    |row: &str| row.split(',').rev().take(20).map(str::to_owned).collect::<Vec<_>>();
+                assert!(
+                    whole
+                        .lines()
+                        .any(|row| row.starts_with(&format!("{run},")) && metrics(row) == metrics(own))
+                );
+            } else {
+                assert!(whole.lines().any(|row| row == own), "{name}: {own}");
+            }
+            assert_eq!(
+                dir.names(&format!("{name}/run-{run}"))
+                    .iter()
+                    .filter(|file| has_extension(file, "mcap"))
+                    .count(),
+                1
+            );
+        }
+    }
+    // The largest value of each metric, in order.
+    let found = worst(&dir, "relay -o relay.svg --metric duty --worst 6");
+    let values: Vec<f64> = found.iter().map(|worst| worst["value"].as_f64().expect("a number")).collect();
+    assert!(values.len() == 6 && values.is_sorted_by(|a, b| a >= b), "{values:?}");
+    let mut duty = column(&dir, "relay/runs.csv", "duty");
+    duty.sort_by(|a, b| b.total_cmp(a));
+    // JSON here is read to some fifteen digits.
+    for (found, exact) in values.iter().zip(duty) {
+        near(*found, exact, 1e-12);
+    }
+}
+
+#[test]
+fn parts_make_up_a_campaign_and_failures_are_listed() {
+    let wide = UNCERTAIN.replace("{ uniform = [0.3, 0.32] }", "{ normal = { mean = 0.31, sd = 0.3 } }");
+    let dir = Dir::holding("u.toml", wide);
+    dir.run("simulate u.toml --runs 20 -o whole").exits(1);
+    dir.run("simulate u.toml --runs 0:9 -o parts").exits(1);
+    dir.run("simulate u.toml --runs 9:20 -o parts").exits(1);
+    let listed = |name: &str| dir.run(&format!("plot {name} -o {name}.svg")).exits(0).out.replace(name, "");
+    assert_eq!(listed("parts"), listed("whole"));
+    assert_eq!(dir.text("parts.svg"), dir.text("whole.svg"));
+    assert!(listed("parts").contains("failed") && listed("parts").contains("law.relay.k_t"));
+    let part = dir.text("parts/runs-0-9.csv");
+    dir.write("parts/runs-0-5.csv", part.replace(",7,", ",8,"));
+    dir.run("plot parts -o parts.svg").exits(2).says(&["run 0 is another than in", "runs-0-5.csv"]);
+}
+
+#[test]
+fn bad_tables_are_named() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 3 -o out").exits(0);
+    std::fs::create_dir(dir.path("empty")).expect("made");
+    dir.run("plot empty").exits(2).says(&["empty: no table of a campaign, `runs.csv`", "flexsc simulate"]);
+    dir.run("plot out --metric dutie").exits(2).says(&["no metric `dutie`", "switchings", "duty"]);
+    dir.run("plot out --metric cycle_kind").exits(2).says(&["no metric `cycle_kind` that is a number"]);
+    dir.run("plot out --what gain").exits(2).says(&["no figure `gain`", "it has distribution, scatter"]);
+    let header = "run,seed,duty,error\n";
+    for (table, words) in [
+        ("", "must be `run`, ..., `error`"),
+        ("a,b\n1,2\n", "must be `run`, ..., `error`"),
+        (header, "there is no run in it"),
+        (&format!("{header}x,1,2,\n"), "line 2: `run` must be the number of a run, got `x`"),
+        (&format!("{header}1,1\n"), "no table of a campaign"),
+        (&format!("{header}1,1,0.5,\n2,1,0.5,\n"), "no metric varies"),
+    ] {
+        dir.write("empty/runs.csv", table);
+        dir.run("plot empty").exits(2).says(&["empty", words]);
+    }
+    assert_eq!(dir.names("empty"), ["runs.csv"]);
+    // A table without its scenario is drawn, but its runs cannot be repeated.
+    dir.write("empty/runs.csv", format!("{header}1,1,0.5,\n2,1,0.6,\n"));
+    let told = dir.run("plot empty --json").exits(0).out;
+    assert!(told.contains("\"command\":null"), "{told}");
+    dir.run("plot empty").exits(0).says(&["no scenario.toml"]);
+}
