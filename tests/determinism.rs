@@ -22,9 +22,9 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0xbc8b_d593_5234_1614),
-        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xb2f8_e6a4_bfb4_aea9),
+        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0x7035_25c1_da7c_05db),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0x938f_f082_96da_f932),
-        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x162f_8d7c_f18d_428a),
+        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0xf7ac_a5c0_bb9f_f7ec),
     ];
     for (name, runs, topic, expected) in runs {
         let dir = Dir::with(&[name]);

@@ -74,3 +74,34 @@ pub fn limited(vector: Vector, limit: f64) -> Vector {
     let length = libm::sqrt(vector.norm_squared());
     if length > limit { vector * (limit / length) } else { vector }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn turned(by: &Rotation<f64>, vector: Vector) -> Vector {
+        (by * Rotation::from_imag(vector) * by.conjugate()).vector().into()
+    }
+
+    #[test]
+    fn rotations_turn_what_they_say() {
+        let y = turned(&about_z(std::f64::consts::FRAC_PI_2), Vector::x());
+        assert!((y - Vector::y()).norm() < 1e-15);
+        for direction in [
+            Vector::new(0.6, 0.0, 0.8),
+            Vector::new(-0.48, 0.6, -0.64),
+            Vector::x(),
+            Vector::z(),
+            -Vector::z(),
+        ] {
+            assert!((turned(&from_z(direction), Vector::z()) - direction).norm() < 1e-15, "{direction}");
+        }
+        let small = about(Vector::new(0.01, -0.02, 0.03));
+        // Whichever of its two signs a rotation has.
+        for q in [small, -small] {
+            let large = magnified(&q, 7.0);
+            assert!((large - about(Vector::new(0.07, -0.14, 0.21))).norm() < 1e-15, "{large}");
+        }
+        assert_eq!(limited(Vector::new(3.0, 4.0, 0.0), 2.5), Vector::new(1.5, 2.0, 0.0));
+    }
+}

@@ -259,3 +259,25 @@ fn boom_frame(point: &Point, section: usize) -> String {
 fn wing_frame(wing: usize, section: usize) -> String {
     format!("wing_{}/{}", wing + 1, section + 1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_boom_is_bent_as_its_ends_say() {
+        let to = Vector::new(-30.0, 0.0, 0.0);
+        let from = (Vector::new(0.0, 0.1, -0.2), Vector::new(0.02, 0.01, 0.03));
+        let end = (Vector::new(0.0, -0.5, 0.4), Vector::new(-0.01, 0.04, -0.02));
+        for (s, exact) in [(0.0, from), (1.0, end)] {
+            let (u, theta) = between(to, from, end, s);
+            assert!((u - exact.0).norm() < 1e-15 && (theta - exact.1).norm() < 1e-15, "{s}: {u} {theta}");
+        }
+        // The rotation across the boom is the slope of its displacement.
+        let (s, h) = (0.3, 1e-6);
+        let at = |s: f64| between(to, from, end, s);
+        let slope = (at(s + h).0 - at(s - h).0) / (2.0 * h * 30.0);
+        let across = at(s).1.cross(&to.normalize());
+        assert!((across - slope).norm() < 1e-9, "{across} {slope}");
+    }
+}
