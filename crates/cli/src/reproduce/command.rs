@@ -34,13 +34,13 @@ impl Command {
         Ok(Self { text: text.to_owned(), verb, matches })
     }
 
-    /// A run's full log.
-    pub fn log(&self) -> Result<Log, Failure> {
+    /// A run's log of this detail.
+    pub fn log(&self, detail: Detail) -> Result<Log, Failure> {
         let run = Campaign::new(self.scenario()?, "", None)?.run(0)?;
         let failed = |source| Failure::Run { name: run.scenario.name.clone(), source };
         let logged = || -> Result<Vec<u8>, SimulationError> {
             let provenance = Campaign::provenance(&run);
-            let mut log = McapLog::new(Cursor::new(Vec::new()), &provenance, Detail::Full)?;
+            let mut log = McapLog::new(Cursor::new(Vec::new()), &provenance, detail)?;
             let metrics = Campaign::simulate(&run, (&mut log, Stop))?;
             Ok(log.finish(&metrics.to_row(), RunEnd::Complete)?.into_inner())
         };

@@ -1,5 +1,7 @@
 //! The figures that the commands of a page draw.
 
+use flexsc_core::record::Detail;
+
 use super::analysis::Tuned;
 use super::command::Command;
 use crate::failure::Failure;
@@ -10,10 +12,10 @@ use crate::{damping, map, observer, plan, plot, tune};
 type Named = (String, Figure);
 
 impl Command {
-    /// The figures that the command draws: of a simulation those of its full log.
-    pub fn draw(&self, what: &str) -> Result<Figure, Failure> {
+    /// The figure that the command draws, of a simulation that of its log; and the command as a user gives it.
+    pub fn draw(&self, what: &str) -> Result<(Figure, String), Failure> {
         let drawn = match self.verb.as_str() {
-            "simulate" => return plot::figure_of(&self.log()?, &self.path("scenarios"), what),
+            "simulate" => return self.plot(what),
             "plan" => self.plan_figures()?,
             "tune" => self.tune_figures()?,
             "map" => self.map_figure()?,
@@ -25,7 +27,20 @@ impl Command {
             _ => return Err(self.failure("no verb that draws")),
         };
         let ends = |(name, _): &Named| name.ends_with(&format!("-{what}")) || name == what;
-        drawn.into_iter().find(ends).map(|(_, figure)| figure).ok_or_else(|| self.failure(what))
+        drawn.into_iter().find(ends).ok_or_else(|| self.failure(what)).map(|(_, figure)| {
+            let shown = format!("{} --figures DIR", self.text);
+            (figure, shown)
+        })
+    }
+
+    /// A figure of a run's log, with the motion of a planar body by running it again, as `flexsc plot` does.
+    fn plot(&self, what: &str) -> Result<(Figure, String), Failure> {
+        let scenario = self.scenario()?;
+        let spatial = scenario.spatial.is_some();
+        let (detail, option) = if spatial { (Detail::Full, " --log full") } else { (Detail::Events, "") };
+        let figure = plot::figure_of(&self.log(detail)?, &self.path("scenarios"), what)?;
+        let (text, name) = (&self.text, &scenario.name);
+        Ok((figure, format!("{text}{option}; flexsc plot {name}.mcap --what {what}")))
     }
 
     fn plan_figures(&self) -> Result<Vec<Named>, Failure> {

@@ -4,6 +4,7 @@
 //! - `run("simulate scenarios/relay-fixed.toml")` is what that command tells for machines,
 //! - `each("plan ... suppress={}", [0, 1])` is a list of what the commands tell that have each value in the place of `{}`,
 //! - `column("simulate ...", "/attitude", "angle_rad")` is a column of the run's full log,
+//! - `drawing(name, chart, caption, command)` is a [`Chart`] of the page's own numbers,
 //! - `figure(name, command, what, caption)` is the figure `what` that the command draws, or the run's,
 //! - `yes("what it is about", condition)` and `no(...)` are verdicts: known to hold, known not to,
 //!
@@ -17,6 +18,7 @@ use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Serde, Value};
 use minijinja::{Environment, Error, ErrorKind, UndefinedBehavior};
 
+use flexsc_core::record::Detail;
 use serde_json::json;
 
 use super::chart::{self, Chart};
@@ -61,7 +63,7 @@ pub struct Outcome {
 #[derive(Default)]
 pub struct Results {
     told: Mutex<BTreeMap<String, Value>>,
-    drawn: Mutex<BTreeMap<String, String>>,
+    drawn: Mutex<BTreeMap<String, (String, String)>>,
     /// Each command, and how long it took (s).
     times: Mutex<Vec<(String, f64)>>,
 }
@@ -97,43 +99,29 @@ impl Results {
         let (results, told) = (Arc::clone(self), Arc::clone(&begin));
         environment.add_function("column", move |command: &str, topic: &str, name: &str| {
             results.once(&results.told, &format!("{command} {topic} {name}"), &*told, || {
-                let columns = Command::parse(command)?.log()?.columns(topic)?;
+                let columns = Command::parse(command)?.log(Detail::Full)?.columns(topic)?;
                 let column = |name: &str| columns.numbers(name).map(<[f64]>::to_vec).unwrap_or_default();
                 value(json!([column("time_s"), column(name)]))
             })
         });
         let (results, list, told) = (Arc::clone(self), Arc::clone(&outcome), Arc::clone(&begin));
-        environment.add_function("figure", move |name: &str, command: &str, what: &str, caption: &str| {
-            let svg = results
-                .once(&results.drawn, name, &*told, || svg(name, &Command::parse(command)?.draw(what)?))?;
-            Ok::<_, Error>(show(
-                &list,
-                form,
-                Drawn {
-                    name: name.to_owned(),
-                    caption: caption.to_owned(),
-                    command: shown(command, what),
-                    svg,
-                },
-            ))
-        });
-        let (results, list) = (Arc::clone(self), Arc::clone(&outcome));
-        environment.add_function(
-            "drawing",
-            move |name: &str, chart: Serde<Chart>, caption: &str, command: &str| {
-                let svg = results.once(&results.drawn, name, &|_: &str| {}, || svg(name, &chart.figure()))?;
-                Ok::<_, Error>(show(
-                    &list,
-                    form,
-                    Drawn {
-                        name: name.to_owned(),
-                        caption: caption.to_owned(),
-                        command: command.to_owned(),
-                        svg,
-                    },
-                ))
-            },
-        );
+        let figure = move |name: &str, command: &str, what: &str, caption: &str| -> Result<String, Error> {
+            let key = format!("{command}: figure {what}");
+            let (svg, command) = results.once(&results.drawn, &key, &*told, || {
+                let (figure, shown) = Command::parse(command)?.draw(what)?;
+                Ok((svg(name, &figure)?, shown))
+            })?;
+            Ok(show(&list, form, Drawn { name: name.to_owned(), caption: caption.to_owned(), command, svg }))
+        };
+        environment.add_function("figure", figure);
+        let list = Arc::clone(&outcome);
+        let drawing = move |name: &str, chart: Serde<Chart>, caption: &str, command: &str| {
+            let svg = svg(name, &chart.figure())
+                .map_err(|failure| Error::new(ErrorKind::InvalidOperation, failure.to_string()))?;
+            let (name, caption, command) = (name.to_owned(), caption.to_owned(), command.to_owned());
+            Ok::<String, Error>(show(&list, form, Drawn { name, caption, command, svg }))
+        };
+        environment.add_function("drawing", drawing);
         for (word, expected) in [("yes", true), ("no", false)] {
             let list = Arc::clone(&outcome);
             environment.add_function(word, move |name: &str, holds: bool| {
@@ -190,16 +178,6 @@ fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
 
 fn svg(name: &str, figure: &Figure) -> Result<String, Failure> {
     figure.svg().map_err(|why| Failure::Draw { path: name.into(), why })
-}
-
-/// The command of a figure as a user gives it.
-fn shown(command: &str, what: &str) -> String {
-    if !command.starts_with("simulate ") {
-        return format!("{command} --figures DIR");
-    }
-    let scenario = command.split_whitespace().nth(1).unwrap_or_default();
-    let name = scenario.trim_start_matches("scenarios/").trim_end_matches(".toml");
-    format!("{command} --log full; flexsc plot {name}.mcap --what {what}")
 }
 
 fn show(outcome: &Mutex<Outcome>, form: Form, drawn: Drawn) -> String {
