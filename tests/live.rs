@@ -1,199 +1,18 @@
 //! `flexsc simulate --live`: a viewer sees what the log holds, when it is told to see it.
 
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::net::TcpStream;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use data_encoding::BASE64;
 use serde_json::{Value as Json, json};
-use tungstenite::client::IntoClientRequest;
-use tungstenite::{Message, WebSocket};
+use tungstenite::Message;
 
-use crate::util::{Dir, Started, end};
+use crate::util::{Dir, end};
+use crate::viewer::{PATIENCE, Row, Said, Schema, Viewer, connect};
 
-/// Nothing of these tests takes longer.
-const PATIENCE: Duration = Duration::from_secs(30);
-/// A held run says nothing for so long.
-const QUIET: Duration = Duration::from_millis(600);
 /// The period of the log (ns).
 const PERIOD: u64 = 100_000_000;
-
-/// A viewer: a client of the Foxglove WebSocket protocol.
-struct Viewer {
-    socket: WebSocket<TcpStream>,
-    info: Json,
-    /// Topic and schema of each channel.
-    channels: BTreeMap<u64, (String, Schema)>,
-    /// The time that was told last (ns).
-    time: u64,
-    calls: u32,
-}
-
-/// Name and serialised descriptors.
-type Schema = (String, Vec<u8>);
-
-/// What a viewer is told of a run.
-#[derive(Clone, Debug, PartialEq)]
-struct Row {
-    topic: String,
-    time: u64,
-    data: Vec<u8>,
-}
-
-/// What the server says.
-#[derive(Debug)]
-enum Said {
-    Row(Row),
-    Text(Json),
-    Answer(Json),
-    Nothing,
-    Farewell,
-}
-
-impl Viewer {
-    /// Connects to a run.
-    fn open(run: &mut Started) -> (Self, String) {
-        let line = run.line("ws://");
-        let address = line.split("ws://").nth(1).and_then(|rest| rest.split(',').next()).expect("an address");
-        (Self::connect(address), address.to_owned())
-    }
-
-    fn connect(address: &str) -> Self {
-        let socket = connect(address, "foxglove.sdk.v1").expect("a connection");
-        let mut viewer =
-            Self { socket, info: Json::Null, channels: BTreeMap::new(), time: u64::MAX, calls: 0 };
-        viewer.info = viewer.text("serverInfo");
-        viewer.text("advertiseServices");
-        viewer
-    }
-
-    /// What is said next; nothing if it does not come in this time.
-    fn next(&mut self, within: Duration) -> Said {
-        let began = Instant::now();
-        while began.elapsed() < within {
-            self.socket.get_ref().set_read_timeout(Some(Duration::from_millis(20))).expect("set");
-            match self.socket.read() {
-                Ok(Message::Text(text)) => {
-                    let json: Json = serde_json::from_str(&text).expect("JSON");
-                    for channel in json["channels"].as_array().into_iter().flatten() {
-                        self.note(channel);
-                    }
-                    return Said::Text(json);
-                }
-                Ok(Message::Binary(bytes)) if bytes[0] == 2 => {
-                    self.time = u64::from_le_bytes(bytes[1..].try_into().expect("eight bytes"));
-                }
-                Ok(Message::Binary(bytes)) if bytes[0] == 3 => {
-                    assert_eq!(&bytes[9..17], b"\x04\0\0\0json");
-                    return Said::Answer(serde_json::from_slice(&bytes[17..]).expect("JSON"));
-                }
-                Ok(Message::Binary(bytes)) => {
-                    let channel = u64::from(u32::from_le_bytes(bytes[1..5].try_into().expect("four"))) - 100;
-                    let time = u64::from_le_bytes(bytes[5..13].try_into().expect("eight"));
-                    let topic = self.channels[&channel].0.clone();
-                    return Said::Row(Row { topic, time, data: bytes[13..].to_vec() });
-                }
-                Ok(Message::Close(_)) => return Said::Farewell,
-                Ok(_) => {}
-                Err(tungstenite::Error::Io(error))
-                    if matches!(
-                        error.kind(),
-                        std::io::ErrorKind::WouldBlock | std::io::ErrorKind::TimedOut
-                    ) => {}
-                Err(error) => panic!("{error}"),
-            }
-        }
-        Said::Nothing
-    }
-
-    fn note(&mut self, channel: &Json) {
-        assert_eq!(
-            (&channel["encoding"], &channel["schemaEncoding"]),
-            (&json!("protobuf"), &json!("protobuf"))
-        );
-        let text = |key: &str| channel[key].as_str().expect("a text").to_owned();
-        let schema = BASE64.decode(text("schema").as_bytes()).expect("base64");
-        let of = (text("topic"), (text("schemaName"), schema));
-        self.channels.insert(channel["id"].as_u64().expect("a number"), of);
-    }
-
-    /// The next text of a kind.
-    fn text(&mut self, op: &str) -> Json {
-        loop {
-            match self.next(PATIENCE) {
-                Said::Text(json) if json["op"] == op => return json,
-                Said::Nothing | Said::Farewell => panic!("no {op}"),
-                _ => {}
-            }
-        }
-    }
-
-    /// The next row of a topic.
-    fn row(&mut self, topic: &str) -> Row {
-        loop {
-            match self.next(PATIENCE) {
-                Said::Row(row) if row.topic == topic => return row,
-                Said::Nothing | Said::Farewell => panic!("no {topic}"),
-                _ => {}
-            }
-        }
-    }
-
-    /// The rows that come until there are no more for a while.
-    fn rest(&mut self) -> Vec<Row> {
-        let mut rows = Vec::new();
-        loop {
-            match self.next(QUIET) {
-                Said::Row(row) => rows.push(row),
-                Said::Nothing => return rows,
-                _ => {}
-            }
-        }
-    }
-
-    fn ask(&mut self, json: &Json) {
-        self.socket.send(Message::text(json.to_string())).expect("sent");
-    }
-
-    /// Subscribes to these topics, to all if none is named.
-    fn subscribe(&mut self, topics: &[&str]) {
-        let wanted = |topic: &str| topics.is_empty() || topics.contains(&topic);
-        let channels = self.channels.iter().filter(|(_, (topic, _))| wanted(topic));
-        let pairs: Vec<Json> = channels.map(|(id, _)| json!({"id": 100 + id, "channelId": id})).collect();
-        assert!(!pairs.is_empty(), "{topics:?}");
-        self.ask(&json!({"op": "subscribe", "subscriptions": pairs}));
-    }
-
-    /// Calls a service, and returns its answer and the rows before it.
-    fn call(&mut self, service: u32) -> (Json, Vec<Row>) {
-        self.calls += 1;
-        let mut bytes = vec![2];
-        for number in [service, self.calls, 4] {
-            bytes.extend(number.to_le_bytes());
-        }
-        bytes.extend(b"json{}");
-        self.socket.send(Message::binary(bytes)).expect("sent");
-        let mut rows = Vec::new();
-        loop {
-            match self.next(PATIENCE) {
-                Said::Answer(answer) => return (answer, rows),
-                Said::Row(row) => rows.push(row),
-                Said::Nothing | Said::Farewell => panic!("no answer"),
-                Said::Text(_) => {}
-            }
-        }
-    }
-}
-
-fn connect(address: &str, subprotocol: &'static str) -> Option<WebSocket<TcpStream>> {
-    let mut request = format!("ws://{address}").into_client_request().expect("an address");
-    let name = tungstenite::http::HeaderValue::from_static(subprotocol);
-    request.headers_mut().insert("Sec-WebSocket-Protocol", name);
-    let stream = TcpStream::connect(address).expect("a listener");
-    let (socket, response) = tungstenite::client(request, stream).ok()?;
-    assert_eq!(response.headers()["Sec-WebSocket-Protocol"], subprotocol);
-    Some(socket)
-}
 
 /// The messages of a log, and the schema of each topic.
 fn log(dir: &Dir, name: &str) -> (Vec<Row>, BTreeMap<String, Schema>) {
@@ -257,7 +76,7 @@ fn a_run_pauses_steps_and_goes_on() {
     let mut run = dir.start(arguments);
     let (mut viewer, address) = Viewer::open(&mut run);
     viewer.subscribe(&["/attitude"]);
-    let gone = viewer.rest_of(10);
+    let gone = viewer.time_after(10);
     assert!(gone as f64 / 1e9 <= 2.0 * began.elapsed().as_secs_f64(), "it hurries");
 
     let (answer, mut rows) = viewer.call(0);
@@ -297,19 +116,12 @@ fn a_run_pauses_steps_and_goes_on() {
     let began = Instant::now();
     viewer.ask(&set("/paused", json!(false)));
     assert_eq!(late.text("parameterValues")["parameters"], parameters(false, 20.0));
-    let went = (viewer.rest_of(100) - at(3)) as f64 / 1e9;
+    let went = (viewer.time_after(100) - at(3)) as f64 / 1e9;
     let took = began.elapsed().as_secs_f64();
     assert!((took..20.0 * took).contains(&went), "{went} s in {took} s");
 
     #[cfg(unix)]
     run.signal("INT").exits(130).says(&["interrupted"]);
-}
-
-impl Viewer {
-    /// The time of the row that comes after so many others.
-    fn rest_of(&mut self, count: usize) -> u64 {
-        (0..count).map(|_| self.row("/attitude").time).last().expect("a row")
-    }
 }
 
 #[cfg(unix)]
@@ -319,7 +131,7 @@ fn a_live_run_that_is_stopped_has_a_whole_log_and_says_farewell() {
     let mut run = dir.start("simulate relay-fixed.toml -o out --log full --live=127.0.0.1:0 --speed 20");
     let (mut viewer, _) = Viewer::open(&mut run);
     viewer.subscribe(&["/attitude"]);
-    let seen = viewer.rest_of(20);
+    let seen = viewer.time_after(20);
     let stopped = std::thread::spawn(move || run.signal("INT"));
     let mut last = seen;
     loop {
@@ -353,8 +165,8 @@ fn a_client_that_errs_is_told_and_harms_nobody() {
     assert_eq!(viewer.info["capabilities"], json!(["time", "parameters", "parametersSubscribe", "services"]));
     assert!(connect(&address, "chat").is_none());
     assert!(connect(&address, "foxglove.websocket.v1").is_some(), "the name before the SDK's");
-    std::io::Write::write_all(&mut TcpStream::connect(&address).expect("a listener"), b"\r\nhello\r\n\r\n")
-        .expect("sent");
+    let mut stranger = TcpStream::connect(&address).expect("a listener");
+    stranger.write_all(b"\r\nhello\r\n\r\n").expect("sent");
     let errors = [
         (
             json!({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 999}]}),

@@ -62,6 +62,11 @@ fn logs_are_good_mcap() {
     inspect(&dir, "events/relay-fixed.mcap", &events, 1_774_017_960_000_000_000);
     dir.run("simulate relay-fixed.toml -o full --log full --set duration=2000").exits(0);
     inspect(&dir, "full/relay-fixed.mcap", &[&events[..], &motion[..]].concat(), 0);
+    let scene = ["/plumes", "/scene", "/tf"];
+    let options = "--log scene --set duration=600 --set epoch=2026-03-20T14:46:00Z";
+    dir.run(&format!("simulate relay-fixed.toml -o scene {options}")).exits(0);
+    let topics = [&events[..], &motion[..], &scene[..]].concat();
+    inspect(&dir, "scene/relay-fixed.mcap", &topics, 1_774_017_960_000_000_000);
 }
 
 fn inspect(dir: &Dir, log: &str, topics: &[&str], epoch_ns: u64) {

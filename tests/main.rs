@@ -39,6 +39,8 @@ mod structure;
 mod study;
 mod tuning;
 mod util;
+#[cfg(feature = "live")]
+mod viewer;
 mod waveforms;
 mod wheel;
 mod wheel_figures;

@@ -29,6 +29,13 @@ def test_exit_codes(command: Command) -> None:
     assert b"Usage: flexsc simulate" in command("simulate", exits=2).stderr
 
 
+def test_a_run_is_live(command: Command) -> None:
+    arguments = ["--live=127.0.0.1:0", "--speed", "max", "--set", "duration=10"]
+    told = command("simulate", SCENARIOS / "relay-fixed.toml", *arguments).stderr.decode()
+    assert "ws://127.0.0.1:" in told
+    assert "as fast as possible" in told
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_control_c_reaches_the_engine(tmp_path: Path) -> None:
     arguments = ["simulate", str(SCENARIOS / "relay-fixed.toml"), "--set", "duration=1e10"]

@@ -187,7 +187,8 @@ def test_the_schemas_of_viewers_are_the_published_ones(tmp_path: Path) -> None:
         assert own.file.name == published.file.name
         for field in own.fields:
             other = published.fields_by_name[field.name]
-            assert (field.number, field.type, field.label) == (other.number, other.type, other.label)
+            assert (field.number, field.type) == (other.number, other.type)
+            assert field.is_repeated == other.is_repeated
             if field.message_type:
                 assert field.message_type.full_name == other.message_type.full_name
                 compare(field.message_type)

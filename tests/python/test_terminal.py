@@ -13,7 +13,8 @@ pty = pytest.importorskip("pty")
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="terminals of POSIX")
 
 ESCAPE = b"\x1b"
-CAMPAIGN = ["simulate", str(SCENARIOS / "relay-sampled.toml"), "--set", "duration=2000", "--runs", "300", "-o", "out"]
+SAMPLED = str(SCENARIOS / "relay-sampled.toml")
+CAMPAIGN = ["simulate", SAMPLED, "--set", "duration=2000", "--runs", "300", "-o", "out"]
 MISTAKE = ["simulate", str(SCENARIOS / "relay-fixed.toml"), "--set", "law.relay.kt=1"]
 
 

@@ -17,7 +17,7 @@ const SUBPROTOCOL: &str = "sec-websocket-protocol";
 const GREETING: Duration = Duration::from_secs(5);
 const FAREWELL: Duration = Duration::from_secs(1);
 /// How long a client may take nothing that is sent before it counts as gone.
-const PATIENCE: Duration = Duration::from_secs(30);
+const PATIENCE: Duration = Duration::from_secs(10);
 /// How long to listen before looking whether there is something to send.
 const LISTEN: Duration = Duration::from_millis(5);
 /// Clients only ask: no frame of theirs is larger (bytes).
@@ -50,18 +50,14 @@ fn greet(stream: TcpStream) -> Result<WebSocket<TcpStream>, Error> {
 fn agree(request: &Request, mut response: Response) -> Result<Response, ErrorResponse> {
     let asked = request.headers().get_all(SUBPROTOCOL).iter().filter_map(|value| value.to_str().ok());
     let asked: Vec<&str> = asked.flat_map(|names| names.split(',')).map(str::trim).collect();
-    match SUBPROTOCOLS.into_iter().find(|name| asked.contains(name)) {
-        Some(name) => {
-            response.headers_mut().insert(SUBPROTOCOL, HeaderValue::from_static(name));
-            Ok(response)
-        }
-        None => {
-            let why = format!("ask for the subprotocol {}", SUBPROTOCOLS.join(" or "));
-            let mut response = ErrorResponse::new(Some(why));
-            *response.status_mut() = StatusCode::BAD_REQUEST;
-            Err(response)
-        }
+    if let Some(name) = SUBPROTOCOLS.into_iter().find(|name| asked.contains(name)) {
+        response.headers_mut().insert(SUBPROTOCOL, HeaderValue::from_static(name));
+        return Ok(response);
     }
+    let why = format!("ask for the subprotocol {}", SUBPROTOCOLS.join(" or "));
+    let mut response = ErrorResponse::new(Some(why));
+    *response.status_mut() = StatusCode::BAD_REQUEST;
+    Err(response)
 }
 
 fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<TcpStream>) -> Result<(), Error> {

@@ -54,6 +54,7 @@ impl FromStr for Speed {
 impl fmt::Display for Speed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.finite() {
+            Some(1.0) => f.write_str("real time"),
             Some(factor) => write!(f, "{factor} times real time"),
             None => f.write_str("as fast as possible"),
         }
@@ -132,9 +133,9 @@ impl Clock {
         self.speed
     }
 
-    /// The latest instant that was let through.
-    pub fn shown(&self) -> Instant {
-        self.shown
+    /// Where the run is, or is held.
+    pub fn at(&self) -> Instant {
+        if self.paused { self.until } else { self.shown }
     }
 
     /// Pauses.

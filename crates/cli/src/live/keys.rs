@@ -65,7 +65,7 @@ pub fn listen(hub: Arc<Hub>) {
                 key => {
                     let clock = hub.change(|clock| key.press(clock));
                     let state = if clock.paused() { "paused, " } else { "" };
-                    say!("  at {:.3} s     {state}{}", clock.shown().seconds(), clock.speed());
+                    say!("  at {:.3} s     {state}{}", clock.at().seconds(), clock.speed());
                 }
             }
         }

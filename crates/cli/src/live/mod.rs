@@ -8,6 +8,7 @@ mod clock;
 mod hub;
 mod keys;
 mod protocol;
+mod state;
 mod topics;
 
 use std::io::{self, Write};
@@ -23,6 +24,7 @@ use flexsc_core::time::Instant;
 
 use clock::{Clock, LOOK, Speed};
 use hub::{Hub, Publisher};
+use state::State;
 
 use crate::failure::Failure;
 use crate::{say, stop};
@@ -79,8 +81,8 @@ impl Args {
             clock.begin(wall);
         }
         let provenance = Campaign::provenance(run);
-        let topics = topics::expected(run, &provenance);
-        let hub = Arc::new(Hub::new(run.scenario.name.clone(), clock, topics));
+        let state = State::new(clock, topics::expected(run, &provenance));
+        let hub = Arc::new(Hub::new(&run.scenario.name, state));
         let messages = Encode::new(Publisher(hub.clone()), &provenance, Detail::Scene);
         let messages = messages.map_err(|error| failed(io::Error::other(error)))?;
         say!("  live           ws://{bound}, {speed}");

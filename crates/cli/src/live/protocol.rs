@@ -165,7 +165,7 @@ pub fn service(number: u32) -> Option<&'static str> {
 
 /// The answer of a service: what the clock does now.
 pub fn service_response(service: u32, call: u32, clock: &Clock) -> Message {
-    let state = json!({"paused": clock.paused(), "time_s": clock.shown().seconds()});
+    let state = json!({"paused": clock.paused(), "time_s": clock.at().seconds()});
     let encoding = "json";
     let mut bytes = vec![3];
     for number in [service, call, encoding.len() as u32] {

@@ -95,6 +95,9 @@ fn quoted(word: &str) -> String {
 /// The table for people.
 pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) -> String {
     let worst = worst(runs, directory, metrics, most);
+    if worst.is_empty() {
+        return String::new();
+    }
     let mut text = format!("{}: the worst of {} runs\n", runs.name, runs.numbers.len());
     let mut before = "";
     for found in &worst {
