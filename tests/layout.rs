@@ -22,7 +22,7 @@ const OTHERS: [(&str, &str); 6] = [
     ("relay-sampled", "--set duration=1000"),
     ("rotation-thrusters", ""),
     ("rotation-nonlinear", ""),
-    ("wheel-fast-mode", "--set duration=20 --set actuator.wheel.rotor={inertia=1e-4}"),
+    ("wheel-fast-mode", "--set duration=20"),
     ("iss-manoeuvre-off", "--set duration=60"),
     ("iss-mismatch", "--set duration=60"),
 ];
@@ -126,6 +126,12 @@ fn run(scenario: &str, options: &str) {
         dir.run(&format!("layout {name} -o layout.json")).exits(0);
         assert!(dir.text("layout.json") == layout, "{scenario} {detail}: attached and written differ");
         assert_eq!(layout.contains("\"3D!scene\""), detail == "scene");
+        if detail == "scene" {
+            // Whoever looks at a live run has no log of it yet.
+            dir.run(&format!("layout {scenario}.toml {options} -o before.json")).exits(0);
+            assert!(dir.text("before.json") == layout, "{scenario}: of the scenario and of its log differ");
+            dir.run(&format!("layout {name} --set duration=1.0")).exits(2).says(&["is a log"]);
+        }
         if detail != "events" {
             check(&Log::open(&dir.path(&name)).expect("a log"), &layout);
         }

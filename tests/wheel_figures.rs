@@ -59,11 +59,12 @@ fn filters_have_figures_from_events_and_from_full_logs() {
         dir
     };
     let (events, full) = (draw("events"), draw("full"));
-    let names = ["angle", "consistency", "estimate", "extra", "frequency", "modes", "torque"].map(|what| {
-        let name = format!("wheel-ekf-{what}");
-        assert!(Drawing::read(&events, &name).0 == Drawing::read(&full, &name).0, "{what}");
-        format!("{name}.svg")
-    });
+    let names =
+        ["angle", "consistency", "estimate", "extra", "frequency", "modes", "torque", "wheel"].map(|what| {
+            let name = format!("wheel-ekf-{what}");
+            assert!(Drawing::read(&events, &name).0 == Drawing::read(&full, &name).0, "{what}");
+            format!("{name}.svg")
+        });
     assert_eq!(full.names("figures"), names);
 
     let frequency = Drawing::read(&full, "wheel-ekf-frequency");

@@ -1,30 +1,45 @@
-//! `flexsc layout`: a viewer layout for a log.
+//! `flexsc layout`: a viewer layout for a log, or for the logs that a scenario will have.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
 use flexsc_core::layout::Layout;
-use flexsc_core::record::Log;
+use flexsc_core::record::{Detail, Log};
 
 use crate::failure::Failure;
-use crate::print;
+use crate::{print, scenario};
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// The log
-    log: PathBuf,
+    /// The log, or a scenario: then for a log with a scene, or a live run
+    #[arg(value_name = "LOG|SCENARIO")]
+    path: PathBuf,
+    /// Set a key of the scenario, such as law.relay.k_t=0.34
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
     /// The file to write, such as layout.json [default: stdout]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let log = Log::open(&args.log)?;
-    let scenario = Scenario::parse(&args.log.display().to_string(), log.scenario().unwrap_or_default())?;
-    let has = |topic: &str| log.topics().iter().any(|own| own == topic);
-    let layout = Layout::of(&scenario).of_topics(has).to_json();
+    let layout = if args.path.extension().is_some_and(|extension| extension == "toml") {
+        Layout::of(&scenario::load(&args.path, &args.set, None)?).of_detail(Detail::Scene)
+    } else if args.set.is_empty() {
+        of_log(&args.path)?
+    } else {
+        let path = args.path.display();
+        return Err(Failure::Arguments(format!("--set: {path} is a log, whose scenario is what was run")));
+    };
+    let layout = layout.to_json();
     match &args.out {
         Some(path) => flexsc_core::whole::write(path, layout.as_bytes()).map_err(Failure::write(path)),
         None => print(layout.as_bytes()),
     }
+}
+
+fn of_log(path: &Path) -> Result<Layout, Failure> {
+    let log = Log::open(path)?;
+    let scenario = Scenario::parse(&path.display().to_string(), log.scenario().unwrap_or_default())?;
+    Ok(Layout::of(&scenario).of_topics(|topic| log.topics().iter().any(|own| own == topic)))
 }

@@ -74,7 +74,7 @@ enum Verb {
     Export(export::Args),
     /// Look into logs, and save torn ones
     Log(log::Args),
-    /// Write a layout for viewers that shows a log
+    /// Write a layout for viewers that shows a log, or the logs of a scenario
     Layout(layout::Args),
     /// Check scenario files
     Check(check::Args),

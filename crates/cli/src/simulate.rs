@@ -180,13 +180,16 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
     #[cfg(not(feature = "live"))]
     let mut live: Option<()> = None;
     let began = WallInstant::now();
-    let mut progress = Progress::new(run.scenario.duration);
+    // Who steers a live run types on the line of the bar.
+    let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
     let record = (Stop, (&mut progress, &mut live));
     let result = match args.log.unwrap_or(LogDetail::Events).detail() {
         None => Campaign::simulate(&run, record).map(|metrics| (metrics, None)),
         Some(detail) => logged(&run, &path, detail, record).map(|(metrics, bytes)| (metrics, Some(bytes))),
     };
-    progress.finish();
+    if let Some(progress) = progress {
+        progress.finish();
+    }
     let took = began.elapsed().as_secs_f64();
     let (metrics, bytes) = result.map_err(|source| match source {
         SimulationError::Record(RecordError::Io(source)) => Failure::Write { path: path.clone(), source },

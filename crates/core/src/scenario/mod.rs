@@ -2,6 +2,7 @@
 
 mod consistency;
 mod epoch;
+mod log;
 mod spatial;
 
 use std::collections::BTreeMap;
@@ -21,7 +22,6 @@ use crate::estimator::Estimator;
 use crate::law::{Goal, Law};
 use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::quantity::Positive;
-use crate::scene::SceneSpec;
 use crate::sensor::Sensor;
 use crate::structure::Fault;
 use crate::time::{Instant, Span};
@@ -29,6 +29,7 @@ use crate::uncertain::Distribution;
 
 use epoch::nanoseconds_since_1970;
 
+pub use log::{Log, SceneSpec};
 pub use spatial::{AxesEstimator, SpatialLoop};
 
 /// A scenario.
@@ -97,28 +98,6 @@ pub struct Scenario {
     /// The loop about three axes, where the body is a spatial one.
     #[serde(skip)]
     pub spatial: Option<SpatialLoop>,
-}
-
-/// What a full log holds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Log {
-    /// Period at which a full log holds the motion (s).
-    #[serde(default = "tenth")]
-    pub period: Span,
-    /// How a log with a scene draws the run.
-    #[serde(default, skip_serializing_if = "SceneSpec::is_default")]
-    pub scene: SceneSpec,
-}
-
-fn tenth() -> Span {
-    Span::from_seconds(0.1)
-}
-
-impl Default for Log {
-    fn default() -> Self {
-        Self { period: tenth(), scene: SceneSpec::default() }
-    }
 }
 
 /// Levels of other runs that the metrics compare with.

@@ -1,0 +1,60 @@
+//! The table `[log]`: how densely a full log holds the motion, and how a log with a scene draws it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::quantity::Positive;
+use crate::time::Span;
+
+/// No frames are nearer than this (s), unless a scenario asks for it: viewers show no more.
+const SHORTEST_PERIOD: f64 = 0.04;
+
+/// What a full log holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Log {
+    /// Period at which a full log holds the motion (s).
+    #[serde(default = "tenth")]
+    pub period: Span,
+    /// How a log with a scene draws the run.
+    #[serde(default, skip_serializing_if = "SceneSpec::is_default")]
+    pub scene: SceneSpec,
+}
+
+fn tenth() -> Span {
+    Span::from_seconds(0.1)
+}
+
+impl Default for Log {
+    fn default() -> Self {
+        Self { period: tenth(), scene: SceneSpec::default() }
+    }
+}
+
+/// How a run is drawn.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SceneSpec {
+    /// Period of the frames (s); left out, that of the log, and at least 0.04 s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<Span>,
+    /// How many times the elastic motion is drawn as large as it is; left out, so many times that what the actuator or the
+    /// initial state excites shows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bending: Option<Positive>,
+    /// How many times the rotation of the body is drawn as large as it is; left out, so many times that it shows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turning: Option<Positive>,
+}
+
+impl SceneSpec {
+    /// Whether the scenario leaves everything out.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The period of the frames, where a log has this one.
+    pub fn period(&self, log: Span) -> Span {
+        self.period.unwrap_or_else(|| log.max(Span::from_seconds(SHORTEST_PERIOD)))
+    }
+}
