@@ -100,6 +100,23 @@ def test_a_sweep_takes_any_values(fixed: Scenario) -> None:
     assert flexsc.sweep(short, "seed", np.arange(3))["seed"].dtype == np.int64
 
 
+def test_a_sweep_takes_several_keys(fixed: Scenario) -> None:
+    gains, angles = [0.31, 0.34], [0.0, 2e-4, 4e-4]
+    short = fixed.with_("duration", 600.0)
+    table = flexsc.sweep(short, {"law.relay.k_t": gains, "body.planar.angle": angles})
+    assert table.keys == ["law.relay.k_t", "body.planar.angle"]
+    assert table["law.relay.k_t"].reshape(2, 3)[:, 0].tolist() == gains
+    assert table["body.planar.angle"].reshape(2, 3)[1].tolist() == angles
+    alone = short.with_({"law.relay.k_t": 0.34, "body.planar.angle": 2e-4}).simulate(log="none")
+    assert table["envelope_mean_rad"].reshape(2, 3)[1, 1] == alone.metrics["envelope_mean_rad"]
+    for wrong in ({}, {"law.relay.k_t": []}):
+        with pytest.raises(ValueError, match=r"needs a key|must be of shape"):
+            flexsc.sweep(short, wrong)
+    for arguments in (("law.relay.k_t",), ({"law.relay.k_t": gains}, angles)):
+        with pytest.raises(ValueError, match="with a single key, and with no mapping"):
+            flexsc.sweep(short, *arguments)  # type: ignore[arg-type]
+
+
 def test_a_value_that_is_not_accepted_is_a_row(fixed: Scenario) -> None:
     table = flexsc.sweep(fixed.with_("duration", 100.0), "law.relay.k_t", [0.31, 1.5, np.nan, 0.32])
     assert [bool(error) for error in table["error"]] == [False, True, True, False]

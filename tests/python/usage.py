@@ -28,6 +28,7 @@ table: flexsc.Table = flexsc.campaign(scenario, runs=range(4), jobs=2, seed=1)
 mean: float = table.statistics()["duty"]["mean"]
 duty: npt.NDArray[Any] = flexsc.sweep(scenario, "law.relay.k_t", np.linspace(0.3, 0.35, 3))["duty"]
 swept: flexsc.Table = flexsc.sweep(scenario, "law.relay.k_t", [0.3, 0.35])
+both: flexsc.Table = flexsc.sweep(scenario, {"law.relay.k_t": [0.3], "body.planar.angle": np.zeros(2)})
 unit: str = flexsc.metrics()["duty"]["unit"]
 turn: flexsc.Scenario = flexsc.Scenario.load(path.with_name("rotation-sine.toml"))
 turn = turn.with_({"manoeuvre.command": {"sine": {"suppress": 1}}, "manoeuvre.time": 40.0})

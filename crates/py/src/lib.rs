@@ -85,8 +85,8 @@ impl Scenario {
         Run { number, scenario: self.inner.clone(), drawn: Vec::new() }
     }
 
-    fn study(&self, grid: Option<Grid>) -> PyResult<Campaign> {
-        Campaign::new(self.inner.clone(), &self.origin, grid).map_err(scenario_error)
+    fn study(&self, grids: impl IntoIterator<Item = Grid>) -> PyResult<Campaign> {
+        Campaign::new(self.inner.clone(), &self.origin, grids).map_err(scenario_error)
     }
 }
 
@@ -124,7 +124,7 @@ impl Scenario {
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {
-        Self::new(&self.origin, self.study(None)?.run(run).map(|run| run.scenario))
+        Self::new(&self.origin, self.study([])?.run(run).map(|run| run.scenario))
     }
 
     #[getter]
@@ -225,9 +225,9 @@ fn campaign<'py>(
     scenario: &Scenario,
     runs: (u64, u64),
     jobs: usize,
-    grid: Option<(String, Vec<f64>)>,
+    grids: Vec<(String, Vec<f64>)>,
 ) -> PyResult<(Vec<String>, Vec<Told<'py>>, Vec<Summary>)> {
-    let study = scenario.study(grid.map(|(key, values)| Grid { key, values }))?;
+    let study = scenario.study(grids.into_iter().map(|(key, values)| Grid { key, values }))?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| PyValueError::new_err(format!("jobs={jobs}: {error}")))?;
     let outcomes = aside(py, |stop| {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from math import prod
 from operator import index
 from typing import TYPE_CHECKING, Any
 
@@ -85,22 +86,25 @@ def campaign(
         raise ValueError(
             f"runs must be a number of runs, or a range of step 1 with a run in it, got {runs!r}"
         )
-    return _campaign(scenario, numbers, jobs, seed, None)
+    return _campaign(scenario, numbers, jobs, seed, [])
 
 
 def sweep(
     scenario: Scenario,
-    key: str,
-    values: Sequence[float] | npt.NDArray[Any],
+    key: str | Mapping[str, Sequence[float] | npt.NDArray[Any]],
+    values: Sequence[float] | npt.NDArray[Any] | None = None,
     jobs: int | None = None,
     seed: int | None = None,
 ) -> Table:
-    """Simulate a scenario once for each value of a key; run i has value i.
+    """Simulate a scenario once for each value of a key, or each combination of the values of several.
+
+    Over one key run i has value i. Over several the last key's values go from run to run:
+    `table[metric].reshape(len(first), len(second))` is a map.
 
     Args:
         scenario: What is varied.
-        key: The key, such as `law.relay.k_t`.
-        values: Its values, of shape (runs,), such as `numpy.linspace(0.28, 0.40, 25)`.
+        key: The key, such as `law.relay.k_t`, or the values of each key by its name.
+        values: The values of a single key, of shape (runs,), such as `numpy.linspace(0.28, 0.40, 25)`.
         jobs: Threads, at most 1024; left out, one for each core.
         seed: Seed, instead of the scenario's.
 
@@ -110,14 +114,25 @@ def sweep(
     """
     import numpy as np
 
-    numbers = np.asarray(values, dtype=np.float64)
-    if numbers.ndim != 1 or len(numbers) == 0:
-        raise ValueError(f"values must be of shape (runs,) with a value in it, got {numbers.shape}")
-    return _campaign(scenario, range(len(numbers)), jobs, seed, (key, numbers.tolist()))
+    if isinstance(key, str) == (values is None):
+        raise ValueError("values must be given with a single key, and with no mapping of keys")
+    grids = []
+    for name, of_key in {key: values}.items() if isinstance(key, str) else key.items():
+        numbers = np.asarray(of_key, dtype=np.float64)
+        if numbers.ndim != 1 or len(numbers) == 0:
+            raise ValueError(f"values must be of shape (runs,) with a value in it, got {numbers.shape}")
+        grids.append((name, numbers.tolist()))
+    if not grids:
+        raise ValueError("a sweep needs a key")
+    return _campaign(scenario, range(prod(len(numbers) for _, numbers in grids)), jobs, seed, grids)
 
 
 def _campaign(
-    scenario: Scenario, runs: range, jobs: int | None, seed: int | None, grid: tuple[str, list[float]] | None
+    scenario: Scenario,
+    runs: range,
+    jobs: int | None,
+    seed: int | None,
+    grids: list[tuple[str, list[float]]],
 ) -> Table:
     import numpy as np
 
@@ -127,7 +142,7 @@ def _campaign(
     if seed is not None:
         scenario = scenario.with_("seed", seed)
     span = (run_number(runs.start), run_number(runs.stop))
-    keys, told, summaries = engine.campaign(scenario._native, span, jobs, grid)
+    keys, told, summaries = engine.campaign(scenario._native, span, jobs, grids)
     columns = {"run": np.array([run for run, *_ in told], dtype=np.int64)}
     for place, key in enumerate(keys):
         columns[key] = np.array([drawn[place] for _, drawn, *_ in told])

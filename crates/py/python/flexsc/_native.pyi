@@ -97,7 +97,7 @@ def simulate(
 ) -> tuple[dict[str, Any], dict[str, dict[str, _Column]]]: ...
 def to_mcap(scenario: Scenario, run: int, log: str, path: str | os.PathLike[str]) -> int: ...
 def campaign(
-    scenario: Scenario, runs: tuple[int, int], jobs: int, grid: tuple[str, list[float]] | None
+    scenario: Scenario, runs: tuple[int, int], jobs: int, grids: list[tuple[str, list[float]]]
 ) -> tuple[
     list[str],
     list[tuple[int, list[float], dict[str, Any] | None, str]],
