@@ -158,6 +158,7 @@ fn the_command_tells_how_often_modes_are_found() {
         ("identify --modes 20:1", "got 20"),
         ("identify --modes 1.2:0", "other than 0"),
         ("identify --off 1.5", "must be off by 0 to 1, got 1.5"),
+        ("identify --influence-off -1", "--influence-off: the modes must be off by 0 to 1, got -1"),
         ("identify --runs 0", "0 is not in"),
     ] {
         dir.run(bad).exits(2).says(&[why]);

@@ -235,3 +235,16 @@ fn bad_tables_are_named() {
     assert!(told.contains("\"command\":null"), "{told}");
     dir.run("plot empty").exits(0).says(&["no scenario.toml"]);
 }
+
+/// A campaign that was killed leaves a torn log: its table is drawn all the same.
+#[test]
+fn a_torn_log_is_left_out() {
+    let dir = Dir::with(&["relay-sampled"]);
+    dir.run("simulate relay-sampled.toml --runs 3 --log events --set duration=600 -o c").exits(0);
+    dir.write("c/torn.mcap", "no log");
+    dir.run("plot c --format svg -o drawn").exits(0).says(&["left out", "torn.mcap"]);
+    dir.run("plot c --what fan -o drawn").exits(2).says(&["torn.mcap"]);
+    dir.run("plot c/relay-sampled-0.mcap --worst 2")
+        .exits(2)
+        .says(&["--worst: ", "no directory of a campaign"]);
+}

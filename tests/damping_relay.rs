@@ -142,6 +142,10 @@ fn bad_keys_are_refused() {
         let form = "--set estimator.adaptive.form={recurrence={}}";
         dir.run(&format!("simulate iss-ringdown.toml {form} --set {set}")).exits(2).says(&[words]);
     }
+    // Undamped modes that a long delay leaves no stable gain: no elastic rate would reach the rule's threshold.
+    dir.run("simulate iss-ringdown.toml --set law.phase_plane.period=0.6 --set estimator.adaptive.form.gradient.damping=0")
+        .exits(2)
+        .says(&["`law.phase_plane.damping` gives roll a threshold of inf rad/s", "which nothing reaches", "give `threshold`"]);
     let dir = Dir::with(&["wheel-ekf"]);
     dir.run("simulate wheel-ekf.toml --set estimator={adaptive={}}")
         .exits(2)

@@ -3,9 +3,11 @@
 mod active_damping;
 mod adaptation;
 mod adaptive;
+mod bad_files;
 mod bad_manoeuvres;
 mod bad_scenarios;
 mod bad_spatial;
+mod bad_structures;
 mod campaign_figures;
 mod campaigns;
 mod cli;

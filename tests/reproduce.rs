@@ -26,6 +26,9 @@ fn reproduced(paper: &str, number: u32) -> String {
     for figure in committed.split("(images/").skip(1).filter_map(|rest| rest.split(')').next()) {
         assert!(dir.has(&format!("docs/images/{figure}")), "{figure}");
     }
+    dir.run(&format!("reproduce {paper} -o page --docs docs"))
+        .exits(2)
+        .says(&["has a section of each paper"]);
     dir.text("page/papers.html")
 }
 

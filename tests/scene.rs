@@ -154,7 +154,7 @@ fn points_move_as_the_shapes_say() {
                 theta[axis] += 300.0 * phi[axis] * q;
             }
         }
-        let at = frames.at(message, "tail");
+        let at = frames.at(message, "point_tail");
         for (drawn, exact) in frames.translations[at].into_iter().zip(u) {
             assert!((drawn - exact).abs() < 1e-5, "{message}: {drawn} {exact}");
         }
@@ -295,5 +295,51 @@ fn a_log_tells_what_happened() {
         "within the dead zone about its target",
     ] {
         assert!(station.contains(line), "no `{line}` in\n{station}");
+    }
+}
+
+/// Points and thrusters may be called as the scene's own parts are: no frame is its own parent, and no entity another.
+#[test]
+fn names_of_a_user_do_not_meet_those_of_the_scene() {
+    let dir = Dir::with(&["iss-ringdown"]);
+    let text = dir.text("iss-ringdown.toml");
+    let text = text.replace("name = \"gyro\"", "name = \"body\"").replace("gyro = {", "body = {");
+    let text = text.replace("point = \"gyro\"", "point = \"body\"").replace("\"yaw +\"", "\"hub\"");
+    dir.write("iss-ringdown.toml", text);
+    let log = log(&dir, "iss-ringdown", "--set duration=1");
+    let unique = |mut names: Vec<String>| {
+        names.sort();
+        names.windows(2).all(|pair| pair[0] != pair[1])
+    };
+    assert!(unique(Frames::of(&log).names));
+    let scene = log.columns("/scene").expect("a scene");
+    let (_, entities) = rows(&scene, "entities");
+    let Some(Column::Texts(ids)) = entities.get("id") else { panic!("ids") };
+    assert!(unique(ids.clone()), "{ids:?}");
+}
+
+#[test]
+fn a_mode_that_does_not_swing_is_magnified_too() {
+    let dir = Dir::with(&["wheel-fast-mode"]);
+    let words = |damping: &str| {
+        let mode = format!("[{{frequency=0.3,gain=1.44,damping={damping},displacement=0.003}}]");
+        let set = format!("--set duration=1 --set body.planar.angle=0.0 --set body.planar.modes={mode}");
+        let log = log(&dir, "wheel-fast-mode", &set);
+        let columns = log.columns("/scene").expect("a scene");
+        let (_, entities) = rows(&columns, "entities");
+        let (_, texts) = rows(entities, "texts");
+        let Some(Column::Texts(texts)) = texts.get("text") else { panic!("words") };
+        texts[0].clone()
+    };
+    assert_eq!(words("1.2"), words("0"));
+}
+
+#[test]
+fn factors_that_leave_no_picture_are_refused() {
+    let dir = Dir::with(&["relay-fixed", "iss-ringdown"]);
+    for (scenario, key) in [("relay-fixed", "turning"), ("iss-ringdown", "bending")] {
+        dir.run(&format!("simulate {scenario}.toml --set log.scene.{key}=1e200"))
+            .exits(2)
+            .says(&[&format!("`log.scene.{key}` must be at most 1e9, got 1e200")]);
     }
 }

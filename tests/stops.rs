@@ -229,3 +229,22 @@ fn tables_and_figures_on_a_full_disk_fail() {
     let plot = "plot relay-fixed.mcap -o figures --what torque --format svg";
     dir.run(plot).exits(1).says(&["relay-fixed-torque.svg", "No space left"]);
 }
+
+/// What was there stays until the new file is whole, and a file that is read-only stays as it is.
+#[test]
+fn a_file_that_cannot_be_replaced_stays() {
+    let dir = Dir::with(&["relay-fixed"]);
+    dir.write("layout.json", "mine");
+    let path = dir.path("layout.json");
+    let mut permissions = std::fs::metadata(&path).expect("there").permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&path, permissions.clone()).expect("mine");
+    dir.run("layout relay-fixed.toml -o layout.json").exits(1).says(&["layout.json", "denied"]);
+    assert_eq!(dir.text("layout.json"), "mine");
+    #[allow(clippy::permissions_set_readonly_false)] // It is the test's own, and about to be removed.
+    permissions.set_readonly(false);
+    std::fs::set_permissions(&path, permissions).expect("mine");
+    dir.run("layout relay-fixed.toml -o layout.json").exits(0);
+    assert!(dir.text("layout.json").contains("configById"));
+    assert_eq!(dir.names("."), ["layout.json", "relay-fixed.toml"]);
+}

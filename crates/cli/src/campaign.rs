@@ -11,7 +11,7 @@ use flexsc_core::campaign::{Campaign, Outcome, Run, RunError};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::RecordError;
 use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
-use flexsc_core::whole::{self, discard};
+use flexsc_core::whole;
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -108,9 +108,8 @@ impl Job<'_> {
                  hint: give another directory"
             )));
         }
-        let partial = PathBuf::from(format!("{}.{}.partial", path.display(), self.range.start));
-        let written = whole::write(&partial, text.as_bytes()).and_then(|()| fs::rename(&partial, &path));
-        written.map_err(Failure::write(&path))
+        let own = format!("{}.partial", self.range.start);
+        whole::write_by(&path, &own, text.as_bytes()).map_err(Failure::write(&path))
     }
 
     fn file(&self, kind: &str) -> String {
@@ -178,9 +177,8 @@ fn line(study: &Campaign, outcome: &Outcome) -> Vec<u8> {
 }
 
 fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failure> {
-    let partial = PathBuf::from(format!("{}.partial", path.display()));
     let write = || -> Result<(), csv::Error> {
-        let mut writer = csv::Writer::from_path(&partial)?;
+        let mut writer = csv::Writer::from_writer(Vec::new());
         let mut header: Vec<String> = ["metric", "unit", "runs", "mean", "sd"].map(str::to_owned).into();
         header.extend(QUANTILES.map(|q| format!("q{:02.0}", 100.0 * q)));
         writer.write_record(header)?;
@@ -190,10 +188,10 @@ fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failur
             cells.extend(numbers.map(|n| if n.is_nan() { String::new() } else { format!("{n:e}") }));
             writer.write_record(cells)?;
         }
-        writer.flush()?;
-        Ok(fs::rename(&partial, path)?)
+        let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
+        Ok(whole::write(path, &bytes)?)
     };
-    write().inspect_err(|_| discard(&partial)).map_err(|error| Failure::write(path)(error.into()))
+    write().map_err(|error| Failure::write(path)(error.into()))
 }
 
 fn tell_statistics(statistics: &[Statistics], runs: usize) {

@@ -8,12 +8,22 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar on the terminal over so many steps; invisible elsewhere, and where escape sequences are not wanted.
 pub fn bar(steps: u64, unit: &str) -> ProgressBar {
-    if std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty()) {
+    if is_plain() {
         return ProgressBar::hidden();
     }
     let template = format!("{{bar:30}} {{human_pos}}/{{human_len}} {unit}, {{per_sec}}, {{eta}} left");
     let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(steps).with_style(style)
+}
+
+/// A line on the terminal that says what is being done; invisible where a bar is.
+pub fn spinner() -> ProgressBar {
+    if is_plain() { ProgressBar::hidden() } else { ProgressBar::new_spinner() }
+}
+
+/// Whether escape sequences are not wanted.
+fn is_plain() -> bool {
+    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
 /// A record that shows how far a single run has come, once it takes longer than half a second.

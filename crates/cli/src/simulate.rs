@@ -249,7 +249,7 @@ fn logged(
 }
 
 /// The line of a run for machines.
-pub fn line(run: &Run, metrics: &Metrics) -> Vec<u8> {
+fn line(run: &Run, metrics: &Metrics) -> Vec<u8> {
     let object = json!({
         "scenario": run.scenario.name,
         "run": run.number,
@@ -257,10 +257,4 @@ pub fn line(run: &Run, metrics: &Metrics) -> Vec<u8> {
         "metrics": metrics.to_json(),
     });
     format!("{object}\n").into_bytes()
-}
-
-impl From<SimulationError> for Failure {
-    fn from(source: SimulationError) -> Self {
-        Self::Run { name: "simulation".to_owned(), source }
-    }
 }

@@ -68,7 +68,7 @@ pub fn identify_json(
         return Err(PyValueError::new_err(format!("rate must be 0 or more, got {rate}")));
     };
     trial.observer.rate = rate;
-    refused(trial.inconsistency().map(|why| ("modes", why)))?;
+    refused(trial.inconsistency())?;
     if runs == 0 || cycles == 0 {
         return Err(PyValueError::new_err(format!(
             "runs and cycles must be 1 or more, got {runs} and {cycles}"

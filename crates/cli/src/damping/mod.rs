@@ -4,19 +4,19 @@ mod figures;
 
 use std::f64::consts::PI;
 use std::io::Write;
-use std::path::PathBuf;
 
 use flexsc_core::analysis::damping::{Damped, Relay, Study};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::figure::Format;
+use crate::figure::Drawing;
 use crate::grid::Even;
 use crate::{print, say};
 
 pub use figures::drawn as figure;
 
 #[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Args {
     /// Natural frequencies of the modes (rad/s)
     #[arg(long, value_name = "LO:HI:N")]
@@ -42,12 +42,8 @@ pub struct Args {
     /// Amplitude below which no thruster fires (rad/s)
     #[arg(long, value_name = "RATE", default_value_t = 0.0, requires = "amplitude")]
     threshold: f64,
-    /// Draw the figure into this directory, made if it is not there
-    #[arg(long, value_name = "DIR")]
-    figures: Option<PathBuf>,
-    /// Form of the figure
-    #[arg(long, value_enum, default_value = "both", requires = "figures")]
-    format: Format,
+    #[command(flatten)]
+    drawing: Drawing,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -74,8 +70,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     let limit = relay.frequency_limit();
-    if let Some(directory) = &args.figures {
-        figures::save(&rows, limit, directory, args.format)?;
+    if let Some(directory) = &args.drawing.figures {
+        figures::save(&rows, limit, directory, args.drawing.format)?;
     }
     if args.json {
         // What is infinite is null.

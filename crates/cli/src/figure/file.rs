@@ -14,6 +14,17 @@ use super::sheet::sheet;
 use crate::failure::Failure;
 use crate::{print, say};
 
+/// Whether a command that tells numbers also draws them.
+#[derive(clap::Args)]
+pub struct Drawing {
+    /// Draw what is told into this directory, made if it is not there
+    #[arg(long, value_name = "DIR")]
+    pub figures: Option<PathBuf>,
+    /// Form of the figures
+    #[arg(long, value_enum, default_value = "both", requires = "figures")]
+    pub format: Format,
+}
+
 /// The form of figures.
 #[derive(Copy, Clone, PartialEq, Eq, ValueEnum)]
 pub enum Format {

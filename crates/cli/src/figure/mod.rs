@@ -16,7 +16,7 @@ pub use area::band;
 pub use axis::{Axis, name_and_unit, round_to_nice};
 pub use bar::Bar;
 pub use contour::Field;
-pub use file::{Format, Target, save};
+pub use file::{Drawing, Format, Target, save};
 pub use line::{Point, steps};
 
 /// Colours that also the colour-blind tell apart (Okabe and Ito).

@@ -4,7 +4,6 @@ mod figures;
 
 use std::f64::consts::TAU;
 use std::io::Write;
-use std::path::PathBuf;
 use std::str::FromStr;
 
 use flexsc_core::analysis::identification::{CYCLE, Row, Trial};
@@ -12,7 +11,7 @@ use flexsc_core::quantity::NonNegative;
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::figure::Format;
+use crate::figure::Drawing;
 use crate::{print, progress, say};
 
 /// The sets of the study behind seed paper 4's scenarios, in hertz, and the rate at which each is identified.
@@ -26,6 +25,7 @@ const SETS: [(&[(f64, f64)], f64); 6] = [
 ];
 
 #[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Args {
     /// A set of modes by frequency (rad/s) and influence, such as 1.556:2.89,3.77:3.0; may be repeated. Left out, those of
     /// the space station's study
@@ -49,12 +49,8 @@ pub struct Args {
     /// Seed
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Draw the figure into this directory, made if it is not there
-    #[arg(long, value_name = "DIR")]
-    figures: Option<PathBuf>,
-    /// Form of the figure
-    #[arg(long, value_enum, default_value = "both", requires = "figures")]
-    format: Format,
+    #[command(flatten)]
+    drawing: Drawing,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -98,16 +94,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             let mut trial = Trial::of(modes.clone(), *off);
             trial.observer.rate = NonNegative::new(*rate_of_set).unwrap_or(rate);
             (trial.off[1], trial.cycles, trial.seed) = (args.influence_off, args.cycles, args.seed);
-            if let Some(why) = trial.inconsistency() {
-                return Err(Failure::Arguments(format!("the modes {why}")));
+            if let Some((name, why)) = trial.inconsistency() {
+                return Err(Failure::Arguments(format!("--{}: the modes {why}", name.replace('_', "-"))));
             }
             rows.push((modes, trial.table(args.runs)));
             bar.inc(1);
         }
     }
     bar.finish_and_clear();
-    if let Some(directory) = &args.figures {
-        figures::save(&rows, CYCLE * f64::from(args.cycles), directory, args.format)?;
+    if let Some(directory) = &args.drawing.figures {
+        figures::save(&rows, CYCLE * f64::from(args.cycles), directory, args.drawing.format)?;
     }
     if args.json {
         let told = rows.iter().map(|(modes, row)| {

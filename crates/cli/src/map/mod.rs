@@ -10,7 +10,7 @@ use flexsc_core::whole;
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::figure::Format;
+use crate::figure::Drawing;
 use crate::grid::Even;
 use crate::tune::{Settled, sampled};
 use crate::{print, say, scenario};
@@ -35,12 +35,8 @@ pub struct Args {
     /// CSV file to write; left out, the table is printed
     #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     output: Option<PathBuf>,
-    /// Draw the map of the spectral radius into this directory, made if it is not there
-    #[arg(long, value_name = "DIR")]
-    figures: Option<PathBuf>,
-    /// Form of the figure
-    #[arg(long, value_enum, default_value = "both", requires = "figures")]
-    format: Format,
+    #[command(flatten)]
+    drawing: Drawing,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -53,8 +49,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (Even(frequencies), Even(periods)) = (&args.frequency, &args.period);
     let gain = |frequency: f64| args.gain.unwrap_or_else(|| law.extra_gain(frequency));
     let cells = map(&of, frequencies, periods, args.settled.scaling(), gain, window);
-    if let Some(directory) = &args.figures {
-        figure::save(&scenario.name, &cells, (of.frequency(), of.period), directory, args.format)?;
+    if let Some(directory) = &args.drawing.figures {
+        figure::save(&scenario.name, &cells, (of.frequency(), of.period), directory, args.drawing.format)?;
     }
     if args.scenario.json {
         return print(format!("{}\n", json!({"scenario": scenario.name, "rows": cells})).as_bytes());

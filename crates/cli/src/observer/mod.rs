@@ -4,18 +4,18 @@ mod figures;
 
 use std::f64::consts::TAU;
 use std::io::Write;
-use std::path::PathBuf;
 
 use flexsc_core::analysis::damping::{Convergence, Margin};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::figure::Format;
+use crate::figure::Drawing;
 use crate::{print, say};
 
 pub use figures::figure;
 
 #[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Args {
     /// Natural frequency of the mode (rad/s)
     #[arg(long, value_name = "FREQUENCY")]
@@ -32,25 +32,14 @@ pub struct Args {
         value_name = "W1,W2,W3",
         value_delimiter = ',',
         num_args = 1,
-        default_value = "0.05,0.2,0.15",
-        allow_negative_numbers = true
+        default_value = "0.05,0.2,0.15"
     )]
     weights: Vec<f64>,
     /// Gains of the identification times the elastic rate, W4 |g|, for the regions in which the frozen observer converges
-    #[arg(
-        long,
-        value_name = "KAPPA,...",
-        value_delimiter = ',',
-        default_value = "0,1.5,4",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "KAPPA,...", value_delimiter = ',', default_value = "0,1.5,4")]
     kappa: Vec<f64>,
-    /// Draw the figure into this directory, made if it is not there
-    #[arg(long, value_name = "DIR")]
-    figures: Option<PathBuf>,
-    /// Form of the figure
-    #[arg(long, value_enum, default_value = "both", requires = "figures")]
-    format: Format,
+    #[command(flatten)]
+    drawing: Drawing,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -82,8 +71,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let region = |&kappa: &f64| Region { kappa, area: of.area(kappa), converges: of.converges(kappa) };
     let regions: Vec<Region> = args.kappa.iter().map(region).collect();
     let margin = of.margin();
-    if let Some(directory) = &args.figures {
-        figures::save(&of, &args.kappa, margin, directory, args.format)?;
+    if let Some(directory) = &args.drawing.figures {
+        figures::save(&of, &args.kappa, margin, directory, args.drawing.format)?;
     }
     if args.json {
         let (a, b) = of.recurrence();

@@ -52,9 +52,9 @@ pub struct Args {
     /// Of a campaign: metrics to draw, and to list the worst runs of [default: the main ones that vary]
     #[arg(long, value_delimiter = ',', value_name = "METRICS")]
     metric: Vec<String>,
-    /// Of a campaign: how many of the worst runs are listed for each metric
-    #[arg(long, default_value_t = 3, value_name = "N")]
-    worst: usize,
+    /// Of a campaign: how many of the worst runs are listed for each metric [default: 3]
+    #[arg(long, value_name = "N")]
+    worst: Option<usize>,
     /// Print one JSON object on stdout for each file, and for each of the worst runs
     #[arg(long)]
     json: bool,
@@ -75,9 +75,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.path.is_dir() {
         return campaign::run(args);
     }
-    if !args.metric.is_empty() {
+    let of_campaigns = [("metric", !args.metric.is_empty()), ("worst", args.worst.is_some())];
+    if let Some((option, _)) = of_campaigns.into_iter().find(|(_, given)| *given) {
         let path = args.path.display();
-        return Err(Failure::Arguments(format!("--metric: {path} is no directory of a campaign")));
+        return Err(Failure::Arguments(format!("--{option}: {path} is no directory of a campaign")));
     }
     let beside = args.path.parent().unwrap_or(Path::new(""));
     let target = Target::new(args.out.as_deref(), beside, args.format)?;

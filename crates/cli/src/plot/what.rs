@@ -137,6 +137,9 @@ pub fn chosen(asked: &[What], there: &[What]) -> Result<Vec<What>, (String, Stri
             Err((missing.name(), names.join(", ")))
         }
         None if asked.is_empty() => Ok(there.to_vec()),
-        None => Ok(asked.to_vec()),
+        None => {
+            let once = |(index, what): (usize, &What)| (!asked[..index].contains(what)).then_some(*what);
+            Ok(asked.iter().enumerate().filter_map(once).collect())
+        }
     }
 }

@@ -23,7 +23,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use crate::failure::Failure;
-use crate::{say, stop};
+use crate::{progress, say, stop};
 use html::Section;
 use page::{Drawn, Form, Outcome, Results};
 use paper::Paper;
@@ -50,11 +50,18 @@ struct Filled {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let began = WallInstant::now();
     stop::listen();
+    let page = args.docs.as_ref().map(|docs| docs.join("papers.md"));
+    if let Some(page) = page.filter(|page| args.paper.is_some() && page.exists()) {
+        let page = page.display();
+        return Err(Failure::Arguments(format!(
+            "--docs: {page} has a section of each paper: leave PAPER out"
+        )));
+    }
     for directory in std::iter::once(&args.out).chain(&args.docs) {
         std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
     }
     let papers = args.paper.as_ref().map_or(Paper::value_variants(), std::slice::from_ref);
-    let bar = ProgressBar::new_spinner();
+    let bar = progress::spinner();
     let filled = papers.par_iter().map(|paper| fill(*paper, &bar)).collect::<Result<Vec<_>, _>>();
     bar.finish_and_clear();
     if stop::asked() {
@@ -65,13 +72,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let took = began.elapsed().as_secs_f64();
     write(&args.out.join("papers.html"), &html::page(&sections, took))?;
     if let Some(docs) = &args.docs {
-        write(&docs.join("papers.md"), &format!("{HEAD}\n{}", markdown.join("\n")))?;
         let images = docs.join("images");
         std::fs::create_dir_all(&images).map_err(Failure::write(&images))?;
         for Drawn { name, svg, .. } in sections.iter().flat_map(|section| &section.outcome.figures) {
             let path = images.join(format!("{name}.svg"));
             whole::write(&path, svg.as_bytes()).map_err(Failure::write(&path))?;
         }
+        write(&docs.join("papers.md"), &format!("{HEAD}\n{}", markdown.join("\n")))?;
     }
     let all = || sections.iter().flat_map(|section| &section.outcome.verdicts);
     say!("{} verdicts in {took:.1} s", all().count());

@@ -3,8 +3,6 @@
 mod figures;
 mod table;
 
-use std::path::PathBuf;
-
 use flexsc_core::ScenarioError;
 use flexsc_core::analysis::sampled_loop::{
     Doubt, Goal, Loop, Region, Robust, Scaling, Search, Window, midpoints, regions, robust,
@@ -13,7 +11,7 @@ use flexsc_core::law::Pd;
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::figure::Format;
+use crate::figure::Drawing;
 use crate::grid::{Even, Stepped};
 use crate::{print, scenario};
 
@@ -53,13 +51,8 @@ pub struct Args {
     /// Print the schedule as `[law.pd.extra]` of a scenario
     #[arg(long, conflicts_with = "json")]
     schedule: bool,
-    /// Draw the region of the gains and the settling times, with --robust its gains too, into this directory, made if it is
-    /// not there
-    #[arg(long, value_name = "DIR")]
-    figures: Option<PathBuf>,
-    /// Form of the figures
-    #[arg(long, value_enum, default_value = "both", requires = "figures")]
-    format: Format,
+    #[command(flatten)]
+    drawing: Drawing,
 }
 
 /// What counts as settled, and which modes follow.
@@ -133,9 +126,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let Stepped(gains) = args.gain;
     let found = || regions(&of, &frequencies, scaling, gains, window, args.limit);
     let draw = |regions: &[Region], robust: Option<(&[Robust], f64)>| {
-        let Some(directory) = &args.figures else { return Ok(()) };
+        let Some(directory) = &args.drawing.figures else { return Ok(()) };
         let (name, own, limit) = (&scenario.name, law.extra.as_ref(), args.limit);
-        figures::save(&Tuned { name, own, gains, limit, regions, robust }, directory, args.format)
+        figures::save(&Tuned { name, own, gains, limit, regions, robust }, directory, args.drawing.format)
     };
     let Some(off) = args.robust else {
         let found = found();
@@ -162,7 +155,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         margin: args.margin,
     };
     let gains = robust(&of, &frequencies, search);
-    if args.figures.is_some() {
+    if args.drawing.figures.is_some() {
         draw(&found(), Some((&gains, off)))?;
     }
     let schedule: Vec<_> = gains.iter().filter_map(|r| Some((r.frequency_rad_s, r.gain?))).collect();

@@ -89,25 +89,26 @@ impl Trial {
         }
     }
 
-    /// What is wrong with it, if anything: a mode, and why.
-    pub fn inconsistency(&self) -> Option<String> {
+    /// The first number that is out of its range, by what it is, and what is wrong with the modes then.
+    pub fn inconsistency(&self) -> Option<(&'static str, String)> {
         let highest = std::f64::consts::PI / self.cycle;
-        let [frequency, influence] = self.off;
         if self.modes.is_empty() {
-            return Some("must have a mode".to_owned());
+            return Some(("modes", "must have a mode".to_owned()));
         }
         for (w, mu) in &self.modes {
             if Frequency::new(*w).is_none() || *w >= highest {
-                return Some(format!(
+                let why = format!(
                     "must have frequencies between 1e-4 rad/s and {highest:.4} rad/s, half of what the cycle samples, got {w}"
-                ));
+                );
+                return Some(("modes", why));
             }
             if !mu.is_finite() || *mu == 0.0 {
-                return Some(format!("must have influences other than 0, got {mu}"));
+                return Some(("modes", format!("must have influences other than 0, got {mu}")));
             }
         }
-        let parts = (0.0..1.0).contains(&frequency) && (0.0..1.0).contains(&influence);
-        (!parts).then(|| format!("must be off by 0 to 1, got {frequency} and {influence}"))
+        let mut parts = ["off", "influence_off"].into_iter().zip(self.off);
+        let wrong = parts.find(|(_, part)| !(0.0..1.0).contains(part));
+        wrong.map(|(name, part)| (name, format!("must be off by 0 to 1, got {part}")))
     }
 
     /// A run.

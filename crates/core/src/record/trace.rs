@@ -55,8 +55,7 @@ impl Record for Trace {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        // Another record may want more.
-        // What only viewers draw is no column.
+        // Another record may want more; and what only viewers draw is no column.
         let wanted = self.detail.min(Detail::Full);
         if sample.detail() > wanted { Ok(()) } else { self.take_sample(now, sample) }
     }

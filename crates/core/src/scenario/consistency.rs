@@ -33,6 +33,9 @@ impl Scenario {
             );
             return at("duration", why);
         }
+        if let Some((key, why)) = self.log.scene.inconsistency() {
+            return at(key, why);
+        }
         // The parts of a spatial loop were found to fit each other when it was put together.
         let parts = if self.spatial.is_some() { None } else { self.planar_inconsistency() };
         parts.or_else(|| {

@@ -9,6 +9,9 @@ use crate::time::Span;
 /// No frames are nearer than this (s), unless a scenario asks for it: viewers show no more.
 const SHORTEST_PERIOD: f64 = 0.04;
 
+/// What is drawn larger than this is out of any picture, and its square soon no number.
+const LARGEST_FACTOR: f64 = 1e9;
+
 /// What a full log holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -51,6 +54,16 @@ impl SceneSpec {
     /// Whether the scenario leaves everything out.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// The first factor that leaves no picture, and why.
+    pub fn inconsistency(&self) -> Option<(&'static str, String)> {
+        let factors = [("log.scene.bending", self.bending), ("log.scene.turning", self.turning)];
+        let (key, factor) = factors.into_iter().find(|(_, f)| f.is_some_and(|f| f.get() > LARGEST_FACTOR))?;
+        Some((
+            key,
+            format!("must be at most {LARGEST_FACTOR:e}, got {:e}", factor.map_or(0.0, Positive::get)),
+        ))
     }
 
     /// The period of the frames, where a log has this one.

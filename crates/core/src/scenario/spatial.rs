@@ -119,6 +119,16 @@ impl SpatialLoop {
                 return refused("law.phase_plane.damping", why);
             }
         };
+        let by_rule = law.damping.as_ref().is_some_and(|damping| damping.threshold.is_none());
+        if let Some(axis) = thresholds.iter().position(|threshold| by_rule && *threshold >= NO_MOTION) {
+            let why = format!(
+                "gives {} a threshold of {:e} rad/s, which nothing reaches: the delay leaves an undamped mode no stable \
+                 gain; give `threshold`, or the estimator a damping ratio above 0",
+                ["roll", "pitch", "yaw"][axis],
+                thresholds[axis]
+            );
+            return refused("law.phase_plane.damping", &why);
+        }
         Ok(Some(Self {
             body: body.clone(),
             gyro: gyro.clone(),
@@ -130,6 +140,9 @@ impl SpatialLoop {
         }))
     }
 }
+
+/// No structure has elastic rates like this (rad/s).
+const NO_MOTION: f64 = 1.0;
 
 /// The thresholds of active damping about each axis, for the modes of the design and a delay (s).
 fn thresholds(damping: &Damping, plan: &adaptive::Plan, groups: &[[Group; 2]; 3], delay: f64) -> [f64; 3] {

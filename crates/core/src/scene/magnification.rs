@@ -62,7 +62,9 @@ pub fn displacements(scenario: &Scenario) -> Vec<f64> {
     let moment = largest(scenario) / model.commanded_inertia();
     let of = |mode: &Mode| {
         let start = mode.start();
-        let held = mode.amplitude(start);
+        // One that does not swing holds what it is displaced by.
+        let swing = mode.amplitude(start);
+        let held = if swing.is_nan() { libm::hypot(start.displacement, start.quadrature) } else { swing };
         held.max((2.0 * mode.excitability().abs() * moment).min(mode.gain.get().abs() * travel))
     };
     model.modes.iter().map(of).collect()

@@ -82,7 +82,7 @@ impl SpatialScene {
         let farthest = points.iter().map(|point| point.at.norm()).fold(0.0, f64::max);
         let size = if farthest > NEAR { farthest } else { SIZE };
         let nozzles = jets.thrusters.iter().map(|thruster| Nozzle {
-            frame: thruster.point.clone(),
+            frame: point_frame(&thruster.point),
             name: thruster.name.clone(),
             at: vector(&thruster.offset),
             direction: -vector(&thruster.direction).normalize(),
@@ -114,7 +114,7 @@ impl SpatialScene {
     fn at_rest(&self) -> Vec<FrameTransform> {
         let mut frames = vec![frame(INERTIAL, BODY, Vector::zeros())];
         for point in &self.points {
-            frames.push(frame(BODY, &point.name, point.at));
+            frames.push(frame(BODY, &point_frame(&point.name), point.at));
         }
         for point in self.points.iter().filter(|point| point.is_distant()) {
             frames.extend((0..SECTIONS).map(|section| {
@@ -171,7 +171,7 @@ impl SpatialScene {
             }));
         }
         for nozzle in self.plumes.nozzles() {
-            let mut part = entity(stamp, &nozzle.frame, &nozzle.name);
+            let mut part = entity(stamp, &nozzle.frame, &format!("nozzle_{}", nozzle.name));
             let back = nozzle.at - nozzle.direction * (0.03 * size);
             part.cylinders.push(cone(back, nozzle.at, [0.01 * size, 0.035 * size], NOZZLE));
             entities.push(part);
@@ -250,6 +250,11 @@ fn between(to: Vector, from: (Vector, Vector), end: (Vector, Vector), s: f64) ->
     let direction = to.normalize();
     let twist = from.1.dot(&direction) * (1.0 - s) + end.1.dot(&direction) * s;
     (u, direction.cross(&slope) / to.norm() + direction * twist)
+}
+
+/// The frame of a point, apart from those of the scene's own parts whatever the point is called.
+fn point_frame(point: &str) -> String {
+    format!("point_{point}")
 }
 
 fn boom_frame(point: &Point, section: usize) -> String {

@@ -2,6 +2,7 @@
 //! runs are.
 
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::record::Log;
@@ -14,7 +15,7 @@ use super::super::story::Story;
 use super::super::time;
 use crate::failure::Failure;
 use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
-use crate::progress;
+use crate::{progress, say};
 
 /// Quantiles are taken at so many instants, evenly apart.
 const INSTANTS: usize = 801;
@@ -31,17 +32,26 @@ struct Signal {
 /// Name, unit, and values at the instants.
 type Sampled = (String, &'static str, Vec<f64>);
 
-/// The logs of a directory by the names of their scenarios, each with two runs at least.
-pub fn logs(directory: &Path, files: &[String]) -> Result<BTreeMap<String, Vec<PathBuf>>, Failure> {
+/// The logs of a directory by the names of their scenarios, each with two runs at least. One that cannot be read is left
+/// out, unless every log is needed.
+pub fn logs(
+    directory: &Path,
+    files: &[String],
+    all_needed: bool,
+) -> Result<BTreeMap<String, Vec<PathBuf>>, Failure> {
     let paths = files.iter().filter(|file| Path::new(file).extension().is_some_and(|e| e == "mcap"));
     let paths: Vec<PathBuf> = paths.map(|file| directory.join(file)).collect();
     let name = |path: &PathBuf| {
         Log::open(path).map(|log| log.metadata().get("scenario").cloned().unwrap_or_default())
     };
-    let names = paths.par_iter().map(name).collect::<Result<Vec<_>, _>>()?;
+    let names: Vec<_> = paths.par_iter().map(name).collect();
     let mut logs: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     for (name, path) in names.into_iter().zip(paths) {
-        logs.entry(name).or_default().push(path);
+        match name {
+            Ok(name) => logs.entry(name).or_default().push(path),
+            Err(error) if all_needed => return Err(error.into()),
+            Err(error) => say!("left out: {error}"),
+        }
     }
     logs.retain(|_, paths| paths.len() > 1);
     Ok(logs)

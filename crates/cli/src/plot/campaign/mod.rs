@@ -44,6 +44,8 @@ const MAIN: [&str; 20] = [
 ];
 /// So many of them.
 const MOST: usize = 4;
+/// So many of the worst runs are listed for each metric.
+const WORST: usize = 3;
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let directory = args.path.as_path();
@@ -51,7 +53,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let files = files(directory)?;
     let tables = table::read(directory, &files)?;
     let fans = if args.what.is_empty() || args.what.contains(&What::Fan) {
-        fan::logs(directory, &files)?
+        fan::logs(directory, &files, tables.is_empty() || !args.what.is_empty())?
     } else {
         BTreeMap::new()
     };
@@ -78,8 +80,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             figures.extend(drawn(*what, runs, &metrics));
         }
         let listed = if args.json { worst::lines } else { worst::table };
-        if args.worst > 0 {
-            print(listed(runs, directory, &metrics, args.worst).as_bytes())?;
+        let worst = args.worst.unwrap_or(WORST);
+        if worst > 0 {
+            print(listed(runs, directory, &metrics, worst).as_bytes())?;
         }
         if runs.scenario.is_none() && !args.json {
             say!(

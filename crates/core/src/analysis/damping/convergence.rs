@@ -39,7 +39,7 @@ impl Convergence {
             return Some(("damping", format!("must be 0 or more and below 1, got {damping}")));
         }
         if !(period > 0.0 && period < 1e100) {
-            return Some(("period", format!("must be a positive number, got {period}")));
+            return Some(("period", format!("must be above 0 and below 1e100, got {period:e}")));
         }
         let nyquist = std::f64::consts::PI / period;
         if !(frequency > 0.0 && frequency < nyquist) {
@@ -102,6 +102,8 @@ impl Convergence {
         let (from, width) = (1.0 - self.weights[0] - 1.0 / b, 2.0 / (b * f64::from(STRIPS)));
         let middles: Vec<f64> = (0..STRIPS).map(|i| from + width * (f64::from(i) + 0.5)).collect();
         let heights = self.region(kappa, &middles);
-        width * heights.iter().filter_map(|edge| edge.next).map(|(low, high)| high - low).sum::<f64>()
+        let heights = heights.iter().filter_map(|edge| edge.next).map(|(low, high)| high - low);
+        // The sum of nothing is -0.
+        width * (0.0 + heights.sum::<f64>())
     }
 }

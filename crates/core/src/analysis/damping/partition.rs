@@ -21,7 +21,7 @@ pub struct Partition {
 
 impl Partition {
     /// Amplitude of the rate (rad/s) in the limit cycle of a relay of this acceleration (rad/s²), at this frequency: by its
-    /// describing function, 4 a/(pi k). Simulated ones are up to a quarter larger. Ours.
+    /// describing function, 4 a/(pi k). Simulated ones are a fifth larger. Ours.
     pub fn limit_cycle(&self, acceleration: f64) -> f64 {
         4.0 * acceleration / (PI * self.gain)
     }

@@ -15,6 +15,8 @@ mod residual;
 mod tests;
 mod tracker;
 
+use crate::quantity::{NonNegative, Positive};
+
 pub use axes::{Adaptive, Form, Given};
 pub use channel::Channel;
 pub use design::{Design, Plan};
@@ -22,7 +24,7 @@ pub use gradient::{Gradient, GradientObserver};
 pub use oscillator::{Oscillator, Phase};
 pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
 pub use residual::Residual;
-pub use tracker::{Merged, Tracker, bounds, dominant, inconsistency, merged, trackers};
+pub use tracker::{Merged, Tracker, bounds, dominant, merged, trackers};
 
 /// A pulse of thrusters, as one that was executed or is about to be.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -65,33 +67,30 @@ impl Estimate {
     }
 }
 
-/// What both forms are set by.
-struct Settings {
-    /// Damping ratio of the modes.
-    damping: f64,
-    /// Bounds of an influence, relative to its start.
-    influence_bounds: [f64; 2],
-    /// Bounds of a frequency without its own, relative to its start.
-    reach: f64,
-}
-
-impl Settings {
-    /// The first key that is not accepted, and why.
-    fn inconsistency(&self) -> Option<(String, String)> {
-        let at = |key: &str, why: String| Some((key.to_owned(), why));
-        if self.damping >= 1.0 {
-            return at("damping", format!("must be below 1, got {}", self.damping));
-        }
-        let [low, high] = self.influence_bounds;
-        if !(low <= 1.0 && 1.0 <= high && low < high) {
-            let why = format!("must be [low, high] with 1, the start, between them, got [{low}, {high}]");
-            return at("influence_bounds", why);
-        }
-        if self.reach <= 1.0 {
-            return at("reach", format!("must be above 1, got {}", self.reach));
-        }
-        None
+/// The first key of either form that does not fit the others, these trackers, so many inputs or the period of the samples
+/// (s), and what is wrong with it. Bounds and reach are relative to a start.
+fn inconsistency(
+    damping: NonNegative,
+    influence_bounds: [NonNegative; 2],
+    reach: Positive,
+    trackers: &[Tracker],
+    inputs: usize,
+    period: f64,
+) -> Option<(String, String)> {
+    let at = |key: &str, why: String| Some((key.to_owned(), why));
+    let (damping, reach) = (damping.get(), reach.get());
+    if damping >= 1.0 {
+        return at("damping", format!("must be below 1, got {damping}"));
     }
+    let [low, high] = influence_bounds.map(NonNegative::get);
+    if !(low <= 1.0 && 1.0 <= high && low < high) {
+        let why = format!("must be [low, high] with 1, the start, between them, got [{low}, {high}]");
+        return at("influence_bounds", why);
+    }
+    if reach <= 1.0 {
+        return at("reach", format!("must be above 1, got {reach}"));
+    }
+    tracker::inconsistency(trackers, reach, inputs, period)
 }
 
 /// An observer at work: at each sample `update`, then `advance` over the cycle that follows.

@@ -7,7 +7,7 @@ mod parameter;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::tracker::{self, Tracker};
+use super::Tracker;
 use crate::quantity::{Fraction, NonNegative, Positive};
 
 pub use observer::GradientObserver;
@@ -59,14 +59,6 @@ impl Gradient {
         inputs: usize,
         period: f64,
     ) -> Option<(String, String)> {
-        let settings = super::Settings {
-            damping: self.damping.get(),
-            influence_bounds: self.influence_bounds.map(NonNegative::get),
-            reach: self.reach.get(),
-        };
-        if let Some(fault) = settings.inconsistency() {
-            return Some(fault);
-        }
-        tracker::inconsistency(trackers, self.reach.get(), inputs, period)
+        super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, inputs, period)
     }
 }

@@ -9,7 +9,7 @@ mod observer;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::tracker::{self, Tracker};
+use super::Tracker;
 use crate::quantity::{Finite, NonNegative, Positive};
 
 pub use observer::RecurrenceObserver;
@@ -75,14 +75,7 @@ impl Default for Recurrence {
 impl Recurrence {
     /// The first key that does not fit the others, this tracker or the period of the samples (s), and what is wrong with it.
     pub fn inconsistency(&self, tracker: &Tracker, period: f64) -> Option<(String, String)> {
-        let settings = super::Settings {
-            damping: self.damping.get(),
-            influence_bounds: self.influence_bounds.map(NonNegative::get),
-            reach: self.reach.get(),
-        };
-        if let Some(fault) = settings.inconsistency() {
-            return Some(fault);
-        }
-        tracker::inconsistency(std::slice::from_ref(tracker), self.reach.get(), 1, period)
+        let trackers = std::slice::from_ref(tracker);
+        super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, 1, period)
     }
 }
