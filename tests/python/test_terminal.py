@@ -17,11 +17,14 @@ SAMPLED = str(SCENARIOS / "relay-sampled.toml")
 CAMPAIGN = ["simulate", SAMPLED, "--set", "duration=2000", "--runs", "300", "-o", "out"]
 MISTAKE = ["simulate", str(SCENARIOS / "relay-fixed.toml"), "--set", "law.relay.kt=1"]
 
+# What a machine may have set, and what changes what is shown.
+DECIDING = ("NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "CI")
+
 
 def on_terminal(directory: Path, arguments: list[str], exits: int = 0, **environment: str) -> bytes:
     """What the command writes to a terminal as its stderr."""
     leader, follower = pty.openpty()
-    clean = {name: value for name, value in os.environ.items() if name not in ("NO_COLOR", "CLICOLOR_FORCE")}
+    clean = {name: value for name, value in os.environ.items() if name not in DECIDING}
     running = subprocess.Popen(
         [command_path(), *arguments],
         cwd=directory,
@@ -59,7 +62,10 @@ def test_a_bar_shows_rate_and_time_left(tmp_path: Path) -> None:
     assert shown.rstrip().endswith(b"runs.csv")
 
 
-@pytest.mark.parametrize("environment", [{"NO_COLOR": "1"}, {"TERM": "dumb"}])
+@pytest.mark.parametrize(
+    "environment",
+    [{"NO_COLOR": "1"}, {"TERM": "dumb"}, {"TERM": "dumb", "CI": "true"}, {"NO_COLOR": "1", "CI": "true"}],
+)
 def test_no_escapes_where_they_are_not_wanted(tmp_path: Path, environment: dict[str, str]) -> None:
     for arguments, exits in ((CAMPAIGN, 0), (MISTAKE, 2), (["simulate"], 2), (["--help"], 0)):
         shown = on_terminal(tmp_path, arguments, exits, **environment)

@@ -27,6 +27,7 @@ mod stop;
 mod summary;
 mod sweep;
 mod table;
+mod terminal;
 mod tune;
 
 use std::ffi::OsString;
@@ -90,6 +91,7 @@ enum Verb {
 /// Runs the command with these arguments, the program's name first, and tells its exit code: 0 done, 1 a run
 /// failed or a file could not be written, 2 bad input, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
+    terminal::settle_colours();
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
         Err(error) => {

@@ -6,6 +6,8 @@ use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::terminal::is_plain;
+
 /// A bar on the terminal over so many steps; invisible elsewhere, and where escape sequences are not wanted.
 pub fn bar(steps: u64, unit: &str) -> ProgressBar {
     if is_plain() {
@@ -19,11 +21,6 @@ pub fn bar(steps: u64, unit: &str) -> ProgressBar {
 /// A line on the terminal that says what is being done; invisible where a bar is.
 pub fn spinner() -> ProgressBar {
     if is_plain() { ProgressBar::hidden() } else { ProgressBar::new_spinner() }
-}
-
-/// Whether escape sequences are not wanted.
-fn is_plain() -> bool {
-    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
 /// A record that shows how far a single run has come, once it takes longer than half a second.
