@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use flexsc_core::analysis::identification::Trial;
 use flexsc_core::estimator::adaptive::{
-    Gradient, Observer, Oscillator, Phase, Pulse, Recurrence, Tracker, trackers,
+    Gradient, Observer, Oscillator, Phase, Pulse, Recurrence, Tracker, merged,
 };
 use flexsc_core::quantity::{Finite, Frequency, NonNegative};
 use flexsc_core::random::{Seed, Stream};
@@ -202,11 +202,11 @@ fn rms(values: &[f64]) -> f64 {
 #[test]
 fn one_tracker_follows_a_near_pair() {
     let pair = [(0.6049, vec![1.4]), (0.6096, vec![1.7])];
-    let merged = trackers(&[mode(0.6049, &[1.4], None), mode(0.6096, &[1.7], None)], 0.08);
+    let merged = merged(&[mode(0.6049, &[1.4], None), mode(0.6096, &[1.7], None)], 0.08);
     assert_eq!(merged.len(), 1);
     let mut found = Vec::new();
     for run in 0..6 {
-        let mut start = merged.clone();
+        let mut start = [merged[0].tracker.clone()];
         start[0].frequency = Frequency::new(1.1 * start[0].frequency.get()).expect("a frequency");
         let mut observer = Gradient::default().observer(&start, &[1.0], CYCLE);
         let mut channel = Channel::new(&pair, &[1.0]);

@@ -82,6 +82,21 @@ fn an_interrupted_run_has_a_whole_log() {
 
 #[cfg(unix)]
 #[test]
+fn what_runs_in_the_background_ends_well_too() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let run = dir.start_in_background(LONG);
+    dir.wait_for("out/relay-fixed.mcap.partial", 200_000);
+    run.sends("HUP");
+    run.sends("INT");
+    let so_far = dir.size("out/relay-fixed.mcap.partial");
+    dir.wait_for("out/relay-fixed.mcap.partial", so_far + 200_000);
+    run.signal("TERM").exits(130).says(&["interrupted", "out/relay-fixed.mcap"]);
+    assert_eq!(dir.names("out"), ["relay-fixed.mcap"]);
+    assert_eq!(end(&dir, "out/relay-fixed.mcap")["end"], "interrupted");
+}
+
+#[cfg(unix)]
+#[test]
 fn an_interrupted_campaign_keeps_whole_files_only() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     let run = dir.start("simulate u.toml --runs 100000 -o out --log events");

@@ -89,6 +89,11 @@ impl Dir {
         self.path(name).symlink_metadata().is_ok()
     }
 
+    /// The length of a file in bytes.
+    pub fn size(&self, name: &str) -> u64 {
+        fs::metadata(self.path(name)).map_or(0, |file| file.len())
+    }
+
     /// The names in a directory within, sorted; none if it is not there.
     pub fn names(&self, within: &str) -> Vec<String> {
         let entries = fs::read_dir(self.path(within)).into_iter().flatten().flatten();
@@ -104,7 +109,19 @@ impl Dir {
 
     /// Starts the command.
     pub fn start(&self, arguments: &str) -> Started {
-        let mut command = self.command(arguments);
+        Self::started(self.command(arguments), arguments)
+    }
+
+    /// The same where Ctrl-C and the end of the terminal are ignored, as by `nohup` in a script's background.
+    #[cfg(unix)]
+    pub fn start_in_background(&self, arguments: &str) -> Started {
+        let mut command = Command::new("sh");
+        command.args(["-c", "trap '' INT HUP; exec \"$0\" \"$@\"", FLEXSC]);
+        command.args(arguments.split_whitespace()).current_dir(self.0.path());
+        Self::started(command, arguments)
+    }
+
+    fn started(mut command: Command, arguments: &str) -> Started {
         let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
         Started { child: Some(child.expect("the command starts")), arguments: arguments.to_owned() }
     }
@@ -112,7 +129,7 @@ impl Dir {
     /// Waits until a file has so many bytes.
     pub fn wait_for(&self, name: &str, bytes: u64) {
         let began = Instant::now();
-        while fs::metadata(self.path(name)).map_or(0, |m| m.len()) < bytes {
+        while self.size(name) < bytes {
             assert!(began.elapsed() < Duration::from_secs(30), "{name} does not grow to {bytes} bytes");
             std::thread::sleep(Duration::from_millis(2));
         }
@@ -157,11 +174,16 @@ impl Started {
     }
 
     /// Sends a signal, such as `INT`, and waits for the end.
-    pub fn signal(mut self, signal: &str) -> Ran {
-        let child = self.child.take().expect("not yet waited for");
+    pub fn signal(self, signal: &str) -> Ran {
+        self.sends(signal);
+        self.wait()
+    }
+
+    /// Sends a signal, such as `INT`.
+    pub fn sends(&self, signal: &str) {
+        let child = self.child.as_ref().expect("not yet waited for");
         let sent = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status();
         assert!(sent.expect("kill starts").success());
-        Ran::new(&self.arguments, child.wait_with_output().expect("waited for"))
     }
 }
 

@@ -181,6 +181,20 @@ def test_a_scenario_is_written_with_its_modes_beside_it(tmp_path: Path) -> None:
         flexsc.write_scenario(read, tmp_path / "again.toml")
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a full disk, as Linux has one")
+@pytest.mark.parametrize("full", ["station.toml", "station-modes.csv"])
+def test_a_full_disk_keeps_what_was_there(tmp_path: Path, full: str) -> None:
+    scenario = flexsc.from_state_space(*second_order()).scenario(INERTIA, thrust=10.0, arm=3.0, duration=30.0)
+    for name in ("station.toml", "station-modes.csv"):
+        (tmp_path / name).write_text("kept")
+    (tmp_path / f"{full}.partial").symlink_to("/dev/full")
+    with pytest.raises(OSError, match="No space left") as raised:
+        flexsc.write_scenario(scenario, tmp_path / "station.toml")
+    assert raised.value.filename == str(tmp_path / full)
+    assert (tmp_path / full).read_text() == "kept"
+    assert not (tmp_path / f"{full}.partial").is_symlink()
+
+
 def test_a_table_of_modes_is_read(tmp_path: Path) -> None:
     file = tmp_path / "modes.csv"
     file.write_text("# a boom\nfrequency, tip.tz, root.ry, tip.tx\n1.5, 3e-3, 2e-5, -0.5\n\n4, 1, 2, 3\n")

@@ -76,3 +76,8 @@ def test_a_campaign_is_interrupted(fixed: Scenario, duration: float, runs: int) 
     scenario = fixed.with_("duration", duration)
     with interrupted():
         flexsc.campaign(scenario, runs)
+
+
+def test_an_identification_is_interrupted() -> None:
+    with interrupted():
+        flexsc.identify([(1.5, 3.0)], runs=10**7)

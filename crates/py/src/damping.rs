@@ -6,6 +6,7 @@ use flexsc_core::quantity::NonNegative;
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use serde_json::json;
 
 use crate::aside::aside;
@@ -74,7 +75,11 @@ pub fn identify_json(
             "runs and cycles must be 1 or more, got {runs} and {cycles}"
         )));
     }
-    Ok(json!(aside(py, |_| trial.table(runs))?).to_string())
+    let found = aside(py, |stop| {
+        let runs = (0..runs).into_par_iter();
+        runs.map(|number| (!stop.asked()).then(|| trial.run(number))).while_some().collect::<Vec<_>>()
+    })?;
+    Ok(json!(trial.row(&found)).to_string())
 }
 
 #[pyfunction]

@@ -1,5 +1,6 @@
 //! The engine's errors as Python exceptions, in the words of the command.
 
+use std::io;
 use std::path::Path;
 
 use flexsc_core::record::RecordError;
@@ -25,6 +26,14 @@ pub fn simulation_error(name: &str, error: flexsc_core::SimulationError) -> PyEr
 
 pub fn log_error(error: flexsc_core::record::LogError) -> PyErr {
     LogError::new_err(error.to_string())
+}
+
+/// Why there is no file at a path, as the `OSError` that Python itself would raise.
+pub fn no_file(path: &Path) -> impl FnOnce(io::Error) -> PyErr + '_ {
+    move |error| match error.raw_os_error() {
+        Some(code) => PyOSError::new_err((code, error.to_string(), path.to_owned())),
+        None => PyOSError::new_err(format!("cannot write {}: {error}", path.display())),
+    }
 }
 
 /// Why there is no log at a path.

@@ -26,7 +26,7 @@ use flexsc_core::metrics::{self, Metrics};
 use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
 use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
-use flexsc_core::{Document, ScenarioError};
+use flexsc_core::{Document, ScenarioError, whole};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -35,7 +35,7 @@ use serde_json::json;
 
 use aside::aside;
 use columns::Told;
-use error::{log_error, scenario_error, simulation_error};
+use error::{log_error, no_file, scenario_error, simulation_error};
 
 #[pymodule]
 mod _native {
@@ -50,7 +50,7 @@ mod _native {
     #[pymodule_export]
     use super::{
         Log, Scenario, campaign, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,
-        schema_json, simulate, to_mcap,
+        schema_json, simulate, to_mcap, write,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -335,6 +335,12 @@ impl Log {
     fn columns<'py>(&self, py: Python<'py>, topic: &str) -> PyResult<Bound<'py, PyDict>> {
         columns::of_rows(py, aside(py, |_| self.0.columns(topic))?.map_err(log_error)?)
     }
+}
+
+/// Writes a text file, which is whole or not there.
+#[pyfunction]
+fn write(path: PathBuf, text: &str) -> PyResult<()> {
+    whole::write(&path, text.as_bytes()).map_err(no_file(&path))
 }
 
 #[pyfunction]

@@ -142,14 +142,18 @@ impl Trial {
 
     /// Runs on the threads of the current rayon pool.
     pub fn table(&self, runs: u64) -> Row {
-        let found: Vec<Found> = (0..runs).into_par_iter().map(|number| self.run(number)).collect();
+        self.row(&(0..runs).into_par_iter().map(|number| self.run(number)).collect::<Vec<_>>())
+    }
+
+    /// What was found in runs.
+    pub fn row(&self, found: &[Found]) -> Row {
         let converged: Vec<&Found> = found.iter().filter(|found| found.time.is_some()).collect();
         let mut times_s: Vec<f64> = converged.iter().filter_map(|found| found.time).collect();
         times_s.sort_by(f64::total_cmp);
         let error = |kind: usize| median(converged.iter().map(|found| found.errors[kind]).collect());
         Row {
             off: self.off[0],
-            runs,
+            runs: found.len() as u64,
             converged: converged.len() as u64,
             time_median_s: median(times_s.clone()),
             time_longest_s: times_s.last().copied(),

@@ -24,7 +24,7 @@ pub use gradient::{Gradient, GradientObserver};
 pub use oscillator::{Oscillator, Phase};
 pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
 pub use residual::Residual;
-pub use tracker::{Merged, Tracker, bounds, dominant, merged, trackers};
+pub use tracker::{Merged, Tracker, bounds, merged};
 
 /// A pulse of thrusters, as one that was executed or is about to be.
 #[derive(Copy, Clone, Debug, PartialEq)]

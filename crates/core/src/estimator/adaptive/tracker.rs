@@ -70,23 +70,6 @@ pub fn merged(modes: &[Tracker], merge: f64) -> Vec<Merged> {
     merged
 }
 
-/// The same without the modes' indices.
-pub fn trackers(modes: &[Tracker], merge: f64) -> Vec<Tracker> {
-    merged(modes, merge).into_iter().map(|merged| merged.tracker).collect()
-}
-
-/// So many of the trackers with the greatest strength, by frequency: an observer follows one or two.
-pub fn dominant(mut trackers: Vec<Tracker>, count: usize) -> Vec<Tracker> {
-    trackers.sort_by(|a, b| b.strength().total_cmp(&a.strength()));
-    trackers.truncate(count);
-    sort(&mut trackers);
-    trackers
-}
-
-fn sort(trackers: &mut [Tracker]) {
-    trackers.sort_by(|a, b| a.frequency.get().total_cmp(&b.frequency.get()));
-}
-
 /// The first of the nearest pair within a ratio.
 fn nearest(merged: &[Merged], merge: f64) -> Option<usize> {
     let at = |index: usize| merged[index].tracker.frequency.get();
@@ -200,7 +183,10 @@ mod tests {
             tracker(0.65, -0.2),
             tracker(0.9, 0.1),
         ];
-        let found = trackers(&modes, 0.08);
+        let trackers = |merge: f64| -> Vec<Tracker> {
+            merged(&modes, merge).into_iter().map(|merged| merged.tracker).collect()
+        };
+        let found = trackers(0.08);
         let found_at = |tracker: &Tracker| tracker.frequency.get() / (2.0 * PI);
         // The pair first, 0.60741 Hz; then 0.65 Hz is within 8 % of it.
         assert_eq!(found.len(), 3);
@@ -208,11 +194,10 @@ mod tests {
         let pair = (1.6 * 0.6096 + 1.4 * 0.6049) / 3.0;
         close(found_at(&found[1]), (3.0 * pair + 2.8 * 0.65) / 5.8, 0.05);
         close(found[1].influence[0].get(), 2.8, 1e-12);
-        assert_eq!(trackers(&modes, 0.0).len(), 5);
-        let two = dominant(found, 2);
-        assert!((found_at(&two[0]) - 0.2476).abs() < 1e-12 && two.len() == 2);
-        assert_eq!(inconsistency(&two, 2.0, 1, CYCLE), None);
-        let [first, second] = bounds(&two, 2.0, CYCLE)[..] else { panic!("two") };
+        assert_eq!(trackers(0.0).len(), 5);
+        let two = &found[..2];
+        assert_eq!(inconsistency(two, 2.0, 1, CYCLE), None);
+        let [first, second] = bounds(two, 2.0, CYCLE)[..] else { panic!("two") };
         assert_eq!(first[1], second[0]);
         close(first[0], PI * 0.2476, 1e-12);
     }

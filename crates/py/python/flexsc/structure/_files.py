@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from flexsc import _native as engine
 from flexsc._scenario import Scenario
 from flexsc._values import document, toml
 from flexsc.structure._structure import COMPONENTS, Structure, write_modes
@@ -99,5 +100,5 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> Path:
     text = Scenario.parse(document(scenario.name, values), scenario.name).to_toml()
     beside = f"modes = {toml(scenario.name, 'modes', table.name)}"
     text = re.sub(r"^modes = .*$", lambda _: beside, text, count=1, flags=re.MULTILINE)
-    file.write_text(text, encoding="utf-8")
+    engine.write(file, text)
     return table

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from flexsc import _native as engine
 from flexsc._scenario import Scenario
 
 if TYPE_CHECKING:
@@ -169,7 +171,8 @@ def write_modes(path: str | os.PathLike[str], modes: Sequence[Mapping[str, Any]]
         if not any(f"{point}.{component}" in told for component in COMPONENTS):
             told.add(f"{point}.tx")
     kept = {name: column for name, column in columns.items() if name in told}
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(kept)
-        writer.writerows(map(repr, row) for row in zip(*kept.values(), strict=True))
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(kept)
+    writer.writerows(map(repr, row) for row in zip(*kept.values(), strict=True))
+    engine.write(path, text.getvalue())
