@@ -1,8 +1,10 @@
 //! Viewer layouts: the panels that show a run in Foxglove-compatible viewers, made from its scenario.
 //!
 //! A layout is made with all that a log of the scenario can hold, and then keeps the panels whose topics a log has. What is
-//! attached to a log, what `flexsc layout` writes and what is shipped come from here.
+//! attached to a log, what `flexsc layout` writes and what is shipped come from here; the last two are fitted to what a log
+//! holds.
 
+mod limits;
 mod mosaic;
 mod panel;
 mod planar;

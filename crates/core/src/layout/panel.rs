@@ -15,6 +15,8 @@ pub struct Panel {
     name: &'static str,
     title: String,
     shows: Shows,
+    /// The ends of the vertical axis of a plot; without them, the viewer chooses.
+    pub limits: Option<[f64; 2]>,
 }
 
 /// What a panel shows.
@@ -28,6 +30,8 @@ enum Shows {
     States(Vec<Line>),
     /// The last message of a topic.
     Message(String),
+    /// The rows of the last message of a topic.
+    Table(String),
     /// Lines of the log.
     Log,
     /// The scene, of these topics.
@@ -42,11 +46,13 @@ pub struct Line {
     /// Points that are not joined.
     dots: bool,
     thick: bool,
+    /// The number of its colour, if it is not its own.
+    color: Option<usize>,
 }
 
 /// A line of a value, with its label.
 pub fn line(path: impl Into<String>, label: impl Into<String>) -> Line {
-    Line { path: path.into(), label: label.into(), dots: false, thick: false }
+    Line { path: path.into(), label: label.into(), dots: false, thick: false, color: None }
 }
 
 impl Line {
@@ -60,48 +66,69 @@ impl Line {
         Self { thick: true, ..self }
     }
 
+    /// The same in the colour of this number, such as that of what it is compared with.
+    pub fn color(self, number: usize) -> Self {
+        Self { color: Some(number), ..self }
+    }
+
     /// Its topic; none of a number, which is a horizontal line.
     fn topic(&self) -> Option<&str> {
         self.path.starts_with('/').then(|| topic(&self.path))
     }
 }
 
-fn topic(path: &str) -> &str {
+/// The topic of a path.
+pub fn topic(path: &str) -> &str {
     path.split_once('.').map_or(path, |(topic, _)| topic)
 }
 
 impl Panel {
+    fn new(name: &'static str, title: impl Into<String>, shows: Shows) -> Self {
+        Self { name, title: title.into(), shows, limits: None }
+    }
+
     /// Values over time.
     pub fn plot(name: &'static str, title: impl Into<String>, lines: Vec<Line>) -> Self {
-        Self { name, title: title.into(), shows: Shows::Plot(lines) }
+        Self::new(name, title, Shows::Plot(lines))
     }
 
     /// Values over another value. Its topic must not be that of the values, or viewers show nothing.
     pub fn plane(name: &'static str, title: impl Into<String>, x: &str, lines: Vec<Line>) -> Self {
-        Self { name, title: title.into(), shows: Shows::Plane(lines, x.to_owned()) }
+        Self::new(name, title, Shows::Plane(lines, x.to_owned()))
     }
 
     /// States over time.
     pub fn states(name: &'static str, title: impl Into<String>, lines: Vec<Line>) -> Self {
-        Self { name, title: title.into(), shows: Shows::States(lines) }
+        Self::new(name, title, Shows::States(lines))
     }
 
     /// The last message of a topic.
     pub fn message(name: &'static str, title: impl Into<String>, topic: &str) -> Self {
-        Self { name, title: title.into(), shows: Shows::Message(topic.to_owned()) }
+        Self::new(name, title, Shows::Message(topic.to_owned()))
+    }
+
+    /// The metrics.
+    pub fn metrics() -> Self {
+        Self::new("metrics", "Metrics, at the end", Shows::Table("/metrics.metrics".to_owned()))
     }
 
     /// Lines of the log.
     pub fn log() -> Self {
-        Self { name: "log", title: "What happened".to_owned(), shows: Shows::Log }
+        Self::new("log", "What happened", Shows::Log)
     }
 
     /// The scene.
     pub fn scene(extent: Extent) -> Self {
-        Self {
-            name: "scene",
-            title: "Scene".to_owned(),
-            shows: Shows::Scene(extent, vec!["/scene", "/plumes"]),
+        Self::new("scene", "Scene", Shows::Scene(extent, vec!["/scene", "/plumes"]))
+    }
+
+    /// What is drawn along the vertical axis.
+    pub fn drawn(&self) -> Vec<&str> {
+        match &self.shows {
+            Shows::Plot(lines) | Shows::Plane(lines, _) => {
+                lines.iter().map(|line| line.path.as_str()).collect()
+            }
+            _ => Vec::new(),
         }
     }
 
@@ -111,6 +138,7 @@ impl Panel {
             Shows::Plot(_) | Shows::Plane(..) => "Plot",
             Shows::States(_) => "StateTransitions",
             Shows::Message(_) => "RawMessages",
+            Shows::Table(_) => "Table",
             Shows::Log => "RosOut",
             Shows::Scene(..) => "3D",
         };
@@ -120,9 +148,10 @@ impl Panel {
     /// How high it is, relative to others.
     pub fn weight(&self) -> u32 {
         match &self.shows {
-            Shows::Scene(..) | Shows::Plane(..) => 4,
-            Shows::Plot(_) | Shows::Log | Shows::Message(_) => 2,
-            Shows::States(_) => 1,
+            Shows::Scene(..) | Shows::Plane(..) => 8,
+            Shows::Plot(_) | Shows::Log | Shows::Message(_) | Shows::Table(_) => 4,
+            // A row of states has a height of its own.
+            Shows::States(lines) => (3 * (lines.len() as u32 + 1)).div_ceil(2),
         }
     }
 
@@ -137,7 +166,7 @@ impl Panel {
             Shows::Plot(lines) => Shows::Plot(kept(lines)?),
             Shows::Plane(lines, x) => Shows::Plane(kept(lines).filter(|_| has(topic(x)))?, x.clone()),
             Shows::States(lines) => Shows::States(kept(lines)?),
-            Shows::Message(topic) => has(topic).then(|| self.shows.clone())?,
+            Shows::Message(path) | Shows::Table(path) => has(topic(path)).then(|| self.shows.clone())?,
             Shows::Log => has("/log").then_some(Shows::Log)?,
             Shows::Scene(extent, topics) => {
                 let topics: Vec<_> = topics.iter().copied().filter(|topic| has(topic)).collect();
@@ -161,10 +190,15 @@ impl Panel {
             Shows::Message(topic) => {
                 object(json!({ "topicPath": topic, "diffEnabled": false, "expansion": "all" }))
             }
+            Shows::Table(path) => object(json!({ "topicPath": path })),
             // From level 2 on: without what is for those who look for an error.
             Shows::Log => object(json!({ "searchTerms": [], "minLogLevel": 2, "topicToRender": "/log" })),
             Shows::Scene(extent, topics) => scene(extent, topics),
         };
+        if let Some([least, greatest]) = self.limits {
+            config.insert("minYValue".to_owned(), json!(least));
+            config.insert("maxYValue".to_owned(), json!(greatest));
+        }
         for key in ["foxglovePanelTitle", "lichtblickPanelTitle"] {
             config.insert(key.to_owned(), json!(self.title));
         }
@@ -187,20 +221,22 @@ fn plot(lines: &[Line], x_axis: Value) -> Map<String, Value> {
             "enabled": true,
             "timestampMethod": "receiveTime",
             "label": line.label,
-            "color": if limit { COLORS[6] } else { COLORS[index % 6] },
+            "color": if limit { COLORS[6] } else { COLORS[line.color.unwrap_or(index) % 6] },
             "showLine": !line.dots,
             "lineSize": if line.thick { 2.5 } else if limit { 1.0 } else { 1.5 },
         })
     };
+    let longest = lines.iter().map(|line| line.label.chars().count()).max().unwrap_or(0);
     let mut config = object(json!({
         "paths": lines.iter().enumerate().map(path).collect::<Vec<_>>(),
         "showXAxisLabels": true,
         "showYAxisLabels": true,
         "showLegend": true,
-        "legendDisplay": "floating",
+        // A floating one would hide the begin of the lines.
+        "legendDisplay": "left",
         "showPlotValuesInLegend": false,
         "isSynced": true,
-        "sidebarDimension": 240,
+        "sidebarDimension": 48 + 7 * longest,
     }));
     config.insert("xAxisVal".to_owned(), x_axis);
     config
@@ -231,7 +267,8 @@ fn scene(extent: &Extent, topics: &[&str]) -> Map<String, Value> {
         },
         "followMode": "follow-pose",
         "followTf": "inertial",
-        "scene": { "transforms": { "showLabel": false, "enablePreloading": true } },
+        // Each message of the frames is whole: to keep those of a long run would only cost memory.
+        "scene": { "transforms": { "showLabel": false, "enablePreloading": false } },
         "transforms": extent.frames.iter().map(hidden).collect::<Map<_, _>>(),
         "topics": topics.iter().map(shown).collect::<Map<_, _>>(),
         "layers": { "grid": {

@@ -2,6 +2,7 @@
 
 use super::Tab;
 use super::panel::{Line, MOST_LINES, Panel, line};
+use crate::actuator::Actuator;
 use crate::estimator::Estimator;
 use crate::law::Law;
 use crate::scenario::Scenario;
@@ -25,11 +26,8 @@ pub fn feeds_back(scenario: &Scenario) -> bool {
 
 /// The tabs of a scenario.
 pub fn tabs(scenario: &Scenario) -> Vec<Tab> {
-    let log = vec![
-        Panel::log(),
-        Panel::message("arrival", "End of the manoeuvre", "/arrival"),
-        Panel::message("metrics", "Metrics", "/metrics"),
-    ];
+    let log =
+        vec![Panel::log(), Panel::message("arrival", "End of the manoeuvre", "/arrival"), Panel::metrics()];
     vec![
         Tab { title: "Motion", panels: motion(scenario) },
         Tab { title: "Estimator", panels: estimator(scenario) },
@@ -58,7 +56,8 @@ fn motion(scenario: &Scenario) -> Vec<Panel> {
         ),
         Panel::plot("modes", "Elastic modes (rad)", modes(scenario)),
         Panel::plot("outputs", "Observed coordinates", outputs(scenario)),
-        Panel::plot("torque", "Torque", torques(scenario)),
+        Panel::plot("torque", "Torque (N m)", torques(scenario)),
+        Panel::plot("command", "Command of the law to the wheel", commands(scenario)),
         Panel::plot("wheel", "Wheel speed (rad/s)", vec![line("/wheel.speed_rad_s", "speed")]),
     ]);
     let state = if relay { "/command.state" } else { "/law.state" };
@@ -75,8 +74,8 @@ fn angles(scenario: &Scenario) -> Vec<Line> {
     if let Law::Relay(relay) = &scenario.law {
         let zone = relay.dead_zone.get();
         lines.push(line("/command.angle_rad", "switchings").dots());
-        lines.push(line(zone.to_string(), "dead zone"));
-        lines.push(line((-zone).to_string(), "dead zone"));
+        lines.push(line(zone.to_string(), "+ dead zone"));
+        lines.push(line((-zone).to_string(), "- dead zone"));
     }
     lines
 }
@@ -105,11 +104,22 @@ fn torques(scenario: &Scenario) -> Vec<Line> {
     if scenario.plan.is_some() {
         lines.push(line("/torque.feedforward_nm", "planned"));
     }
-    lines.push(line("/torque.feedback_nm", "commanded by the law"));
+    if !has_wheel(scenario) {
+        lines.push(line("/torque.feedback_nm", "commanded by the law"));
+    }
     if !scenario.disturbance.is_empty() {
         lines.push(line("/torque.disturbance_nm", "disturbance"));
     }
     lines
+}
+
+/// A wheel's command has a unit of its own.
+fn commands(scenario: &Scenario) -> Vec<Line> {
+    if has_wheel(scenario) { vec![line("/torque.feedback_nm", "command")] } else { Vec::new() }
+}
+
+fn has_wheel(scenario: &Scenario) -> bool {
+    matches!(scenario.actuator, Actuator::Wheel(_))
 }
 
 fn estimator(scenario: &Scenario) -> Vec<Panel> {

@@ -40,8 +40,8 @@ pub fn tabs(scenario: &Scenario, spatial: &SpatialLoop) -> Vec<Tab> {
     if spatial.law.damping.is_some() {
         let mut lines = channels("acted_on_rad_s");
         for (axis, threshold) in AXES.into_iter().zip(spatial.thresholds) {
-            for value in [threshold, -threshold] {
-                lines.push(line(value.to_string(), format!("threshold of {axis}")));
+            for (sign, value) in [('+', threshold), ('-', -threshold)] {
+                lines.push(line(value.to_string(), format!("{sign} threshold of {axis}")));
             }
         }
         elastic.push(Panel::plot("damping", "Elastic rates that damping acts on (rad/s)", lines));
@@ -49,7 +49,7 @@ pub fn tabs(scenario: &Scenario, spatial: &SpatialLoop) -> Vec<Tab> {
         elastic.push(Panel::states("resting", "Active damping: 1 at rest", channels("resting")));
     }
     elastic.push(Panel::states("trusted", "Observers: 1 where they are trusted", channels("trusted")));
-    let log = vec![Panel::log(), Panel::message("metrics", "Metrics", "/metrics")];
+    let log = vec![Panel::log(), Panel::metrics()];
     vec![
         Tab { title: "Motion", panels: motion },
         Tab { title: "Elastic modes", panels: elastic },
@@ -60,7 +60,12 @@ pub fn tabs(scenario: &Scenario, spatial: &SpatialLoop) -> Vec<Tab> {
 fn errors(spatial: &SpatialLoop) -> Vec<Line> {
     let zone = spatial.law.dead_zone.get();
     let errors = AXES.iter().map(|axis| line(format!("/pointing.{axis}_error_rad"), *axis));
-    errors.chain([zone, -zone].map(|value| line(value.to_string(), "dead zone"))).collect()
+    errors
+        .chain(
+            [("+ dead zone", zone), ("- dead zone", -zone)]
+                .map(|(label, value)| line(value.to_string(), label)),
+        )
+        .collect()
 }
 
 fn rates(fields: &[(&str, &str)]) -> Vec<Line> {
@@ -92,8 +97,8 @@ fn frequencies(tracked: &[usize]) -> Vec<Line> {
     let of = |(index, (axis, n)): (usize, (&str, usize))| {
         let at = |field: &str| format!("/tracking.trackers[{index}].{field}");
         [
-            line(at("frequency_rad_s"), format!("{axis} {n}")),
-            line(at("true_frequency_rad_s"), format!("{axis} {n}, true")),
+            line(at("frequency_rad_s"), format!("{axis} {n}")).color(index).thick(),
+            line(at("true_frequency_rad_s"), format!("{axis} {n}, true")).color(index),
         ]
     };
     named.enumerate().take(MOST_LINES).flat_map(of).collect()

@@ -12,6 +12,8 @@ use crate::scenario::{Scenario, SpatialLoop};
 /// The bending that shall show (rad), and the turning.
 const BENDING: f64 = 0.35;
 const TURNING: f64 = 0.5;
+/// The largest step of a disc (rad).
+const TURN: f64 = 1.0;
 
 /// 1, 2 or 5 times a power of ten, at most so many times what makes an estimate reach a wanted angle (rad); at least 1.
 fn round_factor(wanted: f64, estimate: f64) -> f64 {
@@ -33,6 +35,17 @@ pub fn turning(estimate: f64) -> f64 {
     round_factor(TURNING, estimate)
 }
 
+/// By what a disc that turns by so much from one frame to the next (rad) is slowed: 1, 2 or 5 times a power of ten, at least
+/// 1, so that its steps are below `TURN`. Viewers would show a faster one as if it turned otherwise.
+pub fn slowing(step: f64) -> f64 {
+    let least = step / TURN;
+    if !least.is_finite() || least <= 1.0 {
+        return 1.0;
+    }
+    let decade = libm::pow(10.0, libm::floor(libm::log10(least)));
+    [1.0, 2.0, 5.0].into_iter().find(|step| step * decade >= least).unwrap_or(10.0) * decade
+}
+
 /// The angle by which a body of one angle turns, about (rad).
 pub fn angle(scenario: &Scenario) -> f64 {
     let start = scenario.model.angle.get();
@@ -41,6 +54,20 @@ pub fn angle(scenario: &Scenario) -> f64 {
         _ => 0.0,
     };
     start.abs().max(scenario.goal().angle.abs()).max(zone)
+}
+
+/// The rate at which a body of one angle turns at most, about (rad/s).
+pub fn rate(scenario: &Scenario) -> f64 {
+    let model = &scenario.model;
+    let planned = scenario.plan.as_ref().map_or(0.0, |plan| 2.0 * scenario.goal().angle.abs() / plan.time);
+    let by_law = match (&scenario.law, &scenario.actuator) {
+        // What the spring of the law makes of the angle.
+        (Law::Pd(pd), Actuator::Wheel(wheel)) => {
+            angle(scenario) * libm::sqrt(pd.k_p.get() * wheel.gain.get() / model.commanded_inertia())
+        }
+        _ => 0.0,
+    };
+    model.rate.get().abs().max(planned).max(by_law)
 }
 
 /// The angle by which a spatial body turns, about (rad).
@@ -100,6 +127,13 @@ pub fn modal(spatial: &SpatialLoop) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn discs_are_slowed_until_their_steps_show() {
+        for (step, by) in [(0.0, 1.0), (1.0, 1.0), (1.2, 2.0), (24.0, 50.0), (50.0, 50.0), (700.0, 1000.0)] {
+            assert_eq!(slowing(step), by, "{step}");
+        }
+    }
 
     #[test]
     fn factors_are_round_and_never_reduce() {

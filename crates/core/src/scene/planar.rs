@@ -57,13 +57,14 @@ impl PlanarScene {
     pub fn new(scenario: &Scenario) -> Self {
         let spec = &scenario.log.scene;
         let panels = Panels::of(scenario);
+        let period = spec.period(scenario.log.period);
         let mut scene = Self {
-            period: spec.period(scenario.log.period),
+            period,
             bending: spec.bending.map_or_else(|| bending(panels.bent), Positive::get),
             turning: spec.turning.map_or_else(|| turning(angle(scenario)), Positive::get),
             goal: scenario.plan.as_ref().map(|_| scenario.goal().angle),
             panels,
-            wheel: Wheel::of(scenario),
+            wheel: Wheel::of(scenario, period),
             plumes: None,
             largest: largest(scenario),
             frames: FrameTransforms { transforms: Vec::new() },
@@ -151,8 +152,10 @@ impl PlanarScene {
             let (sin, cos) = libm::sincos(self.turning * goal);
             entity.lines.push(line(Vector::zeros(), Vector::new(cos, sin, 0.0) * reach, GOAL));
         }
-        let text = format!("bending × {}, turning × {} (schematic)", self.bending, self.turning);
-        entity.texts.push(words(Vector::z() * (0.45 * reach), text));
+        let wheel = self.wheel.as_ref().map(|wheel| wheel.slowed).filter(|slowed| *slowed > 1.0);
+        let wheel = wheel.map_or_else(String::new, |slowed| format!(", wheel ÷ {slowed}"));
+        let text = format!("bending × {}, turning × {}{wheel} (schematic)", self.bending, self.turning);
+        entity.texts.push(words(Vector::z() * (0.65 * reach), text));
         entity
     }
 

@@ -1,12 +1,14 @@
 //! The wheel of a body with one angle: a disc that turns as its momentum says.
 
 use super::PlanarView;
+use super::magnification::{rate, slowing};
 use super::part::{MARK, WHEEL, cone, cube, entity};
 use crate::actuator::Actuator;
 use crate::body::spatial::Vector;
 use crate::record::foxglove::SceneEntity;
 use crate::record::row::Stamp;
 use crate::scenario::Scenario;
+use crate::time::Span;
 
 /// A wheel without a rotor of its own is drawn with this part of the body's inertia.
 const ROTOR: f64 = 0.02;
@@ -16,13 +18,15 @@ const ROTOR: f64 = 0.02;
 pub struct Wheel {
     speed: f64,
     ratio: f64,
+    /// How many times slower it is drawn than it turns.
+    pub slowed: f64,
     /// Angle and rate of the body at the start (rad, rad/s).
     from: (f64, f64),
 }
 
 impl Wheel {
-    /// That of a scenario, if it has one.
-    pub fn of(scenario: &Scenario) -> Option<Self> {
+    /// That of a scenario, if it has one, for frames with this period.
+    pub fn of(scenario: &Scenario, period: Span) -> Option<Self> {
         let Actuator::Wheel(wheel) = &scenario.actuator else { return None };
         let model = &scenario.model;
         let (speed, inertia) = match &wheel.rotor {
@@ -30,13 +34,16 @@ impl Wheel {
             None => (0.0, ROTOR * model.inertia.get()),
         };
         let from = (model.angle.get(), model.rate.get());
-        Some(Self { speed, ratio: model.commanded_inertia() / inertia, from })
+        let ratio = model.commanded_inertia() / inertia;
+        let slowed = slowing((speed.abs() + ratio * rate(scenario)) * period.seconds());
+        Some(Self { speed, ratio, slowed, from })
     }
 
-    /// The angle by which it has turned (rad): the integral of its speed, which is what the body's momentum leaves it.
+    /// The angle by which it is drawn as turned (rad): the integral of its speed, which is what the body's momentum leaves it.
     pub fn angle(&self, view: PlanarView<'_>) -> f64 {
         let (angle, rate) = self.from;
-        self.speed * view.time - self.ratio * (view.rigid_angle - angle - rate * view.time)
+        let turned = self.speed * view.time - self.ratio * (view.rigid_angle - angle - rate * view.time);
+        turned / self.slowed
     }
 }
 
