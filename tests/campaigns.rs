@@ -44,7 +44,9 @@ fn a_run_alone_is_the_run_of_the_campaign() {
     let row = &table(&dir, "out/runs.csv")[3];
     let duty = format!("\"duty\":{},", row["duty"].parse::<f64>().expect("a number"));
     let switchings = format!("\"switchings\":{},", row["switchings"]);
-    dir.run("simulate three.toml --json --log none").exits(0).prints(&[&duty, &switchings]);
+    let alone = dir.run("simulate three.toml --json --log none").exits(0).prints(&[&duty, &switchings]);
+    // A run alone has the keys of one of a campaign.
+    assert!(alone.contains("\"drawn\":{},\"metrics\""), "{alone}");
 }
 
 #[test]

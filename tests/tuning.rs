@@ -95,6 +95,8 @@ fn the_command_tells_regions_schedules_and_maps() {
     let rows = told["rows"].as_array().expect("rows");
     assert_eq!(rows.len(), 4);
     assert!((rows[1]["midpoint"].as_f64().expect("a gain") - 0.1).abs() < 1e-9);
+    assert_eq!(told["schedule"][1]["gain"], rows[1]["midpoint"]);
+    assert_eq!(told["schedule"][1]["frequency"], rows[1]["frequency_rad_s"]);
     dir.run(&format!("tune fitted.toml {few}")).exits(0).says(&["rad/s", "0.2000", "1.000", "180.3"]);
     // The schedule is one that a scenario takes.
     let known = "[sensor.sampled]\nperiod = 0.3\n[estimator.truth]\n";
@@ -106,6 +108,7 @@ fn the_command_tells_regions_schedules_and_maps() {
     let sure =
         dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:0.25 --json {few}")).exits(0).json();
     assert!(sure["rows"][0]["gain"].is_number());
+    assert_eq!(sure["schedule"][0]["gain"], sure["rows"][0]["gain"]);
     dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:0.25 {few}")).exits(0).says(&["off by 5 %"]);
 
     dir.run("map fitted.toml --frequency 0.1:0.3:3 --period 0.1:0.7:4 -o map.csv")

@@ -12,11 +12,14 @@ use flexsc_core::metrics::Metrics;
 use flexsc_core::record::RecordError;
 use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
 use flexsc_core::whole;
-use serde_json::json;
+use serde::Serialize;
+use serde_json::{Map, Value as Json, json};
 
 use crate::failure::Failure;
+use crate::number::short;
+use crate::results::print_lines;
 use crate::table::Table;
-use crate::{print, progress, say, summary};
+use crate::{progress, say, summary};
 
 /// The file that holds the scenario of a campaign, beside its tables.
 pub const SCENARIO: &str = "scenario.toml";
@@ -145,7 +148,8 @@ impl Telling<'_> {
             table.row(self.study, &outcome)?;
         }
         if self.json {
-            print(&line(self.study, &outcome))?;
+            let Outcome { number, drawn, metrics } = &outcome;
+            print_lines(&[object(self.study, *number, drawn, metrics.as_ref())])?;
         }
         match outcome.metrics {
             Ok(metrics) => self.all.push(metrics),
@@ -159,21 +163,26 @@ impl Telling<'_> {
     }
 }
 
-/// The line of a run for machines.
-fn line(study: &Campaign, outcome: &Outcome) -> Vec<u8> {
-    let drawn: serde_json::Map<_, _> =
-        study.keys().zip(&outcome.drawn).map(|(key, value)| (key.to_owned(), json!(value))).collect();
+/// What machines are told of a run, with the value of each key that varies.
+pub fn object(
+    study: &Campaign,
+    number: u64,
+    drawn: &[impl Serialize],
+    metrics: Result<&Metrics, &RunError>,
+) -> Json {
+    let drawn: Map<_, _> =
+        study.keys().zip(drawn).map(|(key, value)| (key.to_owned(), json!(value))).collect();
     let mut object = json!({
         "scenario": study.scenario().name,
-        "run": outcome.number,
+        "run": number,
         "seed": study.scenario().seed,
         "drawn": drawn,
     });
-    match &outcome.metrics {
+    match metrics {
         Ok(metrics) => object["metrics"] = metrics.to_json(),
         Err(error) => object["error"] = json!(error.to_string()),
     }
-    format!("{object}\n").into_bytes()
+    object
 }
 
 fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failure> {
@@ -203,17 +212,5 @@ fn tell_statistics(statistics: &[Statistics], runs: usize) {
     for s in statistics.iter().filter(|s| s.runs > 0) {
         let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
         say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
-    }
-}
-
-/// A number in at most ten characters.
-pub fn short(number: f64) -> String {
-    if number.is_nan() {
-        "-".to_owned()
-    } else if number == 0.0 || (1e-3..1e6).contains(&number.abs()) {
-        let digits = if number.abs() >= 1e3 { 1 } else { 4 };
-        format!("{number:.digits$}")
-    } else {
-        format!("{number:.3e}")
     }
 }

@@ -2,19 +2,30 @@
 
 use std::io::Write;
 
-use flexsc_core::analysis::rigid_cycle::{Resonance, cycles, resonances};
+use flexsc_core::Scenario;
+use flexsc_core::analysis::rigid_cycle::{Resonance, RigidCycle, cycles, resonances};
 use flexsc_core::law::{Law, Sides};
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
+use crate::results::{Results, show};
+use crate::say;
 use crate::scenario::Args;
-use crate::{print, say};
 
 /// So many resonances of each mode are told to people.
 const NEAREST: usize = 3;
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let scenario = args.load()?;
+/// The limit cycles of a scenario's relay law, and their resonances.
+pub struct RelayCycles {
+    /// Name of the scenario.
+    name: String,
+    k_t: f64,
+    cycles: Vec<RigidCycle>,
+    resonances: Vec<Resonance>,
+}
+
+/// What a scenario's relay law does on a rigid body.
+pub fn results(scenario: &Scenario) -> Result<RelayCycles, Failure> {
     let body = scenario.one_angle()?;
     let Law::Relay(law) = &scenario.law else {
         return Err(Failure::Arguments(format!(
@@ -22,48 +33,55 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             scenario.name
         )));
     };
-    let k_t = law.k_t.get();
-    let cycles = cycles(law, body, k_t);
-    let resonances = resonances(law, body);
-    if args.json {
-        let object = json!({
-            "scenario": scenario.name,
-            "k_t": k_t,
-            "cycles": cycles,
-            "resonances": resonances,
-        });
-        return print(format!("{object}\n").as_bytes());
+    let (name, k_t) = (scenario.name.clone(), law.k_t.get());
+    Ok(RelayCycles { name, k_t, cycles: cycles(law, body, k_t), resonances: resonances(law, body) })
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    show(&results(&args.load()?)?, None, args.json)
+}
+
+impl Results for RelayCycles {
+    fn json(&self) -> Vec<Json> {
+        let Self { name, k_t, cycles, resonances } = self;
+        vec![json!({"scenario": name, "k_t": k_t, "cycles": cycles, "resonances": resonances})]
     }
-    say!("{}   k_t = {k_t}, modes left out", scenario.name);
-    if cycles.is_empty() {
-        say!("  no limit cycle exists");
+
+    fn tell(&self) -> Result<(), Failure> {
+        let Self { name, k_t, cycles, resonances } = self;
+        say!("{name}   k_t = {k_t}, modes left out");
+        if cycles.is_empty() {
+            say!("  no limit cycle exists");
+        }
+        for cycle in cycles {
+            let kind = if cycle.sides == Sides::Two { "two-sided" } else { "one-sided" };
+            let stability = if cycle.stable { "stable" } else { "unstable" };
+            say!("  {kind} cycle, {stability}: multiplier {:.4}", cycle.multiplier);
+            say!("    period         {:.9} s", cycle.period_s);
+            say!("    push           {:.9} s", cycle.push_s);
+            say!("    brake          {:.9} s", cycle.brake_s);
+            say!("    coast          {:.9} s", cycle.coast_s);
+            say!("    entry rate     {:.9e} rad/s", cycle.entry_rate_rad_s);
+            say!("    angle          {:.6e} to {:.6e} rad", cycle.angle_min_rad, cycle.angle_max_rad);
+            say!("    duty           {:.4} under strong torque", cycle.duty);
+            say!("    impulse        {:.6e} N m s per hour", cycle.impulse_per_hour_nm_s);
+        }
+        if !resonances.is_empty() {
+            say!(
+                "  resonances of the two-sided cycle, the {NEAREST} nearest of each mode (all with --json):"
+            );
+        }
+        for r in nearest(resonances, *k_t) {
+            say!(
+                "    mode {}, harmonic {:>2}: period {:.4} s at k_t = {:.6}",
+                r.mode,
+                r.harmonic,
+                r.period_s,
+                r.k_t
+            );
+        }
+        Ok(())
     }
-    for cycle in &cycles {
-        let kind = if cycle.sides == Sides::Two { "two-sided" } else { "one-sided" };
-        let stability = if cycle.stable { "stable" } else { "unstable" };
-        say!("  {kind} cycle, {stability}: multiplier {:.4}", cycle.multiplier);
-        say!("    period         {:.9} s", cycle.period_s);
-        say!("    push           {:.9} s", cycle.push_s);
-        say!("    brake          {:.9} s", cycle.brake_s);
-        say!("    coast          {:.9} s", cycle.coast_s);
-        say!("    entry rate     {:.9e} rad/s", cycle.entry_rate_rad_s);
-        say!("    angle          {:.6e} to {:.6e} rad", cycle.angle_min_rad, cycle.angle_max_rad);
-        say!("    duty           {:.4} under strong torque", cycle.duty);
-        say!("    impulse        {:.6e} N m s per hour", cycle.impulse_per_hour_nm_s);
-    }
-    if !resonances.is_empty() {
-        say!("  resonances of the two-sided cycle, the {NEAREST} nearest of each mode (all with --json):");
-    }
-    for r in nearest(&resonances, k_t) {
-        say!(
-            "    mode {}, harmonic {:>2}: period {:.4} s at k_t = {:.6}",
-            r.mode,
-            r.harmonic,
-            r.period_s,
-            r.k_t
-        );
-    }
-    Ok(())
 }
 
 /// The resonances of each mode that are nearest to a gain, in the order of the gains.

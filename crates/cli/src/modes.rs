@@ -2,124 +2,150 @@
 
 use std::io::Write;
 
+use flexsc_core::Scenario;
 use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::body::Drive;
 use flexsc_core::body::spatial::AXES;
-use flexsc_core::scenario::SpatialLoop;
 use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
+use crate::results::{Results, of_scenario, show};
+use crate::say;
 use crate::scenario::Args;
-use crate::{print, say};
 
 /// The largest number of modes for which the weights of outputs are printed beside each other.
 const WEIGHTS: usize = 12;
 
-/// Prints a table as one JSON object.
-fn print_json(name: &str, table: Json) -> Result<(), Failure> {
-    let mut object = json!({ "scenario": name });
-    if let (Some(object), Json::Object(table)) = (object.as_object_mut(), table) {
-        object.extend(table);
-    }
-    print(format!("{object}\n").as_bytes())
+/// The modes of a body with one angle.
+struct Planar {
+    /// Name of the scenario.
+    name: String,
+    modal: Modal,
 }
 
 /// The modes of a spatial body, and what its jets do to them.
-fn spatial(name: &str, of: &SpatialLoop, as_json: bool) -> Result<(), Failure> {
-    let modes = Influences::of(of);
-    if as_json {
-        return print_json(name, json!(modes));
+struct Spatial {
+    /// Name of the scenario.
+    name: String,
+    modes: Influences,
+}
+
+/// The modes of a scenario's body.
+pub fn results(scenario: &Scenario) -> Box<dyn Results> {
+    let name = scenario.name.clone();
+    match &scenario.spatial {
+        Some(of) => Box::new(Spatial { name, modes: Influences::of(of) }),
+        None => Box::new(Planar { name, modal: Modal::of(&scenario.model) }),
     }
-    say!("{name}   {} modes", modes.dampings.len());
-    for (axis, [plus, minus]) in AXES.iter().zip(modes.accelerations_rad_s2) {
-        say!("  jets, {axis:<8} {plus:+.4e} {:+.4e} rad/s²", -minus);
-    }
-    say!("  influence: elastic rate at the gyro for each rigid rate that the jets give about the same axis");
-    say!(
-        "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>12}{:>12}",
-        "mode",
-        "rad/s",
-        "s",
-        "damping",
-        AXES[0],
-        AXES[1],
-        AXES[2]
-    );
-    for index in 0..modes.dampings.len() {
-        let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| modes.influences[axis][index]);
-        say!(
-            "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{roll:>12.5}{pitch:>12.5}{yaw:>12.5}",
-            modes.frequencies_rad_s[index],
-            modes.periods_s[index],
-            modes.dampings[index],
-        );
-    }
-    Ok(())
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let scenario = args.load()?;
-    if let Some(loop_of) = &scenario.spatial {
-        return spatial(&scenario.name, loop_of, args.json);
+    show(&*results(&args.load()?), None, args.json)
+}
+
+impl Results for Spatial {
+    fn json(&self) -> Vec<Json> {
+        vec![of_scenario(&self.name, json!(self.modes))]
     }
-    let modal = Modal::of(&scenario.model);
-    if args.json {
-        return print_json(&scenario.name, json!(modal));
-    }
-    let hub = match modal.drive {
-        Drive::Torque => "free",
-        Drive::Motion => "held",
-    };
-    say!("{}   {} modes, hub {hub}", scenario.name, modal.gains.len());
-    let strongest = modal.excitabilities_s2.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
-    let other = match modal.drive {
-        Drive::Torque => ("hub held", &modal.clamped_frequencies_rad_s),
-        Drive::Motion => ("hub free", &modal.free_frequencies_rad_s),
-    };
-    say!(
-        "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>18}{:>10}{:>14}{:>12}",
-        "mode",
-        "frequency",
-        "period",
-        "damping",
-        "gain",
-        "excitability",
-        "relative",
-        "inertia",
-        other.0
-    );
-    say!(
-        "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>18}{:>10}{:>14}{:>12}",
-        "",
-        "rad/s",
-        "s",
-        "",
-        "",
-        "k/w², s²",
-        "",
-        "J k, kg m²",
-        "rad/s"
-    );
-    for index in 0..modal.gains.len() {
-        let frequency = other.1.as_ref().map_or_else(|| "none".to_owned(), |w| format!("{:.6}", w[index]));
+
+    fn tell(&self) -> Result<(), Failure> {
+        let Self { name, modes } = self;
+        say!("{name}   {} modes", modes.dampings.len());
+        for (axis, [plus, minus]) in AXES.iter().zip(modes.accelerations_rad_s2) {
+            say!("  jets, {axis:<8} {plus:+.4e} {:+.4e} rad/s²", -minus);
+        }
         say!(
-            "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{:>12.5}{:>18.6e}{:>10.3}{:>14.6}{frequency:>12}",
-            modal.frequencies_rad_s[index],
-            modal.periods_s[index],
-            modal.dampings[index],
-            modal.gains[index],
-            modal.excitabilities_s2[index],
-            modal.excitabilities_s2[index].abs() / strongest,
-            modal.effective_inertias_kg_m2[index],
+            "  influence: elastic rate at the gyro for each rigid rate that the jets give about the same axis"
         );
+        say!(
+            "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>12}{:>12}",
+            "mode",
+            "rad/s",
+            "s",
+            "damping",
+            AXES[0],
+            AXES[1],
+            AXES[2]
+        );
+        for index in 0..modes.dampings.len() {
+            let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| modes.influences[axis][index]);
+            say!(
+                "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{roll:>12.5}{pitch:>12.5}{yaw:>12.5}",
+                modes.frequencies_rad_s[index],
+                modes.periods_s[index],
+                modes.dampings[index],
+            );
+        }
+        Ok(())
     }
-    for output in &modal.outputs {
-        let shown: Vec<_> =
-            output.weights.iter().take(WEIGHTS).map(|weight| format!("{weight:.5}")).collect();
-        let more = if output.weights.len() > WEIGHTS { " ..." } else { "" };
-        let (name, unit, rigid) = (&output.name, &output.unit, output.rigid);
-        say!("  output {name}, {unit}: {rigid} of the rigid angle, of the modes {}{more}", shown.join(" "));
+}
+
+impl Results for Planar {
+    fn json(&self) -> Vec<Json> {
+        vec![of_scenario(&self.name, json!(self.modal))]
     }
-    Ok(())
+
+    fn tell(&self) -> Result<(), Failure> {
+        let Self { name, modal } = self;
+        let hub = match modal.drive {
+            Drive::Torque => "free",
+            Drive::Motion => "held",
+        };
+        say!("{}   {} modes, hub {hub}", name, modal.gains.len());
+        let strongest = modal.excitabilities_s2.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+        let other = match modal.drive {
+            Drive::Torque => ("hub held", &modal.clamped_frequencies_rad_s),
+            Drive::Motion => ("hub free", &modal.free_frequencies_rad_s),
+        };
+        say!(
+            "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>18}{:>10}{:>14}{:>12}",
+            "mode",
+            "frequency",
+            "period",
+            "damping",
+            "gain",
+            "excitability",
+            "relative",
+            "inertia",
+            other.0
+        );
+        say!(
+            "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>18}{:>10}{:>14}{:>12}",
+            "",
+            "rad/s",
+            "s",
+            "",
+            "",
+            "k/w², s²",
+            "",
+            "J k, kg m²",
+            "rad/s"
+        );
+        for index in 0..modal.gains.len() {
+            let frequency =
+                other.1.as_ref().map_or_else(|| "none".to_owned(), |w| format!("{:.6}", w[index]));
+            say!(
+                "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{:>12.5}{:>18.6e}{:>10.3}{:>14.6}{frequency:>12}",
+                modal.frequencies_rad_s[index],
+                modal.periods_s[index],
+                modal.dampings[index],
+                modal.gains[index],
+                modal.excitabilities_s2[index],
+                modal.excitabilities_s2[index].abs() / strongest,
+                modal.effective_inertias_kg_m2[index],
+            );
+        }
+        for output in &modal.outputs {
+            let shown: Vec<_> =
+                output.weights.iter().take(WEIGHTS).map(|weight| format!("{weight:.5}")).collect();
+            let more = if output.weights.len() > WEIGHTS { " ..." } else { "" };
+            let (name, unit, rigid) = (&output.name, &output.unit, output.rigid);
+            say!(
+                "  output {name}, {unit}: {rigid} of the rigid angle, of the modes {}{more}",
+                shown.join(" ")
+            );
+        }
+        Ok(())
+    }
 }

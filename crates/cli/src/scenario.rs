@@ -13,10 +13,10 @@ pub const LARGEST_SEED: u64 = i64::MAX as u64;
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario file
-    scenario: PathBuf,
+    pub scenario: PathBuf,
     /// Set a key of the scenario, such as law.relay.k_t=0.34
     #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub set: Vec<String>,
     /// Print one JSON object on stdout
     #[arg(long)]
     pub json: bool,

@@ -11,31 +11,31 @@ use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd};
-use serde_json::json;
 
 use crate::campaign;
 use crate::failure::Failure;
 use crate::progress::Progress;
+use crate::results::print_lines;
 use crate::stop::{self, Stop};
-use crate::{print, say, scenario, summary};
+use crate::{say, scenario, summary};
 
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario files
     #[arg(required = true, value_name = "SCENARIO")]
-    scenarios: Vec<PathBuf>,
+    pub scenarios: Vec<PathBuf>,
     /// Directory for logs and tables, made if it is not there [default: this one, for logs only]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Set a key of the scenario, such as law.relay.k_t=0.34
     #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub set: Vec<String>,
     /// Monte Carlo over the scenario's [uncertain] keys and seeds: N runs, or runs LO to HI - 1
     #[arg(long, value_name = "N|LO:HI", value_parser = runs)]
-    runs: Option<Runs>,
+    pub runs: Option<Runs>,
     /// Seed, instead of the scenario's
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
-    seed: Option<u64>,
+    pub seed: Option<u64>,
     /// Threads [default: one for each core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
@@ -52,8 +52,8 @@ pub struct Args {
 
 /// Which runs of a campaign, and whether it was given as a part.
 #[derive(Clone)]
-struct Runs {
-    range: Range<u64>,
+pub struct Runs {
+    pub range: Range<u64>,
     part: bool,
 }
 
@@ -169,11 +169,15 @@ fn several(study: &Campaign, args: &Args, runs: &Runs, prefixed: bool) -> Result
     Ok(())
 }
 
+/// The scenario itself as a run: no key of it is drawn.
+pub fn itself(study: &Campaign) -> Run {
+    Run { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() }
+}
+
 /// Runs a scenario once, with its log.
 fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
-    let scenario = study.scenario().clone();
-    let name = scenario.name.clone();
-    let run = Run { number: 0, scenario, drawn: Vec::new() };
+    let run = itself(study);
+    let name = run.scenario.name.clone();
     let path = args.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.mcap"));
     #[cfg(feature = "live")]
     let mut live = args.live.serve(&run)?;
@@ -199,7 +203,7 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
         source => Failure::Run { name: name.clone(), source },
     })?;
     if args.json {
-        print(&line(&run, &metrics))?;
+        print_lines(&[campaign::object(study, run.number, &run.drawn, Ok(&metrics))])?;
     } else {
         summary::tell(&run.scenario, &metrics, took);
         if let Some(bytes) = bytes {
@@ -246,15 +250,4 @@ fn logged(
             Err(error)
         }
     }
-}
-
-/// The line of a run for machines.
-fn line(run: &Run, metrics: &Metrics) -> Vec<u8> {
-    let object = json!({
-        "scenario": run.scenario.name,
-        "run": run.number,
-        "seed": run.scenario.seed,
-        "metrics": metrics.to_json(),
-    });
-    format!("{object}\n").into_bytes()
 }

@@ -1,7 +1,9 @@
 //! `flexsc sweep`: a scenario once for each value of a key, or of several.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
+use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, Grid};
 
 use crate::failure::Failure;
@@ -14,7 +16,7 @@ const MOST_VALUES: u32 = 10_000_000;
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario file
-    scenario: PathBuf,
+    pub scenario: PathBuf,
     /// A key, and its first value, last value and number of values, such as law.relay.k_t=0.28:0.40:2401; given again, every
     /// combination with the values of another key
     #[arg(long, required = true, value_name = "KEY=START:END:COUNT", value_parser = grid)]
@@ -24,10 +26,10 @@ pub struct Args {
     out: Option<PathBuf>,
     /// Set a key of the scenario, such as duration=1e4
     #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub set: Vec<String>,
     /// Seed, instead of the scenario's
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
-    seed: Option<u64>,
+    pub seed: Option<u64>,
     /// Threads [default: one for each core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
@@ -48,25 +50,30 @@ fn grid(text: &str) -> Result<Grid, String> {
     Ok(Grid::even(key.to_owned(), bound(start)?, bound(end)?, count))
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let runs = args.vary.iter().try_fold(1_u64, |runs, grid| runs.checked_mul(grid.values.len() as u64));
-    let runs = runs.filter(|runs| *runs <= u64::from(MOST_VALUES)).ok_or_else(|| {
-        Failure::Arguments(format!("--vary: a sweep has at most {MOST_VALUES} combinations of values"))
-    })?;
-    if let Some(twice) =
-        args.vary.iter().enumerate().find(|(i, g)| args.vary[..*i].iter().any(|o| o.key == g.key))
-    {
-        return Err(Failure::Arguments(format!("--vary {}: a key can be varied once", twice.1.key)));
+impl Args {
+    /// The sweep over a scenario of this origin, and its runs.
+    pub fn study(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), Failure> {
+        let runs = self.vary.iter().try_fold(1_u64, |runs, grid| runs.checked_mul(grid.values.len() as u64));
+        let runs = runs.filter(|runs| *runs <= u64::from(MOST_VALUES)).ok_or_else(|| {
+            Failure::Arguments(format!("--vary: a sweep has at most {MOST_VALUES} combinations of values"))
+        })?;
+        let varied = |(place, grid): &(usize, &Grid)| self.vary[..*place].iter().any(|o| o.key == grid.key);
+        if let Some((_, twice)) = self.vary.iter().enumerate().find(varied) {
+            return Err(Failure::Arguments(format!("--vary {}: a key can be varied once", twice.key)));
+        }
+        Ok((Campaign::new(scenario, origin, self.vary.clone())?, 0..runs))
     }
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
-    let origin = args.scenario.display().to_string();
-    let study = Campaign::new(scenario, &origin, args.vary.clone())?;
+    let (study, range) = args.study(scenario, &args.scenario.display().to_string())?;
     if let Some(out) = &args.out {
         std::fs::create_dir_all(out).map_err(Failure::write(out))?;
     }
     stop::listen();
     let job = campaign::Job {
-        range: 0..runs,
+        range,
         part: false,
         table: args.out.as_deref(),
         prefix: None,

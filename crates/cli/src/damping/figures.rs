@@ -1,20 +1,12 @@
 //! The figure of a relay's damping over the frequency of a mode: what is left of its effect, how much gain and what limit
 //! cycle the delay leaves.
 
-use std::path::Path;
-
 use flexsc_core::analysis::damping::Damped;
 
-use crate::failure::Failure;
-use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Point, Shape, colour};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
-/// Draws the figure into a directory; `limit` is the frequency (rad/s) above which the relay drives the modes.
-pub fn save(rows: &[Damped], limit: f64, directory: &Path, format: Format) -> Result<(), Failure> {
-    figure::save(directory, format, &[()], |()| "damping".to_owned(), |()| drawn(rows, limit))
-}
-
-/// The figure.
-pub fn drawn(rows: &[Damped], limit: f64) -> Figure {
+/// The figure; `limit` is the frequency (rad/s) above which the relay drives the modes.
+pub fn figure(rows: &[Damped], limit: f64) -> Figure {
     let (low, high) = (rows.first(), rows.last());
     let range = low.map_or(0.0, |row| row.frequency_rad_s)..high.map_or(1.0, |row| row.frequency_rad_s);
     let x = |name: &str| Axis::exact(name, "rad/s", range.clone());

@@ -6,14 +6,14 @@ use std::f64::consts::PI;
 use std::io::Write;
 
 use flexsc_core::analysis::damping::{Damped, Relay, Study};
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
-use crate::figure::Drawing;
+use crate::figure::{Drawing, Named};
 use crate::grid::Even;
-use crate::{print, say};
-
-pub use figures::drawn as figure;
+use crate::number::or_none;
+use crate::results::{Results, show};
+use crate::say;
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
@@ -49,81 +49,95 @@ pub struct Args {
     json: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let relay =
-        Relay { period: args.period, delay: args.delay, on_time: args.on_time.unwrap_or(args.period) };
-    let study = Study {
-        relay,
-        damping: args.damping,
-        acceleration: args.acceleration,
-        amplitude: args.amplitude.unwrap_or(0.0),
-        threshold: args.threshold,
-    };
-    if let Some((name, why)) = study.inconsistency() {
-        return Err(Failure::Arguments(format!("--{} {why}", name.replace('_', "-"))));
-    }
-    let Even(frequencies) = &args.frequency;
-    let mut rows = study.table(frequencies);
-    if args.amplitude.is_none() {
-        for row in &mut rows {
-            (row.decay_s, row.thrust_s) = (None, None);
+/// What a relay does.
+pub struct Effect {
+    relay: Relay,
+    /// The frequency above which it drives the modes (rad/s).
+    limit: f64,
+    rows: Vec<Damped>,
+}
+
+impl Args {
+    /// What the relay does.
+    pub fn results(&self) -> Result<Effect, Failure> {
+        let relay =
+            Relay { period: self.period, delay: self.delay, on_time: self.on_time.unwrap_or(self.period) };
+        let study = Study {
+            relay,
+            damping: self.damping,
+            acceleration: self.acceleration,
+            amplitude: self.amplitude.unwrap_or(0.0),
+            threshold: self.threshold,
+        };
+        if let Some((name, why)) = study.inconsistency() {
+            return Err(Failure::Arguments(format!("--{} {why}", name.replace('_', "-"))));
         }
+        let Even(frequencies) = &self.frequency;
+        let mut rows = study.table(frequencies);
+        if self.amplitude.is_none() {
+            for row in &mut rows {
+                (row.decay_s, row.thrust_s) = (None, None);
+            }
+        }
+        Ok(Effect { relay, limit: relay.frequency_limit(), rows })
     }
-    let limit = relay.frequency_limit();
-    if let Some(directory) = &args.drawing.figures {
-        figures::save(&rows, limit, directory, args.drawing.format)?;
-    }
-    if args.json {
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    show(&args.results()?, Some(&args.drawing), args.json)
+}
+
+impl Results for Effect {
+    fn json(&self) -> Vec<Json> {
         // What is infinite is null.
-        return print(format!("{}\n", json!({"frequency_limit_rad_s": limit, "rows": rows})).as_bytes());
+        vec![json!({"frequency_limit_rad_s": self.limit, "rows": self.rows})]
     }
-    tell(relay, limit, &rows);
-    Ok(())
-}
 
-fn tell(relay: Relay, limit: f64, rows: &[Damped]) {
-    let Relay { period, delay, on_time } = relay;
-    let damps = if limit.is_finite() {
-        format!("damps below {limit:.4} rad/s, {:.4} Hz", limit / (2.0 * PI))
-    } else {
-        "damps every frequency".to_owned()
-    };
-    if period > 0.0 {
-        say!("relay   a push of {on_time} s each {period} s, {delay} s after its sample: {damps}");
-    } else {
-        say!("relay   all the time, {delay} s late: {damps}");
+    fn figures(&self) -> Vec<Named> {
+        vec![("damping".to_owned(), figures::figure(&self.rows, self.limit))]
     }
-    let head = [
-        ["frequency", "rad/s"],
-        ["part", ""],
-        ["slope", "rad/s²"],
-        ["delay", "limit, s"],
-        ["gain", "limit, 1/s"],
-        ["cycle", "rad/s"],
-        ["at", "rad/s"],
-        ["decay", "s"],
-        ["thrust", "s"],
-    ];
-    for line in 0..2 {
-        let cells: Vec<String> = head.iter().map(|words| format!("{:>12}", words[line])).collect();
-        say!("{}", cells.concat());
-    }
-    for row in rows {
-        say!(
-            "{:>12.4}{:>12.4}{:>12.3e}{:>12.4}{:>12}{:>12}{:>12}{:>12}{:>12}",
-            row.frequency_rad_s,
-            row.phase_factor,
-            row.slope_rad_s2,
-            row.delay_limit_s,
-            cell(row.gain_limit_1_s, |gain| format!("{gain:.5}")),
-            cell(row.limit_cycle_rate_rad_s, |rate| format!("{rate:.3e}")),
-            cell(row.limit_cycle_frequency_rad_s, |frequency| format!("{frequency:.4}")),
-            cell(row.decay_s, |time| format!("{time:.2}")),
-            cell(row.thrust_s, |time| format!("{time:.2}")),
-        );
-    }
-}
 
-fn cell(value: Option<f64>, tell: impl Fn(f64) -> String) -> String {
-    value.map_or_else(|| "none".to_owned(), tell)
+    fn tell(&self) -> Result<(), Failure> {
+        let Relay { period, delay, on_time } = self.relay;
+        let damps = if self.limit.is_finite() {
+            format!("damps below {:.4} rad/s, {:.4} Hz", self.limit, self.limit / (2.0 * PI))
+        } else {
+            "damps every frequency".to_owned()
+        };
+        if period > 0.0 {
+            say!("relay   a push of {on_time} s each {period} s, {delay} s after its sample: {damps}");
+        } else {
+            say!("relay   all the time, {delay} s late: {damps}");
+        }
+        let head = [
+            ["frequency", "rad/s"],
+            ["part", ""],
+            ["slope", "rad/s²"],
+            ["delay", "limit, s"],
+            ["gain", "limit, 1/s"],
+            ["cycle", "rad/s"],
+            ["at", "rad/s"],
+            ["decay", "s"],
+            ["thrust", "s"],
+        ];
+        for line in 0..2 {
+            let cells: Vec<String> = head.iter().map(|words| format!("{:>12}", words[line])).collect();
+            say!("{}", cells.concat());
+        }
+        for row in &self.rows {
+            say!(
+                "{:>12.4}{:>12.4}{:>12.3e}{:>12.4}{:>12}{:>12}{:>12}{:>12}{:>12}",
+                row.frequency_rad_s,
+                row.phase_factor,
+                row.slope_rad_s2,
+                row.delay_limit_s,
+                or_none(row.gain_limit_1_s, |gain| format!("{gain:.5}")),
+                or_none(row.limit_cycle_rate_rad_s, |rate| format!("{rate:.3e}")),
+                or_none(row.limit_cycle_frequency_rad_s, |frequency| format!("{frequency:.4}")),
+                or_none(row.decay_s, |time| format!("{time:.2}")),
+                or_none(row.thrust_s, |time| format!("{time:.2}")),
+            );
+        }
+        Ok(())
+    }
 }

@@ -8,7 +8,7 @@ use flexsc_core::whole;
 use rayon::prelude::*;
 use serde_json::json;
 
-use super::Figure;
+use super::Named;
 use super::image::Renderer;
 use super::sheet::sheet;
 use crate::failure::Failure;
@@ -23,6 +23,17 @@ pub struct Drawing {
     /// Form of the figures
     #[arg(long, value_enum, default_value = "both", requires = "figures")]
     pub format: Format,
+}
+
+impl Drawing {
+    /// Draws figures if it is asked for.
+    ///
+    /// # Errors
+    /// See [`Target::save`].
+    pub fn save(&self, figures: impl FnOnce() -> Vec<Named>) -> Result<(), Failure> {
+        let Some(directory) = &self.figures else { return Ok(()) };
+        Target::Directory(directory.clone(), self.format).save(&figures(), false)
+    }
 }
 
 /// The form of figures.
@@ -69,12 +80,9 @@ impl Target {
     ///
     /// # Errors
     /// A figure that cannot be drawn, and a file or a directory that cannot be written.
-    pub fn save(&self, figures: &[(String, Figure)], json: bool) -> Result<(), Failure> {
+    pub fn save(&self, figures: &[Named], json: bool) -> Result<(), Failure> {
         match self {
-            Self::Directory(directory, format) => {
-                let figure = |(_, figure): &(String, Figure)| figure.svg();
-                save_drawn(directory, *format, figures, |(name, _)| name.clone(), figure, json)
-            }
+            Self::Directory(directory, format) => save_each(directory, *format, figures, json),
             Self::File(path, format) => {
                 let undrawn = |why| Failure::Draw { path: path.clone(), why };
                 let drawn = figures.par_iter().map(|(_, figure)| figure.svg()).collect::<Result<Vec<_>, _>>();
@@ -90,46 +98,24 @@ impl Target {
     }
 }
 
-/// Draws the figure of each item and writes it into a directory, which is made if it is not there. `name` is that of an
-/// item's file without its extension. Nothing is written if one cannot be drawn.
-///
-/// # Errors
-/// A figure that cannot be drawn, and a file or a directory that cannot be written.
-pub fn save<T: Sync>(
-    directory: &Path,
-    format: Format,
-    items: &[T],
-    name: impl Fn(&T) -> String + Sync,
-    figure: impl Fn(&T) -> Figure + Sync,
-) -> Result<(), Failure> {
-    save_drawn(directory, format, items, name, |item| figure(item).svg(), false)
-}
-
-fn save_drawn<T: Sync>(
-    directory: &Path,
-    format: Format,
-    items: &[T],
-    name: impl Fn(&T) -> String + Sync,
-    svg: impl Fn(&T) -> Result<String, String> + Sync,
-    json: bool,
-) -> Result<(), Failure> {
+/// Writes figures into a directory, which is made if it is not there.
+fn save_each(directory: &Path, format: Format, figures: &[Named], json: bool) -> Result<(), Failure> {
     std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
     let renderer = Renderer::new();
-    let path = |item: &T, extension: &str| directory.join(format!("{}.{extension}", name(item)));
-    let draw = |item: &T| -> Result<(String, Vec<u8>), Failure> {
-        let undrawn = |why| Failure::Draw { path: path(item, "svg"), why };
-        let svg = svg(item).map_err(undrawn)?;
+    let path = |name: &str, extension: &str| directory.join(format!("{name}.{extension}"));
+    let draw = |(name, figure): &Named| -> Result<(String, Vec<u8>), Failure> {
+        let undrawn = |why| Failure::Draw { path: path(name, "svg"), why };
+        let svg = figure.svg().map_err(undrawn)?;
         let png = if format == Format::Svg { Vec::new() } else { renderer.png(&svg).map_err(undrawn)? };
         Ok((svg, png))
     };
-    let drawn = items.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?;
-    for (item, (svg, png)) in items.iter().zip(&drawn) {
-        let name = name(item);
+    let drawn = figures.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?;
+    for ((name, _), (svg, png)) in figures.iter().zip(&drawn) {
         if format != Format::Png {
-            write(&path(item, "svg"), svg.as_bytes(), &[&name], json)?;
+            write(&path(name, "svg"), svg.as_bytes(), &[name], json)?;
         }
         if format != Format::Svg {
-            write(&path(item, "png"), png, &[&name], json)?;
+            write(&path(name, "png"), png, &[name], json)?;
         }
     }
     Ok(())

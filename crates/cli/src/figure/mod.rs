@@ -16,7 +16,7 @@ pub use area::band;
 pub use axis::{Axis, name_and_unit, round_to_nice};
 pub use bar::Bar;
 pub use contour::Field;
-pub use file::{Drawing, Format, Target, save};
+pub use file::{Drawing, Format, Target};
 pub use line::{Point, steps};
 
 /// Colours that also the colour-blind tell apart (Okabe and Ito).
@@ -42,6 +42,9 @@ pub struct Figure {
     /// Height of each panel in pixels.
     pub panel_height: u32,
 }
+
+/// A figure, after the name of its file without an extension.
+pub type Named = (String, Figure);
 
 /// A panel.
 pub struct Panel {

@@ -1,27 +1,20 @@
 //! The figure of an adaptive observer's trials: how many runs have found their modes by when, a panel for each set.
 
-use std::path::Path;
-
+use flexsc_core::analysis::identification::Row;
 use plotters::style::RGBColor;
 
-use super::{Rows, names};
-use crate::failure::Failure;
-use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Shape, colour, steps};
+use super::Set;
+use crate::figure::{Axis, Figure, Layer, Panel, Shape, colour, steps};
 
 /// Colours of the parts by which the frequencies are off at the start, in turn.
 const COLOURS: [RGBColor; 5] =
     [colour::BLUE, colour::GREEN, colour::ORANGE, colour::VERMILLION, colour::BLACK];
 
-/// Draws the figure into a directory; a run lasts `whole` seconds.
-pub fn save(rows: &Rows<'_>, whole: f64, directory: &Path, format: Format) -> Result<(), Failure> {
-    figure::save(directory, format, &[()], |()| "identification".to_owned(), |()| figure(rows, whole))
-}
-
-fn figure(rows: &Rows<'_>, whole: f64) -> Figure {
+/// The figure; a run lasts `whole` seconds.
+pub fn figure(sets: &[Set], whole: f64) -> Figure {
     let x = Axis::exact("time, s", "", 0.0..whole);
-    let sets = rows.chunk_by(|(one, _), (other, _)| std::ptr::eq(*one, *other));
-    let panel = |set: &[(&Vec<(f64, f64)>, _)]| {
-        let layer = |(index, (_, row)): (usize, &(_, flexsc_core::analysis::identification::Row))| {
+    let panel = |set: &Set| {
+        let layer = |(index, row): (usize, &Row)| {
             let found = row.times_s.iter().zip(1_u32..);
             let part = |count: u32| 100.0 * f64::from(count) / row.runs as f64;
             let line = steps(
@@ -29,14 +22,14 @@ fn figure(rows: &Rows<'_>, whole: f64) -> Figure {
                 whole,
             );
             let off = format!("{} % off", (1000.0 * row.off).round() / 10.0);
-            let name = if index == 0 { format!("{} Hz, {off}", names(set[0].0)) } else { off };
+            let name = if index == 0 { format!("{} Hz, {off}", set.hertz()) } else { off };
             Layer::new(&name, COLOURS[index % COLOURS.len()], Shape::Line(1.4), line)
         };
-        let layers = set.iter().enumerate().map(layer).collect();
+        let layers = set.rows.iter().enumerate().map(layer).collect();
         let y = Axis::exact("found, %", "", 0.0..104.0);
         Panel::new(x.unnamed(), y, layers)
     };
-    let mut panels: Vec<Panel> = sets.map(panel).collect();
+    let mut panels: Vec<Panel> = sets.iter().map(panel).collect();
     if let Some(last) = panels.last_mut() {
         last.x = x;
     }

@@ -8,11 +8,13 @@ use std::str::FromStr;
 
 use flexsc_core::analysis::identification::{CYCLE, Row, Trial};
 use flexsc_core::quantity::NonNegative;
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
-use crate::figure::Drawing;
-use crate::{print, progress, say};
+use crate::figure::{Drawing, Named};
+use crate::number::{fixed, or_none};
+use crate::results::{Results, show};
+use crate::{progress, say};
 
 /// The sets of the study behind seed paper 4's scenarios, in hertz, and the rate at which each is identified.
 const SETS: [(&[(f64, f64)], f64); 6] = [
@@ -60,8 +62,31 @@ pub struct Args {
 #[derive(Clone, Debug)]
 struct Modes(Vec<(f64, f64)>);
 
-/// What was found of each set of modes, from each start.
-type Rows<'a> = [(&'a Vec<(f64, f64)>, Row)];
+/// What was found of a set of modes, from each start.
+struct Set {
+    /// Frequency (rad/s) and influence of each mode.
+    modes: Vec<(f64, f64)>,
+    rows: Vec<Row>,
+}
+
+impl Set {
+    /// The frequencies in hertz.
+    fn hertz(&self) -> String {
+        let names: Vec<String> = self.modes.iter().map(|(w, _)| format!("{:.4}", w / TAU)).collect();
+        names.join(" + ")
+    }
+}
+
+/// What was found of all sets.
+pub struct Identified {
+    sets: Vec<Set>,
+    /// Runs of a row, and how long each was (s).
+    runs: u64,
+    /// See `runs`.
+    whole: f64,
+    /// The part by which the influences were off.
+    influence_off: f64,
+}
 
 impl FromStr for Modes {
     type Err = String;
@@ -76,86 +101,90 @@ impl FromStr for Modes {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let shipped =
-        SETS.iter().map(|(modes, rate)| (modes.iter().map(|(f, mu)| (TAU * f, *mu)).collect(), *rate));
-    let sets: Vec<(Vec<(f64, f64)>, f64)> = if args.modes.is_empty() {
-        shipped.collect()
-    } else {
-        args.modes.iter().map(|Modes(modes)| (modes.clone(), args.rate)).collect()
-    };
-    let Some(rate) = NonNegative::new(args.rate) else {
-        return Err(Failure::Arguments(format!("--rate must be 0 or more, got {}", args.rate)));
-    };
-    let mut rows = Vec::new();
-    let bar = progress::bar((sets.len() * args.off.len()) as u64, "rows");
-    for (modes, rate_of_set) in &sets {
-        for off in &args.off {
-            let mut trial = Trial::of(modes.clone(), *off);
-            trial.observer.rate = NonNegative::new(*rate_of_set).unwrap_or(rate);
-            (trial.off[1], trial.cycles, trial.seed) = (args.influence_off, args.cycles, args.seed);
-            if let Some((name, why)) = trial.inconsistency() {
-                return Err(Failure::Arguments(format!("--{}: the modes {why}", name.replace('_', "-"))));
-            }
-            rows.push((modes, trial.table(args.runs)));
-            bar.inc(1);
-        }
-    }
-    bar.finish_and_clear();
-    if let Some(directory) = &args.drawing.figures {
-        figures::save(&rows, CYCLE * f64::from(args.cycles), directory, args.drawing.format)?;
-    }
-    if args.json {
-        let told = rows.iter().map(|(modes, row)| {
-            let (frequencies, influences): (Vec<f64>, Vec<f64>) = modes.iter().copied().unzip();
-            json!({"frequencies_rad_s": frequencies, "influences": influences, "found": row})
-        });
-        return print(format!("{}\n", json!({"rows": told.collect::<Vec<_>>()})).as_bytes());
-    }
-    tell(args, &rows);
-    Ok(())
-}
-
-/// The frequencies of modes in hertz.
-fn names(modes: &[(f64, f64)]) -> String {
-    let names: Vec<String> = modes.iter().map(|(w, _)| format!("{:.4}", w / TAU)).collect();
-    names.join(" + ")
-}
-
-fn tell(args: &Args, rows: &Rows<'_>) {
-    let whole = CYCLE * f64::from(args.cycles);
-    say!(
-        "identification   {} runs of {whole:.0} s a row; influences off by {} %; found is within 2 %",
-        args.runs,
-        100.0 * args.influence_off
-    );
-    say!(
-        "  {:<26}{:>10}{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
-        "frequencies, Hz",
-        "off by",
-        "found",
-        "median, s",
-        "longest, s",
-        "frequency",
-        "influence",
-        "persistence"
-    );
-    for (modes, row) in rows {
-        let cell = |value: Option<f64>, digits: usize| {
-            value.map_or_else(|| "none".to_owned(), |value| format!("{value:.digits$}"))
+impl Args {
+    /// What the observer finds.
+    pub fn results(&self) -> Result<Identified, Failure> {
+        let shipped =
+            SETS.iter().map(|(modes, rate)| (modes.iter().map(|(f, mu)| (TAU * f, *mu)).collect(), *rate));
+        let asked: Vec<(Vec<(f64, f64)>, f64)> = if self.modes.is_empty() {
+            shipped.collect()
+        } else {
+            self.modes.iter().map(|Modes(modes)| (modes.clone(), self.rate)).collect()
         };
-        let small =
-            |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |value| format!("{value:.1e}"));
+        let Some(rate) = NonNegative::new(self.rate) else {
+            return Err(Failure::Arguments(format!("--rate must be 0 or more, got {}", self.rate)));
+        };
+        let mut sets = Vec::new();
+        let bar = progress::bar((asked.len() * self.off.len()) as u64, "rows");
+        for (modes, rate_of_set) in asked {
+            let mut rows = Vec::new();
+            for off in &self.off {
+                let mut trial = Trial::of(modes.clone(), *off);
+                trial.observer.rate = NonNegative::new(rate_of_set).unwrap_or(rate);
+                (trial.off[1], trial.cycles, trial.seed) = (self.influence_off, self.cycles, self.seed);
+                if let Some((name, why)) = trial.inconsistency() {
+                    return Err(Failure::Arguments(format!("--{}: the modes {why}", name.replace('_', "-"))));
+                }
+                rows.push(trial.table(self.runs));
+                bar.inc(1);
+            }
+            sets.push(Set { modes, rows });
+        }
+        bar.finish_and_clear();
+        let (runs, whole) = (self.runs, CYCLE * f64::from(self.cycles));
+        Ok(Identified { sets, runs, whole, influence_off: self.influence_off })
+    }
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    show(&args.results()?, Some(&args.drawing), args.json)
+}
+
+impl Results for Identified {
+    fn json(&self) -> Vec<Json> {
+        let told = |set: &Set| -> Vec<Json> {
+            let (frequencies, influences): (Vec<f64>, Vec<f64>) = set.modes.iter().copied().unzip();
+            let row = |row| json!({"frequencies_rad_s": frequencies, "influences": influences, "found": row});
+            set.rows.iter().map(row).collect()
+        };
+        vec![json!({"rows": self.sets.iter().flat_map(told).collect::<Vec<_>>()})]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        vec![("identification".to_owned(), figures::figure(&self.sets, self.whole))]
+    }
+
+    fn tell(&self) -> Result<(), Failure> {
+        let Self { sets, runs, whole, influence_off } = self;
         say!(
-            "  {:<26}{:>9}%{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
-            names(modes),
-            100.0 * row.off,
-            format!("{}/{}", row.converged, row.runs),
-            cell(row.time_median_s, 1),
-            cell(row.time_longest_s, 1),
-            small(row.frequency_error),
-            small(row.influence_error),
-            small(row.persistence),
+            "identification   {runs} runs of {whole:.0} s a row; influences off by {} %; found is within 2 %",
+            100.0 * influence_off
         );
+        say!(
+            "  {:<26}{:>10}{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
+            "frequencies, Hz",
+            "off by",
+            "found",
+            "median, s",
+            "longest, s",
+            "frequency",
+            "influence",
+            "persistence"
+        );
+        let small = |value: Option<f64>| or_none(value, |value| format!("{value:.1e}"));
+        for (set, row) in sets.iter().flat_map(|set| set.rows.iter().map(move |row| (set, row))) {
+            say!(
+                "  {:<26}{:>9}%{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
+                set.hertz(),
+                100.0 * row.off,
+                format!("{}/{}", row.converged, row.runs),
+                fixed(row.time_median_s, 1),
+                fixed(row.time_longest_s, 1),
+                small(row.frequency_error),
+                small(row.influence_error),
+                small(row.persistence),
+            );
+        }
+        Ok(())
     }
 }

@@ -1,12 +1,9 @@
 //! The map of the spectral radius over the frequency of the dominant mode and the period of the samples.
 
-use std::path::Path;
-
 use flexsc_core::analysis::sampled_loop::Cell;
 use plotters::style::RGBColor;
 
-use crate::failure::Failure;
-use crate::figure::{self, Axis, Bar, Field, Figure, Format, Layer, Panel, Point, Shape, colour};
+use crate::figure::{Axis, Bar, Field, Figure, Layer, Panel, Point, Shape, colour};
 
 /// The values between the classes: finest near 1, where stability ends.
 const EDGES: [f64; 13] = [0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1.0, 1.001, 1.003, 1.01, 1.03, 1.1, 1.3];
@@ -28,13 +25,7 @@ const COLOURS: [RGBColor; 14] = [
     RGBColor(140, 45, 4),
 ];
 
-/// Draws the map into a directory: cells in rows of one frequency each, and where the scenario itself lies, frequency
-/// (rad/s) and period (s).
-pub fn save(name: &str, cells: &[Cell], own: Point, directory: &Path, format: Format) -> Result<(), Failure> {
-    figure::save(directory, format, &[()], |()| format!("{name}-map"), |()| figure(name, cells, own))
-}
-
-/// The map.
+/// The map: cells in rows of one frequency each, and where the scenario itself lies, frequency (rad/s) and period (s).
 pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
     let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
     frequencies.dedup();

@@ -6,21 +6,20 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::analysis::sampled_loop::{Cell, map};
-use flexsc_core::whole;
-use serde_json::json;
+use flexsc_core::{Scenario, whole};
+use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
-use crate::figure::Drawing;
+use crate::figure::{Drawing, Named, Point};
 use crate::grid::Even;
-use crate::tune::{Settled, sampled};
+use crate::results::{Results, show};
+use crate::sampled::{Settled, sampled};
 use crate::{print, say, scenario};
-
-pub use figure::figure;
 
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    scenario: scenario::Args,
+    pub scenario: scenario::Args,
     #[command(flatten)]
     settled: Settled,
     /// Frequencies of the dominant mode (rad/s)
@@ -39,27 +38,52 @@ pub struct Args {
     drawing: Drawing,
 }
 
+/// A map.
+pub struct Mapped {
+    /// Name of the scenario.
+    name: String,
+    cells: Vec<Cell>,
+    /// Frequency (rad/s) and period (s) of the scenario itself.
+    own: Point,
+}
+
+impl Args {
+    /// The map of a scenario.
+    pub fn results(&self, scenario: &Scenario) -> Result<Mapped, Failure> {
+        let (of, law) = sampled(scenario)?;
+        let window = self.settled.window(&of, &scenario.name)?;
+        if let Some(gain) = self.gain.filter(|gain| !gain.is_finite()) {
+            return Err(Failure::Arguments(format!("--gain must be a finite number, got {gain}")));
+        }
+        let (Even(frequencies), Even(periods)) = (&self.frequency, &self.period);
+        let gain = |frequency: f64| self.gain.unwrap_or_else(|| law.extra_gain(frequency));
+        let cells = map(&of, frequencies, periods, self.settled.scaling(), gain, window);
+        Ok(Mapped { name: scenario.name.clone(), cells, own: (of.frequency(), of.period) })
+    }
+}
+
+impl Results for Mapped {
+    fn json(&self) -> Vec<Json> {
+        vec![json!({"scenario": self.name, "rows": self.cells})]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        vec![(format!("{}-map", self.name), figure::figure(&self.name, &self.cells, self.own))]
+    }
+
+    fn tell(&self) -> Result<(), Failure> {
+        print(csv(&self.cells).as_bytes())
+    }
+}
+
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let scenario = args.scenario.load()?;
-    let (of, law) = sampled(&scenario)?;
-    let window = args.settled.window(&of, &scenario.name)?;
-    if let Some(gain) = args.gain.filter(|gain| !gain.is_finite()) {
-        return Err(Failure::Arguments(format!("--gain must be a finite number, got {gain}")));
-    }
-    let (Even(frequencies), Even(periods)) = (&args.frequency, &args.period);
-    let gain = |frequency: f64| args.gain.unwrap_or_else(|| law.extra_gain(frequency));
-    let cells = map(&of, frequencies, periods, args.settled.scaling(), gain, window);
-    if let Some(directory) = &args.drawing.figures {
-        figure::save(&scenario.name, &cells, (of.frequency(), of.period), directory, args.drawing.format)?;
-    }
-    if args.scenario.json {
-        return print(format!("{}\n", json!({"scenario": scenario.name, "rows": cells})).as_bytes());
-    }
-    let table = csv(&cells);
-    let Some(path) = &args.output else { return print(table.as_bytes()) };
-    whole::write(path, table.as_bytes()).map_err(Failure::write(path))?;
+    let mapped = args.results(&args.scenario.load()?)?;
+    let Some(path) = &args.output else { return show(&mapped, Some(&args.drawing), args.scenario.json) };
+    args.drawing.save(|| mapped.figures())?;
+    whole::write(path, csv(&mapped.cells).as_bytes()).map_err(Failure::write(path))?;
+    let Mapped { name, cells, .. } = &mapped;
     let stable = cells.iter().filter(|cell| cell.spectral_radius < 1.0).count();
-    say!("{}   {} cells, {stable} of them stable, in {}", scenario.name, cells.len(), path.display());
+    say!("{name}   {} cells, {stable} of them stable, in {}", cells.len(), path.display());
     Ok(())
 }
 

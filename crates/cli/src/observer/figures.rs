@@ -1,13 +1,10 @@
 //! The figure of the recurrence observer's convergence: the regions of its weights with a frozen regressor (seed paper 4,
 //! figure 2), and what a sample leaves of an error over the gain of the identification.
 
-use std::path::Path;
-
 use flexsc_core::analysis::damping::{Convergence, Margin};
 use plotters::style::RGBColor;
 
-use crate::failure::Failure;
-use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Point, Shape, band, colour};
+use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 use crate::grid::Even;
 
 /// The least and the largest gain of the second panel, and how many there are.
@@ -17,18 +14,7 @@ const STEPS: u32 = 800;
 /// Colours of the regions, in turn.
 const COLOURS: [RGBColor; 5] = [colour::SKY, colour::ORANGE, colour::GREEN, colour::BLUE, colour::VERMILLION];
 
-/// Draws the figure into a directory, with a region for each gain.
-pub fn save(
-    of: &Convergence,
-    kappas: &[f64],
-    margin: Option<Margin>,
-    directory: &Path,
-    format: Format,
-) -> Result<(), Failure> {
-    figure::save(directory, format, &[()], |()| "observer".to_owned(), |()| figure(of, kappas, margin))
-}
-
-/// The figure.
+/// The figure, with a region for each gain.
 pub fn figure(of: &Convergence, kappas: &[f64], margin: Option<Margin>) -> Figure {
     let title = format!("convergence of the recurrence observer of {:.4} rad/s", of.frequency);
     Figure { title, panels: vec![regions(of, kappas), radii(of, margin)], panel_height: 260 }

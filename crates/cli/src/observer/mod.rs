@@ -6,13 +6,13 @@ use std::f64::consts::TAU;
 use std::io::Write;
 
 use flexsc_core::analysis::damping::{Convergence, Margin};
-use serde_json::json;
+use serde::Serialize;
+use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
-use crate::figure::Drawing;
-use crate::{print, say};
-
-pub use figures::figure;
+use crate::figure::{Drawing, Named};
+use crate::results::{Results, show};
+use crate::say;
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
@@ -46,6 +46,7 @@ pub struct Args {
 }
 
 /// The region of the frozen observer at one gain.
+#[derive(Serialize)]
 struct Region {
     kappa: f64,
     /// Its area in the plane of W2 and W3.
@@ -54,54 +55,71 @@ struct Region {
     converges: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let Ok(weights) = <[f64; 3]>::try_from(args.weights.as_slice()) else {
-        let count = args.weights.len();
-        return Err(Failure::Arguments(format!("--weights must be three numbers, W1,W2,W3, got {count}")));
-    };
-    let of = Convergence { frequency: args.frequency, damping: args.damping, period: args.period, weights };
-    if let Some((name, why)) = of.inconsistency() {
-        return Err(Failure::Arguments(format!("--{name} {why}")));
-    }
-    if let Some(wrong) = args.kappa.iter().find(|kappa| !(0.0..1e3).contains(*kappa)) {
-        return Err(Failure::Arguments(format!(
-            "--kappa must be numbers of 0 or more below 1000, got {wrong}"
-        )));
-    }
-    let region = |&kappa: &f64| Region { kappa, area: of.area(kappa), converges: of.converges(kappa) };
-    let regions: Vec<Region> = args.kappa.iter().map(region).collect();
-    let margin = of.margin();
-    if let Some(directory) = &args.drawing.figures {
-        figures::save(&of, &args.kappa, margin, directory, args.drawing.format)?;
-    }
-    if args.json {
-        let (a, b) = of.recurrence();
-        let frozen = regions
-            .iter()
-            .map(|region| json!({"kappa": region.kappa, "area": region.area, "converges": region.converges}));
-        let told = json!({"a": a, "b": b, "frozen": frozen.collect::<Vec<_>>(), "turning": margin});
-        return print(format!("{told}\n").as_bytes());
-    }
-    tell(&of, &regions, margin);
-    Ok(())
+/// When an observer converges.
+pub struct Convergent {
+    of: Convergence,
+    regions: Vec<Region>,
+    margin: Option<Margin>,
 }
 
-fn tell(of: &Convergence, regions: &[Region], margin: Option<Margin>) {
-    let ((a, b), [w1, w2, w3]) = (of.recurrence(), of.weights);
-    say!(
-        "observer   a mode of {:.4} Hz, sampled each {} s: A = {a:.10}, B = {b:.10}; W1 = {w1}, W2 = {w2}, W3 = {w3}",
-        of.frequency / TAU,
-        of.period
-    );
-    for Region { kappa, area, converges } in regions {
-        let does = if *converges { "converges" } else { "does not converge" };
-        say!("  frozen   W4 |g| = {kappa}: {does}; the region of W2 and W3 has an area of {area:.3}");
+impl Args {
+    /// When the observer converges.
+    pub fn results(&self) -> Result<Convergent, Failure> {
+        let Ok(weights) = <[f64; 3]>::try_from(self.weights.as_slice()) else {
+            let count = self.weights.len();
+            return Err(Failure::Arguments(format!(
+                "--weights must be three numbers, W1,W2,W3, got {count}"
+            )));
+        };
+        let of =
+            Convergence { frequency: self.frequency, damping: self.damping, period: self.period, weights };
+        if let Some((name, why)) = of.inconsistency() {
+            return Err(Failure::Arguments(format!("--{name} {why}")));
+        }
+        if let Some(wrong) = self.kappa.iter().find(|kappa| !(0.0..1e3).contains(*kappa)) {
+            return Err(Failure::Arguments(format!(
+                "--kappa must be numbers of 0 or more below 1000, got {wrong}"
+            )));
+        }
+        let region = |&kappa: &f64| Region { kappa, area: of.area(kappa), converges: of.converges(kappa) };
+        Ok(Convergent { of, regions: self.kappa.iter().map(region).collect(), margin: of.margin() })
     }
-    match margin {
-        Some(Margin { gain_max, gain_best, spectral_radius }) => say!(
-            "  turning  converges up to W4 V = {gain_max:.4}, soonest at {gain_best:.4}: a sample leaves {spectral_radius:.4} of \
-             an error"
-        ),
-        None => say!("  turning  converges with no W4"),
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    show(&args.results()?, Some(&args.drawing), args.json)
+}
+
+impl Results for Convergent {
+    fn json(&self) -> Vec<Json> {
+        let (a, b) = self.of.recurrence();
+        vec![json!({"a": a, "b": b, "frozen": self.regions, "turning": self.margin})]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        let kappas: Vec<f64> = self.regions.iter().map(|region| region.kappa).collect();
+        vec![("observer".to_owned(), figures::figure(&self.of, &kappas, self.margin))]
+    }
+
+    fn tell(&self) -> Result<(), Failure> {
+        let Self { of, regions, margin } = self;
+        let ((a, b), [w1, w2, w3]) = (of.recurrence(), of.weights);
+        say!(
+            "observer   a mode of {:.4} Hz, sampled each {} s: A = {a:.10}, B = {b:.10}; W1 = {w1}, W2 = {w2}, W3 = {w3}",
+            of.frequency / TAU,
+            of.period
+        );
+        for Region { kappa, area, converges } in regions {
+            let does = if *converges { "converges" } else { "does not converge" };
+            say!("  frozen   W4 |g| = {kappa}: {does}; the region of W2 and W3 has an area of {area:.3}");
+        }
+        match margin {
+            Some(Margin { gain_max, gain_best, spectral_radius }) => say!(
+                "  turning  converges up to W4 V = {gain_max:.4}, soonest at {gain_best:.4}: a sample leaves {spectral_radius:.4} of \
+                 an error"
+            ),
+            None => say!("  turning  converges with no W4"),
+        }
+        Ok(())
     }
 }

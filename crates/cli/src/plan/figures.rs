@@ -2,15 +2,13 @@
 //! (seed paper 2, figures 3 to 8 and beyond).
 
 use std::f64::consts::TAU;
-use std::path::Path;
 use std::sync::Arc as Shared;
 
 use flexsc_core::body::{Arc, Drive, Forced, Input, Planar};
 use flexsc_core::manoeuvre::Plan;
 
 use super::family::{Family, Member};
-use crate::failure::Failure;
-use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Point, Shape, colour, name_and_unit};
+use crate::figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, colour, name_and_unit};
 
 /// Points of a line, at least and at most.
 const FEWEST: f64 = 1500.0;
@@ -20,29 +18,16 @@ const BAND: u32 = 401;
 /// So many periods of the slowest mode are shown after the manoeuvre.
 const PERIODS: f64 = 4.0;
 
-/// A figure.
-#[derive(Copy, Clone, PartialEq)]
-enum What {
-    /// Torque on the hub during the manoeuvre.
-    Torque,
-    /// Angle of the hub, on into what is left.
-    Angle,
-    /// The chosen output, likewise.
-    Output,
-    /// What is left in the chosen coordinate, over the common factor of the frequencies.
-    Robustness,
-}
-
-/// Draws the figures into a directory: `band` is how far off the frequencies may be.
-pub fn save(family: &Family, band: f64, directory: &Path, format: Format) -> Result<(), Failure> {
-    let name = |what: &What| family.name_of(*what);
-    figure::save(directory, format, &family.there(), name, |what| family.draw(*what, band))
-}
-
-/// The figures, each with its name.
-pub fn all(family: &Family, band: f64) -> Vec<(String, Figure)> {
-    let drawn = |what: What| (family.name_of(what), family.draw(what, band));
-    family.there().into_iter().map(drawn).collect()
+/// The figures; `band` is how far off the frequencies may be.
+pub fn all(family: &Family, band: f64) -> Vec<Named> {
+    let named = |what: &str, figure| (format!("{}-plan-{what}", family.name), figure);
+    let mut all = vec![named("torque", family.torque()), named("angle", family.angle())];
+    // The hub's angle has its own figure.
+    if family.shown > 0 {
+        all.push(named(&in_a_path(&family.coordinate().0), family.output()));
+    }
+    all.push(named("robustness", family.robustness(band)));
+    all
 }
 
 /// A name without what parts directories.
@@ -51,31 +36,6 @@ fn in_a_path(name: &str) -> String {
 }
 
 impl Family<'_> {
-    /// The figures that there are.
-    fn there(&self) -> Vec<What> {
-        let all = [What::Torque, What::Angle, What::Output, What::Robustness];
-        // The hub's angle has its own figure.
-        all.into_iter().filter(|what| *what != What::Output || self.shown > 0).collect()
-    }
-
-    fn name_of(&self, what: What) -> String {
-        match what {
-            What::Torque => format!("{}-plan-torque", self.name),
-            What::Angle => format!("{}-plan-angle", self.name),
-            What::Output => format!("{}-plan-{}", self.name, in_a_path(&self.coordinate().0)),
-            What::Robustness => format!("{}-plan-robustness", self.name),
-        }
-    }
-
-    fn draw(&self, what: What, band: f64) -> Figure {
-        match what {
-            What::Torque => self.torque(),
-            What::Angle => self.angle(),
-            What::Output => self.output(),
-            What::Robustness => self.robustness(band),
-        }
-    }
-
     /// Name and unit of the shown coordinate.
     fn coordinate(&self) -> (String, String) {
         match self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index)) {

@@ -1,8 +1,8 @@
 //! `flexsc reproduce`: every figure and number of the papers, on one HTML page, and in docs/papers.md.
 
-mod analysis;
 mod chart;
 mod command;
+mod computed;
 mod draw;
 mod html;
 mod number;
@@ -24,8 +24,9 @@ use rayon::prelude::*;
 
 use crate::failure::Failure;
 use crate::{progress, say, stop};
+use computed::Computed;
 use html::Section;
-use page::{Drawn, Form, Outcome, Results};
+use page::{Drawn, Form, Outcome};
 use paper::Paper;
 
 #[derive(clap::Args)]
@@ -95,21 +96,20 @@ const HEAD: &str = "# What the papers say, and what we measure\n\n\
 
 /// Computes a paper's section.
 fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
-    let results = Arc::new(Results::default());
+    let (bar, name) = (bar.clone(), paper.name());
+    let computed = Arc::new(Computed::new(move |command: &str| {
+        bar.set_message(format!("{name}: {command}"));
+        bar.tick();
+    }));
     let form = |form: Form| -> Result<(String, Outcome), Failure> {
-        let (bar, name) = (bar.clone(), paper.name());
-        let begin = move |command: &str| {
-            bar.set_message(format!("{name}: {command}"));
-            bar.tick();
-        };
-        results.fill(paper.template(), form, begin).map_err(|failure| match failure {
+        page::fill(&computed, paper.template(), form).map_err(|failure| match failure {
             Failure::Page(why) => Failure::Page(format!("{}.md: {why}", paper.name())),
             other => other,
         })
     };
     let (text, outcome) = form(Form::Html)?;
     let (markdown, _) = form(Form::Markdown)?;
-    Ok(Filled { section: Section { name: paper.name(), text, outcome, times: results.times() }, markdown })
+    Ok(Filled { section: Section { name: paper.name(), text, outcome, times: computed.times() }, markdown })
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

@@ -3,8 +3,9 @@
 #![expect(clippy::needless_pass_by_value, reason = "templates hand their values over")]
 
 use flexsc_core::statistics::quantile as quantile_of;
-use minijinja::value::Value;
+use minijinja::value::{Serde, Value};
 use minijinja::{Environment, Error, ErrorKind};
+use serde::Deserialize;
 
 /// Adds the filters and tests of numbers to an environment.
 pub fn add_to(environment: &mut Environment) {
@@ -41,6 +42,7 @@ pub fn add_to(environment: &mut Environment) {
     environment.add_filter("nth", |list: Vec<Value>, place: usize| list.into_iter().nth(place));
     environment.add_filter("fill", fill);
     environment.add_filter("as_schedule", as_schedule);
+    environment.add_filter("by", by);
     environment.add_filter("within", |list: Vec<Value>, keys: Vec<f64>, low: f64, high: f64| {
         within(&list, &keys, low, high)
     });
@@ -148,11 +150,22 @@ fn fill(command: String, values: Vec<f64>) -> String {
     values.iter().fold(command, |command, value| command.replacen("{}", &format!("{value:?}"), 1))
 }
 
-/// Frequencies (rad/s) and gains as the points of a schedule.
-fn as_schedule(points: Vec<Vec<f64>>) -> String {
-    let point = |point: &Vec<f64>| match point[..] {
-        [frequency, gain] => format!("{{frequency={frequency:.6}, gain={gain:.4}}}"),
-        _ => String::new(),
-    };
-    points.iter().map(point).collect::<Vec<_>>().join(", ")
+/// A point of a schedule, as `flexsc tune --json` has it.
+#[derive(Deserialize)]
+struct Point {
+    /// Frequency (rad/s).
+    frequency: f64,
+    gain: f64,
+}
+
+/// The points of a schedule as a scenario has them.
+fn as_schedule(points: Serde<Vec<Point>>) -> String {
+    let point = |Point { frequency, gain }: &Point| format!("{{frequency={frequency:.6}, gain={gain:.4}}}");
+    points.0.iter().map(point).collect::<Vec<_>>().join(", ")
+}
+
+/// Objects by the value of one of their keys.
+fn by(list: Vec<Value>, key: &str) -> Result<Value, Error> {
+    let pair = |object: Value| Ok((object.get_attr(key)?, object));
+    Ok(Value::from_pairs(list.into_iter().map(pair).collect::<Result<Vec<_>, Error>>()?))
 }

@@ -1,7 +1,7 @@
 //! A paper's page: its template, filled with what the commands that it names tell.
 //!
 //! The template is the paper's section of docs/papers.md. In it
-//! - `run("simulate scenarios/relay-fixed.toml")` is what that command tells for machines,
+//! - `run("simulate scenarios/relay-fixed.toml")` is what that command prints with `--json` ([`super::tell`]),
 //! - `each("plan ... suppress={}", [0, 1])` is a list of what the commands tell that have each value in the place of `{}`,
 //! - `column("simulate ...", "/attitude", "angle_rad")` is a column of the run's full log,
 //! - `drawing(name, chart, caption, command)` is a [`Chart`] of the page's own numbers,
@@ -10,23 +10,17 @@
 //!
 //! and filters and tests of [`super::number`]. A name that is not known is an error.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::sync::{Arc, Mutex};
 
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Serde, Value};
 use minijinja::{Environment, Error, ErrorKind, UndefinedBehavior};
 
-use flexsc_core::record::Detail;
-use serde_json::json;
-
 use super::chart::{self, Chart};
-use super::command::Command;
+use super::computed::{Computed, locked, svg};
 use super::number;
 use super::verdict::Verdict;
 use crate::failure::Failure;
-use crate::figure::Figure;
 
 /// The form that a template is filled for.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -59,125 +53,58 @@ pub struct Outcome {
     pub verdicts: Vec<Verdict>,
 }
 
-/// What was computed for a page: each command once.
-#[derive(Default)]
-pub struct Results {
-    told: Mutex<BTreeMap<String, Value>>,
-    drawn: Mutex<BTreeMap<String, (String, String)>>,
-    /// Each command, and how long it took (s).
-    times: Mutex<Vec<(String, f64)>>,
-}
+/// Fills a template with what is, or has been, computed.
+pub fn fill(computed: &Arc<Computed>, template: &str, form: Form) -> Result<(String, Outcome), Failure> {
+    let outcome = Arc::new(Mutex::new(Outcome::default()));
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    let syntax =
+        SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true).build();
+    environment.set_syntax(syntax.map_err(|error| Failure::Page(error.to_string()))?);
+    number::add_to(&mut environment);
+    chart::add_to(&mut environment);
 
-impl Results {
-    /// Fills a template.
-    pub fn fill(
-        self: &Arc<Self>,
-        template: &str,
-        form: Form,
-        begin: impl Fn(&str) + Send + Sync + 'static,
-    ) -> Result<(String, Outcome), Failure> {
-        let outcome = Arc::new(Mutex::new(Outcome::default()));
-        let begin = Arc::new(begin);
-        let mut environment = Environment::new();
-        environment.set_undefined_behavior(UndefinedBehavior::Strict);
-        let syntax =
-            SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true).build();
-        environment.set_syntax(syntax.map_err(|error| Failure::Page(error.to_string()))?);
-        number::add_to(&mut environment);
-        chart::add_to(&mut environment);
-
-        let (results, told) = (Arc::clone(self), Arc::clone(&begin));
-        let tell = |results: &Self, command: &str, begin: &dyn Fn(&str)| {
-            results.once(&results.told, command, begin, || value(Command::parse(command)?.tell()?))
-        };
-        environment.add_function("run", move |command: &str| tell(&results, command, &*told));
-        let (results, told) = (Arc::clone(self), Arc::clone(&begin));
-        environment.add_function("each", move |command: &str, values: Vec<Value>| {
-            let with = |value: &Value| command.replace("{}", &value.to_string());
-            values.iter().map(|value| tell(&results, &with(value), &*told)).collect::<Result<Vec<_>, _>>()
-        });
-        let (results, told) = (Arc::clone(self), Arc::clone(&begin));
-        environment.add_function("column", move |command: &str, topic: &str, name: &str| {
-            results.once(&results.told, &format!("{command} {topic} {name}"), &*told, || {
-                let columns = Command::parse(command)?.log(Detail::Full)?.columns(topic)?;
-                let column = |name: &str| columns.numbers(name).map(<[f64]>::to_vec).unwrap_or_default();
-                value(json!([column("time_s"), column(name)]))
-            })
-        });
-        let (results, list, told) = (Arc::clone(self), Arc::clone(&outcome), Arc::clone(&begin));
-        let figure = move |name: &str, command: &str, what: &str, caption: &str| -> Result<String, Error> {
-            let key = format!("{command}: figure {what}");
-            let (svg, command) = results.once(&results.drawn, &key, &*told, || {
-                let (figure, shown) = Command::parse(command)?.draw(what)?;
-                Ok((svg(name, &figure)?, shown))
-            })?;
-            Ok(show(&list, form, Drawn { name: name.to_owned(), caption: caption.to_owned(), command, svg }))
-        };
-        environment.add_function("figure", figure);
+    let known = Arc::clone(computed);
+    environment.add_function("run", move |command: &str| known.tell(command));
+    let known = Arc::clone(computed);
+    environment.add_function("each", move |command: &str, values: Vec<Value>| {
+        let with = |value: &Value| command.replace("{}", &value.to_string());
+        values.iter().map(|value| known.tell(&with(value))).collect::<Result<Vec<_>, _>>()
+    });
+    let known = Arc::clone(computed);
+    environment.add_function("column", move |command: &str, topic: &str, name: &str| {
+        known.column(command, topic, name)
+    });
+    let (known, list) = (Arc::clone(computed), Arc::clone(&outcome));
+    let figure = move |name: &str, command: &str, what: &str, caption: &str| -> Result<String, Error> {
+        let (svg, command) = known.draw(command, what, name)?;
+        Ok(show(&list, form, Drawn { name: name.to_owned(), caption: caption.to_owned(), command, svg }))
+    };
+    environment.add_function("figure", figure);
+    let list = Arc::clone(&outcome);
+    let drawing = move |name: &str, chart: Serde<Chart>, caption: &str, command: &str| {
+        let svg = svg(name, &chart.figure())
+            .map_err(|failure| Error::new(ErrorKind::InvalidOperation, failure.to_string()))?;
+        let (name, caption, command) = (name.to_owned(), caption.to_owned(), command.to_owned());
+        Ok::<String, Error>(show(&list, form, Drawn { name, caption, command, svg }))
+    };
+    environment.add_function("drawing", drawing);
+    for (word, expected) in [("yes", true), ("no", false)] {
         let list = Arc::clone(&outcome);
-        let drawing = move |name: &str, chart: Serde<Chart>, caption: &str, command: &str| {
-            let svg = svg(name, &chart.figure())
-                .map_err(|failure| Error::new(ErrorKind::InvalidOperation, failure.to_string()))?;
-            let (name, caption, command) = (name.to_owned(), caption.to_owned(), command.to_owned());
-            Ok::<String, Error>(show(&list, form, Drawn { name, caption, command, svg }))
-        };
-        environment.add_function("drawing", drawing);
-        for (word, expected) in [("yes", true), ("no", false)] {
-            let list = Arc::clone(&outcome);
-            environment.add_function(word, move |name: &str, holds: bool| {
-                let verdict = Verdict { name: name.to_owned(), holds, expected };
-                let told = match form {
-                    Form::Markdown => verdict.word().to_owned(),
-                    Form::Html => format!("<b class=\"{}\">{0}</b>", verdict.word()),
-                };
-                locked(&list).verdicts.push(verdict);
-                told
-            });
-        }
-        let text = environment.render_str(template, ()).map_err(|error| Failure::Page(explained(&error)))?;
-        drop(environment);
-        let outcome = locked(&outcome).clone();
-        Ok((text, outcome))
+        environment.add_function(word, move |name: &str, holds: bool| {
+            let verdict = Verdict { name: name.to_owned(), holds, expected };
+            let told = match form {
+                Form::Markdown => verdict.word().to_owned(),
+                Form::Html => format!("<b class=\"{}\">{0}</b>", verdict.word()),
+            };
+            locked(&list).verdicts.push(verdict);
+            told
+        });
     }
-
-    /// Each command, and how long it took (s).
-    pub fn times(&self) -> Vec<(String, f64)> {
-        locked(&self.times).clone()
-    }
-
-    /// What a key stands for: computed when it is first asked for.
-    fn once<T: Clone>(
-        &self,
-        cache: &Mutex<BTreeMap<String, T>>,
-        key: &str,
-        begin: &dyn Fn(&str),
-        compute: impl FnOnce() -> Result<T, Failure>,
-    ) -> Result<T, Error> {
-        if let Some(known) = locked(cache).get(key) {
-            return Ok(known.clone());
-        }
-        begin(key);
-        let began = Instant::now();
-        let computed =
-            compute().map_err(|failure| Error::new(ErrorKind::InvalidOperation, failure.to_string()))?;
-        locked(&self.times).push((key.to_owned(), began.elapsed().as_secs_f64()));
-        locked(cache).insert(key.to_owned(), computed.clone());
-        Ok(computed)
-    }
-}
-
-/// What machines are told, as templates read it.
-pub fn value(told: serde_json::Value) -> Result<Value, Failure> {
-    serde_json::from_value(told).map_err(|error| Failure::Page(error.to_string()))
-}
-
-/// What a lock holds: a thread that failed has left it whole.
-fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
-    lock.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn svg(name: &str, figure: &Figure) -> Result<String, Failure> {
-    figure.svg().map_err(|why| Failure::Draw { path: name.into(), why })
+    let text = environment.render_str(template, ()).map_err(|error| Failure::Page(explained(&error)))?;
+    drop(environment);
+    let outcome = locked(&outcome).clone();
+    Ok((text, outcome))
 }
 
 fn show(outcome: &Mutex<Outcome>, form: Form, drawn: Drawn) -> String {
@@ -201,7 +128,7 @@ mod tests {
     use super::*;
 
     fn filled(template: &str) -> Result<(String, Outcome), Failure> {
-        Arc::new(Results::default()).fill(template, Form::Markdown, |_| {})
+        fill(&Arc::new(Computed::new(|_| {})), template, Form::Markdown)
     }
 
     #[test]
@@ -260,6 +187,8 @@ mod tests {
                 "stretches([0, 1, 2, 3, 4], [1, 1, none, 1, none], 2)|map('join', ' ')|join(', ')".to_owned(),
                 "0.0 1.0",
             ),
+            ("([{'a': 'x y', 'b': 1}]|by('a'))['x y'].b".to_owned(), "1"),
+            ("[{'frequency': 0.1, 'gain': 2}]|as_schedule".to_owned(), "{frequency=0.100000, gain=2.0000}"),
             ("'a={} b={}'|fill([1, 0.25])".to_owned(), "a=1.0 b=0.25"),
         ];
         for (expression, printed) in cases {

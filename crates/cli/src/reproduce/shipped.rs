@@ -1,5 +1,7 @@
 //! The scenarios of the repository, compiled in: an installed command has no checkout beside it.
 
+use std::path::Path;
+
 use flexsc_core::{Document, Scenario};
 
 use crate::failure::Failure;
@@ -45,9 +47,9 @@ pub const SCENARIOS: &[(&str, &str)] = shipped![
 ];
 
 /// A scenario with some keys set, as `--set` and `--seed` of the command do it.
-pub fn load(path: &str, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
-    let Some((_, text)) = SCENARIOS.iter().find(|(shipped, _)| *shipped == path) else {
-        return Err(Failure::Arguments(format!("{path}: no scenario of the papers")));
+pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
+    let Some((name, text)) = SCENARIOS.iter().find(|(shipped, _)| Path::new(shipped) == path) else {
+        return Err(Failure::Arguments(format!("{}: no scenario of the papers", path.display())));
     };
-    crate::scenario::with(Document::parse(path, (*text).to_owned())?, set, seed)
+    crate::scenario::with(Document::parse(name, (*text).to_owned())?, set, seed)
 }

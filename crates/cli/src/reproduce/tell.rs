@@ -1,139 +1,95 @@
-//! What the commands of a page tell for machines.
+//! What the commands of a page tell: what they print for machines with `--json`.
 
-use flexsc_core::analysis::influence::Influences;
-use flexsc_core::analysis::modal::Modal;
-use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
-use flexsc_core::analysis::sampled_loop::midpoints;
-use flexsc_core::campaign::{Campaign, Grid, Run};
-use flexsc_core::law::Law;
-use flexsc_core::manoeuvre::{Common, Report, Row, compare};
-use flexsc_core::metrics::Metrics;
+use std::ops::Range;
+
+use flexsc_core::campaign::{Campaign, Outcome};
 use serde_json::{Map, Value as Json, json};
 
-use super::command::Command;
+use super::command::{Command, analysed};
+use super::shipped;
 use crate::failure::Failure;
+use crate::results::Results;
 use crate::stop::Stop;
+use crate::{Verb, campaign, cycle, modes, simulate};
 
 impl Command {
-    /// What the command tells: an object with its own text as `command`. Of a campaign or a sweep each metric is the list
-    /// of its values over the runs.
+    /// What the command tells, with its own text as `command_line`: the object that it prints. Of a run it is the run's
+    /// metrics; of several runs each metric is the list of its values, `drawn` has such a list for each key that varies,
+    /// and `runs` counts them. Other objects, one a line, are the list `rows`.
     pub fn tell(&self) -> Result<Json, Failure> {
-        let mut told = match self.verb.as_str() {
-            "simulate" if self.is_given("runs") => self.campaign(None)?,
-            "simulate" => self.single()?,
-            "sweep" => self.campaign(self.one::<Grid>("vary"))?,
-            "modes" => self.modes()?,
-            "cycle" => self.cycle()?,
-            "plan" => self.plan()?,
-            "tune" => self.tune()?,
-            "map" => self.map()?,
-            "damping" => self.damping()?,
-            "observer" => {
-                let (of, kappas) = self.observer()?;
-                let areas: Vec<f64> = kappas.iter().map(|kappa| of.area(*kappa)).collect();
-                json!({"areas": areas, "turning": of.margin()})
+        let mut told = match &self.verb {
+            Verb::Simulate(args) => {
+                let (scenario, path) = self.simulated(args)?;
+                let study = Campaign::new(scenario, &path.to_string_lossy(), None)?;
+                match &args.runs {
+                    None => single(&study)?,
+                    Some(runs) => columns(&several(&study, runs.range.clone())?),
+                }
             }
-            _ => return Err(self.failure("no verb of a page")),
+            Verb::Sweep(args) => {
+                let scenario = shipped::load(&args.scenario, &args.set, args.seed)?;
+                let (study, range) = args.study(scenario, &args.scenario.to_string_lossy())?;
+                columns(&several(&study, range)?)
+            }
+            _ => {
+                let mut lines = self.results()?.json();
+                if lines.len() == 1 { lines.remove(0) } else { json!({ "rows": lines }) }
+            }
         };
-        told["command"] = json!(self.text);
+        told["command_line"] = json!(self.text);
         Ok(told)
     }
 
-    fn single(&self) -> Result<Json, Failure> {
-        let scenario = self.scenario()?;
-        let name = scenario.name.clone();
-        // As `flexsc simulate` does: the scenario itself, nothing drawn.
-        let run = Run {
-            number: 0,
-            scenario: Campaign::new(scenario, "", None)?.scenario().clone(),
-            drawn: Vec::new(),
-        };
-        let metrics = Campaign::simulate(&run, Stop).map_err(|source| Failure::Run { name, source })?;
-        Ok(metrics.to_json())
-    }
-
-    fn campaign(&self, grid: Option<Grid>) -> Result<Json, Failure> {
-        let runs = match &grid {
-            Some(grid) => grid.values.len() as u64,
-            None => self.raw("runs").parse().map_err(|_| self.failure("--runs"))?,
-        };
-        let values = grid.clone();
-        let study = Campaign::new(self.scenario()?, "", grid)?;
-        let mut all: Vec<Metrics> = Vec::new();
-        study.each(
-            0..runs,
-            |run| Ok(Campaign::simulate(run, Stop)?),
-            |outcome| {
-                let number = outcome.number;
-                all.push(outcome.metrics.map_err(|why| Failure::Runs {
-                    failed: 1,
-                    runs,
-                    number,
-                    why: why.to_string(),
-                })?);
-                Ok::<(), Failure>(())
-            },
-        )?;
-        let mut columns = Map::new();
-        let first = all.first().map(|first| first.0.clone()).unwrap_or_default();
-        for (index, (meaning, _)) in first.iter().enumerate() {
-            let column: Vec<Json> = all.iter().map(|metrics| metrics.0[index].1.to_json()).collect();
-            columns.insert(meaning.name.to_owned(), json!(column));
-        }
-        columns.insert("runs".to_owned(), json!(runs));
-        if let Some(grid) = values {
-            columns.insert("values".to_owned(), json!(grid.values));
-        }
-        Ok(Json::Object(columns))
-    }
-
-    fn modes(&self) -> Result<Json, Failure> {
-        let scenario = self.scenario()?;
-        Ok(match &scenario.spatial {
-            Some(of) => json!(Influences::of(of)),
-            None => json!(Modal::of(&scenario.model)),
+    /// What the command's analysis comes to.
+    pub fn results(&self) -> Result<Box<dyn Results>, Failure> {
+        Ok(match &self.verb {
+            Verb::Modes(args) => modes::results(&analysed(args)?),
+            Verb::Cycle(args) => Box::new(cycle::results(&analysed(args)?)?),
+            Verb::Plan(args) => args.results(analysed(&args.scenario)?)?,
+            Verb::Tune(args) => Box::new(args.results(&analysed(&args.scenario)?)?),
+            Verb::Map(args) => Box::new(args.results(&analysed(&args.scenario)?)?),
+            Verb::Damping(args) => Box::new(args.results()?),
+            Verb::Identify(args) => Box::new(args.results()?),
+            Verb::Observer(args) => Box::new(args.results()?),
+            _ => return Err(self.failure("no analysis")),
         })
     }
+}
 
-    fn cycle(&self) -> Result<Json, Failure> {
-        let scenario = self.scenario()?;
-        let Law::Relay(law) = &scenario.law else { return Err(self.failure("no relay")) };
-        let body = scenario.one_angle()?;
-        Ok(json!({"cycles": cycles(law, body, law.k_t.get()), "resonances": resonances(law, body)}))
-    }
+/// The metrics of the scenario itself.
+fn single(study: &Campaign) -> Result<Json, Failure> {
+    let run = simulate::itself(study);
+    let failed = |source| Failure::Run { name: run.scenario.name.clone(), source };
+    let metrics = Campaign::simulate(&run, Stop).map_err(failed)?;
+    Ok(campaign::object(study, run.number, &run.drawn, Ok(&metrics))["metrics"].take())
+}
 
-    fn plan(&self) -> Result<Json, Failure> {
-        let scenario = self.scenario()?;
-        let (manoeuvre, plan) = self.planned(&scenario)?;
-        let band: f64 = self.one("band").unwrap_or(0.1);
-        if self.is_given("compare") {
-            let common = Common::of(manoeuvre, self.peak()?, &plan);
-            let rows = compare(manoeuvre, common, scenario.planned_for(), band);
-            let by_name = |row: &Row| (row.name.clone(), row.to_json());
-            return Ok(Json::Object(rows.iter().map(by_name).collect()));
-        }
-        let body = scenario.one_angle()?;
-        Ok(Report::new(&plan, body, band).to_json(&plan, body))
-    }
+/// The objects of some runs, all of which must succeed.
+fn several(study: &Campaign, range: Range<u64>) -> Result<Vec<Json>, Failure> {
+    let runs = range.end - range.start;
+    let mut objects = Vec::new();
+    study.each(
+        range,
+        |run| Ok(Campaign::simulate(run, Stop)?),
+        |Outcome { number, drawn, metrics }| {
+            let failed = |why| Failure::Runs { failed: 1, runs, number, why };
+            let metrics = metrics.map_err(|error| failed(error.to_string()))?;
+            objects.push(campaign::object(study, number, &drawn, Ok(&metrics)));
+            Ok::<(), Failure>(())
+        },
+    )?;
+    Ok(objects)
+}
 
-    fn tune(&self) -> Result<Json, Failure> {
-        let scenario = self.scenario()?;
-        let tuned = self.tuned(&scenario)?;
-        let schedule = match &tuned.robust {
-            Some(robust) => robust.iter().filter_map(|r| Some((r.frequency_rad_s, r.gain?))).collect(),
-            None => midpoints(&tuned.regions),
-        };
-        Ok(json!({"regions": tuned.regions, "robust": tuned.robust, "schedule": schedule}))
-    }
-
-    fn map(&self) -> Result<Json, Failure> {
-        let scenario = self.scenario()?;
-        Ok(json!({"rows": self.cells(&scenario)?}))
-    }
-
-    fn damping(&self) -> Result<Json, Failure> {
-        let (study, frequencies) = self.relay()?;
-        let limit = study.relay.frequency_limit();
-        Ok(json!({"frequency_limit_rad_s": limit, "rows": study.table(&frequencies)}))
-    }
+/// The objects of runs as columns.
+fn columns(objects: &[Json]) -> Json {
+    let of = |part: &str| -> Map<String, Json> {
+        let names = objects.first().and_then(|first| first[part].as_object()).into_iter().flat_map(Map::keys);
+        let column = |name: &str| objects.iter().map(|object| object[part][name].clone()).collect();
+        names.map(|name| (name.clone(), column(name))).collect()
+    };
+    let mut told = of("metrics");
+    told.insert("drawn".to_owned(), Json::Object(of("drawn")));
+    told.insert("runs".to_owned(), json!(objects.len()));
+    Json::Object(told)
 }

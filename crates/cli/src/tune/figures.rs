@@ -1,88 +1,51 @@
 //! The figures of tuned gains over the frequency of the dominant mode: where they may lie (seed papers 3 and 5, figure 5),
 //! and how soon the loop settles with them.
 
-use std::path::Path;
-
-use flexsc_core::analysis::sampled_loop::{Gains, Region, Robust};
+use flexsc_core::analysis::sampled_loop::{Region, Robust};
 use flexsc_core::law::Extra;
 
-use crate::failure::Failure;
-use crate::figure::{self, Axis, Figure, Format, Layer, Panel, Point, Shape, band, colour};
+use super::tuned::Study;
+use crate::figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, band, colour};
 
 /// Settling times beyond so many limits are not shown.
 const BEYOND: f64 = 3.0;
 
 /// What is drawn.
-pub struct Tuned<'a> {
-    /// Name of the scenario.
-    pub name: &'a str,
-    /// Its extra loop, if it has one.
-    pub own: Option<&'a Extra>,
-    /// The gains that were tried.
-    pub gains: Gains,
-    /// The longest settling time of the region (s).
-    pub limit: f64,
+struct Drawn<'a> {
+    study: &'a Study,
     /// The region at each frequency.
-    pub regions: &'a [Region],
+    regions: &'a [Region],
     /// The robust gains, and the part by which the model may be off; none if they were not asked for.
-    pub robust: Option<(&'a [Robust], f64)>,
+    robust: Option<(&'a [Robust], f64)>,
 }
 
-/// A figure.
-#[derive(Copy, Clone)]
-enum What {
-    Region,
-    Settling,
+/// The figures.
+pub fn all(study: &Study, regions: &[Region], robust: Option<(&[Robust], f64)>) -> Vec<Named> {
+    let (drawn, name) = (Drawn { study, regions, robust }, &study.name);
+    vec![(format!("{name}-tune-region"), drawn.region()), (format!("{name}-tune-settling"), drawn.settling())]
 }
 
-const ALL: [What; 2] = [What::Region, What::Settling];
-
-/// Draws the figures into a directory.
-pub fn save(tuned: &Tuned, directory: &Path, format: Format) -> Result<(), Failure> {
-    let name = |what: &What| tuned.name_of(*what);
-    figure::save(directory, format, &ALL, name, |what| tuned.draw(*what))
-}
-
-/// The figures, each with its name.
-pub fn all(tuned: &Tuned) -> Vec<(String, Figure)> {
-    ALL.into_iter().map(|what| (tuned.name_of(what), tuned.draw(what))).collect()
-}
-
-impl Tuned<'_> {
-    fn name_of(&self, what: What) -> String {
-        match what {
-            What::Region => format!("{}-tune-region", self.name),
-            What::Settling => format!("{}-tune-settling", self.name),
-        }
-    }
-
-    fn draw(&self, what: What) -> Figure {
-        match what {
-            What::Region => self.region(),
-            What::Settling => self.settling(),
-        }
-    }
-
+impl Drawn<'_> {
     fn region(&self) -> Figure {
         let line = |value: &dyn Fn(&Region) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
         let lower = line(&|r| r.gain.map(|gain| gain.0));
         let upper = line(&|r| r.gain.map(|gain| gain.1));
         let middle = line(&|r| r.midpoint);
-        let own: Vec<Point> = self.own.into_iter().flat_map(|own| self.of(own)).collect();
+        let own: Vec<Point> = self.study.own.iter().flat_map(|own| self.of(own)).collect();
         let robust: Vec<Point> =
             self.robust.map_or_else(Vec::new, |(of, _)| over(of, |r| r.frequency_rad_s, |r| r.gain));
         let shown = [&lower, &upper, &own, &robust].into_iter().flatten().map(|point| point.1);
         let y = Axis::around("gain k_d of the extra loop", "", shown.chain([0.0]));
         let x = self.frequency();
         let zero = vec![(x.range.start, 0.0), (x.range.end, 0.0)];
-        let within = format!("stable, settles within {} s", self.limit);
+        let within = format!("stable, settles within {} s", self.study.limit);
         let mut layers = vec![
             Layer::new(&within, colour::SKY, Shape::Area(0.35), band(&lower, &upper)),
             Layer::new("", colour::GREY, Shape::Line(0.8), zero),
             Layer::new("", colour::SKY, Shape::Line(1.0), lower),
             Layer::new("", colour::SKY, Shape::Line(1.0), upper),
         ];
-        let highest = self.gains.values().last().copied().unwrap_or(self.gains.high);
+        let highest = self.study.gains.values().last().copied().unwrap_or(self.study.gains.high);
         // Where the region ends only because no higher gain was tried, its middle tells little.
         if self.regions.iter().any(|region| region.gain.is_some_and(|gain| gain.1 >= highest)) {
             let level = vec![(x.range.start, highest), (x.range.end, highest)];
@@ -93,7 +56,7 @@ impl Tuned<'_> {
             layers.push(Layer::new("of the scenario", colour::BLACK, Shape::Dashes, own));
         }
         layers.push(Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), robust));
-        let title = format!("{}: gains of the extra loop", self.name);
+        let title = format!("{}: gains of the extra loop", self.study.name);
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 
@@ -106,10 +69,10 @@ impl Tuned<'_> {
         let (nominal, worst) = (robust(&|r| r.settling_s), robust(&|r| r.settling_quantile_s));
         let x = self.frequency();
         let shown = [&middle, &without, &nominal, &worst].into_iter().flatten().map(|point| point.1);
-        let finite = shown.filter(|time| time.is_finite()).chain([self.limit]);
-        let times = finite.map(|time| time.min(BEYOND * self.limit));
+        let finite = shown.filter(|time| time.is_finite()).chain([self.study.limit]);
+        let times = finite.map(|time| time.min(BEYOND * self.study.limit));
         let y = Axis::from_zero("settling time, s", "", times);
-        let level = vec![(x.range.start, self.limit), (x.range.end, self.limit)];
+        let level = vec![(x.range.start, self.study.limit), (x.range.end, self.study.limit)];
         let layers = vec![
             Layer::new("limit", colour::GREY, Shape::Dashes, level),
             Layer::new("without the extra loop", colour::BLACK, Shape::Line(1.4), without),
@@ -117,7 +80,7 @@ impl Tuned<'_> {
             Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), nominal),
             Layer::new("the same, perturbed", colour::VERMILLION, Shape::Dashes, worst),
         ];
-        let title = format!("{}: settling time", self.name);
+        let title = format!("{}: settling time", self.study.name);
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 

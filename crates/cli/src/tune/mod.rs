@@ -2,25 +2,23 @@
 
 mod figures;
 mod table;
+mod tuned;
 
-use flexsc_core::ScenarioError;
-use flexsc_core::analysis::sampled_loop::{
-    Doubt, Goal, Loop, Region, Robust, Scaling, Search, Window, midpoints, regions, robust,
-};
-use flexsc_core::law::Pd;
-use serde_json::json;
+use flexsc_core::Scenario;
+use flexsc_core::analysis::sampled_loop::{Doubt, Goal, Search, robust};
 
 use crate::failure::Failure;
 use crate::figure::Drawing;
 use crate::grid::{Even, Stepped};
+use crate::results::{Results, show};
+use crate::sampled::{Settled, positive, sampled};
 use crate::{print, scenario};
-
-pub use figures::{Tuned, all as figures};
+use tuned::{Found, Study, Tuned};
 
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    scenario: scenario::Args,
+    pub scenario: scenario::Args,
     #[command(flatten)]
     settled: Settled,
     /// Frequencies of the dominant mode (rad/s); left out, 36 from a sixth of its own to four thirds
@@ -55,58 +53,6 @@ pub struct Args {
     drawing: Drawing,
 }
 
-/// What counts as settled, and which modes follow.
-#[derive(clap::Args)]
-pub struct Settled {
-    /// Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the start
-    #[arg(long, value_name = "ANGLE")]
-    band: Option<f64>,
-    /// How long each loop is watched (s)
-    #[arg(long, value_name = "TIME", default_value_t = 2000.0)]
-    horizon: f64,
-    /// The dominant mode alone changes its frequency, not all by one ratio
-    #[arg(long)]
-    dominant_alone: bool,
-}
-
-impl Settled {
-    pub fn scaling(&self) -> Scaling {
-        if self.dominant_alone { Scaling::First } else { Scaling::All }
-    }
-
-    pub fn window(&self, of: &Loop, name: &str) -> Result<Window, Failure> {
-        positive("--horizon", self.horizon)?;
-        if let Some(band) = self.band {
-            positive("--band", band)?;
-        }
-        let samples = self.horizon / of.period;
-        if samples > 1e7 {
-            return Err(Failure::Arguments(format!(
-                "--horizon must be at most 1e7 samples, got {samples:e}"
-            )));
-        }
-        Ok(of.window(self.band, self.horizon).map_err(refused(name))?)
-    }
-}
-
-/// A scenario's loop.
-pub fn sampled(scenario: &flexsc_core::Scenario) -> Result<(Loop, &Pd), Failure> {
-    Ok(Loop::of(scenario).map_err(refused(&scenario.name))?)
-}
-
-fn refused(name: &str) -> impl FnOnce((String, String)) -> ScenarioError + '_ {
-    move |(key, why)| ScenarioError::Key { origin: name.to_owned(), key, why }
-}
-
-fn positive(name: &str, value: f64) -> Result<(), Failure> {
-    let fits = value.is_finite() && value > 0.0;
-    if fits {
-        Ok(())
-    } else {
-        Err(Failure::Arguments(format!("{name} must be a positive number, got {value}")))
-    }
-}
-
 fn part(name: &str, value: f64) -> Result<(), Failure> {
     let fits = (0.0..1.0).contains(&value);
     if fits {
@@ -116,72 +62,61 @@ fn part(name: &str, value: f64) -> Result<(), Failure> {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let scenario = args.scenario.load()?;
-    let (of, law) = sampled(&scenario)?;
-    let (window, scaling) = (args.settled.window(&of, &scenario.name)?, args.settled.scaling());
-    positive("--limit", args.limit)?;
-    let own = || Even::new(of.frequency() / 6.0, of.frequency() * 4.0 / 3.0, 36);
-    let Even(frequencies) = args.frequency.clone().unwrap_or_else(own);
-    let Stepped(gains) = args.gain;
-    let found = || regions(&of, &frequencies, scaling, gains, window, args.limit);
-    let draw = |regions: &[Region], robust: Option<(&[Robust], f64)>| {
-        let Some(directory) = &args.drawing.figures else { return Ok(()) };
-        let (name, own, limit) = (&scenario.name, law.extra.as_ref(), args.limit);
-        figures::save(&Tuned { name, own, gains, limit, regions, robust }, directory, args.drawing.format)
-    };
-    let Some(off) = args.robust else {
-        let found = found();
-        draw(&found, None)?;
-        let told = || table::tell(&scenario.name, args.limit, gains, &found);
-        return out(args, &scenario.name, &midpoints(&found), &json!(found), told);
-    };
-    part("--robust", off)?;
-    part("--margin", args.margin)?;
-    if !(args.quantile > 0.0 && args.quantile <= 1.0) {
-        let why = format!("--quantile must be above 0 and at most 1, got {}", args.quantile);
-        return Err(Failure::Arguments(why));
+impl Args {
+    /// What the loop of a scenario comes to with the gains that are tried.
+    pub fn results(&self, scenario: &Scenario) -> Result<Tuned, Failure> {
+        let (of, law) = sampled(scenario)?;
+        positive("--limit", self.limit)?;
+        let own = || Even::new(of.frequency() / 6.0, of.frequency() * 4.0 / 3.0, 36);
+        let Even(frequencies) = self.frequency.clone().unwrap_or_else(own);
+        let study = Study {
+            name: scenario.name.clone(),
+            own: law.extra.clone(),
+            window: self.settled.window(&of, &scenario.name)?,
+            scaling: self.settled.scaling(),
+            gains: self.gain.0,
+            limit: self.limit,
+            of,
+            frequencies,
+        };
+        let found = match self.robust {
+            None => Found::Regions(study.regions()),
+            Some(off) => {
+                let search = self.search(&study, off)?;
+                Found::Robust { off, rows: robust(&study.of, &study.frequencies, search) }
+            }
+        };
+        Ok(Tuned { study, found })
     }
-    if !(args.delay.is_finite() && args.delay >= 0.0) {
-        return Err(Failure::Arguments(format!("--delay must be 0 or more, got {}", args.delay)));
+
+    /// The search for gains that do with the model off by a part.
+    fn search(&self, study: &Study, off: f64) -> Result<Search, Failure> {
+        part("--robust", off)?;
+        part("--margin", self.margin)?;
+        if !(self.quantile > 0.0 && self.quantile <= 1.0) {
+            let why = format!("--quantile must be above 0 and at most 1, got {}", self.quantile);
+            return Err(Failure::Arguments(why));
+        }
+        if !(self.delay.is_finite() && self.delay >= 0.0) {
+            return Err(Failure::Arguments(format!("--delay must be 0 or more, got {}", self.delay)));
+        }
+        Ok(Search {
+            gains: study.gains,
+            scaling: study.scaling,
+            window: study.window,
+            doubt: Doubt { frequency: off, modal_gain: off, authority: off, delay: self.delay },
+            goal: if self.itae { Goal::Itae } else { Goal::Settling },
+            quantile: self.quantile,
+            margin: self.margin,
+        })
     }
-    let search = Search {
-        gains,
-        scaling,
-        window,
-        doubt: Doubt { frequency: off, modal_gain: off, authority: off, delay: args.delay },
-        goal: if args.itae { Goal::Itae } else { Goal::Settling },
-        quantile: args.quantile,
-        margin: args.margin,
-    };
-    let gains = robust(&of, &frequencies, search);
-    if args.drawing.figures.is_some() {
-        draw(&found(), Some((&gains, off)))?;
-    }
-    let schedule: Vec<_> = gains.iter().filter_map(|r| Some((r.frequency_rad_s, r.gain?))).collect();
-    out(args, &scenario.name, &schedule, &json!(gains), || table::tell_robust(&scenario.name, off, &gains))
 }
 
-fn out(
-    args: &Args,
-    name: &str,
-    schedule: &[(f64, f64)],
-    rows: &serde_json::Value,
-    tell: impl FnOnce(),
-) -> Result<(), Failure> {
-    if args.scenario.json {
-        return print(format!("{}\n", json!({"scenario": name, "rows": rows})).as_bytes());
-    }
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let tuned = args.results(&args.scenario.load()?)?;
     if args.schedule {
-        if schedule.is_empty() {
-            return Err(Failure::Arguments(format!("{name}: no gain does at any of these frequencies")));
-        }
-        let points: Vec<String> = schedule
-            .iter()
-            .map(|(w, gain)| format!("    {{ frequency = {w:.6}, gain = {gain:.4} }},\n"))
-            .collect();
-        return print(format!("[law.pd.extra]\nschedule = [\n{}]\n", points.concat()).as_bytes());
+        args.drawing.save(|| tuned.figures())?;
+        return print(tuned.extra()?.as_bytes());
     }
-    tell();
-    Ok(())
+    show(&tuned, Some(&args.drawing), args.scenario.json)
 }

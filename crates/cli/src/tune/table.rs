@@ -4,11 +4,8 @@ use std::io::Write;
 
 use flexsc_core::analysis::sampled_loop::{Gains, Region, Robust};
 
+use crate::number::fixed;
 use crate::say;
-
-fn cell(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "none".to_owned(), |value| format!("{value:.digits$}"))
-}
 
 /// Tells the region.
 pub fn tell(name: &str, limit: f64, gains: Gains, found: &[Region]) {
@@ -31,12 +28,12 @@ pub fn tell(name: &str, limit: f64, gains: Gains, found: &[Region]) {
         say!(
             "  {:>10.4}{:>10}{:>10}{:>10}{:>12}{:>12}{:>14}",
             r.frequency_rad_s,
-            cell(r.gain.map(|gain| gain.0), 3),
-            cell(r.gain.map(|gain| gain.1), 3),
-            cell(r.midpoint, 3),
-            cell(r.settling_s, 1),
-            cell(r.spectral_radius, 7),
-            cell(r.settling_without_s, 1),
+            fixed(r.gain.map(|gain| gain.0), 3),
+            fixed(r.gain.map(|gain| gain.1), 3),
+            fixed(r.midpoint, 3),
+            fixed(r.settling_s, 1),
+            fixed(r.spectral_radius, 7),
+            fixed(r.settling_without_s, 1),
         );
     }
 }
@@ -58,11 +55,11 @@ pub fn tell_robust(name: &str, off: f64, found: &[Robust]) {
         say!(
             "  {:>10.4}{:>10}{:>12}{:>14}{:>12}{:>14}",
             r.frequency_rad_s,
-            cell(r.gain, 3),
-            cell(r.settling_s, 1),
-            cell(r.settling_quantile_s, 1),
-            cell(r.spectral_radius, 7),
-            cell(r.settling_without_s, 1),
+            fixed(r.gain, 3),
+            fixed(r.settling_s, 1),
+            fixed(r.settling_quantile_s, 1),
+            fixed(r.spectral_radius, 7),
+            fixed(r.settling_without_s, 1),
         );
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::table::{Metric, Runs};
-use crate::campaign::short;
+use crate::number::short;
 
 /// Metrics of which more is better.
 const MORE: [&str; 4] =

@@ -1,0 +1,23 @@
+//! Numbers as tables for people have them.
+
+/// A number as `tell` writes it, or that there is none.
+pub fn or_none(value: Option<f64>, tell: impl Fn(f64) -> String) -> String {
+    value.map_or_else(|| "none".to_owned(), tell)
+}
+
+/// A number with so many decimals, or that there is none.
+pub fn fixed(value: Option<f64>, decimals: usize) -> String {
+    or_none(value, |value| format!("{value:.decimals$}"))
+}
+
+/// A number in at most ten characters.
+pub fn short(number: f64) -> String {
+    if number.is_nan() {
+        "-".to_owned()
+    } else if number == 0.0 || (1e-3..1e6).contains(&number.abs()) {
+        let digits = if number.abs() >= 1e3 { 1 } else { 4 };
+        format!("{number:.digits$}")
+    } else {
+        format!("{number:.3e}")
+    }
+}

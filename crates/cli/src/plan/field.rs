@@ -1,0 +1,91 @@
+//! How a manoeuvre's command stands in the field of all commands.
+
+use std::io::Write;
+
+use flexsc_core::body::Planar;
+use flexsc_core::manoeuvre::{Common, Row};
+use serde_json::Value as Json;
+
+use super::percent;
+use crate::failure::Failure;
+use crate::results::Results;
+use crate::say;
+
+/// The field of a manoeuvre.
+pub struct Field {
+    /// Name of the scenario.
+    pub name: String,
+    /// The body.
+    pub body: Planar,
+    /// How far off the frequencies may be, relative to them.
+    pub band: f64,
+    /// Index of the coordinate that the table shows, of the hub's angle and the outputs.
+    pub shown: usize,
+    /// What all commands have in common.
+    pub common: Common,
+    pub rows: Vec<Row>,
+}
+
+impl Results for Field {
+    fn json(&self) -> Vec<Json> {
+        self.rows.iter().map(Row::to_json).collect()
+    }
+
+    fn tell(&self) -> Result<(), Failure> {
+        let Self { name, body, shown, rows, .. } = self;
+        let chosen = shown.checked_sub(1).map_or("angle", |index| &body.outputs[index].name);
+        match self.common {
+            Common::Time(time) => say!("{name}   every command in {} s", time.seconds()),
+            Common::PeakTorque(peak) => say!("{name}   every command at a peak of {} N m", peak.get()),
+        }
+        let (band, hub) = (percent(self.band), "angle");
+        say!(
+            "  {:<28}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>11}{:>11}{:>11}",
+            "",
+            "time",
+            "peak",
+            "RMS",
+            "at 0+",
+            chosen,
+            "±5 %",
+            format!("±{band} %"),
+            hub,
+            format!("±{band} %")
+        );
+        say!(
+            "  {:<28}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>11}{:>11}{:>11}",
+            "",
+            "s",
+            "N m",
+            "N m",
+            "N m",
+            "left",
+            "worst",
+            "worst",
+            "left",
+            "worst"
+        );
+        for row in rows {
+            match &row.outcome {
+                Err((_, why)) => say!("  {:<28}{why}", row.name),
+                Ok(outcome) => {
+                    let (own, hub) = (&outcome.residuals[*shown], &outcome.residuals[0]);
+                    say!(
+                        "  {:<28}{:>10.4}{:>10.2}{:>10.2}{:>10.2}{:>11.3e}{:>11.3e}{:>11.3e}{:>11.3e}{:>11.3e}",
+                        row.name,
+                        outcome.plan.time,
+                        outcome.torque.peak.value,
+                        outcome.torque.rms,
+                        outcome.torque.initial,
+                        own.nominal,
+                        own.near,
+                        own.worst,
+                        hub.nominal,
+                        hub.worst
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,104 @@
+//! The plan of a manoeuvre, and what it comes to on the body.
+
+use std::io::Write;
+
+use flexsc_core::body::{Drive, Planar};
+use flexsc_core::manoeuvre::{Manoeuvre, Plan, Report};
+use serde_json::{Value as Json, json};
+
+use super::family::Family;
+use super::{figures, percent};
+use crate::failure::Failure;
+use crate::figure::Named;
+use crate::results::{Results, of_scenario};
+use crate::say;
+
+/// A plan.
+pub struct Planned {
+    /// Name of the scenario.
+    pub name: String,
+    /// The body.
+    pub body: Planar,
+    /// The body that the manoeuvre is planned for.
+    pub model: Planar,
+    pub manoeuvre: Manoeuvre,
+    pub plan: Plan,
+    pub report: Report,
+    /// Index of the coordinate that figures show, of the hub's angle and the outputs.
+    pub shown: usize,
+}
+
+impl Results for Planned {
+    fn json(&self) -> Vec<Json> {
+        let mut object = of_scenario(&self.name, json!({"command": self.manoeuvre.command.kind()}));
+        if let (Some(object), Json::Object(told)) =
+            (object.as_object_mut(), self.report.to_json(&self.plan, &self.body))
+        {
+            object.extend(told);
+        }
+        vec![object]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        let Self { name, body, plan, manoeuvre, model, shown, .. } = self;
+        let family = Family::new(name, body, plan, manoeuvre, model, *shown);
+        figures::all(&family, self.report.band)
+    }
+
+    fn tell(&self) -> Result<(), Failure> {
+        let Self { name, body, manoeuvre, plan, report, .. } = self;
+        let (angle, time) = (plan.angle, plan.time);
+        let kind = manoeuvre.command.kind().replace('_', " ");
+        let shaped = if manoeuvre.shaper.is_some() { ", shaped" } else { "" };
+        say!("{name}   {angle} rad in {time:.9} s by {kind}{shaped}");
+        if plan.start_rate != 0.0 || plan.end_rate != 0.0 {
+            say!("  rates            {} -> {} rad/s", plan.start_rate, plan.end_rate);
+        }
+        let unit = if body.drive == Drive::Motion { "rad/s²" } else { "N m" };
+        if let Some(c) = &plan.coefficients {
+            let list = |c: &[f64]| c.iter().map(|c| format!("{c:.9}")).collect::<Vec<_>>().join(", ");
+            say!("  coefficients     {} {unit}", list(&c.odd));
+            if !c.even.is_empty() || c.constant != 0.0 {
+                say!("  even, constant   {}; {:.9} {unit}", list(&c.even), c.constant);
+            }
+        }
+        let torque = &report.torque;
+        say!("  peak torque      {:.6} N m at {:.6} s", torque.peak.value, torque.peak.time);
+        say!("  root mean square {:.6} N m", torque.rms);
+        say!("  square integral  {:.6e} N² m² s", torque.square);
+        say!("  torque at start  {:.6} N m", torque.initial);
+        say!("  hub at the end   {:.3e} rad, {:.3e} rad/s off", report.angle_error, report.rate_error);
+        say!("  energy left      {:.4e} J", report.energy);
+        say!(
+            "  {:<16} {:>12}{:>12}{:>12}{:>14}{:>12}",
+            "coordinate",
+            "left",
+            "worst 5 %",
+            format!("worst {} %", percent(report.band)),
+            "deflection",
+            "at"
+        );
+        for (left, deflection) in report.residuals.iter().zip(&report.deflections) {
+            say!(
+                "  {:<16} {:>12.3e}{:>12.3e}{:>12.3e}{:>14.6e}{:>10.4} s   {}",
+                left.name,
+                left.nominal,
+                left.near,
+                left.worst,
+                deflection.value,
+                deflection.time,
+                left.unit,
+            );
+        }
+        let both = |(below, above): (Option<f64>, f64)| match below {
+            Some(below) => format!("{below:.6} or {above:.6} s"),
+            None => format!("{above:.6} s"),
+        };
+        for tuned in &report.tuned {
+            let cosine =
+                tuned.cosine.map_or(String::new(), |times| format!(", a single cosine in {}", both(times)));
+            say!("  mode {} rests after a single sine in {}{cosine}", tuned.mode, both(tuned.sine));
+        }
+        Ok(())
+    }
+}

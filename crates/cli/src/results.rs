@@ -1,0 +1,44 @@
+//! What an analysis comes to: the same numbers and figures for people, for machines and for the pages of `reproduce`.
+
+use serde_json::{Value as Json, json};
+
+use crate::failure::Failure;
+use crate::figure::{Drawing, Named};
+use crate::print;
+
+/// What an analysis comes to.
+pub trait Results {
+    /// What `--json` prints: objects, one a line.
+    fn json(&self) -> Vec<Json>;
+
+    /// The figures, each with the name of its file; none unless the analysis has any.
+    fn figures(&self) -> Vec<Named> {
+        Vec::new()
+    }
+
+    /// Tells people.
+    fn tell(&self) -> Result<(), Failure>;
+}
+
+/// Draws what the arguments ask for, and tells people or machines.
+pub fn show(results: &dyn Results, drawing: Option<&Drawing>, as_json: bool) -> Result<(), Failure> {
+    if let Some(drawing) = drawing {
+        drawing.save(|| results.figures())?;
+    }
+    if as_json { print_lines(&results.json()) } else { results.tell() }
+}
+
+/// Prints objects, one a line.
+pub fn print_lines(objects: &[Json]) -> Result<(), Failure> {
+    let lines: Vec<String> = objects.iter().map(|object| format!("{object}\n")).collect();
+    print(lines.concat().as_bytes())
+}
+
+/// An object that begins with its scenario.
+pub fn of_scenario(name: &str, table: Json) -> Json {
+    let mut object = json!({ "scenario": name });
+    if let (Some(object), Json::Object(table)) = (object.as_object_mut(), table) {
+        object.extend(table);
+    }
+    object
+}

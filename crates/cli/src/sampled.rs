@@ -1,0 +1,60 @@
+//! A scenario's sampled loop, and what counts as settled in it: what `tune` and `map` share.
+
+use flexsc_core::analysis::sampled_loop::{Loop, Scaling, Window};
+use flexsc_core::law::Pd;
+use flexsc_core::{Scenario, ScenarioError};
+
+use crate::failure::Failure;
+
+/// What counts as settled, and which modes follow.
+#[derive(clap::Args)]
+pub struct Settled {
+    /// Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the start
+    #[arg(long, value_name = "ANGLE")]
+    band: Option<f64>,
+    /// How long each loop is watched (s)
+    #[arg(long, value_name = "TIME", default_value_t = 2000.0)]
+    horizon: f64,
+    /// The dominant mode alone changes its frequency, not all by one ratio
+    #[arg(long)]
+    dominant_alone: bool,
+}
+
+impl Settled {
+    pub fn scaling(&self) -> Scaling {
+        if self.dominant_alone { Scaling::First } else { Scaling::All }
+    }
+
+    pub fn window(&self, of: &Loop, name: &str) -> Result<Window, Failure> {
+        positive("--horizon", self.horizon)?;
+        if let Some(band) = self.band {
+            positive("--band", band)?;
+        }
+        let samples = self.horizon / of.period;
+        if samples > 1e7 {
+            return Err(Failure::Arguments(format!(
+                "--horizon must be at most 1e7 samples, got {samples:e}"
+            )));
+        }
+        Ok(of.window(self.band, self.horizon).map_err(refused(name))?)
+    }
+}
+
+/// A scenario's loop.
+pub fn sampled(scenario: &Scenario) -> Result<(Loop, &Pd), Failure> {
+    Ok(Loop::of(scenario).map_err(refused(&scenario.name))?)
+}
+
+fn refused(name: &str) -> impl FnOnce((String, String)) -> ScenarioError + '_ {
+    move |(key, why)| ScenarioError::Key { origin: name.to_owned(), key, why }
+}
+
+/// Accepts positive numbers only.
+pub fn positive(name: &str, value: f64) -> Result<(), Failure> {
+    let fits = value.is_finite() && value > 0.0;
+    if fits {
+        Ok(())
+    } else {
+        Err(Failure::Arguments(format!("{name} must be a positive number, got {value}")))
+    }
+}

@@ -1,0 +1,104 @@
+//! What tuning comes to: the region of the gains or the robust ones, and the schedule that they make.
+
+use flexsc_core::analysis::sampled_loop::{Gains, Loop, Region, Robust, Scaling, Window, midpoints, regions};
+use flexsc_core::law::Extra;
+use serde_json::{Value as Json, json};
+
+use super::{figures, table};
+use crate::failure::Failure;
+use crate::figure::Named;
+use crate::results::Results;
+
+/// What is tuned.
+pub struct Study {
+    /// Name of the scenario.
+    pub name: String,
+    /// Its extra loop, if it has one.
+    pub own: Option<Extra>,
+    /// Its loop.
+    pub of: Loop,
+    /// Frequencies of the dominant mode (rad/s).
+    pub frequencies: Vec<f64>,
+    /// Which modes follow it.
+    pub scaling: Scaling,
+    /// The gains that are tried.
+    pub gains: Gains,
+    /// What counts as settled.
+    pub window: Window,
+    /// The longest settling time of the region (s).
+    pub limit: f64,
+}
+
+impl Study {
+    /// The region of the gains at each frequency.
+    pub fn regions(&self) -> Vec<Region> {
+        regions(&self.of, &self.frequencies, self.scaling, self.gains, self.window, self.limit)
+    }
+}
+
+/// What was found.
+pub enum Found {
+    /// The region of the gains.
+    Regions(Vec<Region>),
+    /// The gains that do with a model that is off by up to a part.
+    Robust { off: f64, rows: Vec<Robust> },
+}
+
+/// What tuning comes to.
+pub struct Tuned {
+    pub study: Study,
+    pub found: Found,
+}
+
+impl Tuned {
+    /// Frequencies (rad/s) and gains of the schedule, where there is a gain.
+    fn schedule(&self) -> Vec<(f64, f64)> {
+        match &self.found {
+            Found::Regions(regions) => midpoints(regions),
+            Found::Robust { rows, .. } => {
+                rows.iter().filter_map(|row| Some((row.frequency_rad_s, row.gain?))).collect()
+            }
+        }
+    }
+
+    /// The schedule as `[law.pd.extra]` of a scenario.
+    pub fn extra(&self) -> Result<String, Failure> {
+        let point = |(w, gain): &(f64, f64)| format!("    {{ frequency = {w:.6}, gain = {gain:.4} }},\n");
+        let points: String = self.schedule().iter().map(point).collect();
+        if points.is_empty() {
+            let name = &self.study.name;
+            return Err(Failure::Arguments(format!("{name}: no gain does at any of these frequencies")));
+        }
+        Ok(format!("[law.pd.extra]\nschedule = [\n{points}]\n"))
+    }
+}
+
+impl Results for Tuned {
+    fn json(&self) -> Vec<Json> {
+        let rows = match &self.found {
+            Found::Regions(regions) => json!(regions),
+            Found::Robust { rows, .. } => json!(rows),
+        };
+        let point = |(frequency, gain)| json!({"frequency": frequency, "gain": gain});
+        let schedule: Vec<Json> = self.schedule().into_iter().map(point).collect();
+        vec![json!({"scenario": self.study.name, "rows": rows, "schedule": schedule})]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        match &self.found {
+            Found::Regions(regions) => figures::all(&self.study, regions, None),
+            Found::Robust { off, rows } => {
+                figures::all(&self.study, &self.study.regions(), Some((rows, *off)))
+            }
+        }
+    }
+
+    fn tell(&self) -> Result<(), Failure> {
+        let Study { name, limit, gains, .. } = &self.study;
+        match &self.found {
+            Found::Regions(regions) => table::tell(name, *limit, *gains, regions),
+            Found::Robust { off, rows } => table::tell_robust(name, *off, rows),
+        }
+        Ok(())
+    }
+}
