@@ -20,7 +20,7 @@ pub fn undamped(centre: f64, deviation: Phasor, frequency: f64, h: f64) -> f64 {
     let smallest = (centre.abs() - radius) / largest;
     let complement = smallest * smallest;
     let half_end = 0.5 * (phase - frequency * h);
-    let swept = second_kind(0.5 * phase, complement) - second_kind(half_end, complement);
+    let swept = second_kind(half_end, 0.5 * phase, complement);
     2.0 * largest / frequency * swept
 }
 

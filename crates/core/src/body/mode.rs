@@ -140,27 +140,38 @@ impl Flow {
     /// (displacement, rate / w).
     #[inline]
     pub fn transition(&self, h: f64) -> [f64; 4] {
-        let (decay, c, s) = match self.regime {
+        let (decay, (c, s)) = match self.regime {
             Regime::Undamped => {
                 let (sin, cos) = libm::sincos(self.frequency * h);
                 return [cos, sin, -sin, cos];
             }
-            Regime::Under(decay, damped) => {
-                let (sin, cos) = libm::sincos(damped * h);
-                let shrink = libm::exp(-decay * h);
-                (decay, shrink * cos, shrink * sin / damped)
-            }
-            Regime::Over(decay, slow, split) => {
-                let shrink = libm::exp(-slow * h);
-                // (1 - exp(-2 split h)) / (2 split), and its limit h at critical damping.
-                let spread = -libm::expm1(-2.0 * split * h);
-                let s = if split > 0.0 { spread / (2.0 * split) } else { h };
-                (decay, shrink * (1.0 - 0.5 * spread), shrink * s)
-            }
+            Regime::Under(decay, damped) => (decay, spiral(decay, damped, h)),
+            Regime::Over(decay, slow, split) => (decay, creep(slow, split, h)),
         };
         let cross = self.frequency * s;
         [c + decay * s, cross, -cross, c - decay * s]
     }
+}
+
+// With the decay rate d and damped frequency v, the two functions exp(-d h) cos(v h) and exp(-d h) sin(v h) / v make the
+// transition. They are functions of their own so that the undamped one, which needs neither, is small enough to be inlined.
+
+/// Both below critical damping.
+#[inline(never)]
+fn spiral(decay: f64, damped: f64, h: f64) -> (f64, f64) {
+    let (sin, cos) = libm::sincos(damped * h);
+    let shrink = libm::exp(-decay * h);
+    (shrink * cos, shrink * sin / damped)
+}
+
+/// Both at critical damping and above, with the hyperbolic functions, by the slower rate and half the rates' difference.
+#[inline(never)]
+fn creep(slow: f64, split: f64, h: f64) -> (f64, f64) {
+    let shrink = libm::exp(-slow * h);
+    // (1 - exp(-2 split h)) / (2 split), and its limit h at critical damping.
+    let spread = -libm::expm1(-2.0 * split * h);
+    let s = if split > 0.0 { spread / (2.0 * split) } else { h };
+    (shrink * (1.0 - 0.5 * spread), shrink * s)
 }
 
 #[cfg(test)]

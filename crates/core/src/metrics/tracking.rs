@@ -29,7 +29,7 @@ impl Tracked {
             self.pauses += u64::from(rests && !*resting);
             *resting = rests;
         }
-        self.last = Some(tracking.trackers.clone());
+        self.last.get_or_insert_default().clone_from(&tracking.trackers);
     }
 
     /// The metrics of the run that has ended; none without an adaptive observer.

@@ -32,6 +32,8 @@ pub struct Drive {
     pulse: Option<Pulse>,
     /// Impulse that the thrusters owe (N m s).
     owed: f64,
+    /// The next instant at which the input changes by itself.
+    pub due: Option<Instant>,
     /// Torque that the law holds (N m).
     feedback: f64,
     /// Torque of a hold or a pulse; of a wheel, without its back-EMF (N m).
@@ -52,7 +54,7 @@ impl Drive {
             .collect();
         edges.sort_by(|a, b| b.cmp(a));
         edges.dedup();
-        Self {
+        let mut drive = Self {
             waveform,
             from: (scenario.model.angle.get(), scenario.model.rate.get()),
             inertia: scenario.planned_for().commanded_inertia(),
@@ -68,14 +70,16 @@ impl Drive {
             actuator: scenario.actuator.clone(),
             pulse: None,
             owed: 0.0,
+            due: None,
             feedback: 0.0,
             held: 0.0,
             delayed: VecDeque::new(),
-        }
+        };
+        drive.due = drive.next();
+        drive
     }
 
-    /// The next instant at which the input changes by itself.
-    pub fn due(&self) -> Option<Instant> {
+    fn next(&self) -> Option<Instant> {
         let pulse = self.pulse.map(|pulse| if self.held == 0.0 { pulse.from } else { pulse.to });
         let delayed = self.delayed.front().map(|(at, _)| *at);
         let drawn = self.disturbances.iter().filter_map(Disturbing::due).min();
@@ -89,6 +93,7 @@ impl Drive {
             let delay = Span::from_seconds(wheel.delay.get());
             self.delayed.push_back((now + delay, wheel.shaped(feedback)));
             self.turn_wheel(now, rigid_rate);
+            self.due = self.next();
         }
     }
 
@@ -129,6 +134,7 @@ impl Drive {
             self.held = if on { pulse.torque } else { 0.0 };
             self.pulse = self.pulse.filter(|_| now < pulse.to);
         }
+        self.due = self.next();
     }
 
     fn begin_period(&mut self, now: Instant) {

@@ -174,8 +174,8 @@ impl PlanarRun {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.watch.as_ref().map(|watch| watch.closes);
         let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
-        let told = [self.next_dense, self.next_frames].into_iter().flatten().min();
-        let due = [trip, self.hold.until, self.drive.due(), self.next_sample, closes, arrives, told];
+        let (hold, drive, sample) = (self.hold.until, self.drive.due, self.next_sample);
+        let due = [trip, hold, drive, sample, closes, arrives, self.next_dense, self.next_frames];
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
@@ -207,7 +207,7 @@ impl PlanarRun {
         if let Some(cause) = tripped.map(Cause::Guard).or(timeout) {
             self.decide(cause, record)?;
         }
-        if self.drive.due() == Some(now) {
+        if self.drive.due == Some(now) {
             self.view()?;
             self.drive.serve(now, self.body.state().rigid_rate);
             self.depart();
@@ -296,7 +296,7 @@ impl PlanarRun {
         self.trip = None;
         // A sampled sensor trips its guards at samples.
         if self.next_sample.is_none() && !self.hold.guards.is_empty() {
-            let ends = [self.hold.until, self.drive.due()].into_iter().flatten().fold(self.end, Instant::min);
+            let ends = [self.hold.until, self.drive.due].into_iter().flatten().fold(self.end, Instant::min);
             self.trip = self.body.trip(&self.hold.guards, ends.since(self.now));
         }
     }

@@ -10,18 +10,21 @@ use crate::record::{ChannelState, TrackedMode, Tracking};
 pub struct Observers {
     plan: Plan,
     channels: [Channel; 3],
+    /// What they know of their modes after the last sample.
+    modes: [Vec<Estimate>; 3],
 }
 
 impl Observers {
     /// The observers at the start of a run.
     pub fn new(plan: &Plan) -> Self {
-        Self { plan: plan.clone(), channels: plan.channels() }
+        Self { plan: plan.clone(), channels: plan.channels(), modes: Default::default() }
     }
 
     /// Takes the measured rates (rad/s); returns the rigid ones.
     pub fn update(&mut self, measured: [f64; 3]) -> [f64; 3] {
-        for (channel, measured) in self.channels.iter_mut().zip(measured) {
-            channel.update(measured);
+        for (axis, channel) in self.channels.iter_mut().enumerate() {
+            channel.update(measured[axis]);
+            self.modes[axis] = channel.modes();
         }
         [0, 1, 2].map(|axis| self.channels[axis].rate())
     }
@@ -30,12 +33,13 @@ impl Observers {
     pub fn tell(&self, belief: &mut AxesBelief, ahead: f64, waiting: &[Pulse]) {
         for (axis, channel) in self.channels.iter().enumerate() {
             let rates = channel.predict(ahead, waiting).into_iter();
-            let mode = |(rate, mode): (f64, Estimate)| ElasticRate {
+            let mode = |(rate, mode): (f64, &Estimate)| ElasticRate {
                 rate,
                 frequency: mode.frequency,
-                influence: channel.influence(&mode),
+                influence: channel.influence(mode),
             };
-            belief.elastic[axis] = rates.zip(channel.modes()).map(mode).collect();
+            belief.elastic[axis].clear();
+            belief.elastic[axis].extend(rates.zip(&self.modes[axis]).map(mode));
             belief.trusted[axis] = channel.is_trusted();
         }
     }
@@ -45,10 +49,10 @@ impl Observers {
         let mut tracking = Tracking { channels: Vec::with_capacity(3), trackers: Vec::new() };
         for (axis, (channel, design)) in self.channels.iter().zip(&self.plan.axes).enumerate() {
             let seen = |mode: &usize| design.seen[*mode] * rates[*mode];
-            let residual = channel.residual();
+            let (residual, modes) = (channel.residual(), &self.modes[axis]);
             let damped = &damped[axis];
             tracking.channels.push(ChannelState {
-                elastic_rad_s: channel.modes().iter().map(|mode| mode.phase[0]).sum(),
+                elastic_rad_s: modes.iter().map(|mode| mode.phase[0]).sum(),
                 true_elastic_rad_s: (0..rates.len()).map(|mode| seen(&mode)).sum(),
                 innovation_rms_rad_s: libm::sqrt(residual.innovation),
                 elastic_rms_rad_s: libm::sqrt(residual.elastic),
@@ -60,17 +64,17 @@ impl Observers {
                 damping_on_s: damped.on,
             });
             let own = design.own(axis);
-            let state = |(mode, truth): (Estimate, &Merged)| TrackedMode {
+            let state = |(mode, truth): (&Estimate, &Merged)| TrackedMode {
                 axis: axis as u64,
                 frequency_rad_s: mode.frequency,
                 true_frequency_rad_s: truth.tracker.frequency.get(),
-                influence: channel.influence(&mode),
+                influence: channel.influence(mode),
                 true_influence: truth.tracker.influence.get(own).map_or(f64::NAN, |of| of.get()),
                 rate_rad_s: mode.phase[0],
                 true_rate_rad_s: truth.modes.iter().map(seen).sum(),
                 amplitude_rad_s: mode.amplitude(),
             };
-            tracking.trackers.extend(channel.modes().into_iter().zip(&design.modes).map(state));
+            tracking.trackers.extend(modes.iter().zip(&design.modes).map(state));
         }
         tracking
     }
