@@ -335,6 +335,29 @@ fn a_mode_that_does_not_swing_is_magnified_too() {
 }
 
 #[test]
+fn a_wheel_turns_as_its_speed_says_and_slowly_enough_to_be_seen() {
+    let dir = Dir::with(&["wheel-ekf"]);
+    let log = log(&dir, "wheel-ekf", "--set duration=60");
+    let scene = log.columns("/scene").expect("a scene");
+    let (_, texts) = rows(rows(&scene, "entities").1, "texts");
+    let Some(Column::Texts(texts)) = texts.get("text") else { panic!("words") };
+    let slowed = texts.iter().find_map(|text| text.split_once("wheel ÷ ")?.1.split(' ').next()?.parse().ok());
+    let slowed: f64 = slowed.expect("it is slowed");
+    let wheel = log.columns("/wheel").expect("a wheel");
+    let speeds = wheel.numbers("speed_rad_s").expect("speeds");
+    let times = wheel.numbers("time_s").expect("times");
+    let frames = Frames::of(&log);
+    assert_eq!(frames.times, times);
+    for at in 1..times.len() {
+        let turned = frames.angle(at, "wheel") - frames.angle(at - 1, "wheel");
+        let half = std::f64::consts::PI;
+        let seen = (turned + half).rem_euclid(2.0 * half) - half;
+        let exact = 0.5 * (speeds[at - 1] + speeds[at]) * (times[at] - times[at - 1]) / slowed;
+        assert!((seen - exact).abs() < 1e-3 && seen.abs() < 1.0, "{}: {seen} {exact}", times[at]);
+    }
+}
+
+#[test]
 fn factors_that_leave_no_picture_are_refused() {
     let dir = Dir::with(&["relay-fixed", "iss-ringdown"]);
     for (scenario, key) in [("relay-fixed", "turning"), ("iss-ringdown", "bending")] {

@@ -7,7 +7,11 @@ use flexsc_core::layout::Layout;
 use flexsc_core::record::{Detail, Log};
 
 use crate::failure::Failure;
+use crate::logged::logged;
 use crate::{print, scenario};
+
+/// A log of more samples takes minutes and gigabytes: its viewers choose their axes.
+const MOST_SAMPLES: f64 = 1e6;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -24,7 +28,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let layout = if args.path.extension().is_some_and(|extension| extension == "toml") {
-        Layout::of(&scenario::load(&args.path, &args.set, None)?).of_detail(Detail::Scene)
+        of_scenario(scenario::load(&args.path, &args.set, None)?, &args.path)?
     } else if args.set.is_empty() {
         of_log(&args.path)?
     } else {
@@ -38,8 +42,19 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
+/// The layout of the log with a scene that a scenario will have. A run tells how large its values become.
+fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, Failure> {
+    let layout = Layout::of(&scenario).of_detail(Detail::Scene);
+    let samples = scenario.duration.seconds() / scenario.log.period.seconds();
+    if samples > MOST_SAMPLES {
+        return Ok(layout);
+    }
+    Ok(layout.fitted(&logged(scenario, path, Detail::Full)?)?)
+}
+
 fn of_log(path: &Path) -> Result<Layout, Failure> {
     let log = Log::open(path)?;
     let scenario = Scenario::parse(&path.display().to_string(), log.scenario().unwrap_or_default())?;
-    Ok(Layout::of(&scenario).of_topics(|topic| log.topics().iter().any(|own| own == topic)))
+    let layout = Layout::of(&scenario).of_topics(|topic| log.topics().iter().any(|own| own == topic));
+    Ok(layout.fitted(&log)?)
 }

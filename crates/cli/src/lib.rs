@@ -13,6 +13,7 @@ mod layout;
 #[cfg(feature = "live")]
 mod live;
 mod log;
+mod logged;
 mod map;
 mod modes;
 mod number;

@@ -1,15 +1,11 @@
 //! The figures that the commands of a page draw.
 
-use std::io::Cursor;
-
-use flexsc_core::SimulationError;
-use flexsc_core::campaign::Campaign;
-use flexsc_core::record::{Detail, Log, McapLog, RunEnd};
+use flexsc_core::record::{Detail, Log};
 
 use super::command::Command;
 use crate::failure::Failure;
 use crate::figure::{Figure, Named};
-use crate::stop::Stop;
+use crate::logged::logged;
 use crate::{Verb, plot, simulate};
 
 impl Command {
@@ -38,14 +34,6 @@ impl Command {
     pub fn log(&self, detail: Detail) -> Result<Log, Failure> {
         let Verb::Simulate(args) = &self.verb else { return Err(self.failure("no simulation")) };
         let (scenario, path) = self.simulated(args)?;
-        let run = simulate::itself(&Campaign::new(scenario, &path.to_string_lossy(), None)?);
-        let failed = |source| Failure::Run { name: run.scenario.name.clone(), source };
-        let logged = || -> Result<Vec<u8>, SimulationError> {
-            let provenance = Campaign::provenance(&run);
-            let mut log = McapLog::new(Cursor::new(Vec::new()), &provenance, detail)?;
-            let metrics = Campaign::simulate(&run, (&mut log, Stop))?;
-            Ok(log.finish(&metrics.to_row(), RunEnd::Complete)?.into_inner())
-        };
-        Ok(Log::read(path, logged().map_err(failed)?)?)
+        logged(scenario, path, detail)
     }
 }
