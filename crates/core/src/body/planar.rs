@@ -178,10 +178,7 @@ impl Arc {
     }
 
     /// The state `h` seconds after departure, and what a sensor sees of it.
-    #[allow(
-        clippy::inline_always,
-        reason = "in the search for crossings a call costs a fifth of what it does"
-    )]
+    #[allow(clippy::inline_always, reason = "the search for crossings calls it")]
     #[inline(always)]
     pub fn at(&self, h: f64, state: &mut State) -> Sight {
         state.rigid_angle = self.angle + h * (self.rate + 0.5 * self.moment * h);
