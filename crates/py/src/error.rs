@@ -31,7 +31,7 @@ pub fn log_error(error: flexsc_core::record::LogError) -> PyErr {
 /// Why there is no file at a path, as the `OSError` that Python itself would raise.
 pub fn no_file(path: &Path) -> impl FnOnce(io::Error) -> PyErr + '_ {
     move |error| match error.raw_os_error() {
-        Some(code) => PyOSError::new_err((code, error.to_string(), path.to_owned())),
+        Some(code) => PyOSError::new_err((code, error.to_string(), path.display().to_string())),
         None => PyOSError::new_err(format!("cannot write {}: {error}", path.display())),
     }
 }

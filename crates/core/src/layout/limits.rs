@@ -70,15 +70,15 @@ fn limits((least, greatest): (f64, f64)) -> Option<[f64; 2]> {
     }
     let digits = 1 - libm::floor(libm::log10(range)) as i32;
     let step = libm::pow(10.0, f64::from(-digits));
-    let [below, above] = [
-        libm::floor((least - MARGIN * range) / step) * step,
-        libm::ceil((greatest + MARGIN * range) / step) * step,
-    ];
+    let below = libm::floor((least - MARGIN * range) / step) * step;
+    let above = libm::ceil((greatest + MARGIN * range) / step) * step;
+    // What is never negative, and begins near 0, is seen from 0 on.
+    let below = if least >= 0.0 && least < 0.5 * range { 0.0 } else { below };
     // The nearest number to the decimal one, so that it is written as that.
     let decimal = |value: f64| format!("{value:.*}", digits.unsigned_abs() as usize).parse().unwrap_or(value);
     let limits = [decimal(below), decimal(above)];
     // What varies in its last digits alone has none between.
-    (limits[0] < least && greatest < limits[1]).then_some(limits)
+    (limits[0] <= least && greatest < limits[1]).then_some(limits)
 }
 
 #[cfg(test)]
@@ -89,7 +89,8 @@ mod tests {
     fn small_ranges_have_limits_and_others_not() {
         for (range, expected) in [
             ((-4.4e-4, 5.1e-4), Some([-4.9e-4, 5.6e-4])),
-            ((0.0, 1.83e-5), Some([-1e-6, 2e-5])),
+            ((0.0, 1.83e-5), Some([0.0, 2e-5])),
+            ((3e-6, 2.5e-5), Some([0.0, 2.7e-5])),
             ((0.60421, 0.60493), Some([0.60417, 0.60497])),
             ((-1.0, 1.0), None),
             ((0.0, 0.005), None),

@@ -127,8 +127,9 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
         "envelope",
         "Envelope of the elastic modes (rad)",
         vec![
-            line("/envelope.envelope_rad", "envelope"),
+            // Viewers draw the first line above the others.
             line("/envelope_mean.mean_rad", "window mean").thick(),
+            line("/envelope.envelope_rad", "envelope"),
         ],
     )];
     if scenario.law.switches() {

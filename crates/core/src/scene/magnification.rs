@@ -81,18 +81,19 @@ pub fn spatial_angle(spatial: &SpatialLoop) -> f64 {
     targets.chain([start]).map(angle).fold(spatial.law.dead_zone.get(), f64::max)
 }
 
-/// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, but no more than
-/// the same push gives without a spring, or what the initial state holds.
+/// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, or once where a
+/// wheel lets go as the body turns, but no more than the same push gives without a spring, or what the initial state holds.
 pub fn displacements(scenario: &Scenario) -> Vec<f64> {
     let model = &scenario.model;
     let travel = angle(scenario);
     let moment = largest(scenario) / model.commanded_inertia();
+    let times = if matches!(scenario.actuator, Actuator::Wheel(_)) { 1.0 } else { 2.0 };
     let of = |mode: &Mode| {
         let start = mode.start();
         // One that does not swing holds what it is displaced by.
         let swing = mode.amplitude(start);
         let held = if swing.is_nan() { libm::hypot(start.displacement, start.quadrature) } else { swing };
-        held.max((2.0 * mode.excitability().abs() * moment).min(mode.gain.get().abs() * travel))
+        held.max((times * mode.excitability().abs() * moment).min(mode.gain.get().abs() * travel))
     };
     model.modes.iter().map(of).collect()
 }
