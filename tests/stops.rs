@@ -82,17 +82,20 @@ fn an_interrupted_run_has_a_whole_log() {
 
 #[cfg(unix)]
 #[test]
-fn what_runs_in_the_background_ends_well_too() {
+fn what_is_told_to_ignore_signals_ends_well_by_others() {
     let dir = Dir::with(&["relay-fixed"]);
-    let run = dir.start_in_background(LONG);
-    dir.wait_for("out/relay-fixed.mcap.partial", 200_000);
-    run.sends("HUP");
-    run.sends("INT");
-    let so_far = dir.size("out/relay-fixed.mcap.partial");
-    dir.wait_for("out/relay-fixed.mcap.partial", so_far + 200_000);
-    run.signal("TERM").exits(130).says(&["interrupted", "out/relay-fixed.mcap"]);
-    assert_eq!(dir.names("out"), ["relay-fixed.mcap"]);
-    assert_eq!(end(&dir, "out/relay-fixed.mcap")["end"], "interrupted");
+    // By `nohup`, and in the background of a script besides.
+    for (ignored, other) in [("HUP", "INT"), ("INT HUP", "TERM")] {
+        let run = dir.start_ignoring(ignored, LONG);
+        dir.wait_for("out/relay-fixed.mcap.partial", 200_000);
+        ignored.split(' ').for_each(|signal| run.sends(signal));
+        let so_far = dir.size("out/relay-fixed.mcap.partial");
+        dir.wait_for("out/relay-fixed.mcap.partial", so_far + 200_000);
+        run.signal(other).exits(130).says(&["interrupted", "out/relay-fixed.mcap"]);
+        assert_eq!(dir.names("out"), ["relay-fixed.mcap"]);
+        assert_eq!(end(&dir, "out/relay-fixed.mcap")["end"], "interrupted");
+        std::fs::remove_dir_all(dir.path("out")).expect("removed");
+    }
 }
 
 #[cfg(unix)]

@@ -112,11 +112,11 @@ impl Dir {
         Self::started(self.command(arguments), arguments)
     }
 
-    /// The same where Ctrl-C and the end of the terminal are ignored, as by `nohup` in a script's background.
+    /// The same where signals such as `INT HUP` are ignored.
     #[cfg(unix)]
-    pub fn start_in_background(&self, arguments: &str) -> Started {
+    pub fn start_ignoring(&self, signals: &str, arguments: &str) -> Started {
         let mut command = Command::new("sh");
-        command.args(["-c", "trap '' INT HUP; exec \"$0\" \"$@\"", FLEXSC]);
+        command.args(["-c", &format!("trap '' {signals}; exec \"$0\" \"$@\""), FLEXSC]);
         command.args(arguments.split_whitespace()).current_dir(self.0.path());
         Self::started(command, arguments)
     }
