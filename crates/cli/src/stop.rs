@@ -1,4 +1,4 @@
-//! Stopping on Ctrl-C or SIGTERM.
+//! Stopping on Ctrl-C, SIGTERM or SIGHUP.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock, Once};

@@ -4,7 +4,7 @@
 use flexsc_core::analysis::sampled_loop::{Region, Robust};
 use flexsc_core::law::Extra;
 
-use super::tuned::Study;
+use super::study::Study;
 use crate::figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, band, colour};
 
 /// Settling times beyond so many limits are not shown.

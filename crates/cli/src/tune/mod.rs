@@ -1,6 +1,7 @@
 //! `flexsc tune`: the gains of the extra loop that do, and a schedule of the best ones.
 
 mod figures;
+mod study;
 mod table;
 mod tuned;
 
@@ -13,7 +14,8 @@ use crate::grid::{Even, Stepped};
 use crate::results::{Results, show};
 use crate::sampled::{Settled, positive, sampled};
 use crate::{print, scenario};
-use tuned::{Found, Study, Tuned};
+use study::Study;
+use tuned::{Found, Tuned};
 
 #[derive(clap::Args)]
 pub struct Args {

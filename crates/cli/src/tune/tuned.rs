@@ -1,40 +1,13 @@
 //! What tuning comes to: the region of the gains or the robust ones, and the schedule that they make.
 
-use flexsc_core::analysis::sampled_loop::{Gains, Loop, Region, Robust, Scaling, Window, midpoints, regions};
-use flexsc_core::law::Extra;
+use flexsc_core::analysis::sampled_loop::{Region, Robust, midpoints};
 use serde_json::{Value as Json, json};
 
+use super::study::Study;
 use super::{figures, table};
 use crate::failure::Failure;
 use crate::figure::Named;
 use crate::results::Results;
-
-/// What is tuned.
-pub struct Study {
-    /// Name of the scenario.
-    pub name: String,
-    /// Its extra loop, if it has one.
-    pub own: Option<Extra>,
-    /// Its loop.
-    pub of: Loop,
-    /// Frequencies of the dominant mode (rad/s).
-    pub frequencies: Vec<f64>,
-    /// Which modes follow it.
-    pub scaling: Scaling,
-    /// The gains that are tried.
-    pub gains: Gains,
-    /// What counts as settled.
-    pub window: Window,
-    /// The longest settling time of the region (s).
-    pub limit: f64,
-}
-
-impl Study {
-    /// The region of the gains at each frequency.
-    pub fn regions(&self) -> Vec<Region> {
-        regions(&self.of, &self.frequencies, self.scaling, self.gains, self.window, self.limit)
-    }
-}
 
 /// What was found.
 pub enum Found {
