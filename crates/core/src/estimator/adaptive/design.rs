@@ -185,3 +185,29 @@ fn started(
     };
     Ok(designed.iter().zip(bounds).map(start).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_modes_that_a_long_burn_excites_most_are_followed() {
+        let mode = |index: usize, frequency: f64, influence: f64| Merged {
+            tracker: Tracker {
+                frequency: Frequency::new(frequency).expect("a frequency"),
+                influence: vec![Finite::new(influence).expect("an influence")],
+                bounds: None,
+            },
+            modes: vec![index],
+        };
+        // An elastic rate of 0.2, 2, -1.5 and 0.5 for a unit of acceleration: the largest influence is not the strongest.
+        let all = [mode(0, 1.0, 0.2), mode(1, 2.0, 4.0), mode(2, 3.0, -4.5), mode(3, 10.0, 5.0)];
+        let followed = |count: usize| -> Vec<usize> {
+            strongest(&all, 0, count).iter().flat_map(|mode| mode.modes.clone()).collect()
+        };
+        assert_eq!([followed(1), followed(2), followed(3)], [vec![1], vec![1, 2], vec![1, 2, 3]]);
+        let given = [mode(9, 2.6, 1.0), mode(9, 0.1, 1.0)].map(|mode| mode.tracker);
+        let nearest: Vec<usize> = nearest(&all, &given).iter().flat_map(|mode| mode.modes.clone()).collect();
+        assert_eq!(nearest, [2, 0]);
+    }
+}
