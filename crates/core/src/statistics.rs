@@ -1,6 +1,6 @@
 //! Statistics of a campaign: mean, standard deviation and quantiles of every metric.
 
-use crate::metrics::{Metrics, Value};
+use crate::metrics::{Metrics, Value, goal};
 
 /// The quantiles that are told.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -22,18 +22,25 @@ pub struct Statistics {
     pub quantiles: [f64; 5],
 }
 
-/// The statistics of every metric that is a number, over runs of one scenario.
+/// The statistics of every metric that is a number, over runs of one scenario. A goal counts as 1 where it is met and
+/// as 0 where it is missed: its mean is the fraction of runs that meet it.
 pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
     let Some(first) = runs.first() else { return Vec::new() };
     let numeric = first.0.iter().enumerate().filter_map(|(index, (meaning, value))| {
-        matches!(value, Value::Count(_) | Value::Number(_)).then_some((index, *meaning))
+        let counts = match value {
+            Value::Count(_) | Value::Number(_) => true,
+            Value::Word(_) => meaning.name == goal::NAME,
+            Value::Numbers(_) => false,
+        };
+        counts.then_some((index, *meaning))
     });
     numeric
         .map(|(index, meaning)| {
             let value = |metrics: &Metrics| match metrics.0[index].1 {
                 Value::Count(count) => count as f64,
                 Value::Number(number) => number,
-                _ => f64::NAN,
+                Value::Word(word) => goal::score(word).unwrap_or(f64::NAN),
+                Value::Numbers(_) => f64::NAN,
             };
             let mut values: Vec<f64> = runs.iter().map(value).filter(|v| v.is_finite()).collect();
             values.sort_by(f64::total_cmp);
@@ -64,6 +71,19 @@ pub fn quantile(sorted: &[f64], q: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_mean_of_goals_is_the_fraction_that_is_met() {
+        let run = |band: f64, until: f64| {
+            let mut verdict = goal::Verdict::new(0.0, band);
+            verdict.outside(0.0, until);
+            Metrics(verdict.finish(10.0).into())
+        };
+        let runs = [run(1.0, 1.0), run(1.0, 9.5), run(f64::NAN, 0.0), run(1.0, 0.0), run(1.0, 3.0)];
+        let told = statistics(&runs);
+        assert_eq!((told[0].name, told[0].runs, told[0].mean), ("goal", 4, 0.75));
+        assert_eq!((told[2].name, told[2].runs, told[2].mean), ("time_outside_s", 4, 13.5 / 4.0));
+    }
 
     #[test]
     fn quantiles_interpolate_as_numpy_does() {

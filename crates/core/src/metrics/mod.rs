@@ -1,6 +1,7 @@
 //! Metrics: what a run comes to, as named numbers with units.
 
 mod filter;
+pub mod goal;
 mod rotation;
 mod spatial;
 mod switchings;
@@ -114,6 +115,11 @@ metrics! {
     OUTPUT_SWINGS = "output_swings", "",
         "Half of what lies between the largest and the smallest value of each observed coordinate after the manoeuvre";
     OUTPUT_SWINGS_LATE = "output_swings_late", "", "The same over the last 5 s of the run";
+    GOAL = "goal", "",
+        "Whether the run meets its goal: met if the angle stays within goal_band_rad of it for at least the last tenth of the time since the goal began, else missed; none without a goal or a band";
+    GOAL_BAND = "goal_band_rad", "rad",
+        "Half width of the band about the goal: reference.band, or what the law or the manoeuvre promises; null without one";
+    TIME_OUTSIDE = "time_outside_s", "s", "Time outside that band, from the goal's beginning on";
     NEES_MEAN = "nees_mean", "",
         "Mean over the assessed samples of the filter's normalised estimation error squared, over its number of states: 1 if its covariance is honest";
     NIS_MEAN = "nis_mean", "",
