@@ -1,6 +1,6 @@
 """All tests of flexsc, Rust and Python: `python3 tests/all.py`.
 
-Formatting and lints, the Rust tests, then the Python wheel in an environment of its own and its tests.
+Formatting and lints, the Rust tests, a minute of fuzzing, then the Python wheel in an environment of its own and its tests.
 """
 
 import os
@@ -53,6 +53,13 @@ def papers():
         sys.exit(f"{kept} is not what `flexsc reproduce` makes: see {made}")
 
 
+def crates():
+    """Licences, sources and duplicates of all crates: by `cargo deny` too, where it is installed."""
+    run(sys.executable, "tests/deny.py")
+    if shutil.which("cargo-deny") is not None:
+        run("cargo", "deny", "check", "bans", "licenses", "sources")
+
+
 def main():
     if sys.version_info < (3, 10):
         sys.exit("flexsc needs Python 3.10 or newer")
@@ -62,9 +69,12 @@ def main():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     python = binaries(ENVIRONMENT) / "python"
     run("cargo", "fmt", "--all", "--check")
+    crates()
     run("cargo", "clippy", "--release", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings")
     run("cargo", "test", "--release", "--quiet")
     papers()
+    if os.name == "posix":
+        run("cargo", "run", "--release", "--quiet", "-p", "flexsc-fuzz", "--", "--seconds", "12")
     run(python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", ".[test]")
     run(python, "-m", "ruff", "check", ".")
     run(python, "-m", "ruff", "format", "--check", ".")

@@ -19,6 +19,8 @@ mod determinism;
 mod drawing;
 mod events;
 mod filters;
+#[cfg(all(unix, feature = "live"))]
+mod fuzz_corpus;
 mod layout;
 #[cfg(feature = "live")]
 mod live;

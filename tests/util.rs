@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value as Json;
 use tempfile::TempDir;
 
-const FLEXSC: &str = env!("CARGO_BIN_EXE_flexsc");
+pub const FLEXSC: &str = env!("CARGO_BIN_EXE_flexsc");
 
 /// A short scenario with an uncertain gain and rate.
 pub const UNCERTAIN: &str = r#"seed = 7

@@ -66,7 +66,7 @@ impl Failure {
             return 0;
         }
         // Colours go to terminals that have them only, and never where NO_COLOR is set.
-        let _ = anstream::stderr().lock().write_all(coloured(&self.to_string()).as_bytes());
+        let _ = anstream::stderr().lock().write_all(coloured(&shown(&self.to_string())).as_bytes());
         match self {
             Self::Log(LogError::Unwritable { .. }) => 1,
             Self::Scenario(_) | Self::Arguments(_) | Self::Log(_) => 2,
@@ -86,6 +86,32 @@ fn hint(error: &io::Error) -> &'static str {
     }
 }
 
+/// No line of a message is longer (characters); what is quoted may be.
+const LONGEST_LINE: usize = 4000;
+
+/// A message as terminals can show it: a long line loses its middle, and control characters are written out.
+fn shown(text: &str) -> String {
+    let mut all = String::new();
+    for (index, line) in text.split('\n').enumerate() {
+        if index > 0 {
+            all.push('\n');
+        }
+        let cut = line.chars().count().saturating_sub(LONGEST_LINE);
+        for (place, c) in line.chars().enumerate() {
+            let middle = LONGEST_LINE / 2..LONGEST_LINE / 2 + cut;
+            if cut > 0 && place == middle.start {
+                let _ = write!(all, "[{cut} characters]");
+            }
+            match c {
+                _ if middle.contains(&place) => {}
+                c if c.is_control() && c != '\t' => all.extend(c.escape_default()),
+                c => all.push(c),
+            }
+        }
+    }
+    all
+}
+
 /// What went wrong, with its first word and those of its hints in colours.
 fn coloured(text: &str) -> String {
     let (error, hint) = (AnsiColor::Red.on_default().bold(), AnsiColor::Cyan.on_default().bold());
@@ -100,4 +126,19 @@ fn coloured(text: &str) -> String {
     }
     all.push('\n');
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LONGEST_LINE, shown};
+
+    #[test]
+    fn messages_can_be_shown() {
+        assert_eq!(shown("a\tb\nhint: c\u{e9}"), "a\tb\nhint: c\u{e9}");
+        assert_eq!(shown("a\u{1b}[31m\r\n\u{9b}b\0"), "a\\u{1b}[31m\\r\n\\u{9b}b\\u{0}");
+        let (half, whole) = (LONGEST_LINE / 2, "x".repeat(LONGEST_LINE));
+        let long = format!("{whole}\n{}{}", "a".repeat(half), "\u{e9}".repeat(half + 1));
+        let cut = format!("{whole}\n{}[1 characters]{}", "a".repeat(half), "\u{e9}".repeat(half));
+        assert_eq!(shown(&long), cut);
+    }
 }

@@ -92,6 +92,11 @@ enum Verb {
     },
 }
 
+/// The command's arguments, as what goes through all of them needs them.
+pub fn command() -> clap::Command {
+    Cli::command()
+}
+
 /// Runs the command with these arguments, the program's name first, and tells its exit code: 0 done, 1 a run
 /// failed or a file could not be written, 2 bad input, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
@@ -124,7 +129,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Schema(args) => schema::run(&args),
         Verb::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Cli::command(), "flexsc", &mut script);
+            clap_complete::generate(shell, &mut command(), "flexsc", &mut script);
             print(&script)
         }
     };

@@ -1,0 +1,203 @@
+//! A mutation fuzzer of flexsc: scenarios, structures, logs, arguments and what viewers send.
+//!
+//!     cargo run --release -p flexsc-fuzz                         12 s on each of five surfaces
+//!     cargo run --release -p flexsc-fuzz -- --seconds 3600       an hour on each
+//!
+//! Inputs follow from a seed, a surface and a number. Each runs in a process of its own kind under limits of memory and time;
+//! what panics, aborts, hangs or leaves half a file is kept, made small, and told with the command that repeats it.
+#![cfg(unix)]
+
+mod case;
+mod chance;
+mod findings;
+mod mutate;
+mod nasty;
+mod node;
+mod smaller;
+mod surface;
+mod tally;
+mod watch;
+mod worker;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+use findings::{Findings, Found};
+use surface::{Maker, Surface};
+use tally::Tally;
+use watch::News;
+use worker::Work;
+
+/// A worker runs so many inputs: what one leaves behind in its process does not reach far.
+const BATCH: u64 = 250;
+
+/// A mutation fuzzer of flexsc: exits with 1 if it finds anything
+#[derive(Parser)]
+struct Args {
+    #[command(subcommand)]
+    within: Option<Within>,
+    /// Surfaces, one after another [default: all]
+    #[arg(long, value_enum)]
+    surface: Vec<Surface>,
+    /// How long each surface is fuzzed (s)
+    #[arg(long, default_value_t = 12.0)]
+    seconds: f64,
+    /// What inputs follow from
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The number of the first input
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    /// Only this input: run it, and keep it
+    #[arg(long, conflicts_with_all = ["seconds", "first"])]
+    case: Option<u64>,
+    /// Only this input, which was kept: a directory
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["seconds", "first", "surface", "case"])]
+    replay: Option<PathBuf>,
+    /// Processes at a time
+    #[arg(long, default_value_t = 2)]
+    jobs: usize,
+    /// Where findings are kept
+    #[arg(long, value_name = "DIR", default_value = "target/fuzz")]
+    keep: PathBuf,
+}
+
+#[derive(Subcommand)]
+enum Within {
+    /// What the fuzzer starts to run inputs
+    #[command(hide = true)]
+    Worker { surface: Surface, seed: u64, from: u64, to: u64 },
+    /// What the fuzzer starts to run an input again
+    #[command(hide = true)]
+    Again { directory: PathBuf },
+}
+
+/// Writes a line of text.
+macro_rules! say {
+    ($($text:tt)*) => { { let _ = writeln!(std::io::stderr().lock(), $($text)*); } };
+}
+pub(crate) use say;
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let done = match &args.within {
+        Some(Within::Worker { surface, seed, from, to }) => {
+            worker::work(&Work::Numbers(*surface, *seed, *from..*to)).map(|()| true)
+        }
+        Some(Within::Again { directory }) => worker::work(&Work::Kept(directory)).map(|()| true),
+        None => fuzz(&args),
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            say!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Does what is asked, and tells whether nothing was found.
+fn fuzz(args: &Args) -> io::Result<bool> {
+    let scratch = tempfile::tempdir()?;
+    if let Some(directory) = &args.replay {
+        let why = again(&std::path::absolute(directory)?, &scratch.path().join("replay"))?;
+        say!("{}: {}", directory.display(), why.as_deref().unwrap_or("all is well"));
+        return Ok(why.is_none());
+    }
+    let surfaces = if args.surface.is_empty() { Surface::value_variants() } else { &args.surface };
+    let mut clean = true;
+    for surface in surfaces {
+        let findings = Findings::new(args.keep.join(name(*surface)));
+        if let Some(number) = args.case {
+            let case = Maker::new(*surface, args.seed)?.make(number);
+            let kept = findings.keep(&case, &format!("case-{number}"))?;
+            let why = again(&std::path::absolute(&kept)?, &scratch.path().join("case"))?;
+            say!("{}: {}", kept.display(), why.as_deref().unwrap_or("all is well"));
+            clean &= why.is_none();
+        } else {
+            clean &= one(args, *surface, findings, scratch.path())?;
+        }
+    }
+    Ok(clean)
+}
+
+/// The name of a surface.
+pub fn name(surface: Surface) -> String {
+    surface.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+/// Fuzzes one surface, and tells whether nothing was found.
+fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io::Result<bool> {
+    let began = Instant::now();
+    let deadline = began + Duration::from_secs_f64(args.seconds);
+    let maker = Maker::new(surface, args.seed)?;
+    let (tally, findings) = (Mutex::new(Tally::default()), Mutex::new(findings));
+    let next = AtomicU64::new(args.first);
+    let job = |job: usize| -> io::Result<()> {
+        let directory = scratch.join(format!("{}-{job}", name(surface)));
+        while Instant::now() < deadline {
+            let from = next.fetch_add(BATCH, Ordering::Relaxed);
+            let (mut at, to) = (from, from + BATCH);
+            while at < to && Instant::now() < deadline {
+                let (seed, mut broken) = (args.seed.to_string(), Vec::new());
+                let arguments = ["worker".to_owned(), name(surface), seed, at.to_string(), to.to_string()];
+                let was = at;
+                watch::watch(&arguments, &directory, deadline, |news| {
+                    let mut tally = tally.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                    let (number, why) = tally.take(news);
+                    at = number + 1;
+                    broken.extend(why.map(|why| (number, why)));
+                })?;
+                for (number, why) in broken {
+                    let found = Found { surface, seed: args.seed, number, since: was, why };
+                    let known =
+                        findings.lock().unwrap_or_else(std::sync::PoisonError::into_inner).is_known(&found);
+                    if !known {
+                        let case = maker.make(number);
+                        let (case, alone) =
+                            smaller::smaller(&case, &found, &directory.with_extension("again"))?;
+                        findings
+                            .lock()
+                            .unwrap_or_else(std::sync::PoisonError::into_inner)
+                            .tell(&found, &case, alone)?;
+                    }
+                }
+                if at == was {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let jobs: Vec<_> = (0..args.jobs.max(1)).map(|n| scope.spawn(move || job(n))).collect();
+        jobs.into_iter()
+            .try_for_each(|job| job.join().unwrap_or_else(|_| Err(io::Error::other("a thread panicked"))))
+    })?;
+    let findings = findings.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let tally = tally.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    say!("{}", tally.summary(surface, args.seed, began.elapsed(), &findings));
+    Ok(findings.none())
+}
+
+/// Runs an input that was kept, and tells what is wrong.
+pub fn again(case: &Path, scratch: &Path) -> io::Result<Option<String>> {
+    let mut wrong = None;
+    let arguments = ["again".to_owned(), case.display().to_string()];
+    let late = Instant::now() + Duration::from_secs(120);
+    watch::watch(&arguments, scratch, late, |news| {
+        wrong = match news {
+            News::Done { wrong, .. } => wrong,
+            News::Ended { .. } => None,
+            News::Broken { why, .. } => Some(why),
+        };
+    })?;
+    Ok(wrong)
+}

@@ -1,0 +1,53 @@
+//! Making an input smaller that still does the same.
+
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use crate::case::Case;
+use crate::findings::Found;
+
+/// No more effort than this for one input.
+const EFFORT: Duration = Duration::from_secs(20);
+
+/// A smaller input that does the same, and whether it does so in a process of its own.
+pub fn smaller(case: &Case, found: &Found, scratch: &Path) -> io::Result<(Case, bool)> {
+    let (began, kept) = (Instant::now(), scratch.with_extension("case"));
+    let kind = Found::kind(&found.why);
+    let same = |case: &Case| -> io::Result<bool> {
+        let _ = std::fs::remove_dir_all(&kept);
+        case.save(&kept)?;
+        Ok(crate::again(&kept, scratch)?.is_some_and(|why| Found::kind(&why) == kind))
+    };
+    let mut best = case.clone();
+    if !same(&best)? {
+        return Ok((best, false));
+    }
+    // What takes seconds each time is kept as it is.
+    let patient = || began.elapsed() < EFFORT;
+    for index in (0..best.files.len()).rev() {
+        let mut fewer = best.clone();
+        fewer.files.remove(index);
+        if patient() && fewer.is_live() == best.is_live() && same(&fewer)? {
+            best = fewer;
+        }
+    }
+    for index in 0..best.files.len() {
+        let mut size = best.files[index].1.len().div_ceil(2);
+        while size > 0 && patient() {
+            let mut at = 0;
+            while at < best.files[index].1.len() && patient() {
+                let mut less = best.clone();
+                let end = less.files[index].1.len().min(at + size);
+                less.files[index].1.drain(at..end);
+                if same(&less)? {
+                    best = less;
+                } else {
+                    at = end;
+                }
+            }
+            size = if size == 1 { 0 } else { size.div_ceil(2) };
+        }
+    }
+    Ok((best, true))
+}

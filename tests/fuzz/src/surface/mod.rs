@@ -1,0 +1,96 @@
+//! The surfaces on which input comes in, and what makes inputs for them.
+
+mod arguments;
+mod live;
+mod logs;
+mod records;
+mod scenarios;
+mod structures;
+mod wire;
+
+use std::path::Path;
+
+use clap::ValueEnum;
+
+use crate::case::Case;
+use crate::chance::Chance;
+use crate::node::Node;
+
+pub use live::Server;
+
+/// A surface.
+#[derive(Copy, Clone, Debug, PartialEq, ValueEnum)]
+pub enum Surface {
+    /// Scenario files, to every command that takes one
+    Scenarios,
+    /// Structures: CSV, MatrixMarket and NumPy files, matrices and panels
+    Structures,
+    /// MCAP logs and campaigns' tables, to everything that reads them
+    Logs,
+    /// Arguments of every command
+    Arguments,
+    /// What viewers send to a live run
+    Live,
+}
+
+/// Makes the inputs of a surface.
+pub struct Maker {
+    surface: Surface,
+    seed: u64,
+    seeds: Seeds,
+    logs: Vec<Vec<u8>>,
+}
+
+/// What inputs are made from.
+pub struct Seeds {
+    /// The scenarios that are shipped, by their names: text and tree.
+    pub scenarios: Vec<(String, String, Node)>,
+    /// The same trees alone.
+    pub trees: Vec<Node>,
+    /// Sparse and dense matrices as NumPy writes them.
+    pub archives: Vec<(String, Vec<u8>)>,
+}
+
+impl Seeds {
+    fn load() -> std::io::Result<Self> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let (mut scenarios, mut archives) = (Vec::new(), Vec::new());
+        let mut files = Vec::new();
+        crate::case::gather(&root.join("scenarios"), "", &mut files)?;
+        crate::case::gather(&root.join("tests/golden"), "", &mut files)?;
+        for (name, bytes) in files {
+            if let Some(stem) = name.strip_suffix(".toml") {
+                let text = String::from_utf8_lossy(&bytes).into_owned();
+                let table: toml::Table = toml::from_str(&text).map_err(std::io::Error::other)?;
+                scenarios.push((stem.to_owned(), text, Node::from(&toml::Value::Table(table))));
+            } else if Path::new(&name).extension().is_some_and(|e| e == "npz") {
+                archives.push((name, bytes));
+            }
+        }
+        let trees = scenarios.iter().map(|(_, _, tree)| tree.clone()).collect();
+        Ok(Self { scenarios, trees, archives })
+    }
+}
+
+impl Maker {
+    pub fn new(surface: Surface, seed: u64) -> std::io::Result<Self> {
+        let seeds = Seeds::load()?;
+        let logs = match surface {
+            Surface::Logs | Surface::Arguments => logs::seeds(&seeds)?,
+            _ => Vec::new(),
+        };
+        Ok(Self { surface, seed, seeds, logs })
+    }
+
+    /// The input of a number.
+    pub fn make(&self, number: u64) -> Case {
+        let chance = &mut Chance::new(self.seed, self.surface as usize, number);
+        match self.surface {
+            Surface::Scenarios => scenarios::make(&self.seeds, chance),
+            Surface::Structures => structures::make(&self.seeds, chance),
+            Surface::Logs => logs::make(&self.logs, &self.seeds, chance),
+            Surface::Arguments => arguments::make(&self.logs, &self.seeds, chance),
+            Surface::Live => live::make(chance),
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Watching workers: their clock, their memory, and how they end.
+
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader};
+use std::os::fd::OwnedFd;
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::worker::MESSAGES;
+
+/// What a process may have (kB): memory as `ulimit -v` counts it, and the size of a file.
+const MEMORY: u64 = 1_000_000;
+const FILE: u64 = 4_000_000;
+/// How long an input may take: of the processor's time, and where the processor is busy with others.
+const TIME: Duration = Duration::from_secs(5);
+const WALL: Duration = Duration::from_secs(120);
+/// When a command that may work for long is stopped, and how soon it must be gone then.
+const ENOUGH: Duration = Duration::from_millis(200);
+const GONE: Duration = Duration::from_millis(1500);
+const LOOK: Duration = Duration::from_millis(20);
+
+/// What a worker tells.
+pub enum News {
+    /// An input is done: its number, exit code, memory (kB), time, and what is wrong.
+    Done { number: u64, code: u8, memory: u64, time: Duration, wrong: Option<String> },
+    /// An input ended its process, or was ended, and that is no finding.
+    Ended { number: u64 },
+    /// An input ended its process: why.
+    Broken { number: u64, why: String },
+}
+
+/// The input that runs.
+struct Running {
+    number: u64,
+    stop: String,
+    began: Instant,
+    /// The processor's time of the process as it began.
+    used: Duration,
+    /// When it was asked to stop, and the processor's time then.
+    asked: Option<(Instant, Duration)>,
+}
+
+/// Runs a worker with these arguments in a directory until it ends or the deadline comes, and tells the news.
+pub fn watch(
+    arguments: &[String],
+    directory: &Path,
+    deadline: Instant,
+    mut tell: impl FnMut(News),
+) -> io::Result<()> {
+    let _ = fs::remove_dir_all(directory);
+    fs::create_dir_all(directory)?;
+    let (ours, theirs) = UnixStream::pair()?;
+    let messages = File::options().append(true).create(true).open(directory.join(MESSAGES))?;
+    let mut child = Command::new("sh")
+        .args(["-c", &format!("ulimit -v {MEMORY}; ulimit -f {}; ulimit -c 0; exec \"$0\" \"$@\"", 2 * FILE)])
+        .arg(std::env::current_exe()?)
+        .args(arguments)
+        .current_dir(directory)
+        // As many threads and arenas as a small machine has: what is measured is the input's memory.
+        .envs([
+            ("RAYON_NUM_THREADS", "2"),
+            ("MALLOC_ARENA_MAX", "2"),
+            ("NO_COLOR", "1"),
+            ("RUST_BACKTRACE", "0"),
+        ])
+        .stdin(OwnedFd::from(theirs))
+        .stdout(Stdio::null())
+        .stderr(messages)
+        .spawn()?;
+    let lines = lines(ours);
+    let (mut running, mut panic) = (None::<Running>, None);
+    loop {
+        match lines.recv_timeout(LOOK) {
+            Ok(line) => {
+                let words: Vec<&str> = line.splitn(6, ' ').collect();
+                match words[..] {
+                    ["run", number, stop] => {
+                        let used = processor(child.id());
+                        let number = number.parse().unwrap_or(0);
+                        running = Some(Running {
+                            number,
+                            stop: stop.to_owned(),
+                            began: Instant::now(),
+                            used,
+                            asked: None,
+                        });
+                    }
+                    ["done", number, code, memory, micros, wrong] => {
+                        running = None;
+                        tell(News::Done {
+                            number: number.parse().unwrap_or(0),
+                            code: code.parse().unwrap_or(u8::MAX),
+                            memory: memory.parse().unwrap_or(0),
+                            time: Duration::from_micros(micros.parse().unwrap_or(0)),
+                            wrong: (!wrong.is_empty()).then(|| wrong.to_owned()),
+                        });
+                    }
+                    _ => panic = line.strip_prefix("panic ").map(str::to_owned),
+                }
+                if Instant::now() < deadline {
+                    continue;
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => {
+                let status = child.wait()?;
+                return end(status, running.as_ref(), panic, &directory.join(MESSAGES), tell);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        if Instant::now() >= deadline {
+            return kill(&mut child);
+        }
+        let Some(now) = &mut running else { continue };
+        match late(now, child.id()) {
+            Late::No => {}
+            Late::Ended => {
+                tell(News::Ended { number: now.number });
+                return kill(&mut child);
+            }
+            Late::Hangs(why) => {
+                tell(News::Broken { number: now.number, why });
+                return kill(&mut child);
+            }
+        }
+    }
+}
+
+/// Whether an input takes too long.
+enum Late {
+    No,
+    Ended,
+    Hangs(String),
+}
+
+fn late(now: &mut Running, id: u32) -> Late {
+    let wall = now.began.elapsed();
+    if wall < ENOUGH {
+        return Late::No;
+    }
+    let used = processor(id).saturating_sub(now.used);
+    let beyond =
+        |wall: Duration, used: Duration, limit: Duration| wall > limit && used > limit || wall > WALL;
+    match (&*now.stop, now.asked) {
+        ("ended", _) if used > ENOUGH || wall > WALL => Late::Ended,
+        ("asked", None) if used > ENOUGH => {
+            let _ = Command::new("kill").args(["-INT", &id.to_string()]).status();
+            now.asked = Some((Instant::now(), used));
+            Late::No
+        }
+        ("asked", Some((at, then))) if beyond(at.elapsed(), used.saturating_sub(then), GONE) => {
+            Late::Hangs("does not stop when asked".to_owned())
+        }
+        _ if beyond(wall, used, TIME) => Late::Hangs(format!("takes more than {} s", TIME.as_secs())),
+        _ => Late::No,
+    }
+}
+
+/// The lines that a worker tells.
+fn lines(from: UnixStream) -> Receiver<String> {
+    let (sender, receiver) = channel();
+    thread::spawn(move || {
+        for line in BufReader::new(from).lines().map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    receiver
+}
+
+fn kill(child: &mut Child) -> io::Result<()> {
+    child.kill()?;
+    child.wait().map(drop)
+}
+
+/// A worker has ended.
+fn end(
+    status: ExitStatus,
+    running: Option<&Running>,
+    panic: Option<String>,
+    messages: &Path,
+    mut tell: impl FnMut(News),
+) -> io::Result<()> {
+    let said = String::from_utf8_lossy(&fs::read(messages).unwrap_or_default()).into_owned();
+    let Some(&Running { number, asked, .. }) = running else {
+        return if status.success() {
+            Ok(())
+        } else {
+            Err(io::Error::other(format!("a worker failed, {status}: {said}")))
+        };
+    };
+    if asked.is_some() && (status.signal() == Some(2) || status.code() == Some(130)) {
+        tell(News::Ended { number });
+        return Ok(());
+    }
+    // What the system says as it gives up: of memory, of the stack.
+    let last =
+        said.lines().rev().find(|line| line.contains("memory allocation") || line.contains("overflow"));
+    let why = panic.unwrap_or_else(|| format!("{status}: {}", last.unwrap_or_default()));
+    tell(News::Broken { number, why });
+    Ok(())
+}
+
+/// The processor's time of a process, where the system tells.
+pub fn processor(id: u32) -> Duration {
+    let stat = fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
+    // After the name, which may hold anything, in parentheses.
+    let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
+    let ticks = |at: usize| fields.get(at).and_then(|field| field.parse().ok()).unwrap_or(0);
+    Duration::from_millis(10 * (ticks(11) + ticks(12)))
+}

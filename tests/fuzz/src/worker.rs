@@ -1,0 +1,151 @@
+//! The process in which inputs run, one after another. It tells its parent, line by line, what it is about to do.
+
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::os::fd::AsFd;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use crate::case::{self, Case, Stop};
+use crate::surface::{Maker, Server, Surface};
+use crate::watch::processor;
+
+/// Where a worker's messages go; the parent makes it.
+pub const MESSAGES: &str = "messages";
+/// Messages that are longer help nobody (bytes).
+const LONGEST_MESSAGE: usize = 64 << 10;
+
+/// The processor's time is counted in these.
+const TICK: Duration = Duration::from_millis(10);
+
+/// Which inputs a worker runs.
+pub enum Work<'a> {
+    /// Those of these numbers.
+    Numbers(Surface, u64, std::ops::Range<u64>),
+    /// One that was kept.
+    Kept(&'a Path),
+}
+
+/// What runs the inputs.
+struct Worker {
+    /// Standard input is the line to the parent.
+    parent: File,
+    server: Option<Server>,
+}
+
+/// Runs inputs in the present directory.
+pub fn work(work: &Work<'_>) -> io::Result<()> {
+    let parent = File::from(io::stdin().as_fd().try_clone_to_owned()?);
+    let told = parent.try_clone()?;
+    std::panic::set_hook(Box::new(move |panic| {
+        let text = panic.to_string().replace('\n', " ");
+        // A panic ends the process, wherever it is caught.
+        let _ = writeln!(&told, "panic {text}");
+        std::process::abort();
+    }));
+    let mut worker = Worker { parent, server: None };
+    match work {
+        Work::Numbers(surface, seed, numbers) => {
+            let maker = Maker::new(*surface, *seed)?;
+            for number in numbers.clone() {
+                if !worker.run(number, &maker.make(number))? {
+                    break;
+                }
+            }
+        }
+        Work::Kept(directory) => {
+            worker.run(0, &Case::load(directory)?)?;
+        }
+    }
+    // A server's threads end with the process.
+    std::process::exit(0)
+}
+
+impl Worker {
+    /// Runs an input, and tells whether others can follow in this process.
+    fn run(&mut self, number: u64, case: &Case) -> io::Result<bool> {
+        let stop = match case.stop() {
+            Stop::Never => "never",
+            Stop::Asked => "asked",
+            Stop::Ended => "ended",
+        };
+        OpenOptions::new().write(true).open(MESSAGES)?.set_len(0)?;
+        if case.is_live() && self.server.as_ref().is_none_or(Server::has_ended) {
+            self.server = Some(Server::start(case, Path::new(MESSAGES))?);
+        }
+        writeln!(self.parent, "run {number} {stop}")?;
+        // Where the system can: the largest memory from here on.
+        let _ = fs::write("/proc/self/clear_refs", "5");
+        let (began, used) = (Instant::now(), processor(std::process::id()));
+        let (code, wrong) = match (&self.server, case.file(case::SENT)) {
+            (Some(server), Some(sent)) => {
+                server.receive(sent);
+                (0, (!server.serves()).then(|| "the server answers nobody".to_owned()))
+            }
+            _ => run(case)?,
+        };
+        // Where others keep the processor busy, an input takes no longer than it has the processor.
+        let used = processor(std::process::id()).saturating_sub(used) + TICK;
+        let (micros, memory) = (began.elapsed().min(used).as_micros(), memory());
+        writeln!(self.parent, "done {number} {code} {memory} {micros} {}", wrong.unwrap_or_default())?;
+        Ok(code != 130)
+    }
+}
+
+/// Runs the command in a directory of its own; its exit code, and what is wrong with what it did.
+fn run(case: &Case) -> io::Result<(u8, Option<String>)> {
+    let directory = Path::new("run");
+    fs::create_dir(directory)?;
+    case.lay_out(directory)?;
+    std::env::set_current_dir(directory)?;
+    let arguments = ["flexsc"].into_iter().chain(case.arguments.iter().map(String::as_str));
+    let code = flexsc_cli::main(arguments.map(OsString::from));
+    std::env::set_current_dir("..")?;
+    let wrong = wrong(case, code, directory)?;
+    fs::remove_dir_all(directory)?;
+    Ok((code, wrong))
+}
+
+/// What a command must not do, whatever it is given.
+fn wrong(case: &Case, code: u8, directory: &Path) -> io::Result<Option<String>> {
+    if ![0, 1, 2, 130].contains(&code) {
+        return Ok(Some(format!("exit code {code}")));
+    }
+    let said = fs::read(MESSAGES)?;
+    if code != 0 && said.is_empty() {
+        return Ok(Some(format!("exit code {code} without a word")));
+    }
+    if said.len() > LONGEST_MESSAGE {
+        return Ok(Some(format!("messages of {} kB", said.len() / 1000)));
+    }
+    let Ok(said) = String::from_utf8(said) else { return Ok(Some("messages that are no text".to_owned())) };
+    if said.contains('\u{1b}') || said.contains('\0') {
+        return Ok(Some("control characters in messages".to_owned()));
+    }
+    let mut files = Vec::new();
+    case::gather(directory, "", &mut files)?;
+    let new = |(name, _): &&(String, Vec<u8>)| case.file(name).is_none();
+    if let Some((name, _)) = files.iter().filter(new).find(|(name, _)| code == 2 || name.contains(".partial"))
+    {
+        return Ok(Some(format!(
+            "exit code {code}, but left {}",
+            name.rsplit('.').next().unwrap_or_default()
+        )));
+    }
+    let tables = files.iter().filter(|(name, _)| name.ends_with("statistics.csv"));
+    let infinite = |bytes: &[u8]| {
+        String::from_utf8_lossy(bytes).split([',', '\n']).any(|cell| cell.contains("inf") || cell == "NaN")
+    };
+    if tables.into_iter().any(|(_, bytes)| infinite(bytes)) {
+        return Ok(Some("inf or NaN in statistics.csv".to_owned()));
+    }
+    Ok(None)
+}
+
+/// The largest memory of this process since it was asked last (kB), where the system tells.
+fn memory() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(0)
+}
