@@ -57,8 +57,9 @@ export async function open(log, layout) {
 // Waits until all of the log is loaded, as the bar below the slider tells, and then until plots are drawn.
 async function loaded(page) {
   const bar = () => {
-    const parts = [...document.querySelectorAll('[data-testid="playback-slider"] [style*="width"]')];
-    return parts.reduce((sum, part) => sum + Number.parseFloat(part.style.width), 0) > 99.5;
+    const parts = [...document.querySelectorAll('[style*="left:"][style*="width:"]')].map((part) => part.style);
+    const ranges = parts.filter(({ left, width }) => left.endsWith("%") && width.endsWith("%"));
+    return ranges.reduce((sum, { width }) => sum + Number.parseFloat(width), 0) > 99.5;
   };
   await page.waitForFunction(bar, undefined, { timeout: 900_000 });
   await page.waitForTimeout(5000);
