@@ -1,7 +1,7 @@
 //! The panels of a body with one angle.
 
-use super::Tab;
 use super::panel::{Line, MOST_LINES, Panel, line};
+use super::{Tab, metrics};
 use crate::estimator::Estimator;
 use crate::law::Law;
 use crate::scenario::Scenario;
@@ -25,8 +25,8 @@ pub fn feeds_back(scenario: &Scenario) -> bool {
 
 /// The tabs of a scenario.
 pub fn tabs(scenario: &Scenario) -> Vec<Tab> {
-    let log =
-        vec![Panel::log(), Panel::message("arrival", "End of the manoeuvre", "/arrival"), Panel::metrics()];
+    let mut log = vec![Panel::log(), Panel::message("arrival", "End of the manoeuvre", "/arrival")];
+    log.extend(metrics(scenario));
     vec![
         Tab { title: "Motion", panels: motion(scenario) },
         Tab { title: "Estimator", panels: estimator(scenario) },

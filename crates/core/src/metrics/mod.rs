@@ -306,7 +306,7 @@ impl Gather {
         } else {
             Kind::Rotation(Box::new(Rotation::new(scenario)))
         };
-        Self { kind, filter: Filter::new(scenario), tracked: Tracked::default() }
+        Self { kind, filter: Filter::new(scenario), tracked: Tracked::new(scenario) }
     }
 
     /// The metrics of the run that has ended.
