@@ -165,7 +165,12 @@ class Scenario:
         """
         return Plan(self._native, band)
 
-    def simulate(self, run: int = 0, log: Literal["events", "full", "scene", "none"] = "events", yes: bool = False) -> Result:
+    def simulate(
+        self,
+        run: int = 0,
+        log: Literal["events", "full", "scene", "none"] = "events",
+        yes: bool = False,
+    ) -> Result:
         """Simulate the scenario as it stands. Other Python threads go on meanwhile.
 
         Args:
