@@ -12,6 +12,8 @@ mod campaign_figures;
 mod campaigns;
 mod cli;
 mod convergence;
+#[cfg(target_os = "linux")]
+mod costs;
 mod cycles;
 mod damping;
 mod damping_relay;
@@ -20,6 +22,7 @@ mod drawing;
 mod events;
 mod exact;
 mod filters;
+mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
 mod layout;
