@@ -123,9 +123,11 @@ fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     arc.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];
-    let trip = locate(&arc, &guards, Span::from_seconds(1e6), &mut there).expect("a trip");
+    let trip = locate(&arc, &guards, Span::from_seconds(1e6), &mut there, &mut ());
+    let trip = trip.expect("not stopped").expect("a trip");
     assert!((trip.after.seconds() - 5e5).abs() < 1e-9);
-    assert_eq!(locate(&arc, &guards, Span::from_seconds(4.9e5), &mut there), None);
+    let none = locate(&arc, &guards, Span::from_seconds(4.9e5), &mut there, &mut ());
+    assert_eq!(none.expect("not stopped"), None);
 }
 
 const FLEXIBLE: &str = "
