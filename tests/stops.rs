@@ -370,7 +370,6 @@ const SLOW: &[&str] = &[
     "map wheel-fast-mode.toml --frequency 0.05:0.5:10000 --period 0.1:0.5:1000",
     "map wheel-fast-mode.toml --frequency 0.05:0.5:10000 --period 0.1:0.5:1000 -o n.csv --figures n",
     "tune wheel-fast-mode.toml --frequency 0.05:0.5:10000 --gain=-3:3:0.001 --json",
-    "layout wheel-ekf.toml --set duration=1e7",
     "plot p/relay-adaptive.mcap -o p",
     "plot p/relay-adaptive.mcap -o p/all.png",
     "export p/relay-adaptive.mcap --topic /attitude -o p/attitude.csv",
