@@ -6,10 +6,10 @@ use std::rc::Rc;
 
 use clap::ValueEnum;
 use flexsc_core::record::{Column, Columns, Log, LogError};
-use flexsc_core::whole;
 use serde_json::{Map, Value as Json, json};
 
 use crate::failure::Failure;
+use crate::files;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -63,7 +63,8 @@ fn tell(args: &Args, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result
         return write(&mut out).and_then(|()| out.flush()).map_err(Failure::Stdout);
     };
     let mut bytes = Vec::new();
-    write(&mut bytes).and_then(|()| whole::write(path, &bytes)).map_err(Failure::write(path))
+    write(&mut bytes).map_err(Failure::write(path))?;
+    files::write(path, &bytes)
 }
 
 /// A cell of a table.

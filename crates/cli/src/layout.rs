@@ -8,7 +8,7 @@ use flexsc_core::record::{Detail, Log};
 
 use crate::failure::Failure;
 use crate::logged::logged;
-use crate::{print, scenario};
+use crate::{files, print, scenario};
 
 /// A log that takes longer on one core (s), or more memory (bytes), is not made: its viewers choose their axes.
 const LONGEST: f64 = 120.0;
@@ -38,7 +38,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let layout = layout.to_json();
     match &args.out {
-        Some(path) => flexsc_core::whole::write(path, layout.as_bytes()).map_err(Failure::write(path)),
+        Some(path) => files::write(path, layout.as_bytes()),
         None => print(layout.as_bytes()),
     }
 }

@@ -79,11 +79,12 @@ pub fn identify_json(
         )));
     }
     allowed(&Trial::cost(runs as f64, cycles, squared), yes)?;
-    let found = aside(py, |stop| {
+    let row = aside(py, move |stop| {
         let runs = (0..runs).into_par_iter();
-        runs.map(|number| (!stop.asked()).then(|| trial.run(number))).while_some().collect::<Vec<_>>()
+        let found = runs.map(|number| (!stop.asked()).then(|| trial.run(number))).while_some();
+        trial.row(&found.collect::<Vec<_>>())
     })?;
-    Ok(json!(trial.row(&found)).to_string())
+    Ok(json!(row).to_string())
 }
 
 #[pyfunction]

@@ -119,6 +119,7 @@ impl PlanarRun {
         }
         loop {
             let next = self.next();
+            self.body.approach(next.min(until), record)?;
             if next > until {
                 self.now = until;
                 self.view()?;
@@ -313,7 +314,7 @@ impl PlanarRun {
         // A sampled sensor trips its guards at samples.
         if self.next_sample.is_none() && !self.hold.guards.is_empty() {
             let ends = [self.hold.until, self.drive.due].into_iter().flatten().fold(self.end, Instant::min);
-            self.trip = self.body.trip(&self.hold.guards, ends.since(self.now));
+            self.trip = self.body.trip(&self.hold.guards, ends.since(self.now), record)?;
         }
         Ok(())
     }
