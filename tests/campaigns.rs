@@ -276,3 +276,35 @@ fn a_killed_campaign_keeps_its_rows() {
     dir.run("simulate relay-fixed.toml --set duration=2e6 --runs 2 -o few").exits(0);
     assert_eq!(dir.names("few"), ["runs.csv", "scenario.toml", "statistics.csv"]);
 }
+
+#[test]
+fn statistics_are_finite_and_tell_what_they_leave_out() {
+    let dir = Dir::new();
+    // An unstable loop: the angle grows by a factor each sample, beyond every double in the longer runs.
+    let unstable = "duration = 300.0\n[body.planar]\nangle = 0.1\n[law.pd]\nk_p = 1.0\nk_d = 0.0\nperiod = 1.0\n\
+                    [uncertain]\n\"law.pd.k_p\" = { choice = [1.0, 1e3, 1e6] }\n";
+    dir.write("unstable.toml", unstable);
+    let ran = dir.run("simulate unstable.toml --runs 12 -o out");
+    let statistics = table(&dir, "out/statistics.csv");
+    for row in &statistics {
+        for cell in ["mean", "sd", "q05", "q25", "q50", "q75", "q95"] {
+            let finite = |text: &str| text.parse::<f64>().is_ok_and(f64::is_finite);
+            assert!(row[cell].is_empty() || finite(&row[cell]), "{row:?}");
+        }
+    }
+    let rows = table(&dir, "out/runs.csv");
+    let infinite = |name: &str| rows.iter().filter(|row| row[name] == "inf").count();
+    let counted = |name: &str| {
+        let row = statistics.iter().find(|row| row["metric"] == name).expect("a metric");
+        row["runs"].parse::<usize>().expect("a count")
+    };
+    for row in &statistics {
+        let name = &row["metric"];
+        if rows.iter().all(|row| !row[name].is_empty()) {
+            assert_eq!(counted(name) + infinite(name), 12, "{name}");
+        }
+        let said = ran.err.contains(&format!("{name}: too large for a number in"));
+        assert_eq!(said, infinite(name) > 0, "{name}: {}", ran.err);
+    }
+    assert!(statistics.iter().any(|row| infinite(&row["metric"]) > 0), "{rows:?}");
+}

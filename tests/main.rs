@@ -18,6 +18,7 @@ mod cycles;
 mod damping;
 mod damping_relay;
 mod determinism;
+mod documented;
 mod drawing;
 mod events;
 mod exact;

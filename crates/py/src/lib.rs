@@ -211,23 +211,11 @@ fn simulate<'py>(
 fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathBuf) -> PyResult<u64> {
     let none = || PyValueError::new_err("log must be 'events', 'full' or 'scene' for a file");
     let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
-<<<<<<< HEAD
-    let written = aside(py, |stop| {
-        let mut file = LogFile::create(&path, &Campaign::provenance(&run), detail)?;
-        match Campaign::simulate(&run, (&mut file, stop)) {
-            Ok(metrics) => Ok(file.finish(&metrics, RunEnd::Complete)?),
-            Err(error) => {
-                file.discard();
-                Err(error)
-            }
-        }
-=======
     let place = path.clone();
     let written = aside(py, move |stop| {
         let mut file = LogFile::create(&place, &Campaign::provenance(&run), detail)?;
         let metrics = Campaign::simulate(&run, (&mut file, stop))?;
-        Ok(file.finish(&metrics.to_row(), RunEnd::Complete)?)
->>>>>>> campaign
+        Ok(file.finish(&metrics, RunEnd::Complete)?)
     })?;
     written.map_err(|error| error::unwritten(&path, scenario.name(), error))
 }
@@ -244,19 +232,12 @@ fn campaign<'py>(
     grids: Vec<(String, Vec<f64>)>,
     yes: bool,
 ) -> PyResult<(Vec<String>, Vec<Told<'py>>, Vec<Summary>)> {
-<<<<<<< HEAD
-    let study = scenario.study(grids.into_iter().map(|(key, values)| Grid { key, values }))?;
+    let study = Arc::new(scenario.study(grids.into_iter().map(|(key, values)| Grid { key, values }))?);
     let count = runs.1.saturating_sub(runs.0);
     let cost = study.cost(count, None).map_err(|why| PyValueError::new_err(format!("runs {why}")))?;
     allowed(&cost, yes)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
-    let pool = pool.map_err(|error| PyValueError::new_err(format!("jobs={jobs}: {error}")))?;
-    let outcomes = aside(py, |stop| {
-=======
-    let study = Arc::new(scenario.study(grids.into_iter().map(|(key, values)| Grid { key, values }))?);
     let at_work = study.clone();
     let outcomes = aside(py, move |stop| {
->>>>>>> campaign
         let mut outcomes: Vec<Outcome> = Vec::new();
         let each = stop.clone();
         let work = move |run: &Run| Ok(Campaign::simulate(run, each.clone())?);

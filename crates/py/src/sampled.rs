@@ -64,12 +64,8 @@ pub fn gain_regions_json(
     let (of, _, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     let gains = stepped(gains)?;
-<<<<<<< HEAD
     allow(&of, frequencies.len() * gains.values().len(), of.period, 0.0, settled)?;
-    let rows = aside(py, |_| regions(&of, &frequencies, scaling, gains, window, limit))?;
-=======
     let rows = aside(py, move |_| regions(&of, &frequencies, scaling, gains, window, limit))?;
->>>>>>> campaign
     Ok(json!(rows).to_string())
 }
 
@@ -105,13 +101,9 @@ pub fn robust_gains_json(
         quantile,
         margin,
     };
-<<<<<<< HEAD
     let closed = frequencies.len() * search.gains.values().len() * search.doubt.most_loops();
     allow(&of, closed, of.period, delay, settled)?;
-    Ok(json!(aside(py, |_| robust(&of, &frequencies, search))?).to_string())
-=======
     Ok(json!(aside(py, move |_| robust(&of, &frequencies, search))?).to_string())
->>>>>>> campaign
 }
 
 #[pyfunction]
@@ -126,17 +118,12 @@ pub fn stability_map_json(
     let (of, law, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     all_positive("periods", &periods)?;
-<<<<<<< HEAD
     let shortest = periods.iter().copied().fold(f64::INFINITY, f64::min);
     allow(&of, frequencies.len() * periods.len(), shortest, 0.0, settled)?;
-    let gain = |frequency: f64| gain.unwrap_or_else(|| law.extra_gain(frequency));
-    let cells = aside(py, |_| map(&of, &frequencies, &periods, scaling, gain, window))?;
-=======
     let law = law.clone();
     let cells = aside(py, move |_| {
         let gain = |frequency: f64| gain.unwrap_or_else(|| law.extra_gain(frequency));
         map(&of, &frequencies, &periods, scaling, gain, window)
     })?;
->>>>>>> campaign
     Ok(json!(cells).to_string())
 }
