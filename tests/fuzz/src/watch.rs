@@ -21,7 +21,7 @@ const TIME: Duration = Duration::from_secs(5);
 const WALL: Duration = Duration::from_secs(120);
 /// When a command that may work for long is stopped, and how soon it must be gone then.
 const ENOUGH: Duration = Duration::from_millis(200);
-const GONE: Duration = Duration::from_millis(1500);
+const GONE: Duration = Duration::from_secs(3);
 const LOOK: Duration = Duration::from_millis(20);
 
 /// What a worker tells.
@@ -148,7 +148,8 @@ fn late(now: &mut Running, id: u32) -> Late {
     match (&*now.stop, now.asked) {
         ("ended", _) if used > ENOUGH || wall > WALL => Late::Ended,
         ("asked", None) if used > ENOUGH => {
-            let _ = Command::new("kill").args(["-INT", &id.to_string()]).status();
+            // Not SIGINT, which what is started in the background ignores.
+            let _ = Command::new("kill").args(["-TERM", &id.to_string()]).status();
             now.asked = Some((Instant::now(), used));
             Late::No
         }
@@ -194,7 +195,7 @@ fn end(
             Err(io::Error::other(format!("a worker failed, {status}: {said}")))
         };
     };
-    if asked.is_some() && (status.signal() == Some(2) || status.code() == Some(130)) {
+    if asked.is_some() && (status.signal() == Some(15) || status.code() == Some(130)) {
         tell(News::Ended { number });
         return Ok(());
     }
