@@ -69,7 +69,7 @@ fn what_is_nested_too_deep_is_told_by_line_and_key() {
     let cases = [
         (format!("duration = 1.0\nlaw{} = 1\n", ".a".repeat(100_000)), "deep.toml:2:1: ", "`law.a.a"),
         (format!("duration = 1.0\n[law{}]\nx = 1\n", ".a".repeat(200)), "deep.toml:2:1: ", "`law.a.a"),
-        (format!("duration = 1.0\n[law]\n{headers}"), "deep.toml:81:1: ", "`law.a.a"),
+        (format!("duration = 1.0\n[law]\n{headers}"), "deep.toml:82:1: ", "`law.a.a"),
         (
             format!("duration = 1.0\nabout = {}{}\n", "[".repeat(200), "]".repeat(200)),
             "deep.toml:2:1: ",

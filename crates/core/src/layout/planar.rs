@@ -96,7 +96,7 @@ fn outputs(scenario: &Scenario) -> Vec<Line> {
 
 fn torques(scenario: &Scenario) -> Vec<Line> {
     if !scenario.tells_torque() {
-        return vec![line("/command.torque_nm", "torque").dots(), line("/law.torque_nm", "each second")];
+        return vec![line("/command.torque_nm", "torque").dots(), line("/law.torque_nm", "sampled")];
     }
     let mut lines = vec![line("/torque.applied_nm", "applied")];
     if scenario.plan.is_some() {
@@ -127,8 +127,7 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
         ],
     )];
     if scenario.law.switches() {
-        let lines =
-            vec![line("/envelope_mean.gain", "in each window").thick(), line("/law.gain", "each second")];
+        let lines = vec![line("/envelope_mean.gain", "in each window").thick(), line("/law.gain", "sampled")];
         panels.push(Panel::plot("gain", "Braking gain k_t", lines));
     }
     panels.push(Panel::states(

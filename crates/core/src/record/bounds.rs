@@ -14,6 +14,8 @@ const LARGEST: usize = 256 << 20;
 const SMALLEST_LIMIT: usize = 16 << 20;
 /// What a file unpacks to is at most so many times as large, beside [`LARGEST`]: no log of a run comes near.
 const UNPACKED: usize = 256;
+/// What a record counts for beside its body (bytes): empty ones take time too.
+const RECORD: usize = 64;
 
 /// The records outside of chunks, each with its kind, up to the footer.
 pub fn outer(bytes: &[u8]) -> Result<Vec<(u8, &[u8])>, McapError> {
@@ -55,7 +57,7 @@ pub fn walk(
                 rest = later;
             }
             LinearReadEvent::Record { opcode, data } => {
-                left = left.checked_sub(HEAD + data.len()).ok_or_else(|| {
+                left = left.checked_sub(RECORD + data.len()).ok_or_else(|| {
                     let why = format!("the file unpacks to more than {UNPACKED} times its size");
                     McapError::DecompressionError(why)
                 })?;

@@ -288,18 +288,18 @@ impl Scalar {
             }
             (Column::Numbers(values), Self::Time, Raw::Block(time)) => put(values, seconds(time)?),
             (Column::Integers(values), Self::Int32, Raw::Varint(n)) => put(values, i64::from(n as i32)),
-            (Column::Integers(values), Self::Int64, Raw::Varint(n)) => put(values, n as i64),
+            (Column::Integers(values), Self::Int64, Raw::Varint(n))
+            | (Column::Integers(values), Self::SignedFixed64, Raw::Fixed64(n)) => put(values, n as i64),
             (Column::Integers(values), Self::Zigzag, Raw::Varint(n)) => {
                 put(values, (n >> 1) as i64 ^ -((n & 1) as i64))
             }
             (Column::Integers(values), Self::SignedFixed32, Raw::Fixed32(n)) => {
                 put(values, i64::from(n as i32))
             }
-            (Column::Integers(values), Self::SignedFixed64, Raw::Fixed64(n)) => put(values, n as i64),
-            (Column::Counts(values), Self::Unsigned, Raw::Varint(n)) => put(values, n),
+            (Column::Counts(values), Self::Unsigned, Raw::Varint(n))
+            | (Column::Counts(values), Self::Fixed64, Raw::Fixed64(n)) => put(values, n),
             (Column::Counts(values), Self::Bool, Raw::Varint(n)) => put(values, u64::from(n != 0)),
             (Column::Counts(values), Self::Fixed32, Raw::Fixed32(n)) => put(values, u64::from(n)),
-            (Column::Counts(values), Self::Fixed64, Raw::Fixed64(n)) => put(values, n),
             (Column::Counts(values), Self::Bytes, Raw::Block(bytes)) => put(values, bytes.len() as u64),
             (Column::Labels(values, _), Self::Label(known), Raw::Varint(n)) => {
                 let index = known.iter().position(|known| *known == n as i32).unwrap_or(MOST_LABELS);
