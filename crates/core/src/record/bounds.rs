@@ -9,7 +9,7 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 /// A record begins with its kind (1 byte) and its length (8 bytes).
 const HEAD: usize = 9;
 /// No chunk or record is larger (bytes), however large the file; ours are of 1 MiB.
-const LARGEST: usize = 256 << 20;
+pub(super) const LARGEST: usize = 256 << 20;
 /// Chunks of a small file may be as large as this (bytes).
 const SMALLEST_LIMIT: usize = 16 << 20;
 /// What a file unpacks to is at most so many times as large, beside [`LARGEST`]: no log of a run comes near.

@@ -9,7 +9,7 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use toml::{Table, Value};
 
 use super::Provenance;
-use super::log::LARGEST;
+use super::bounds::LARGEST;
 
 /// What there is in the place of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]

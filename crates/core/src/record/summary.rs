@@ -22,16 +22,24 @@ fn line((meaning, value): &Told) -> MetricLine {
         Value::Count(count) => count.to_string(),
         Value::Number(value) => number(*value),
         Value::Word(word) => (*word).to_owned(),
-        Value::Numbers(list) if list.is_empty() => "none".to_owned(),
-        Value::Numbers(list) => {
-            let mut values: Vec<String> = list.iter().take(MOST_VALUES).copied().map(number).collect();
-            if list.len() > MOST_VALUES {
-                values.push(format!("… ({} in all)", list.len()));
-            }
-            values.join(", ")
+        Value::Numbers(numbers) => list(numbers, |value| number(*value)),
+        Value::Quantities(quantities) => {
+            list(quantities, |of| format!("{} {}", number(of.value), of.unit).trim_end().to_owned())
         }
     };
     MetricLine { name: meaning.name.to_owned(), value, unit: meaning.unit.to_owned() }
+}
+
+/// The first values of a list.
+fn list<T>(values: &[T], text: impl Fn(&T) -> String) -> String {
+    if values.is_empty() {
+        return "none".to_owned();
+    }
+    let mut texts: Vec<String> = values.iter().take(MOST_VALUES).map(text).collect();
+    if values.len() > MOST_VALUES {
+        texts.push(format!("… ({} in all)", values.len()));
+    }
+    texts.join(", ")
 }
 
 /// A number to five digits.

@@ -54,7 +54,7 @@ fn logged(text: &str, detail: Detail) -> Result<Vec<u8>, Box<dyn std::error::Err
     let run = Run { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() };
     let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(&run), detail)?;
     let metrics = Campaign::simulate(&run, &mut log)?;
-    Ok(log.finish(&metrics.to_row(), RunEnd::Complete)?.into_inner())
+    Ok(log.finish(&metrics, RunEnd::Complete)?.into_inner())
 }
 
 /// The same log without compression.

@@ -294,7 +294,7 @@ impl PlanarRun {
         let (body, now) = (&self.body, self.now);
         match record.course() {
             Course::None => Ok(()),
-            Course::Beyond(band) if body.stays_within(band, now) => Ok(()),
+            Course::Beyond(band) if body.stays_within(band, now, record)? => Ok(()),
             _ => body.walk(now, &self.exerted, |stretch| record.stretch(now, stretch)),
         }
     }

@@ -121,12 +121,20 @@ impl Plant {
 
     /// Whether the angle is certain to stay within so much of 0 on this motion until an instant: as bounds tell, which cost
     /// next to nothing, or the search for a crossing.
-    pub fn stays_within(&self, band: f64, until: Instant) -> bool {
-        let Motion::Planar(arc) = &self.motion else { return false };
+    ///
+    /// # Errors
+    /// The record ends the search.
+    pub fn stays_within(
+        &self,
+        band: f64,
+        until: Instant,
+        record: &mut impl Record,
+    ) -> Result<bool, RecordError> {
+        let Motion::Planar(arc) = &self.motion else { return Ok(false) };
         let span = until.since(self.departed);
         let guards = [Guard::at_least(band), Guard::at_most(-band)];
-        arc.stays_within(band, span.seconds())
-            || arc.knows_bounds() && locate(arc, &guards, span, &mut self.state.clone()).is_none()
+        Ok(arc.stays_within(band, span.seconds())
+            || arc.knows_bounds() && locate(arc, &guards, span, &mut self.state.clone(), record)?.is_none())
     }
 
     /// Takes the motion apart, from its departure to an instant.
