@@ -177,7 +177,9 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
         Ok(())
     };
     std::thread::scope(|scope| {
-        let jobs: Vec<_> = (0..args.jobs.max(1)).map(|n| scope.spawn(move || job(n))).collect();
+        // Viewers and their run wait for each other most of the time.
+        let several = if surface == Surface::Live { 4 } else { 1 };
+        let jobs: Vec<_> = (0..several * args.jobs.max(1)).map(|n| scope.spawn(move || job(n))).collect();
         jobs.into_iter()
             .try_for_each(|job| job.join().unwrap_or_else(|_| Err(io::Error::other("a thread panicked"))))
     })?;
