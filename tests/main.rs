@@ -18,6 +18,7 @@ mod damping_relay;
 mod determinism;
 mod drawing;
 mod events;
+mod exact;
 mod filters;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;

@@ -4,7 +4,7 @@
 //! for the PD law and the exact chain, of the closed loop and of Lagrange's equations in absolute angles.
 
 use flexsc_core::campaign::{Campaign, Run};
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Columns, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
@@ -211,7 +211,7 @@ fn a_campaign_plans_for_the_body_as_it_is_written() {
         );
     }
     let residual = |run: &Run| match Campaign::simulate(run, ()).expect("a run").get("output_residuals") {
-        Some(Value::Numbers(residuals)) => residuals[3],
+        Some(residuals) => residuals.numbers()[3],
         other => panic!("{other:?}"),
     };
     let exact = numbers(&metrics(study.scenario().clone()), "output_residuals")[3];

@@ -22,7 +22,7 @@ pub fn metrics(scenario: Scenario) -> Metrics {
 /// A metric that is a list.
 pub fn numbers(metrics: &Metrics, name: &str) -> Vec<f64> {
     match metrics.get(name) {
-        Some(Value::Numbers(numbers)) => numbers.clone(),
+        Some(value @ (Value::Numbers(_) | Value::Quantities(_))) => value.numbers(),
         other => panic!("{name}: {other:?}"),
     }
 }

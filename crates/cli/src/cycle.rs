@@ -20,6 +20,8 @@ pub struct RelayCycles {
     /// Name of the scenario.
     name: String,
     k_t: f64,
+    /// Unit of an impulse.
+    unit: &'static str,
     cycles: Vec<RigidCycle>,
     resonances: Vec<Resonance>,
 }
@@ -34,7 +36,8 @@ pub fn results(scenario: &Scenario) -> Result<RelayCycles, Failure> {
         )));
     };
     let (name, k_t) = (scenario.name.clone(), law.k_t.get());
-    Ok(RelayCycles { name, k_t, cycles: cycles(law, body, k_t), resonances: resonances(law, body) })
+    let unit = if body.has_unit_inertia() { "rad/s" } else { "N m s" };
+    Ok(RelayCycles { name, k_t, unit, cycles: cycles(law, body, k_t), resonances: resonances(law, body) })
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -43,12 +46,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 impl Results for RelayCycles {
     fn json(&self) -> Vec<Json> {
-        let Self { name, k_t, cycles, resonances } = self;
+        let Self { name, k_t, cycles, resonances, .. } = self;
         vec![json!({"scenario": name, "k_t": k_t, "cycles": cycles, "resonances": resonances})]
     }
 
     fn tell(&self) -> Result<(), Failure> {
-        let Self { name, k_t, cycles, resonances } = self;
+        let Self { name, k_t, unit, cycles, resonances } = self;
         say!("{name}   k_t = {k_t}, modes left out");
         if cycles.is_empty() {
             say!("  no limit cycle exists");
@@ -64,7 +67,7 @@ impl Results for RelayCycles {
             say!("    entry rate     {:.9e} rad/s", cycle.entry_rate_rad_s);
             say!("    angle          {:.6e} to {:.6e} rad", cycle.angle_min_rad, cycle.angle_max_rad);
             say!("    duty           {:.4} under strong torque", cycle.duty);
-            say!("    impulse        {:.6e} N m s per hour", cycle.impulse_per_hour_nm_s);
+            say!("    impulse        {:.6e} {unit} per hour", cycle.impulse_per_hour_nm_s);
         }
         if !resonances.is_empty() {
             say!(

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant as WallInstant};
 
+use flexsc_core::body::Stretch;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -47,6 +48,19 @@ impl Progress {
 
 impl Record for Progress {
     fn record(&mut self, now: Instant, _: Sample<'_>) -> Result<(), RecordError> {
+        self.see(now.seconds());
+        Ok(())
+    }
+
+    fn stretch(&mut self, _: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+        self.see(stretch.from);
+        Ok(())
+    }
+}
+
+impl Progress {
+    /// The run has come to a time (s).
+    fn see(&mut self, now: f64) {
         self.samples = self.samples.wrapping_add(1);
         // The wall clock is asked rarely: it costs as much as a sample.
         if self.samples.is_multiple_of(4096) {
@@ -54,9 +68,8 @@ impl Record for Progress {
                 self.bar = Some(bar(self.length.seconds() as u64, "simulated seconds"));
             }
             if let Some(bar) = &self.bar {
-                bar.set_position(now.seconds() as u64);
+                bar.set_position(now as u64);
             }
         }
-        Ok(())
     }
 }

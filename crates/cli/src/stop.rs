@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock, Once};
 
+use flexsc_core::body::Stretch;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 
@@ -65,6 +66,10 @@ pub struct Stop;
 
 impl Record for Stop {
     fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
+        if asked() { Err(RecordError::Interrupted) } else { Ok(()) }
+    }
+
+    fn stretch(&mut self, _: Instant, _: &Stretch) -> Result<(), RecordError> {
         if asked() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 }

@@ -3,8 +3,6 @@
 use std::io::Write;
 
 use flexsc_core::Scenario;
-use flexsc_core::actuator::Actuator;
-use flexsc_core::body::Drive;
 use flexsc_core::metrics::{Metrics, Value};
 
 use crate::say;
@@ -20,6 +18,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     } else if scenario.law.switches() {
         say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
         switchings(scenario, metrics);
+        goal(metrics);
     } else {
         say!("{head}, {:.1} ms", took * 1e3);
         rotation(scenario, metrics);
@@ -60,6 +59,19 @@ fn spatial(metrics: &Metrics) {
     }
 }
 
+/// Whether the run meets its goal.
+fn goal(metrics: &Metrics) {
+    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    let Some(Value::Word(word)) = metrics.get("goal") else { return };
+    let band = number("goal_band_rad");
+    if band.is_finite() {
+        let outside = number("time_outside_s");
+        say!("  goal           {word}: outside {band:.3e} rad of it for {outside:.6} s");
+    } else {
+        say!("  goal           {word}");
+    }
+}
+
 /// Envelope, adaptation and limit cycle of a relay law.
 fn switchings(scenario: &Scenario, metrics: &Metrics) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
@@ -92,33 +104,28 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
     if let Some(plan) = &scenario.plan {
         say!("  manoeuvre      {} rad in {} s", plan.angle, plan.time);
         say!(
-            "  at its end     {:+.3e} rad, {:+.3e} rad/s from the goal; {:.3e} rad of vibration, {:.3e} J",
+            "  at its end     {:+.3e} rad, {:+.3e} rad/s from the goal; {:.3e} rad of vibration, {:.3e} {}",
             number("arrival_angle_error_rad"),
             number("arrival_rate_error_rad_s"),
             number("angle_residual_rad"),
             number("residual_energy_j"),
+            if scenario.model.has_unit_inertia() { "J/(kg m²)" } else { "J" },
         );
     }
-    let (name, unit) = match scenario.model.drive {
-        Drive::Torque => ("torque", "N m"),
-        Drive::Motion => ("acceleration", "rad/s²"),
-    };
+    let (name, unit) = scenario.model.commanded();
     let feedback = number("peak_feedback_torque_nm");
-    let of_it = match &scenario.actuator {
-        _ if feedback == 0.0 => String::new(),
-        Actuator::Wheel(_) => format!(", command {feedback:.4}"),
-        _ => format!(", of the law {feedback:.4e} {unit}"),
-    };
+    let of_it = if feedback == 0.0 { String::new() } else { format!(", of the law {feedback:.4e} {unit}") };
     say!("  {name:<14} at most {:.4e} {unit}{of_it}", number("peak_torque_nm"));
     say!(
         "  angle          at most {:.3e} rad from the goal after it, {:.3e} rad over the last 5 s",
         number("angle_error_peak_rad"),
         number("angle_error_late_rad"),
     );
+    goal(metrics);
     let settling = number("settling_time_s");
     if settling.is_finite() {
         say!("  settling time  {settling} s");
-    } else {
+    } else if number("goal_band_rad").is_finite() {
         say!("  settling time  not settled after {} s", scenario.duration.seconds());
     }
     let radius = number("spectral_radius");
@@ -130,8 +137,8 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
         filter(metrics);
     }
     let of = |name: &str, index: usize| match metrics.get(name) {
-        Some(Value::Numbers(numbers)) => numbers.get(index).copied().unwrap_or(f64::NAN),
-        _ => f64::NAN,
+        Some(value) => value.numbers().get(index).copied().unwrap_or(f64::NAN),
+        None => f64::NAN,
     };
     for (index, output) in scenario.model.outputs.iter().enumerate() {
         say!(

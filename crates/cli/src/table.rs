@@ -103,6 +103,6 @@ fn cell(value: &Value) -> String {
         Value::Number(number) if number.is_nan() => String::new(),
         Value::Number(number) => format!("{number:e}"),
         Value::Word(word) => (*word).to_owned(),
-        Value::Count(_) | Value::Numbers(_) => value.to_json().to_string(),
+        Value::Count(_) | Value::Numbers(_) | Value::Quantities(_) => value.to_json().to_string(),
     }
 }

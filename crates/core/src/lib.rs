@@ -51,6 +51,7 @@ pub mod manoeuvre;
 pub mod metrics;
 mod one_of;
 pub mod phasor;
+mod polynomial;
 pub mod quantity;
 pub mod random;
 pub mod record;

@@ -30,7 +30,7 @@ pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
         let counts = match value {
             Value::Count(_) | Value::Number(_) => true,
             Value::Word(_) => meaning.name == goal::NAME,
-            Value::Numbers(_) => false,
+            Value::Numbers(_) | Value::Quantities(_) => false,
         };
         counts.then_some((index, *meaning))
     });
@@ -40,7 +40,7 @@ pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
                 Value::Count(count) => count as f64,
                 Value::Number(number) => number,
                 Value::Word(word) => goal::score(word).unwrap_or(f64::NAN),
-                Value::Numbers(_) => f64::NAN,
+                Value::Numbers(_) | Value::Quantities(_) => f64::NAN,
             };
             let mut values: Vec<f64> = runs.iter().map(value).filter(|v| v.is_finite()).collect();
             values.sort_by(f64::total_cmp);

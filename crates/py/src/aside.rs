@@ -5,6 +5,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use flexsc_core::body::Stretch;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 use pyo3::prelude::*;
@@ -26,6 +27,10 @@ impl Stop<'_> {
 
 impl Record for Stop<'_> {
     fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
+        if self.asked() { Err(RecordError::Interrupted) } else { Ok(()) }
+    }
+
+    fn stretch(&mut self, _: Instant, _: &Stretch) -> Result<(), RecordError> {
         if self.asked() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 }

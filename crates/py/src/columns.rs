@@ -38,7 +38,9 @@ pub fn of_metrics<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py
             Value::Count(count) => dict.set_item(meaning.name, count)?,
             Value::Number(number) if number.is_nan() => dict.set_item(meaning.name, py.None())?,
             Value::Number(number) => dict.set_item(meaning.name, number)?,
-            Value::Numbers(numbers) => dict.set_item(meaning.name, numbers.clone().into_pyarray(py))?,
+            Value::Numbers(_) | Value::Quantities(_) => {
+                dict.set_item(meaning.name, value.numbers().into_pyarray(py))?;
+            }
             Value::Word(word) => dict.set_item(meaning.name, word)?,
         }
     }

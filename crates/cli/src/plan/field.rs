@@ -34,9 +34,10 @@ impl Results for Field {
     fn tell(&self) -> Result<(), Failure> {
         let Self { name, body, shown, rows, .. } = self;
         let chosen = shown.checked_sub(1).map_or("angle", |index| &body.outputs[index].name);
+        let unit = body.torque_unit();
         match self.common {
             Common::Time(time) => say!("{name}   every command in {} s", time.seconds()),
-            Common::PeakTorque(peak) => say!("{name}   every command at a peak of {} N m", peak.get()),
+            Common::PeakTorque(peak) => say!("{name}   every command at a peak of {} {unit}", peak.get()),
         }
         let (band, hub) = (percent(self.band), "angle");
         say!(
@@ -56,9 +57,9 @@ impl Results for Field {
             "  {:<28}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>11}{:>11}{:>11}",
             "",
             "s",
-            "N m",
-            "N m",
-            "N m",
+            unit,
+            unit,
+            unit,
             "left",
             "worst",
             "worst",

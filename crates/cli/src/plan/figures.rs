@@ -46,11 +46,11 @@ impl Family<'_> {
 
     fn torque(&self) -> Figure {
         let lines = self.lines(|plan| plan.torque(self.body, self.step(self.plan.time)));
-        let unit = if self.body.inertia.get() == 1.0 { "rad/s²" } else { "N m" };
-        let y = Axis::around("torque", unit, heights(&lines));
+        let name = if self.body.has_unit_inertia() { "acceleration" } else { "torque" };
+        let y = Axis::around(name, self.body.torque_unit(), heights(&lines));
         let zero = Layer::new("", colour::GREY, Shape::Line(0.8), vec![(0.0, 0.0), (self.plan.time, 0.0)]);
-        let what = if self.body.drive == Drive::Motion { "torque that moves the hub" } else { "torque" };
-        self.figure(what, time(self.plan.time), y, vec![zero], lines)
+        let moves = if self.body.drive == Drive::Motion { " that moves the hub" } else { "" };
+        self.figure(&format!("{name}{moves}"), time(self.plan.time), y, vec![zero], lines)
     }
 
     fn angle(&self) -> Figure {

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use flexsc_core::body::{Drive, Planar};
+use flexsc_core::body::Planar;
 use flexsc_core::manoeuvre::{Manoeuvre, Plan, Report};
 use serde_json::{Value as Json, json};
 
@@ -54,7 +54,7 @@ impl Results for Planned {
         if plan.start_rate != 0.0 || plan.end_rate != 0.0 {
             say!("  rates            {} -> {} rad/s", plan.start_rate, plan.end_rate);
         }
-        let unit = if body.drive == Drive::Motion { "rad/s²" } else { "N m" };
+        let (_, unit) = body.commanded();
         if let Some(c) = &plan.coefficients {
             let list = |c: &[f64]| c.iter().map(|c| format!("{c:.9}")).collect::<Vec<_>>().join(", ");
             say!("  coefficients     {} {unit}", list(&c.odd));
@@ -63,12 +63,19 @@ impl Results for Planned {
             }
         }
         let torque = &report.torque;
-        say!("  peak torque      {:.6} N m at {:.6} s", torque.peak.value, torque.peak.time);
-        say!("  root mean square {:.6} N m", torque.rms);
-        say!("  square integral  {:.6e} N² m² s", torque.square);
-        say!("  torque at start  {:.6} N m", torque.initial);
+        let unit = body.torque_unit();
+        // On a body without inertia an acceleration.
+        let (peak, start, square, energy) = if body.has_unit_inertia() {
+            ("peak", "at the start", "rad²/s³", "J/(kg m²)")
+        } else {
+            ("peak torque", "torque at start", "N² m² s", "J")
+        };
+        say!("  {peak:<16} {:.6} {unit} at {:.6} s", torque.peak.value, torque.peak.time);
+        say!("  root mean square {:.6} {unit}", torque.rms);
+        say!("  square integral  {:.6e} {square}", torque.square);
+        say!("  {start:<16} {:.6} {unit}", torque.initial);
         say!("  hub at the end   {:.3e} rad, {:.3e} rad/s off", report.angle_error, report.rate_error);
-        say!("  energy left      {:.4e} J", report.energy);
+        say!("  energy left      {:.4e} {energy}", report.energy);
         say!(
             "  {:<16} {:>12}{:>12}{:>12}{:>14}{:>12}",
             "coordinate",

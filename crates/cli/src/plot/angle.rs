@@ -5,8 +5,6 @@ use super::story::Story;
 use super::{arrival, time, title};
 use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 
-/// What counts as settled if a scenario does not say: a part of the distance when the goal begins.
-const PART: f64 = 0.05;
 /// Less than this part of the goal is rounding, and shown as nothing on an axis that ends here (rad).
 const ROUNDING: f64 = 1e-13;
 const SMALL: f64 = 2e-9;
@@ -71,8 +69,9 @@ impl Settled {
     fn of(story: &Story, times: &[f64], error: &[f64]) -> Option<Self> {
         let from = story.scenario.plan.as_ref().map_or(0.0, |plan| plan.time);
         let given = story.scenario.reference.band.map(flexsc_core::quantity::Positive::get);
-        let part = if from > 0.0 { None } else { error.first().map(|first| PART * first.abs()) };
-        let band = given.or(part).filter(|band| *band > 0.0)?;
+        let promise = story.scenario.promise();
+        let promised = if from > 0.0 { None } else { error.first().map(|first| promise.band(first.abs())) };
+        let band = given.or(promised).filter(|band| *band > 0.0)?;
         let outside = |(time, error): &(&f64, &f64)| **time >= from - 1e-9 && error.abs() > band;
         let last = times.iter().zip(error).rfind(outside).map_or(from, |(time, _)| *time);
         let at = times.last().filter(|end| last < **end).map(|_| last);

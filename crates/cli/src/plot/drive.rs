@@ -12,10 +12,9 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let over_time =
         |values: &[f64]| -> Vec<Point> { motion.time.iter().copied().zip(values.iter().copied()).collect() };
     let acts = |values: &[f64]| values.iter().any(|value| *value != 0.0);
-    let unit = super::unit_of_torque(story);
+    let (name, unit) = story.scenario.model.commanded();
     let x = time(0.0..story.end);
     let executed = applied.iter().zip(planned.iter().zip(feedback)).any(|(a, (p, f))| *a != p + f);
-    let name = if unit == "rad/s²" { "acceleration" } else { "torque" };
     let panel =
         |x: Axis, name: &str, unit: &'static str, series: &[(&str, plotters::style::RGBColor, &[f64])]| {
             let all = series.iter().flat_map(|(.., values)| values.iter().copied());
@@ -42,11 +41,11 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let wheel = matches!(story.scenario.actuator, Actuator::Wheel(_));
     let panels = match (rest.is_empty(), executed || acts(planned)) {
         _ if wheel => {
-            // A wheel's command has a unit of its own, and no manoeuvre is planned for it.
+            // No manoeuvre is planned for a wheel; what the law asks of it may be far more than it gives.
             let mut on_body: Vec<(&str, _, &[f64])> = vec![("of the wheel", colour::BLACK, applied)];
             on_body.extend(rest.iter().filter(|(name, ..)| *name == "disturbance").copied());
-            let command = [("command", colour::BLUE, feedback.as_slice())];
-            vec![panel(x.unnamed(), name, unit, &on_body), panel(x, "command of the law", "", &command)]
+            let asked = [("asked of the wheel", colour::BLUE, feedback.as_slice())];
+            vec![panel(x.unnamed(), name, unit, &on_body), panel(x, name, unit, &asked)]
         }
         (true, _) => vec![panel(x, name, unit, &main)],
         (false, false) => vec![panel(x, name, unit, &rest)],

@@ -144,7 +144,7 @@ fn short(gain: f64) -> String {
 
 /// The unit of what drives the body.
 fn unit_of_torque(story: &Story) -> &'static str {
-    if story.scenario.model.commanded_inertia() == 1.0 { "rad/s²" } else { "N m" }
+    story.scenario.model.commanded().1
 }
 
 /// A line where the manoeuvre ends, if there is one.

@@ -24,7 +24,7 @@ pub fn figure(story: &Story) -> Figure {
     let levels = line.iter().map(|(_, torque)| torque.abs()).filter(|torque| *torque > 0.0);
     let strong = levels.clone().fold(0.0, f64::max);
     let weak = levels.filter(|level| *level < 0.2 * strong).fold(0.0, f64::max);
-    let unit = super::unit_of_torque(story);
+    let (what, unit) = story.scenario.model.commanded();
     let panel = |x: Axis, name: &str, most: f64, named: bool| {
         let most = if most > 0.0 { 1.3 * most } else { 1.0 };
         let marks = |timeout: bool| -> Vec<Point> {
@@ -35,17 +35,18 @@ pub fn figure(story: &Story) -> Figure {
         let zero = vec![(x.range.start, 0.0), (x.range.end, 0.0)];
         let layers = vec![
             Layer::new("", colour::GREY, Shape::Line(0.8), zero),
-            Layer::new(legend("torque"), colour::BLACK, Shape::Line(1.2), line.clone()),
+            Layer::new(legend(what), colour::BLACK, Shape::Line(1.2), line.clone()),
             Layer::new(legend("switching by guard"), colour::VERMILLION, Shape::Disc, marks(false)),
             Layer::new(legend("by timeout"), colour::BLUE, Shape::Diamond, marks(true)),
         ];
         Panel::new(x, Axis::exact(name, unit, -most..most), layers)
     };
-    let title = title(story, "torque");
+    let title = title(story, what);
     if weak > 0.0 {
-        let panels = vec![panel(x.unnamed(), "torque", strong, true), panel(x, "weak torque", weak, false)];
+        let panels =
+            vec![panel(x.unnamed(), what, strong, true), panel(x, &format!("weak {what}"), weak, false)];
         Figure { title, panels, panel_height: 200 }
     } else {
-        Figure { title, panels: vec![panel(x, "torque", strong, true)], panel_height: 300 }
+        Figure { title, panels: vec![panel(x, what, strong, true)], panel_height: 300 }
     }
 }

@@ -5,6 +5,7 @@
 //! out at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
 
 use super::{Drift, Planar, SERIES};
+use crate::polynomial::Series;
 
 /// e²: the step over the radius of convergence at which the series of this order leaves out the last bit of a double.
 const SAFETY: f64 = 7.389_056_098_930_65;
@@ -41,6 +42,8 @@ pub struct Drifting {
     unit: f64,
     moment: f64,
     departed: f64,
+    /// Angle and rate of each coordinate at departure.
+    start: Vec<[f64; 2]>,
     /// When the series begin, after departure, and how far they reach (s).
     begins: f64,
     reach: f64,
@@ -82,8 +85,10 @@ impl Drifting {
             series: placed(index + 1),
         });
         let fastest = frequencies.iter().copied().fold(1e-9, f64::max);
+        let coordinates: Vec<_> = std::iter::once(rigid).chain(modes).collect();
         let mut drifting = Self {
-            coordinates: std::iter::once(rigid).chain(modes).collect(),
+            start: coordinates.iter().map(Coordinate::begins).collect(),
+            coordinates,
             ratios: vec![Ratio::ONE; drift.count()],
             drift: drift.clone(),
             back_emf,
@@ -103,7 +108,35 @@ impl Drifting {
         self.rebase(self.seen - self.begins);
         (self.moment, self.departed) = (moment, now);
         (self.begins, self.seen) = (0.0, 0.0);
+        for (start, coordinate) in self.start.iter_mut().zip(&self.coordinates) {
+            *start = coordinate.begins();
+        }
         self.expand();
+    }
+
+    /// The same motion, back at its departure.
+    pub fn from_departure(&self) -> Self {
+        let mut again = self.clone();
+        for (coordinate, start) in again.coordinates.iter_mut().zip(&self.start) {
+            [coordinate.series[0], coordinate.series[1]] = *start;
+        }
+        (again.begins, again.seen) = (0.0, 0.0);
+        again.expand();
+        again
+    }
+
+    /// Puts the series of all coordinates `h` seconds after departure, not before they begin, and tells how far they reach
+    /// (s).
+    pub fn unfold(&mut self, h: f64, coordinates: &mut [Series]) -> f64 {
+        if h > self.begins {
+            self.rebase(h - self.begins);
+            self.begins = h;
+            self.expand();
+        }
+        for (into, coordinate) in coordinates.iter_mut().zip(&self.coordinates) {
+            into[..SERIES].copy_from_slice(&coordinate.series);
+        }
+        self.reach
     }
 
     /// Goes to `h` seconds after departure, not before a time gone to earlier.
@@ -175,6 +208,11 @@ impl Drifting {
 }
 
 impl Coordinate {
+    /// Angle and rate where the series begin.
+    fn begins(&self) -> [f64; 2] {
+        [self.series[0], self.series[1]]
+    }
+
     /// Angle, rate and acceleration `h` seconds after the series begin.
     fn at(&self, h: f64) -> [f64; 3] {
         let [mut x, mut v, mut half] = [0.0; 3];

@@ -5,6 +5,7 @@ use std::sync::Arc as Shared;
 use super::mode::Flow;
 use crate::manoeuvre::Waveform;
 use crate::phasor::Phasor;
+use crate::polynomial::Series;
 
 /// What drives a body from an instant on.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +55,16 @@ impl Forced {
     /// The command `h` seconds later.
     pub fn at(&self, h: f64) -> f64 {
         self.waveform.at(self.since + h)
+    }
+
+    /// The Taylor series of the command `h` seconds later, on the piece that holds a time `middle` seconds later.
+    pub fn series(&self, middle: f64, h: f64) -> Series {
+        self.waveform.series(self.since + middle, self.since + h)
+    }
+
+    /// The largest frequency in the command (rad/s).
+    pub fn fastest(&self) -> f64 {
+        self.waveform.fastest()
     }
 
     /// What it adds to the rigid motion of a body of unit inertia within `h` seconds.

@@ -14,6 +14,7 @@ mod panels;
 mod planar;
 mod reduction;
 pub mod spatial;
+mod stretch;
 mod weights;
 mod wheeled;
 
@@ -24,7 +25,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::structure::Fault;
 
-pub use chain::{Chain, Flight};
+pub use chain::{Chain, Flight, Flown};
 pub use coupled::{Coupled, exponential};
 pub use damping::Damping;
 pub use drift::{Drift, Point, Profile, Ramp, SERIES, Sinusoid};
@@ -37,8 +38,9 @@ pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
 pub use planar::{Arc, Drive, Planar};
 pub use spatial::Spatial;
+pub use stretch::{Expansion, Linear, Stretch};
 pub use weights::Weights;
-pub use wheeled::Coupling;
+pub use wheeled::{Coupling, Unfolding};
 
 /// The kinds of body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

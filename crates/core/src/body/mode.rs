@@ -121,6 +121,11 @@ impl Flow {
         }
     }
 
+    /// No part of the motion changes faster (rad/s).
+    pub fn fastest(&self) -> f64 {
+        self.frequency + self.drag
+    }
+
     /// Adds the mode's part to what a sensor sees, for a deviation from equilibrium.
     #[inline]
     pub fn add_sight(&self, equilibrium: f64, displacement: f64, quadrature: f64, sight: &mut Sight) {

@@ -10,8 +10,10 @@ use serde::{Deserialize, Serialize};
 
 use super::forced::{Forced, Input, Push};
 use super::mode::Flow;
+use super::stretch::{Expansion, REACH};
 use super::{Mode, Output, Phase, Sight, State};
 use crate::guard::Guard;
+use crate::polynomial::TERMS;
 use crate::quantity::{Finite, Positive};
 
 /// A planar body as a scenario describes it.
@@ -92,6 +94,27 @@ impl Planar {
             Drive::Torque => self.inertia.get(),
             Drive::Motion => 1.0,
         }
+    }
+
+    /// Whether the inertia is 1, as of a body that is described without one.
+    pub fn has_unit_inertia(&self) -> bool {
+        self.inertia == Positive::ONE
+    }
+
+    /// Whether what is commanded is an acceleration (rad/s²) and no torque (N m): the hub's motion, or the reduced moment
+    /// of a body without inertia.
+    pub fn commands_acceleration(&self) -> bool {
+        self.drive == Drive::Motion || self.has_unit_inertia()
+    }
+
+    /// The unit of a torque on the body.
+    pub fn torque_unit(&self) -> &'static str {
+        if self.has_unit_inertia() { "rad/s²" } else { "N m" }
+    }
+
+    /// What is commanded, and its unit.
+    pub fn commanded(&self) -> (&'static str, &'static str) {
+        if self.commands_acceleration() { ("acceleration", "rad/s²") } else { ("torque", "N m") }
     }
 
     /// The state at the start of a run.
@@ -221,6 +244,60 @@ impl Arc {
                 show(push);
             }
         }
+    }
+
+    /// Finds the series of all coordinates `h` seconds after departure, with a waveform that has no break until twice
+    /// `middle` seconds after it, and tells how far they reach (s).
+    pub fn expand(&self, h: f64, middle: f64, state: &mut State, into: &mut Expansion) -> f64 {
+        self.at(h, state);
+        let mut fastest = 0.0_f64;
+        if let Some(forced) = &self.forced {
+            into.command = forced.series(middle, h);
+            fastest = forced.fastest();
+        }
+        let mut moment = into.command.map(|c| self.mobility * c);
+        moment[0] += self.moment;
+        let [rigid, modes @ ..] = &mut into.coordinates[..] else { return f64::INFINITY };
+        (rigid[0], rigid[1]) = (state.rigid_angle, state.rigid_rate);
+        for n in 0..TERMS - 2 {
+            rigid[n + 2] = moment[n] / ((n + 1) * (n + 2)) as f64;
+        }
+        for ((swing, phase), x) in self.modes.iter().zip(&state.modes).zip(modes) {
+            let flow = &swing.flow;
+            (x[0], x[1]) = (phase.displacement, flow.frequency * phase.quadrature);
+            for n in 0..TERMS - 2 {
+                let back = flow.velocity(flow.frequency * x[n], (n + 1) as f64 * x[n + 1])[1];
+                x[n + 2] = (flow.gain * moment[n] + back) / ((n + 1) * (n + 2)) as f64;
+            }
+            fastest = fastest.max(flow.fastest());
+        }
+        REACH / fastest
+    }
+
+    /// Whether the modes show in the hub's angle.
+    pub fn shows_modes(&self) -> bool {
+        self.visible
+    }
+
+    /// Whether the bounds hold: they know no waveform.
+    pub fn knows_bounds(&self) -> bool {
+        self.forced.is_none()
+    }
+
+    /// Whether the angle is certain to stay within so much of 0 for `span` seconds: the rigid parabola with all modes at
+    /// full swing does.
+    pub fn stays_within(&self, band: f64, span: f64) -> bool {
+        if !self.knows_bounds() {
+            return false;
+        }
+        let end = self.angle + span * (self.rate + 0.5 * self.moment * span);
+        let (mut low, mut high) = (self.angle.min(end), self.angle.max(end));
+        let turn = -self.rate / self.moment;
+        if turn > 0.0 && turn < span {
+            let crest = self.angle + 0.5 * self.rate * turn;
+            (low, high) = (low.min(crest), high.max(crest));
+        }
+        high + self.centre + self.reach <= band && low + self.centre - self.reach >= -band
     }
 
     /// What a sensor sees at departure.

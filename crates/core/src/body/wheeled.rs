@@ -5,6 +5,7 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
+use super::stretch::{Expansion, Linear};
 use super::{Coupled, Drift, Drifting, Planar, Sight, State};
 
 /// So many transitions are kept, the newest last: the periods of a run are few.
@@ -35,6 +36,8 @@ struct Constant {
     /// Reduced moment (rad/s²), and z at departure.
     moment: f64,
     from: DVector<f64>,
+    /// No part of the motion changes faster (rad/s).
+    fastest: f64,
     /// Spans (s) with their transitions.
     transitions: Vec<(f64, DMatrix<f64>, DVector<f64>)>,
 }
@@ -48,11 +51,16 @@ impl Coupling {
             || {
                 let system = Coupled::new(body, back_emf, total, &vec![1.0; frequencies.len()]);
                 let pushed = (&system.rate * &system.input)[0];
+                let modes = body.modes.iter();
+                let fastest =
+                    modes.clone().map(|mode| super::mode::Flow::new(mode).fastest()).fold(0.0, f64::max);
+                let gains: f64 = modes.map(|mode| mode.gain.get().abs()).sum();
                 Flow::Constant(Constant {
                     acceleration: (&system.rate * &system.system, pushed),
                     system,
                     moment: 0.0,
                     from: here.clone(),
+                    fastest: fastest + back_emf.abs() * (1.0 + gains),
                     transitions: Vec::with_capacity(KEPT),
                 })
             },
@@ -91,6 +99,51 @@ impl Coupling {
         };
         state.set_vector(&self.here, &self.frequencies);
         sight
+    }
+}
+
+/// A motion that is taken apart from its departure on.
+#[derive(Clone, Debug)]
+pub enum Unfolding {
+    /// At constant frequencies.
+    Linear(Linear),
+    /// With drifting ones.
+    Drifting(Box<Drifting>),
+}
+
+impl Coupling {
+    /// The motion from its departure on.
+    pub fn unfold(&self) -> Unfolding {
+        match &self.flow {
+            Flow::Constant(constant) => {
+                let push = &constant.system.input * constant.moment;
+                Unfolding::Linear(Linear::new(
+                    &constant.system.system,
+                    push,
+                    &constant.from,
+                    constant.fastest,
+                ))
+            }
+            Flow::Drifting(drifting) => Unfolding::Drifting(Box::new(drifting.from_departure())),
+        }
+    }
+}
+
+impl Unfolding {
+    /// Finds the series of all coordinates `h` seconds after departure, not before an earlier time, and tells how far they
+    /// reach (s).
+    pub fn expand(&mut self, h: f64, into: &mut Expansion) -> f64 {
+        match self {
+            Self::Linear(linear) => {
+                let reach = linear.expand(h);
+                // Angles and rates take turns.
+                for (x, series) in into.coordinates.iter_mut().zip(linear.series().iter().step_by(2)) {
+                    *x = *series;
+                }
+                reach
+            }
+            Self::Drifting(drifting) => drifting.unfold(h, &mut into.coordinates),
+        }
     }
 }
 

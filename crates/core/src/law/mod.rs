@@ -47,6 +47,11 @@ pub trait Control {
         false
     }
 
+    /// How near to the goal the law promises to stay.
+    fn promise(&self) -> Promise {
+        Promise::Nothing
+    }
+
     /// The value that the law's tunable parameter starts with; NaN if it has none.
     fn gain(&self) -> f64 {
         f64::NAN
@@ -74,6 +79,28 @@ impl Goal {
     /// Angle and rate at an instant.
     pub fn at(&self, now: Instant) -> (f64, f64) {
         (self.angle + self.rate * now.since(self.from).seconds(), self.rate)
+    }
+}
+
+/// How near to its goal a body shall stay.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Promise {
+    /// Nothing is promised.
+    Nothing,
+    /// Within so much of it (rad).
+    Within(f64),
+    /// Within this part of the distance at which the goal begins.
+    Part(f64),
+}
+
+impl Promise {
+    /// Half width of the band about the goal (rad), where the goal begins at this distance; NaN without one.
+    pub fn band(self, distance: f64) -> f64 {
+        match self {
+            Self::Nothing => f64::NAN,
+            Self::Within(band) => band,
+            Self::Part(part) => part * distance,
+        }
     }
 }
 

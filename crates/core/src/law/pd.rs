@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cause, Control, Goal, Guards, Hold, Phase};
+use super::{Cause, Control, Goal, Guards, Hold, Phase, Promise};
 use crate::belief::Belief;
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::{Instant, Span};
@@ -112,6 +112,11 @@ impl Control for Pd {
         let limit = self.limit.map_or(f64::INFINITY, Positive::get);
         let torque = -self.k_p.get() * error - self.k_d.get() * derivative;
         Hold { torque: torque.clamp(-limit, limit), until: Some(now + self.period), guards: Guards::NONE }
+    }
+
+    /// The usual 5 % of a step.
+    fn promise(&self) -> Promise {
+        Promise::Part(0.05)
     }
 
     fn state(&self) -> Phase {

@@ -8,7 +8,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cause, Control, Goal, Guards, Hold, Phase};
+use super::{Cause, Control, Goal, Guards, Hold, Phase, Promise};
 use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::quantity::{Fraction, NonNegative, Positive};
@@ -64,6 +64,12 @@ impl Control for Relay {
 
     fn switches(&self) -> bool {
         true
+    }
+
+    /// The dead zone, and as much again as the hysteresis for the overshoot. In the cycle of a rigid body under a small weak
+    /// torque that is (1 - k_t)²/(4 k_t) times the hysteresis: less than once for k_t from 0.172 on.
+    fn promise(&self) -> Promise {
+        Promise::Within(self.dead_zone.get() + self.hysteresis.get())
     }
 
     fn gain(&self) -> f64 {

@@ -2,7 +2,6 @@
 
 use super::Tab;
 use super::panel::{Line, MOST_LINES, Panel, line};
-use crate::actuator::Actuator;
 use crate::estimator::Estimator;
 use crate::law::Law;
 use crate::scenario::Scenario;
@@ -56,8 +55,7 @@ fn motion(scenario: &Scenario) -> Vec<Panel> {
         ),
         Panel::plot("modes", "Elastic modes (rad)", modes(scenario)),
         Panel::plot("outputs", "Observed coordinates", outputs(scenario)),
-        Panel::plot("torque", "Torque (N m)", torques(scenario)),
-        Panel::plot("command", "Command of the law to the wheel", commands(scenario)),
+        Panel::plot("torque", &torque_title(scenario), torques(scenario)),
         Panel::plot("wheel", "Wheel speed (rad/s)", vec![line("/wheel.speed_rad_s", "speed")]),
     ]);
     let state = if relay { "/command.state" } else { "/law.state" };
@@ -104,22 +102,18 @@ fn torques(scenario: &Scenario) -> Vec<Line> {
     if scenario.plan.is_some() {
         lines.push(line("/torque.feedforward_nm", "planned"));
     }
-    if !has_wheel(scenario) {
-        lines.push(line("/torque.feedback_nm", "commanded by the law"));
-    }
+    lines.push(line("/torque.feedback_nm", "commanded by the law"));
     if !scenario.disturbance.is_empty() {
         lines.push(line("/torque.disturbance_nm", "disturbance"));
     }
     lines
 }
 
-/// A wheel's command has a unit of its own.
-fn commands(scenario: &Scenario) -> Vec<Line> {
-    if has_wheel(scenario) { vec![line("/torque.feedback_nm", "command")] } else { Vec::new() }
-}
-
-fn has_wheel(scenario: &Scenario) -> bool {
-    matches!(scenario.actuator, Actuator::Wheel(_))
+/// What drives the body, and its unit.
+fn torque_title(scenario: &Scenario) -> String {
+    let (name, unit) = scenario.model.commanded();
+    let (first, rest) = name.split_at(1);
+    format!("{}{rest} ({unit})", first.to_uppercase())
 }
 
 fn estimator(scenario: &Scenario) -> Vec<Panel> {

@@ -13,34 +13,45 @@ pub struct Peak {
 /// piece that t belongs to: at the ends of a piece it tells which limit is meant. Samples are at most `step` apart, and
 /// at least 32 in a piece; what may be the largest is refined to rounding.
 pub fn largest(breaks: &[f64], step: f64, f: impl Fn(f64, f64) -> f64) -> Peak {
-    let mut candidates = Vec::new();
+    largest_of(1, breaks, step, |middle, t| vec![f(middle, t)]).pop().unwrap_or_default()
+}
+
+/// The same of each of so many functions, which are evaluated together.
+pub fn largest_of(count: usize, breaks: &[f64], step: f64, f: impl Fn(f64, f64) -> Vec<f64>) -> Vec<Peak> {
+    let mut candidates = vec![Vec::new(); count];
     for ends in breaks.windows(2) {
         let (from, to) = (ends[0], ends[1]);
         let middle = 0.5 * (from + to);
-        let count = ((to - from) / step).ceil().clamp(32.0, 1e6) as usize;
-        let time = |i: usize| from + (to - from) * (i as f64 / count as f64);
-        let values: Vec<f64> = (0..=count).map(|i| f(middle, time(i)).abs()).collect();
-        for (i, &value) in values.iter().enumerate() {
-            let (before, after) = (i.saturating_sub(1), (i + 1).min(count));
-            if value >= values[before] && value >= values[after] {
-                candidates.push((middle, time(before), time(i), time(after), value));
+        let points = ((to - from) / step).ceil().clamp(32.0, 1e6) as usize;
+        let time = |i: usize| from + (to - from) * (i as f64 / points as f64);
+        let samples: Vec<Vec<f64>> = (0..=points).map(|i| f(middle, time(i))).collect();
+        for (index, candidates) in candidates.iter_mut().enumerate() {
+            let value = |i: usize| samples[i][index].abs();
+            for i in 0..=points {
+                let (before, after) = (i.saturating_sub(1), (i + 1).min(points));
+                if value(i) >= value(before) && value(i) >= value(after) {
+                    candidates.push((middle, time(before), time(i), time(after), value(i)));
+                }
             }
         }
     }
-    let coarse = candidates.iter().map(|candidate| candidate.4).fold(0.0, f64::max);
-    let mut peak = Peak::default();
-    for (middle, from, at, to, value) in candidates {
-        if value < 0.98 * coarse {
-            continue;
+    let peak = |(index, candidates): (usize, Vec<(f64, f64, f64, f64, f64)>)| {
+        let coarse = candidates.iter().map(|candidate| candidate.4).fold(0.0, f64::max);
+        let mut peak = Peak::default();
+        for (middle, from, at, to, value) in candidates {
+            if value < 0.98 * coarse || coarse == 0.0 {
+                continue;
+            }
+            let found = refined(|t| f(middle, t)[index].abs(), from, to);
+            let found = if found.value > value { found } else { Peak { time: at, value } };
+            // Of peaks that are equal but for rounding, the first.
+            if found.value > peak.value * (1.0 + 1e-13) || peak.value == 0.0 {
+                peak = found;
+            }
         }
-        let found = refined(|t| f(middle, t).abs(), from, to);
-        let found = if found.value > value { found } else { Peak { time: at, value } };
-        // Of peaks that are equal but for rounding, the first.
-        if found.value > peak.value * (1.0 + 1e-13) || peak.value == 0.0 {
-            peak = found;
-        }
-    }
-    peak
+        peak
+    };
+    candidates.into_iter().enumerate().map(peak).collect()
 }
 
 /// The maximum of a function with a single one, by golden section.

@@ -25,6 +25,13 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// How near to its goal a body that is turned so shall be afterwards (rad): a thousandth of the angle, or where the
+    /// manoeuvre changes the rate, of the angle that the change alone turns by, if that is more.
+    pub fn band(&self) -> f64 {
+        let change = 0.5 * self.time * (self.end_rate - self.start_rate).abs();
+        1e-3 * self.angle.abs().max(change)
+    }
+
     /// The largest absolute value of the command, and when.
     pub fn peak(&self) -> Peak {
         let command = &self.waveform;

@@ -1,11 +1,10 @@
 //! What the modes still do after a manoeuvre, as planned and with other frequencies.
 
-use super::Plan;
 use super::history::History;
+use super::plan::sampling;
+use super::{Plan, extremum};
 use crate::body::{Drive, Planar};
 
-/// Points of a band of frequencies.
-const POINTS: u32 = 401;
 /// The band that is always told of.
 pub const NEAR: f64 = 0.05;
 
@@ -55,13 +54,18 @@ pub fn left(plan: &Plan, body: &Planar, coordinates: &[Coordinate], factor: f64)
 }
 
 /// What is left in each coordinate. Gains and weights stay as they are while the frequencies move together.
+///
+/// Over the factor of the frequencies, an amplitude turns as fast as the fastest mode does within the manoeuvre's time: the
+/// largest one is found as that of a motion is, on samples that no crest falls between, and refined to rounding.
 pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<Residual> {
     let coordinates = coordinates(body);
     let sums = |factor: f64| left(plan, body, &coordinates, factor);
-    let worst = |band: f64| {
-        let factor = |i: u32| 1.0 + band * (2.0 * f64::from(i) / f64::from(POINTS - 1) - 1.0);
-        let largest = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect();
-        (0..POINTS).map(|i| sums(factor(i))).fold(vec![0.0; coordinates.len()], largest)
+    let fastest = body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
+    let step = sampling(fastest * plan.time);
+    let worst = |band: f64| -> Vec<f64> {
+        let ends = [1.0 - band, 1.0 + band];
+        let each = extremum::largest_of(coordinates.len(), &ends, step, |_, factor| sums(factor));
+        each.into_iter().map(|peak| peak.value).collect()
     };
     let (nominal, near, worst) = (sums(1.0), worst(NEAR), worst(band));
     let told = coordinates.into_iter().enumerate().map(|(i, c)| Residual {

@@ -2,6 +2,7 @@
 
 use super::phi::{exp, moment, phi};
 use crate::phasor::{Complex, Phasor};
+use crate::polynomial::{Series, TERMS};
 
 /// A command over time: the sum of its terms. Units are those of the command (N m, or rad/s² where the hub's motion
 /// is commanded).
@@ -109,6 +110,23 @@ impl Waveform {
     /// The integral of (to - t) u(t) from one time to another (s): the angle that a unit inertia gains from it.
     pub fn travel(&self, from: f64, to: f64) -> f64 {
         self.terms.iter().map(|term| term.travel(from, to)).sum()
+    }
+
+    /// The Taylor series at a time (s) of the terms that are active around another.
+    pub fn series(&self, middle: f64, t: f64) -> Series {
+        let mut series = [0.0; TERMS];
+        for term in self.terms.iter().filter(|term| term.from <= middle && middle < term.to) {
+            let (pole, coefficients) = term.about(t);
+            // exp(pole t) times each power of t.
+            let mut factor = Phasor::new(1.0, 0.0);
+            for k in 0..TERMS {
+                for (n, c) in coefficients.iter().enumerate().take(TERMS - k) {
+                    series[n + k] += (c * factor).re;
+                }
+                factor = factor * pole / (k + 1) as f64;
+            }
+        }
+        series
     }
 
     /// The same command later (s) and larger.

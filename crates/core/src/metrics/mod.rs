@@ -9,6 +9,7 @@ mod tracking;
 
 use serde_json::{Map, Value as Json, json};
 
+use crate::body::Stretch;
 use crate::record::{self, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -39,8 +40,19 @@ pub enum Value {
     Number(f64),
     /// Numbers.
     Numbers(Vec<f64>),
+    /// Numbers, each with its own unit.
+    Quantities(Vec<Quantity>),
     /// A word.
     Word(&'static str),
+}
+
+/// A number with its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// The number; NaN where there is none.
+    pub value: f64,
+    /// Its unit.
+    pub unit: String,
 }
 
 /// Declares the metrics: a constant for each, and the list of all.
@@ -59,7 +71,7 @@ metrics! {
     PUSHES_LEFT = "pushes_left", "", "Strong pushes back from the left boundary of the dead zone";
     DUTY = "duty", "", "Fraction of the run under strong torque";
     IMPULSE = "torque_impulse_per_hour_nm_s", "N m s",
-        "Integral of the absolute torque per hour of the run; rad/s on a body without inertia";
+        "Integral of the absolute torque per hour of the run; in rad/s on a body without inertia";
     WINDOW_MEANS = "envelope_window_means_rad", "rad",
         "Mean of the total envelope over each whole window of the observer";
     ENVELOPE_MEAN = "envelope_mean_rad", "rad", "Mean of the total envelope over all whole windows";
@@ -84,7 +96,7 @@ metrics! {
         "1 if the cycle's second half mirrors its first, else 0; null without a cycle";
     CYCLE_DUTY = "cycle_duty", "", "Fraction of the cycle under strong torque; null without a cycle";
     CYCLE_IMPULSE = "cycle_impulse_per_hour_nm_s", "N m s",
-        "Integral of the absolute torque per hour of that cycle; null without one";
+        "Integral of the absolute torque per hour of that cycle, in rad/s on a body without inertia; null without one";
     CYCLE_MULTIPLIERS = "cycle_multipliers", "",
         "Absolute values of the cycle's Floquet multipliers, largest first; empty without a cycle";
     CYCLE_MULTIPLIER_ARGUMENTS = "cycle_multiplier_arguments_rad", "rad",
@@ -98,19 +110,19 @@ metrics! {
     OUTPUT_RESIDUALS = "output_residuals", "",
         "The same for each observed coordinate, in its own unit";
     RESIDUAL_ENERGY = "residual_energy_j", "J",
-        "Elastic energy of motion and deformation that the manoeuvre leaves";
+        "Elastic energy of motion and deformation that the manoeuvre leaves; for each kg m² of a body without inertia";
     PEAK_TORQUE = "peak_torque_nm", "N m",
-        "Largest torque of the actuator, at the instants of a full log; rad/s² where the hub's motion is commanded";
-    PEAK_FEEDBACK = "peak_feedback_torque_nm", "N m", "Largest torque that the law commands, at the same instants";
+        "Largest torque of the actuator, to rounding; in rad/s² on a body without inertia, or where the hub's motion is commanded";
+    PEAK_FEEDBACK = "peak_feedback_torque_nm", "N m", "Largest torque that the law asks for, of a wheel its gain times the command; in rad/s² as peak_torque_nm";
     PEAK_OUTPUTS = "output_peaks", "",
-        "Largest absolute value of each observed coordinate, in its own unit, at the same instants";
+        "Largest absolute value of each observed coordinate, in its own unit, to rounding";
     ANGLE_ERROR_PEAK = "angle_error_peak_rad", "rad",
-        "Largest distance of the hub's angle from the goal after the manoeuvre, at the same instants";
+        "Largest distance of the hub's angle from the goal after the manoeuvre, to rounding; null if the run ends before";
     SETTLING_TIME = "settling_time_s", "s",
-        "Last time at which the hub's angle is outside reference.band of the goal, at the instants of a full log; null if it is so at the end";
+        "Last time at which the hub's angle is outside goal_band_rad of the goal, to rounding, or when the goal begins if it never is; null if it is so at the end, or without a band";
     SPECTRAL_RADIUS = "spectral_radius", "",
         "Largest absolute value of the eigenvalues of the sampled loop at constant frequencies, with the dominant mode known and all of the command executed: the largest over the frequencies of a drift; below 1 the loop is stable; null for what is no sampled PD loop";
-    ITAE = "itae", "rad s²", "Integral of time times the distance from the goal, from its beginning on, at the same instants";
+    ITAE = "itae", "rad s²", "Integral of time times the distance from the goal, from its beginning on, to rounding";
     ANGLE_ERROR_LATE = "angle_error_late_rad", "rad", "The same over the last 5 s of the run";
     OUTPUT_SWINGS = "output_swings", "",
         "Half of what lies between the largest and the smallest value of each observed coordinate after the manoeuvre";
@@ -162,6 +174,28 @@ metrics! {
     DAMPING_PAUSES = "damping_pauses", "", "How often the watchdog began to keep active damping quiet";
 }
 
+/// What a metric means on a body without inertia, or where the hub's motion is commanded.
+const fn reduced(meaning: Meaning, unit: &'static str) -> Meaning {
+    Meaning { unit, ..meaning }
+}
+const PEAK_ACCELERATION: Meaning = reduced(PEAK_TORQUE, "rad/s²");
+const PEAK_FEEDBACK_ACCELERATION: Meaning = reduced(PEAK_FEEDBACK, "rad/s²");
+const RESIDUAL_ENERGY_UNIT_INERTIA: Meaning = reduced(RESIDUAL_ENERGY, "J/(kg m²)");
+const REDUCED_IMPULSE: Meaning = reduced(IMPULSE, "rad/s");
+const CYCLE_REDUCED_IMPULSE: Meaning = reduced(CYCLE_IMPULSE, "rad/s");
+
+/// What a metric of this name means, of runs of a scenario if it is known.
+pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meaning> {
+    const ACCELERATIONS: &[Meaning] =
+        &[PEAK_ACCELERATION, PEAK_FEEDBACK_ACCELERATION, REDUCED_IMPULSE, CYCLE_REDUCED_IMPULSE];
+    const UNIT_INERTIA: &[Meaning] = &[RESIDUAL_ENERGY_UNIT_INERTIA];
+    let of = |some: &'static [Meaning]| some.iter().find(|meaning| meaning.name == name);
+    let model = scenario.map(|scenario| &scenario.model);
+    let accelerations = model.filter(|model| model.commands_acceleration()).and_then(|_| of(ACCELERATIONS));
+    let unit_inertia = model.filter(|model| model.has_unit_inertia()).and_then(|_| of(UNIT_INERTIA));
+    accelerations.or(unit_inertia).or_else(|| of(ALL))
+}
+
 /// A metric and its value.
 pub type Told = (&'static Meaning, Value);
 
@@ -194,21 +228,26 @@ impl Metrics {
     pub fn to_row(&self) -> record::Metrics {
         let mut metrics = Vec::new();
         for (meaning, value) in &self.0 {
-            let mut push = |index: usize, value: f64, text: &str| {
+            let mut push = |index: usize, value: f64, text: &str, unit: &str| {
                 metrics.push(record::Metric {
                     name: meaning.name.to_owned(),
-                    unit: meaning.unit.to_owned(),
+                    unit: unit.to_owned(),
                     index: index as u64,
                     value,
                     text: text.to_owned(),
                 });
             };
             match value {
-                Value::Count(count) => push(0, *count as f64, ""),
-                Value::Number(number) => push(0, *number, ""),
-                Value::Word(word) => push(0, f64::NAN, word),
+                Value::Count(count) => push(0, *count as f64, "", meaning.unit),
+                Value::Number(number) => push(0, *number, "", meaning.unit),
+                Value::Word(word) => push(0, f64::NAN, word, meaning.unit),
                 Value::Numbers(numbers) => {
-                    numbers.iter().enumerate().for_each(|(index, number)| push(index, *number, ""));
+                    let each = numbers.iter().enumerate();
+                    each.for_each(|(index, number)| push(index, *number, "", meaning.unit));
+                }
+                Value::Quantities(quantities) => {
+                    let each = quantities.iter().enumerate();
+                    each.for_each(|(index, of)| push(index, of.value, "", &of.unit));
                 }
             }
         }
@@ -217,12 +256,22 @@ impl Metrics {
 }
 
 impl Value {
+    /// The numbers of a metric that has several; none of another.
+    pub fn numbers(&self) -> Vec<f64> {
+        match self {
+            Self::Numbers(numbers) => numbers.clone(),
+            Self::Quantities(quantities) => quantities.iter().map(|of| of.value).collect(),
+            Self::Count(_) | Self::Number(_) | Self::Word(_) => Vec::new(),
+        }
+    }
+
     /// The value as JSON; NaN is null.
     pub fn to_json(&self) -> Json {
         match self {
             Self::Count(count) => json!(count),
             Self::Number(number) => json!(number),
             Self::Numbers(numbers) => json!(numbers),
+            Self::Quantities(_) => json!(self.numbers()),
             Self::Word(word) => json!(word),
         }
     }
@@ -231,14 +280,14 @@ impl Value {
 /// Gathers the metrics of a run.
 #[derive(Clone, Debug)]
 pub struct Gather {
-    course: Course,
+    kind: Kind,
     filter: Option<Filter>,
     tracked: Tracked,
 }
 
 /// What kind of run it is.
 #[derive(Clone, Debug)]
-enum Course {
+enum Kind {
     /// Of a relay law.
     Switchings(Box<Switchings>),
     /// Of a rotation, under a manoeuvre or a PD law.
@@ -250,22 +299,22 @@ enum Course {
 impl Gather {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        let course = if scenario.spatial.is_some() {
-            Course::Spatial(Box::new(Spatial::new(scenario)))
+        let kind = if scenario.spatial.is_some() {
+            Kind::Spatial(Box::new(Spatial::new(scenario)))
         } else if scenario.law.switches() {
-            Course::Switchings(Box::new(Switchings::new(scenario)))
+            Kind::Switchings(Box::new(Switchings::new(scenario)))
         } else {
-            Course::Rotation(Box::new(Rotation::new(scenario)))
+            Kind::Rotation(Box::new(Rotation::new(scenario)))
         };
-        Self { course, filter: Filter::new(scenario), tracked: Tracked::default() }
+        Self { kind, filter: Filter::new(scenario), tracked: Tracked::default() }
     }
 
     /// The metrics of the run that has ended.
     pub fn finish(self, scenario: &Scenario) -> Metrics {
-        let mut metrics = match self.course {
-            Course::Switchings(switchings) => switchings.finish(scenario),
-            Course::Rotation(rotation) => rotation.finish(),
-            Course::Spatial(spatial) => spatial.finish(),
+        let mut metrics = match self.kind {
+            Kind::Switchings(switchings) => switchings.finish(scenario),
+            Kind::Rotation(rotation) => rotation.finish(),
+            Kind::Spatial(spatial) => spatial.finish(),
         };
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(Filter::finish));
@@ -274,23 +323,34 @@ impl Gather {
 }
 
 impl Record for Gather {
-    fn dense(&self) -> bool {
-        let course = match &self.course {
-            Course::Switchings(switchings) => switchings.dense(),
-            Course::Rotation(rotation) => rotation.dense(),
-            Course::Spatial(_) => false,
-        };
-        course || self.filter.is_some()
+    fn estimates(&self) -> bool {
+        self.filter.is_some()
+    }
+
+    fn course(&self) -> record::Course {
+        match &self.kind {
+            Kind::Switchings(switchings) => switchings.course(),
+            Kind::Rotation(rotation) => rotation.course(),
+            Kind::Spatial(_) => record::Course::None,
+        }
+    }
+
+    fn stretch(&mut self, now: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+        match &mut self.kind {
+            Kind::Switchings(switchings) => switchings.stretch(now, stretch),
+            Kind::Rotation(rotation) => rotation.stretch(now, stretch),
+            Kind::Spatial(_) => Ok(()),
+        }
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         if let (Some(filter), Sample::Estimate(estimate)) = (&mut self.filter, sample) {
             filter.see(now, estimate);
         }
-        match &mut self.course {
-            Course::Switchings(switchings) => switchings.record(now, sample),
-            Course::Rotation(rotation) => rotation.record(now, sample),
-            Course::Spatial(spatial) => {
+        match &mut self.kind {
+            Kind::Switchings(switchings) => switchings.record(now, sample),
+            Kind::Rotation(rotation) => rotation.record(now, sample),
+            Kind::Spatial(spatial) => {
                 match sample {
                     Sample::Cycle(cycle) => spatial.see(now, cycle),
                     Sample::Tracking(tracking) => self.tracked.see(tracking),

@@ -1,14 +1,17 @@
 //! What the switchings of a relay law come to: pushes, impulse, envelope, adaptation, limit cycle.
 
+use super::goal::Verdict;
 use super::{
     CYCLE_DUTY, CYCLE_IMPULSE, CYCLE_KIND, CYCLE_MULTIPLIER_ARGUMENTS, CYCLE_MULTIPLIER_MAX,
-    CYCLE_MULTIPLIERS, CYCLE_ORDER, CYCLE_PERIOD, CYCLE_SYMMETRIC, DUTY, ENVELOPE_FINAL, ENVELOPE_FROZEN,
-    ENVELOPE_LATE, ENVELOPE_MEAN, FROZEN_REDUCTION, GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL,
-    IMPULSE, PUSHES_LEFT, PUSHES_RIGHT, REDUCTION, SWITCHINGS, Told, Value, WINDOW_MEANS,
+    CYCLE_MULTIPLIERS, CYCLE_ORDER, CYCLE_PERIOD, CYCLE_REDUCED_IMPULSE, CYCLE_SYMMETRIC, DUTY,
+    ENVELOPE_FINAL, ENVELOPE_FROZEN, ENVELOPE_LATE, ENVELOPE_MEAN, FROZEN_REDUCTION, GAIN_FINAL, GAIN_FROZEN,
+    GAIN_FROZEN_AT, GAIN_INITIAL, IMPULSE, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, REDUCTION, SWITCHINGS,
+    Told, Value, WINDOW_MEANS,
 };
 use crate::analysis::cycle::CycleWatch;
-use crate::law::Phase;
-use crate::record::{Record, RecordError, Sample};
+use crate::body::Stretch;
+use crate::law::{Goal, Phase};
+use crate::record::{Course, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
@@ -30,6 +33,10 @@ pub struct Switchings {
     cycle: CycleWatch,
     observed: bool,
     adapted: bool,
+    /// Whether a torque is an acceleration.
+    reduced: bool,
+    goal: Goal,
+    verdict: Verdict,
 }
 
 impl Switchings {
@@ -51,6 +58,9 @@ impl Switchings {
             cycle: CycleWatch::new(&scenario.model, smooth),
             observed: scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()),
             adapted: scenario.adaptation.is_some(),
+            reduced: scenario.model.commands_acceleration(),
+            goal: scenario.goal(),
+            verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
         }
     }
 
@@ -63,7 +73,7 @@ impl Switchings {
             (&PUSHES_RIGHT, Value::Count(self.pushes.0)),
             (&PUSHES_LEFT, Value::Count(self.pushes.1)),
             (&DUTY, Value::Number(self.strong.seconds() / self.duration)),
-            (&IMPULSE, Value::Number(self.impulse / hours)),
+            (if self.reduced { &REDUCED_IMPULSE } else { &IMPULSE }, Value::Number(self.impulse / hours)),
         ];
         if self.observed {
             metrics.extend(self.envelope());
@@ -74,7 +84,8 @@ impl Switchings {
         if self.adapted {
             metrics.extend(self.frozen());
         }
-        metrics.extend(cycle_metrics(self.cycle));
+        metrics.extend(cycle_metrics(self.cycle, self.reduced));
+        metrics.extend(self.verdict.finish(self.duration));
         metrics
     }
 
@@ -129,7 +140,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-fn cycle_metrics(watch: CycleWatch) -> Vec<Told> {
+fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<Told> {
     let cycle = watch.cycle();
     let cycle = cycle.as_ref();
     let number = |value: Option<f64>| Value::Number(value.unwrap_or(f64::NAN));
@@ -141,7 +152,7 @@ fn cycle_metrics(watch: CycleWatch) -> Vec<Told> {
         (&CYCLE_ORDER, number(cycle.map(|c| c.order as f64))),
         (&CYCLE_SYMMETRIC, number(cycle.map(|c| f64::from(u8::from(c.symmetric))))),
         (&CYCLE_DUTY, number(cycle.map(|c| c.duty))),
-        (&CYCLE_IMPULSE, number(impulse)),
+        (if reduced { &CYCLE_REDUCED_IMPULSE } else { &CYCLE_IMPULSE }, number(impulse)),
         (&CYCLE_MULTIPLIERS, Value::Numbers(multipliers.iter().map(|m| m.0).collect())),
         (&CYCLE_MULTIPLIER_ARGUMENTS, Value::Numbers(multipliers.iter().map(|m| m.1).collect())),
         (&CYCLE_MULTIPLIER_MAX, number(multipliers.first().map(|m| m.0))),
@@ -149,6 +160,19 @@ fn cycle_metrics(watch: CycleWatch) -> Vec<Told> {
 }
 
 impl Record for Switchings {
+    fn course(&self) -> Course {
+        // About a goal that is 0 from the start on, bounds of the angle tell most motions to be inside.
+        if self.goal == Goal::default() { Course::Beyond(self.verdict.band()) } else { Course::All }
+    }
+
+    fn stretch(&mut self, _: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+        let since = stretch.from - self.goal.from.seconds();
+        let start = self.goal.angle + self.goal.rate * since;
+        let distance = stretch.angle.less(start, self.goal.rate * stretch.length);
+        self.verdict.see(stretch.from, stretch.length, &distance);
+        Ok(())
+    }
+
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
             Sample::Begin(law) => {

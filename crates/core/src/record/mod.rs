@@ -16,7 +16,7 @@ use std::io;
 
 use thiserror::Error;
 
-use crate::body::State;
+use crate::body::{State, Stretch};
 use crate::time::Instant;
 
 pub use columns::{Column, Columns};
@@ -133,11 +133,50 @@ pub struct SpatialMotion {
     pub energy: Energy,
 }
 
+/// Which motions a record wants whole, stretch by stretch.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Course {
+    /// None.
+    None,
+    /// Those on which the angle may be farther from 0 than this (rad).
+    Beyond(f64),
+    /// All.
+    All,
+}
+
+impl Course {
+    /// What satisfies both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::None, course) | (course, Self::None) => course,
+            (Self::Beyond(a), Self::Beyond(b)) => Self::Beyond(a.min(b)),
+            _ => Self::All,
+        }
+    }
+}
+
 /// An observer of a simulation.
 pub trait Record {
     /// Whether the record wants the motion at each period of the scenario's log.
     fn dense(&self) -> bool {
         false
+    }
+
+    /// Whether the record wants what a filter makes of each sample.
+    fn estimates(&self) -> bool {
+        self.dense()
+    }
+
+    /// Which motions of a body with one angle the record wants whole: each from one change of its input to the next, when
+    /// it has ended, whatever instants other records look at.
+    fn course(&self) -> Course {
+        Course::None
+    }
+
+    /// Takes a stretch of a motion that ends now.
+    fn stretch(&mut self, _now: Instant, _stretch: &Stretch) -> Result<(), RecordError> {
+        Ok(())
     }
 
     /// Whether the record wants the scene, which a simulation has once it was asked to draw it.
@@ -176,6 +215,18 @@ impl<R: Record + ?Sized> Record for &mut R {
         (**self).scene()
     }
 
+    fn estimates(&self) -> bool {
+        (**self).estimates()
+    }
+
+    fn course(&self) -> Course {
+        (**self).course()
+    }
+
+    fn stretch(&mut self, now: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+        (**self).stretch(now, stretch)
+    }
+
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         (**self).record(now, sample)
     }
@@ -191,6 +242,18 @@ impl<R: Record> Record for Option<R> {
         self.as_ref().is_some_and(Record::scene)
     }
 
+    fn estimates(&self) -> bool {
+        self.as_ref().is_some_and(Record::estimates)
+    }
+
+    fn course(&self) -> Course {
+        self.as_ref().map_or(Course::None, Record::course)
+    }
+
+    fn stretch(&mut self, now: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+        self.as_mut().map_or(Ok(()), |record| record.stretch(now, stretch))
+    }
+
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         self.as_mut().map_or(Ok(()), |record| record.record(now, sample))
     }
@@ -204,6 +267,19 @@ impl<A: Record, B: Record> Record for (A, B) {
 
     fn scene(&self) -> bool {
         self.0.scene() || self.1.scene()
+    }
+
+    fn estimates(&self) -> bool {
+        self.0.estimates() || self.1.estimates()
+    }
+
+    fn course(&self) -> Course {
+        self.0.course().and(self.1.course())
+    }
+
+    fn stretch(&mut self, now: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+        self.0.stretch(now, stretch)?;
+        self.1.stretch(now, stretch)
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {

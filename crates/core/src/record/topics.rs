@@ -34,7 +34,8 @@ rows! {
         state: Phase,
         /// What made the law decide.
         cause: Trigger,
-        /// Torque from now on (N m; rad/s² on a body without inertia).
+        /// Torque that the law asks for from now on (N m; rad/s² on a body without inertia); of a wheel, its gain times the
+        /// law's command.
         torque_nm: f64,
         /// Angle, elastic part included (rad).
         angle_rad: f64,
@@ -47,7 +48,7 @@ rows! {
     Law = "/law" {
         /// State of the law.
         state: Phase,
-        /// Torque (N m; rad/s² on a body without inertia).
+        /// Torque that the law asks for (N m; rad/s² on a body without inertia); of a wheel, its gain times the law's command.
         torque_nm: f64,
         /// The law's tunable parameter (k_t of the relay law).
         gain: f64,
@@ -94,11 +95,11 @@ rows! {
         /// Each coordinate.
         outputs: Vec<OutputMotion>,
     }
-    /// The torques on the body; rad/s² where the hub's motion is commanded.
+    /// The torques on the body; all are rad/s² on a body without inertia, or where the hub's motion is commanded.
     Torque = "/torque" {
         /// What the manoeuvre commands (N m).
         feedforward_nm: f64,
-        /// What the law commands (N m).
+        /// What the law asks for (N m); of a wheel, its gain times the law's command.
         feedback_nm: f64,
         /// What the actuator makes of both (N m).
         applied_nm: f64,
@@ -109,7 +110,7 @@ rows! {
     WheelMotion = "/wheel" {
         /// Speed (rad/s).
         speed_rad_s: f64,
-        /// Momentum (N m s).
+        /// Momentum (N m s; rad/s on a body without inertia).
         momentum_nm_s: f64,
     }
     /// Where the body shall be: on the manoeuvre, where it would be if it were rigid.
@@ -121,8 +122,10 @@ rows! {
     }
     /// The vibration that is left of one observed coordinate.
     Residual {
-        /// Sum of the modes' amplitudes (the coordinate's unit).
+        /// Sum of the modes' amplitudes, in this unit.
         amplitude: f64,
+        /// Unit.
+        unit: String,
     }
     /// How the manoeuvre ended, once at its end.
     Arrival = "/arrival" {
@@ -132,7 +135,7 @@ rows! {
         rate_error_rad_s: f64,
         /// Vibration that is left of the hub's angle: the sum of the modes' amplitudes (rad).
         angle_residual_rad: f64,
-        /// Elastic energy that is left, of motion and deformation (J).
+        /// Elastic energy that is left, of motion and deformation (J; J/(kg m²) on a body without inertia).
         elastic_energy_j: f64,
         /// Vibration that is left of each observed coordinate.
         outputs: Vec<Residual>,

@@ -19,7 +19,7 @@ use crate::body::{Body, Chain, Coupling, Drift, Planar};
 use crate::disturbance::Disturbance;
 use crate::document::{Document, ScenarioError};
 use crate::estimator::Estimator;
-use crate::law::{Goal, Law};
+use crate::law::{Goal, Law, Promise};
 use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::quantity::Positive;
 use crate::sensor::Sensor;
@@ -108,8 +108,9 @@ pub struct Reference {
     /// the run's own first window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub envelope: Option<Positive>,
-    /// Distance from the goal that counts as settled (rad), for the metric `settling_time_s`; left out, 5 % of that at
-    /// which the goal begins.
+    /// Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s` and `settling_time_s`.
+    /// Left out, what is promised: after a manoeuvre a thousandth of its angle, by a PD law 5 % of the distance at which the
+    /// goal begins, by a relay its dead zone and its hysteresis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub band: Option<Positive>,
 }
@@ -245,6 +246,15 @@ impl Scenario {
             angle: self.model.angle.get() + plan.angle,
             rate: plan.end_rate,
         })
+    }
+
+    /// How near to its goal the body shall stay: as the scenario says, else as its manoeuvre or its law promises.
+    pub fn promise(&self) -> Promise {
+        match (self.reference.band, &self.plan) {
+            (Some(band), _) => Promise::Within(band.get()),
+            (None, Some(plan)) => Promise::Within(plan.band()),
+            (None, None) => self.law.promise(),
+        }
     }
 
     /// The scenario without need of any file: the matrices of a structure give way to the modes that they came to, the path

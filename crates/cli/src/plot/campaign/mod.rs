@@ -20,13 +20,15 @@ use crate::{print, say};
 use table::{Metric, Runs};
 
 /// What is drawn of a campaign if no metric is named: the first of these that vary.
-const MAIN: [&str; 20] = [
+const MAIN: [&str; 22] = [
+    "goal",
     "envelope_late_mean_rad",
     "gain_final",
     "cycle_period_s",
     "torque_impulse_per_hour_nm_s",
     "switchings",
     "settling_time_s",
+    "time_outside_s",
     "angle_error_late_rad",
     "angle_residual_rad",
     "frequency_error_rms_rad_s",

@@ -135,14 +135,19 @@ impl Rows {
         let column = |name: &str| -> Vec<String> {
             self.rows.values().map(|(row, _)| row.get(name).cloned().unwrap_or_default()).collect()
         };
-        let number = |text: &String| text.parse::<f64>().unwrap_or(f64::NAN);
+        let number = |text: &String| {
+            let counted = || metrics::goal::score(text).unwrap_or(f64::NAN);
+            text.parse::<f64>().unwrap_or_else(|_| counted())
+        };
         let (mut keys, mut all) = (Vec::new(), Vec::new());
         for header in self.header.iter().filter(|name| !is_about(name)) {
             let texts = column(header);
             let values: Vec<f64> = texts.iter().map(number).collect();
-            if let Some(meaning) = metrics::ALL.iter().find(|meaning| meaning.name == *header) {
+            let known = scenario.as_ref().map(|(scenario, _)| scenario);
+            if let Some(meaning) = metrics::meaning(header, known) {
                 // Words and lists are no numbers.
-                if texts.iter().zip(&values).all(|(text, value)| text.is_empty() || !value.is_nan()) {
+                let goal = meaning.name == metrics::goal::NAME;
+                if goal || texts.iter().zip(&values).all(|(text, value)| text.is_empty() || !value.is_nan()) {
                     all.push(Metric { meaning, texts, values });
                 }
             } else {
@@ -201,7 +206,11 @@ impl Metric {
             _ => "",
         };
         let name = self.meaning.name;
-        let name = name.strip_suffix(suffix).unwrap_or(name).replace('_', " ");
+        let named = name.strip_suffix(suffix).unwrap_or(name);
+        // Of a body without inertia, whose torques are accelerations.
+        let bare = named.strip_suffix("_nm").or_else(|| named.strip_suffix("_nm_s"));
+        let name = bare.map_or_else(|| named.to_owned(), |bare| bare.replace("torque", "acceleration"));
+        let name = name.replace('_', " ");
         // Prefixes are those of single units.
         if unit.contains('²') { (format!("{name}, {unit}"), "") } else { (name, unit) }
     }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::metrics::goal;
 use serde_json::json;
 
 use super::table::{Metric, Runs};
@@ -21,6 +22,8 @@ fn badness(metric: &Metric, index: usize) -> Option<f64> {
     let (name, value) = (metric.meaning.name, metric.values[index]);
     let neutral = ["gain_", "cycle_", "pushes_"].iter().any(|start| name.starts_with(start));
     let bad = match name {
+        // A goal is 1 where it is met.
+        goal::NAME if value > 0.0 => f64::NAN,
         _ if neutral => f64::NAN,
         _ if MORE.contains(&name) => -value,
         _ if ONE.contains(&name) => value.ln().abs(),

@@ -29,7 +29,10 @@ impl Arrival {
         let visible = if self.model.drive == Drive::Torque { 1.0 } else { 0.0 };
         let outputs = self.model.outputs.iter().map(|output| {
             let parts = output.modes.iter().zip(&amplitudes);
-            Residual { amplitude: parts.map(|(weight, amplitude)| weight.get().abs() * amplitude).sum() }
+            Residual {
+                amplitude: parts.map(|(weight, amplitude)| weight.get().abs() * amplitude).sum(),
+                unit: output.unit.clone(),
+            }
         });
         record::Arrival {
             angle_error_rad: sight.angle - self.goal.angle,

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc as Shared;
 
+use super::plant::Exerted;
 use crate::actuator::{Actuator, Opposes, Pulse, Wheel};
 use crate::body::{Drift, Forced, Input};
 use crate::disturbance::{Disturbance, Disturbing};
@@ -187,13 +188,33 @@ impl Drive {
         torque / self.inertia
     }
 
+    /// What torque a command of the law asks for (N m): that of a wheel has a gain.
+    pub fn asked(&self, command: f64) -> f64 {
+        match &self.actuator {
+            Actuator::Wheel(wheel) => wheel.gain.get() * command,
+            _ => command,
+        }
+    }
+
+    /// The torques of the motion that begins now.
+    pub fn exerted(&self) -> Exerted {
+        Exerted {
+            constant: if self.actuator == Actuator::Ideal { self.feedback } else { self.held },
+            feedback: self.asked(self.feedback),
+            back_emf: match &self.actuator {
+                Actuator::Wheel(wheel) => (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate),
+                _ => (0.0, false),
+            },
+        }
+    }
+
     /// The torques now, as logged, on a body that turns at these rates (rad/s).
     pub fn torque(&self, now: Instant, rate: f64, rigid_rate: f64) -> record::Torque {
         let feedforward_nm = self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds()));
         let command = feedforward_nm + self.feedback;
         record::Torque {
             feedforward_nm,
-            feedback_nm: self.feedback,
+            feedback_nm: self.asked(self.feedback),
             applied_nm: match &self.actuator {
                 Actuator::Ideal => command,
                 Actuator::Wheel(wheel) => {

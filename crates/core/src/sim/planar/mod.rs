@@ -18,7 +18,7 @@ use crate::body::{Sight, State};
 use crate::law::{Cause, Goal, Hold, Law};
 use crate::random::{Seed, Stream};
 use crate::record::foxglove::Level;
-use crate::record::{self, Command, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
+use crate::record::{self, Command, Course, GoalMotion, Motion, Record, RecordError, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::scene::PlanarScene;
 use crate::sensor::{Measurement, Sensor};
@@ -26,7 +26,7 @@ use crate::time::{Instant, Span};
 
 use arrival::Arrival;
 use drive::Drive;
-use plant::Plant;
+use plant::{Exerted, Plant};
 use track::Track;
 use watch::Watch;
 
@@ -47,6 +47,8 @@ pub struct PlanarRun {
     track: Option<Track>,
     law: Law,
     drive: Drive,
+    /// The torques of the present motion.
+    exerted: Exerted,
     /// The end of the manoeuvre that lies ahead, if any.
     arrival: Option<Arrival>,
     goal: Goal,
@@ -84,6 +86,7 @@ impl PlanarRun {
             track: Track::new(scenario, seed),
             law: scenario.law.clone(),
             drive: Drive::new(scenario, seed),
+            exerted: Exerted::default(),
             arrival: Arrival::new(scenario),
             goal: scenario.goal(),
             belief: Belief { gain: scenario.law.gain(), ..Belief::default() },
@@ -150,7 +153,7 @@ impl PlanarRun {
         let rigid_rate = self.body.state().rigid_rate;
         self.drive.command(self.now, self.hold.torque, rigid_rate);
         self.drive.serve(self.now, rigid_rate);
-        self.depart();
+        self.depart(record)?;
         record.record(self.now, Sample::Begin(&self.law_row()))?;
         if record.dense() {
             self.next_dense = Some(self.now);
@@ -163,6 +166,7 @@ impl PlanarRun {
     /// Ends the run, if this is its end and it has not ended yet.
     fn end(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         if self.now == self.end && !std::mem::replace(&mut self.ended, true) {
+            self.tell_course(record)?;
             let line = "the end of the run".to_owned();
             self.journal.tell(self.now, (Level::Info, "run"), line, record)?;
         }
@@ -210,7 +214,7 @@ impl PlanarRun {
         if self.drive.due == Some(now) {
             self.view()?;
             self.drive.serve(now, self.body.state().rigid_rate);
-            self.depart();
+            self.depart(record)?;
         }
         if self.next_dense == Some(now) {
             self.view()?;
@@ -261,7 +265,7 @@ impl PlanarRun {
         let before = self.law.state();
         self.hold = self.law.decide(now, cause, &self.goal, &self.belief);
         self.drive.command(now, self.hold.torque, self.body.state().rigid_rate);
-        self.depart();
+        self.depart(record)?;
         if before == self.law.state() {
             return Ok(());
         }
@@ -272,7 +276,7 @@ impl PlanarRun {
             time_fs,
             state: self.law.state(),
             cause: if cause == Cause::Timeout { Trigger::Timeout } else { Trigger::Guard },
-            torque_nm: self.hold.torque,
+            torque_nm: self.drive.asked(self.hold.torque),
             angle_rad: sight.angle,
             rate_rad_s: sight.rate,
             gain: self.belief.gain,
@@ -284,8 +288,20 @@ impl PlanarRun {
         Ok(())
     }
 
+    /// Tells the motion that ends now, stretch by stretch, where the record wants it.
+    fn tell_course(&self, record: &mut impl Record) -> Result<(), RecordError> {
+        let (body, now) = (&self.body, self.now);
+        match record.course() {
+            Course::None => Ok(()),
+            Course::Beyond(band) if body.stays_within(band, now) => Ok(()),
+            _ => body.walk(now, &self.exerted, |stretch| record.stretch(now, stretch)),
+        }
+    }
+
     /// Begins a motion under what drives the body from now on, and finds the next trip.
-    fn depart(&mut self) {
+    fn depart(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
+        self.tell_course(record)?;
+        self.exerted = self.drive.exerted();
         if let Some(watch) = &mut self.watch {
             watch.command(self.now, self.body.state(), self.hold.torque);
         }
@@ -299,6 +315,7 @@ impl PlanarRun {
             let ends = [self.hold.until, self.drive.due].into_iter().flatten().fold(self.end, Instant::min);
             self.trip = self.body.trip(&self.hold.guards, ends.since(self.now));
         }
+        Ok(())
     }
 
     /// What a sensor would see now.
@@ -312,7 +329,8 @@ impl PlanarRun {
     }
 
     fn law_row(&self) -> record::Law {
-        record::Law { state: self.law.state(), torque_nm: self.hold.torque, gain: self.belief.gain }
+        let torque_nm = self.drive.asked(self.hold.torque);
+        record::Law { state: self.law.state(), torque_nm, gain: self.belief.gain }
     }
 
     /// The motion now, for a dense record.

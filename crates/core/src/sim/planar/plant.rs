@@ -1,9 +1,10 @@
 //! The body on its way: its motion since the last event, and what is seen of it now.
 
-use crate::body::{Arc, Coupling, Flight, Input, Output, Sight, State};
+use crate::body::{Arc, Coupling, Expansion, Flight, Flown, Input, Output, Sight, State, Stretch, Unfolding};
 use crate::crossing::locate;
 use crate::guard::Guard;
-use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate};
+use crate::polynomial::{Polynomial, Series, TERMS};
+use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, RecordError};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
@@ -31,6 +32,24 @@ enum Motion {
     Chain(Box<Flight>),
     /// Of coupled or drifting modes.
     Coupled(Box<Coupling>),
+}
+
+/// The torques of one motion.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Exerted {
+    /// Of the actuator, beside the waveform of the command and the back-EMF (N m).
+    pub constant: f64,
+    /// What the law asks for (N m).
+    pub feedback: f64,
+    /// Back-EMF for each unit of the rate (N m s), and whether it is that of the elastic body.
+    pub back_emf: (f64, bool),
+}
+
+/// A motion that is taken apart from its departure on.
+enum Unfolded<'a> {
+    Planar(&'a Arc, State),
+    Chain(Flown<'a>),
+    Coupled(Unfolding),
 }
 
 impl Plant {
@@ -80,6 +99,92 @@ impl Plant {
             }
         }
         self.sight
+    }
+
+    /// Whether the angle is certain to stay within so much of 0 on this motion until an instant: as bounds tell, which cost
+    /// next to nothing, or the search for a crossing.
+    pub fn stays_within(&self, band: f64, until: Instant) -> bool {
+        let Motion::Planar(arc) = &self.motion else { return false };
+        let span = until.since(self.departed);
+        let guards = [Guard::at_least(band), Guard::at_most(-band)];
+        arc.stays_within(band, span.seconds())
+            || arc.knows_bounds() && locate(arc, &guards, span, &mut self.state.clone()).is_none()
+    }
+
+    /// Takes the motion apart, from its departure to an instant.
+    pub fn walk(
+        &self,
+        until: Instant,
+        exerted: &Exerted,
+        mut take: impl FnMut(&Stretch) -> Result<(), RecordError>,
+    ) -> Result<(), RecordError> {
+        let span = until.since(self.departed).seconds();
+        let mut unfolded = match &self.motion {
+            Motion::Planar(arc) => Unfolded::Planar(arc, self.state.clone()),
+            Motion::Chain(flight) => Unfolded::Chain(flight.unfold()),
+            Motion::Coupled(coupling) => Unfolded::Coupled(coupling.unfold()),
+        };
+        let mut series = Expansion::new(self.state.modes.len() + 1);
+        let mut h = 0.0;
+        while h < span {
+            let reach = match &mut unfolded {
+                Unfolded::Planar(arc, state) => arc.expand(h, 0.5 * span, state, &mut series),
+                Unfolded::Chain(flown) => flown.expand(h, 0.5 * span, &mut series),
+                Unfolded::Coupled(unfolding) => unfolding.expand(h, &mut series),
+            };
+            // What does not move, or is no number, is one stretch.
+            let next = if reach > 0.0 && h + reach > h { span.min(h + reach) } else { span };
+            take(&self.observed(&series, (h, next - h), exerted))?;
+            h = next;
+        }
+        Ok(())
+    }
+
+    /// What is observed over a stretch that begins so long after departure and is so long (s).
+    fn observed(&self, series: &Expansion, (after, length): (f64, f64), exerted: &Exerted) -> Stretch {
+        let Expansion { coordinates, command } = series;
+        let add = |sum: &mut Series, weight: f64, of: &Series| {
+            sum.iter_mut().zip(of).for_each(|(sum, c)| *sum += weight * c);
+        };
+        let mut angle = coordinates[0];
+        let shows = match &self.motion {
+            Motion::Planar(arc) => arc.shows_modes(),
+            Motion::Coupled(_) => true,
+            Motion::Chain(_) => false,
+        };
+        if shows {
+            coordinates[1..].iter().for_each(|mode| add(&mut angle, 1.0, mode));
+        }
+        let mut applied = *command;
+        applied[0] += exerted.constant;
+        let (back_emf, total) = exerted.back_emf;
+        if back_emf != 0.0 {
+            let felt = if total { &angle } else { &coordinates[0] };
+            for n in 0..TERMS - 1 {
+                applied[n] -= back_emf * (n + 1) as f64 * felt[n + 1];
+            }
+        }
+        let output = |index: usize, output: &Output| {
+            let mut sum = [0.0; TERMS];
+            if let Motion::Chain(_) = &self.motion {
+                // Of a chain, the angles of the sections relative to the hub.
+                add(&mut sum, 1.0, &coordinates[index + 1]);
+                add(&mut sum, -1.0, &coordinates[0]);
+            } else {
+                add(&mut sum, output.rigid.get(), &coordinates[0]);
+                let modes = output.modes.iter().zip(&coordinates[1..]);
+                modes.for_each(|(weight, mode)| add(&mut sum, weight.get(), mode));
+            }
+            Polynomial::of(&sum, length)
+        };
+        Stretch {
+            from: self.departed.seconds() + after,
+            length,
+            angle: Polynomial::of(&angle, length),
+            outputs: self.outputs.iter().enumerate().map(|(index, of)| output(index, of)).collect(),
+            applied: Polynomial::of(&applied, length),
+            feedback: exerted.feedback,
+        }
     }
 
     /// Begins a new motion at the instant seen last.

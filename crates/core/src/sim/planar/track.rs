@@ -115,10 +115,10 @@ impl Track {
             }
         };
         self.tell_lock(now, record)?;
-        match self.row(t, state, told) {
-            Some(row) if record.dense() => record.record(now, Sample::Estimate(&row)),
-            _ => Ok(()),
+        if !record.estimates() {
+            return Ok(());
         }
+        self.row(t, state, told).map_or(Ok(()), |row| record.record(now, Sample::Estimate(&row)))
     }
 
     /// Tells when the filter loses the body, and when it follows again.
