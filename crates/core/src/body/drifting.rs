@@ -115,6 +115,7 @@ impl Drifting {
     }
 
     /// The same motion, back at its departure.
+    #[must_use]
     pub fn from_departure(&self) -> Self {
         let mut again = self.clone();
         for (coordinate, start) in again.coordinates.iter_mut().zip(&self.start) {
