@@ -55,7 +55,7 @@ fn motion(scenario: &Scenario) -> Vec<Panel> {
         ),
         Panel::plot("modes", "Elastic modes (rad)", modes(scenario)),
         Panel::plot("outputs", "Observed coordinates", outputs(scenario)),
-        Panel::plot("torque", &torque_title(scenario), torques(scenario)),
+        Panel::plot("torque", torque_title(scenario), torques(scenario)),
         Panel::plot("wheel", "Wheel speed (rad/s)", vec![line("/wheel.speed_rad_s", "speed")]),
     ]);
     let state = if relay { "/command.state" } else { "/law.state" };

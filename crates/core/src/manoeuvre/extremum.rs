@@ -16,9 +16,12 @@ pub fn largest(breaks: &[f64], step: f64, f: impl Fn(f64, f64) -> f64) -> Peak {
     largest_of(1, breaks, step, |middle, t| vec![f(middle, t)]).pop().unwrap_or_default()
 }
 
+/// A sample that is not smaller than its neighbours: the middle of its piece, the times of the three, its value.
+type Candidate = (f64, f64, f64, f64, f64);
+
 /// The same of each of so many functions, which are evaluated together.
 pub fn largest_of(count: usize, breaks: &[f64], step: f64, f: impl Fn(f64, f64) -> Vec<f64>) -> Vec<Peak> {
-    let mut candidates = vec![Vec::new(); count];
+    let mut candidates: Vec<Vec<Candidate>> = vec![Vec::new(); count];
     for ends in breaks.windows(2) {
         let (from, to) = (ends[0], ends[1]);
         let middle = 0.5 * (from + to);
@@ -35,7 +38,7 @@ pub fn largest_of(count: usize, breaks: &[f64], step: f64, f: impl Fn(f64, f64) 
             }
         }
     }
-    let peak = |(index, candidates): (usize, Vec<(f64, f64, f64, f64, f64)>)| {
+    let peak = |(index, candidates): (usize, Vec<Candidate>)| {
         let coarse = candidates.iter().map(|candidate| candidate.4).fold(0.0, f64::max);
         let mut peak = Peak::default();
         for (middle, from, at, to, value) in candidates {

@@ -141,9 +141,10 @@ impl Rotation {
             let quantity = |seen: &Seen| Quantity { value: value(seen), unit: seen.unit.clone() };
             Value::Quantities(self.outputs.iter().map(quantity).collect())
         };
-        let (peak, feedback) = match acceleration {
-            false => (&PEAK_TORQUE, &PEAK_FEEDBACK),
-            true => (&PEAK_ACCELERATION, &PEAK_FEEDBACK_ACCELERATION),
+        let (peak, feedback) = if acceleration {
+            (&PEAK_ACCELERATION, &PEAK_FEEDBACK_ACCELERATION)
+        } else {
+            (&PEAK_TORQUE, &PEAK_FEEDBACK)
         };
         let verdict = self.verdict.unwrap_or(Verdict::new(self.end, f64::NAN));
         let itae = if self.verdict.is_some() { self.itae.0 } else { f64::NAN };
@@ -366,7 +367,7 @@ mod tests {
         let exact = [
             7.283_159_757_285_736e-4,
             -1.167_052_922_413_150_9e-4,
-            1.820_836_446_177_067_2e-2,
+            1.820_836_446_177_067e-2,
             6.845_346_442_340_301e-1,
             57.437_801_542_955_22,
         ];
