@@ -112,6 +112,8 @@ def logs():
             "scenarios/relay-fixed.toml",
             "--log",
             detail,
+            "--set",
+            "log.period=0.1",
             "-o",
             str(out),
         ]

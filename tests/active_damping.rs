@@ -50,6 +50,7 @@ fn of(columns: &Columns, rows: &str, [index, count]: [usize; 2], name: &str) -> 
     let values: Vec<f64> = match rows.get(name) {
         Some(Column::Numbers(numbers)) => numbers.clone(),
         Some(Column::Counts(counts)) => counts.iter().map(|count| *count as f64).collect(),
+        Some(Column::Labels(labels, _)) => labels.iter().map(|label| f64::from(*label)).collect(),
         other => panic!("{name}: {other:?}"),
     };
     values.into_iter().skip(index).step_by(count).collect()

@@ -69,6 +69,17 @@ fn has(columns: &Columns, field: &str) -> bool {
     }
 }
 
+/// The column of a field such as `channels[0].latched`, of the first row.
+fn at<'a>(columns: &'a Columns, field: &str) -> Option<&'a Column> {
+    match field.split_once('[') {
+        None => columns.get(field),
+        Some((rows, rest)) => match columns.get(rows) {
+            Some(Column::Rows(_, columns)) => at(columns, rest.split_once("].")?.1),
+            _ => None,
+        },
+    }
+}
+
 /// Every path of a layout must be a field of the log of a run, and every panel have its place.
 fn check(log: &Log, layout: &str) {
     let layout: Value = serde_json::from_str(layout).expect("JSON");
@@ -84,6 +95,7 @@ fn check(log: &Log, layout: &str) {
         assert!(field.is_empty() || has(&columns, field), "{path}: no such field");
     }
     let panels = layout["configById"].as_object().expect("panels");
+    let mut tables = 0;
     let mut places = Vec::new();
     named(&layout["layout"], &mut places);
     for (id, config) in panels {
@@ -93,6 +105,35 @@ fn check(log: &Log, layout: &str) {
             named(&tab["layout"], &mut places);
             assert!((1..=9).contains(&(places.len() - before)), "{id}: {tab}");
         }
+        if let Some(paths) = config["paths"].as_array() {
+            // Lichtblick gives a synchronised plane the range of the others' time.
+            assert_eq!(config["isSynced"], config.get("xAxisPath").is_none(), "{id}");
+            let label = |path: &Value| path["label"].as_str().expect("a label").chars().count() as u64;
+            let longest = paths.iter().map(label).max().unwrap_or(0);
+            // Its legends need a square, a mark and an arrow beside the words.
+            let width = config.get("sidebarDimension").map_or(u64::MAX, |width| width.as_u64().expect("px"));
+            assert!(width >= 78 + 7 * longest, "{id}: the legend is cut off at {width} px");
+            for path in paths.iter().filter(|_| id.starts_with("StateTransitions!")) {
+                let path = path["value"].as_str().expect("a path");
+                let (topic, field) = path.split_once('.').expect("a field");
+                let columns = log.columns(topic).expect("the topic");
+                let named = matches!(at(&columns, field), Some(Column::Labels(..)));
+                assert!(named, "{path}: states without names");
+            }
+        }
+        if id.starts_with("3D!") {
+            let transforms = &config["scene"]["transforms"];
+            let most = transforms["maxPreloadMessages"].as_u64().expect("a number");
+            let count = log.columns("/tf").expect("frames").len() as u64;
+            assert!(transforms["enablePreloading"] == true && count <= most, "{id}: {transforms} of {count}");
+        }
+        if id.starts_with("Table!") {
+            let path = config["topicPath"].as_str().expect("a path");
+            let columns = log.columns("/summary").expect("metrics");
+            let rows = at(&columns, path.strip_prefix("/summary.").expect("a page")).map_or(0, Column::len);
+            assert!(rows > 0, "{path}");
+            tables += 1;
+        }
         // Viewers show nothing of a plane whose axes are of one topic.
         let topic = |path: &Value| path.as_str().and_then(|path| path.split('.').next()).map(str::to_owned);
         if let Some(x) = config.get("xAxisPath") {
@@ -101,6 +142,21 @@ fn check(log: &Log, layout: &str) {
             }
         }
     }
+    // Every page of ten rows has its table, and every metric its row.
+    let columns = log.columns("/summary").expect("metrics");
+    let Some(Column::Rows(pages, inner)) = columns.get("pages") else { panic!("no pages") };
+    let Some(Column::Rows(rows, lines)) = inner.get("metrics") else { panic!("no metrics") };
+    assert_eq!((pages[0], pages[0] as usize), (tables, rows.len()));
+    assert!(rows.iter().all(|rows| (1..=10).contains(rows)), "{rows:?}");
+    let names = |columns: &Columns| match columns.get("name") {
+        Some(Column::Texts(names)) => names.iter().cloned().collect::<BTreeSet<_>>(),
+        _ => panic!("no names"),
+    };
+    let Some(Column::Rows(_, metrics)) = log.columns("/metrics").expect("metrics").get("metrics").cloned()
+    else {
+        panic!("no metrics")
+    };
+    assert!(names(lines).is_superset(&names(&metrics)));
     places.sort();
     let mut ids: Vec<&String> = panels.keys().collect();
     ids.sort();
@@ -197,4 +253,36 @@ fn shipped_layouts_are_those_of_their_scenarios() {
         let same = shipped == dir.text("layout.json");
         assert!(same, "scenarios/layouts/{name}.json differs from what `flexsc layout` writes");
     }
+}
+
+/// A viewer takes minutes for hundreds of thousands of messages.
+#[test]
+fn a_long_log_has_some_ten_thousand_instants() {
+    let dir = Dir::with(&["relay-adaptive"]);
+    dir.run("simulate relay-adaptive.toml --log scene").exits(0);
+    let bytes = dir.read("relay-adaptive.mcap");
+    let summary = mcap::Summary::read(&bytes).expect("whole").expect("a summary");
+    let statistics = summary.stats.expect("statistics");
+    let counts: BTreeMap<&str, u64> = statistics
+        .channel_message_counts
+        .iter()
+        .map(|(id, count)| (summary.channels[id].topic.as_str(), *count))
+        .collect();
+    let switchings = counts["/command"];
+    assert!((1000..5000).contains(&switchings), "{switchings}");
+    for (topic, count) in &counts {
+        let most = match *topic {
+            "/tf" | "/law" => 10_001,
+            // A thruster that begins and one that ends.
+            "/plumes" => switchings + 1,
+            _ => 10_001 + switchings,
+        };
+        assert!(*count <= most, "{topic}: {count}");
+    }
+    assert_eq!(counts["/tf"], 10_001);
+    assert!(statistics.message_count < 100_000, "{}", statistics.message_count);
+    // Who asks for more gets it.
+    dir.run("simulate relay-adaptive.toml --log scene --set duration=2000 --set log.period=0.1").exits(0);
+    let log = Log::open(&dir.path("relay-adaptive.mcap")).expect("a log");
+    assert_eq!(log.columns("/tf").expect("frames").len(), 20_001);
 }

@@ -68,10 +68,47 @@ fn a_viewer_gets_the_messages_of_the_log() {
     }
 }
 
+/// A viewer that subscribes while it has no layout yet, and again when it has one, has all of a run that begins paused.
+#[test]
+fn a_run_that_begins_paused_loses_nothing() {
+    let name = "wheel-ekf";
+    let dir = Dir::with(&[name]);
+    let simulate = format!("simulate {name}.toml --set duration=4 --log scene");
+    dir.run(&format!("{simulate} -o alone")).exits(0);
+    let (rows, _) = log(&dir, &format!("alone/{name}.mcap"));
+    let mut run = dir.start(&format!("{simulate} -o out --live=127.0.0.1:0 --paused --speed 8"));
+    let (mut viewer, _) = Viewer::open(&mut run);
+    viewer.subscribe(&["/log"]);
+    let mut seen = viewer.rest();
+    assert!(!seen.is_empty() && seen.iter().all(|row| row.topic == "/log" && row.time == 0), "{seen:?}");
+    viewer.subscribe_to_others(&["/log"]);
+    seen.extend(viewer.rest());
+    assert!(
+        seen.iter().any(|row| row.topic == "/scene"),
+        "what there is at the start is there before it goes on"
+    );
+    assert!(seen.iter().all(|row| row.time == 0), "it went on");
+    let (answer, more) = viewer.call(1);
+    assert_eq!(answer["paused"], false);
+    seen.extend(more);
+    while seen.last().is_none_or(|row: &Row| row.topic != "/metrics") {
+        match viewer.next(PATIENCE) {
+            Said::Row(row) => seen.push(row),
+            other => panic!("{other:?} after {} messages", seen.len()),
+        }
+    }
+    for topic in rows.iter().map(|row| &row.topic).collect::<std::collections::BTreeSet<_>>() {
+        let of = |rows: &[Row]| rows.iter().filter(|row| row.topic == *topic).cloned().collect::<Vec<_>>();
+        assert!(of(&seen) == of(&rows), "{topic}: {} of {}", of(&seen).len(), of(&rows).len());
+    }
+    drop(viewer);
+    run.wait().exits(0);
+}
+
 #[test]
 fn a_run_pauses_steps_and_goes_on() {
     let dir = Dir::with(&["relay-fixed"]);
-    let arguments = "simulate relay-fixed.toml --log none --set duration=1e6 --live=127.0.0.1:0 --speed 2";
+    let arguments = "simulate relay-fixed.toml --log none --set duration=1e6 --set log.period=0.1 --live=127.0.0.1:0 --speed 2";
     let began = Instant::now();
     let mut run = dir.start(arguments);
     let (mut viewer, address) = Viewer::open(&mut run);
@@ -208,6 +245,8 @@ fn arguments_that_do_not_fit_are_refused() {
     simulate("--live --runs 2").exits(2).says(&["--live", "--runs", "cannot be used"]);
     simulate("--speed 2").exits(2).says(&["--live"]);
     simulate("--wait").exits(2).says(&["--live"]);
+    simulate("--paused").exits(2).says(&["--live"]);
+    simulate("--live --allow-origin viewer.example").exits(2).says(&["must be an origin such as https://"]);
     for speed in ["0", "-1", "nan", "inf", "quick"] {
         simulate(&format!("--live --speed={speed}")).exits(2).says(&["must be a factor above 0, or max"]);
     }

@@ -12,7 +12,7 @@ fn topics_are_exported() {
     dir.run("simulate relay-fixed.toml").exits(0);
     let topics = dir.run("export relay-fixed.mcap").exits(0).out;
     let topics: Vec<_> = topics.lines().collect();
-    assert_eq!(topics, ["/command", "/envelope_mean", "/law", "/log", "/metrics", "/params"]);
+    assert_eq!(topics, ["/command", "/envelope_mean", "/law", "/log", "/metrics", "/params", "/summary"]);
     let ran = dir
         .run("export relay-fixed.mcap --topic /comand")
         .exits(2)
@@ -56,7 +56,7 @@ fn a_log_makes_itself_again() {
 #[test]
 fn logs_are_good_mcap() {
     let dir = Dir::with(&["relay-fixed"]);
-    let events = ["/command", "/envelope_mean", "/law", "/log", "/metrics", "/params"];
+    let events = ["/command", "/envelope_mean", "/law", "/log", "/metrics", "/params", "/summary"];
     let motion = ["/attitude", "/envelope", "/modes", "/rate"];
     dir.run("simulate relay-fixed.toml -o events --set epoch=2026-03-20T14:46:00Z").exits(0);
     inspect(&dir, "events/relay-fixed.mcap", &events, 1_774_017_960_000_000_000);

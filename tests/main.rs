@@ -24,6 +24,7 @@ mod fuzz_corpus;
 mod layout;
 #[cfg(feature = "live")]
 mod live;
+mod live_limits;
 mod logs;
 mod loops;
 mod manoeuvres;

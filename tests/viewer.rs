@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use data_encoding::BASE64;
 use serde_json::{Value as Json, json};
 use tungstenite::client::IntoClientRequest;
-use tungstenite::{Message, WebSocket};
+use tungstenite::{HandshakeError, Message, WebSocket};
 
 use crate::util::Started;
 
@@ -167,8 +167,16 @@ impl Viewer {
         self.ask(&json!({"op": "subscribe", "subscriptions": pairs}));
     }
 
-    /// Calls a service, and returns its answer and the rows before it.
-    pub fn call(&mut self, service: u32) -> (Json, Vec<Row>) {
+    /// Subscribes to all topics but these.
+    pub fn subscribe_to_others(&mut self, topics: &[&str]) {
+        let all: Vec<String> = self.channels.values().map(|(topic, _)| topic.clone()).collect();
+        let others: Vec<&str> =
+            all.iter().map(String::as_str).filter(|topic| !topics.contains(topic)).collect();
+        self.subscribe(&others);
+    }
+
+    /// Asks for a service.
+    pub fn ask_for(&mut self, service: u32) {
         self.calls += 1;
         let mut bytes = vec![2];
         for number in [service, self.calls, 4] {
@@ -176,6 +184,11 @@ impl Viewer {
         }
         bytes.extend(b"json{}");
         self.socket.send(Message::binary(bytes)).expect("sent");
+    }
+
+    /// Calls a service, and returns its answer and the rows before it.
+    pub fn call(&mut self, service: u32) -> (Json, Vec<Row>) {
+        self.ask_for(service);
         let mut rows = Vec::new();
         loop {
             match self.next(PATIENCE) {
@@ -190,11 +203,29 @@ impl Viewer {
 
 /// Connects to a server by this name of the protocol; nothing if it refuses.
 pub fn connect(address: &str, subprotocol: &'static str) -> Option<WebSocket<TcpStream>> {
+    connect_with(address, &[("Sec-WebSocket-Protocol", subprotocol)]).ok()
+}
+
+/// Connects to a server with these headers, or tells the status and the words with which it refuses.
+pub fn connect_with(
+    address: &str,
+    headers: &[(&'static str, &str)],
+) -> Result<WebSocket<TcpStream>, (u16, String)> {
     let mut request = format!("ws://{address}").into_client_request().expect("an address");
-    let name = tungstenite::http::HeaderValue::from_static(subprotocol);
-    request.headers_mut().insert("Sec-WebSocket-Protocol", name);
+    for (name, value) in headers {
+        request.headers_mut().insert(*name, value.parse().expect("a value"));
+    }
     let stream = TcpStream::connect(address).expect("a listener");
-    let (socket, response) = tungstenite::client(request, stream).ok()?;
-    assert_eq!(response.headers()["Sec-WebSocket-Protocol"], subprotocol);
-    Some(socket)
+    let asked = request.headers()["Sec-WebSocket-Protocol"].clone();
+    match tungstenite::client(request, stream) {
+        Ok((socket, response)) => {
+            assert_eq!(response.headers()["Sec-WebSocket-Protocol"], asked);
+            Ok(socket)
+        }
+        Err(HandshakeError::Failure(tungstenite::Error::Http(response))) => {
+            let body = response.body().clone().unwrap_or_default();
+            Err((response.status().as_u16(), String::from_utf8(body).expect("text")))
+        }
+        Err(error) => panic!("{error}"),
+    }
 }

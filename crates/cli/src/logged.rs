@@ -21,5 +21,5 @@ pub fn logged(scenario: Scenario, path: &Path, detail: Detail) -> Result<Log, Fa
 fn bytes(run: &Run, detail: Detail) -> Result<Vec<u8>, SimulationError> {
     let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(run), detail)?;
     let metrics = Campaign::simulate(run, (&mut log, Stop))?;
-    Ok(log.finish(&metrics.to_row(), RunEnd::Complete)?.into_inner())
+    Ok(log.finish(&metrics, RunEnd::Complete)?.into_inner())
 }

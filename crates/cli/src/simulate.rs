@@ -236,7 +236,7 @@ fn logged(
     let mut log = LogFile::create(path, &Campaign::provenance(run), detail)?;
     match Campaign::simulate(run, (&mut log, record)) {
         Ok(metrics) => {
-            let bytes = log.finish(&metrics.to_row(), RunEnd::Complete)?;
+            let bytes = log.finish(&metrics, RunEnd::Complete)?;
             Ok((metrics, bytes))
         }
         Err(SimulationError::Record(RecordError::Io(error))) => {
@@ -246,7 +246,7 @@ fn logged(
         Err(error) => {
             let interrupted = matches!(error, SimulationError::Record(RecordError::Interrupted));
             let end = if interrupted { RunEnd::Interrupted } else { RunEnd::Failed };
-            log.finish(&Metrics::default().to_row(), end)?;
+            log.finish(&Metrics::default(), end)?;
             Err(error)
         }
     }

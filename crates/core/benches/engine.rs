@@ -13,8 +13,9 @@ use flexsc_core::analysis::sampled_loop::{Held, Loop, Scaling, Window, map};
 use flexsc_core::body::Drive;
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::estimator::kalman::{Drifting, Prediction, Setting};
+use flexsc_core::metrics::Metrics;
 use flexsc_core::random::Seed;
-use flexsc_core::record::{Detail, McapLog, Metrics, Record, RunEnd, Trace};
+use flexsc_core::record::{Detail, McapLog, Record, RunEnd, Trace};
 use flexsc_core::structure::Structure;
 use flexsc_core::{Scenario, Simulation};
 use nalgebra::DMatrix;
@@ -85,7 +86,7 @@ fn run(c: &mut Criterion) {
             let from = Campaign::provenance(&run);
             let mut log = McapLog::new(Cursor::new(Vec::new()), &from, Detail::Events).expect("a log");
             let metrics = Campaign::simulate(&run, &mut log).expect("a run");
-            log.finish(&metrics.to_row(), RunEnd::Complete).expect("a log")
+            log.finish(&metrics, RunEnd::Complete).expect("a log")
         });
     });
     group.finish();
@@ -149,7 +150,7 @@ fn log(c: &mut Criterion) {
             let from = Campaign::provenance(&run);
             let mut log = McapLog::new(Cursor::new(Vec::new()), &from, Detail::Full).expect("a log");
             simulate(&full, &mut log);
-            log.finish(&Metrics { metrics: Vec::new() }, RunEnd::Complete).expect("a log")
+            log.finish(&Metrics::default(), RunEnd::Complete).expect("a log")
         });
     });
     group.finish();

@@ -206,7 +206,7 @@ fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathB
     let written = aside(py, |stop| {
         let mut file = LogFile::create(&path, &Campaign::provenance(&run), detail)?;
         match Campaign::simulate(&run, (&mut file, stop)) {
-            Ok(metrics) => Ok(file.finish(&metrics.to_row(), RunEnd::Complete)?),
+            Ok(metrics) => Ok(file.finish(&metrics, RunEnd::Complete)?),
             Err(error) => {
                 file.discard();
                 Err(error)

@@ -1,99 +1,135 @@
 //! A client of a live run: its connection, on a thread of its own.
 
-use std::io;
+use std::collections::VecDeque;
 use std::net::TcpStream;
 use std::time::{Duration, Instant as WallInstant};
 
 use tungstenite::handshake::server::{ErrorResponse, Request, Response};
 use tungstenite::http::{HeaderValue, StatusCode};
-use tungstenite::protocol::WebSocketConfig;
+use tungstenite::protocol::frame::coding::CloseCode;
+use tungstenite::protocol::{CloseFrame, WebSocketConfig};
 use tungstenite::{Error, WebSocket};
 
-use super::hub::Hub;
+use super::gate::Gate;
+use super::hub::{Hub, MOST_CLIENTS, Seat};
 use super::protocol::SUBPROTOCOLS;
+use super::state::Frame;
+use super::wire::{Wire, is_silence};
 
 const SUBPROTOCOL: &str = "sec-websocket-protocol";
 /// How long a client may take to say what it wants, and to say farewell.
 const GREETING: Duration = Duration::from_secs(5);
 const FAREWELL: Duration = Duration::from_secs(1);
-/// How long a client may take nothing that is sent before it counts as gone.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// How long to listen before looking whether there is something to send.
-const LISTEN: Duration = Duration::from_millis(5);
-/// Clients only ask: no frame of theirs is larger (bytes).
-const LARGEST: usize = 1 << 20;
+/// Clients only ask: no message of theirs is larger (bytes).
+const LARGEST: usize = 64 << 10;
+
+/// Greets a client, and tells its connection and its seat.
+pub fn greet(hub: &Hub, gate: &Gate, stream: TcpStream) -> Option<(WebSocket<Wire>, Seat)> {
+    let wire = Wire::new(stream, GREETING).ok()?;
+    let config = WebSocketConfig::default().max_message_size(Some(LARGEST)).max_frame_size(Some(LARGEST));
+    let mut seat = None;
+    #[expect(clippy::result_large_err, reason = "the signature is the library's")]
+    let agree = |request: &Request, response| agree(hub, gate, &mut seat, request, response);
+    let mut socket = tungstenite::accept_hdr_with_config(wire, agree, Some(config)).ok()?;
+    socket.get_mut().greeted().ok()?;
+    Some((socket, seat?))
+}
+
+/// Agrees with a client on the protocol, if it may connect and there is a seat.
+#[expect(clippy::result_large_err, reason = "the signature is the library's")]
+fn agree(
+    hub: &Hub,
+    gate: &Gate,
+    seat: &mut Option<Seat>,
+    request: &Request,
+    mut response: Response,
+) -> Result<Response, ErrorResponse> {
+    let refuse = |status: StatusCode, why: String| {
+        let mut response = ErrorResponse::new(Some(why));
+        *response.status_mut() = status;
+        Err(response)
+    };
+    if let Err(why) = gate.admit(request.headers()) {
+        return refuse(StatusCode::FORBIDDEN, why);
+    }
+    let asked = request.headers().get_all(SUBPROTOCOL).iter().filter_map(|value| value.to_str().ok());
+    let asked: Vec<&str> = asked.flat_map(|names| names.split(',')).map(str::trim).collect();
+    let Some(name) = SUBPROTOCOLS.into_iter().find(|name| asked.contains(name)) else {
+        return refuse(
+            StatusCode::BAD_REQUEST,
+            format!("ask for the subprotocol {}", SUBPROTOCOLS.join(" or ")),
+        );
+    };
+    *seat = hub.seat();
+    if seat.is_none() {
+        return refuse(
+            StatusCode::SERVICE_UNAVAILABLE,
+            format!("there are {MOST_CLIENTS} viewers already, and no more may connect"),
+        );
+    }
+    response.headers_mut().insert(SUBPROTOCOL, HeaderValue::from_static(name));
+    Ok(response)
+}
 
 /// Serves a client until it goes or is sent away.
-pub fn serve(hub: &Hub, stream: TcpStream) {
-    let Ok(mut socket) = greet(stream) else { return };
+pub fn serve(hub: &Hub, mut socket: WebSocket<Wire>) {
     let id = hub.join();
     // A connection that breaks is a client that has gone.
     let _ = converse(hub, id, &mut socket);
     hub.leave(id);
 }
 
-fn greet(stream: TcpStream) -> Result<WebSocket<TcpStream>, Error> {
-    // The listener does not block, and on some systems what it accepts inherits that.
-    stream.set_nonblocking(false)?;
-    stream.set_nodelay(true)?;
-    stream.set_read_timeout(Some(GREETING))?;
-    stream.set_write_timeout(Some(PATIENCE))?;
-    let config = WebSocketConfig::default().max_message_size(Some(LARGEST)).max_frame_size(Some(LARGEST));
-    let socket = tungstenite::accept_hdr_with_config(stream, agree, Some(config));
-    let socket = socket.map_err(|error| Error::Io(io::Error::other(error.to_string())))?;
-    socket.get_ref().set_read_timeout(Some(LISTEN))?;
-    Ok(socket)
-}
-
-/// Agrees with a client on the protocol.
-#[expect(clippy::result_large_err, reason = "the signature is the library's")]
-fn agree(request: &Request, mut response: Response) -> Result<Response, ErrorResponse> {
-    let asked = request.headers().get_all(SUBPROTOCOL).iter().filter_map(|value| value.to_str().ok());
-    let asked: Vec<&str> = asked.flat_map(|names| names.split(',')).map(str::trim).collect();
-    if let Some(name) = SUBPROTOCOLS.into_iter().find(|name| asked.contains(name)) {
-        response.headers_mut().insert(SUBPROTOCOL, HeaderValue::from_static(name));
-        return Ok(response);
-    }
-    let why = format!("ask for the subprotocol {}", SUBPROTOCOLS.join(" or "));
-    let mut response = ErrorResponse::new(Some(why));
-    *response.status_mut() = StatusCode::BAD_REQUEST;
-    Err(response)
-}
-
-fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<TcpStream>) -> Result<(), Error> {
+fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Wire>) -> Result<(), Error> {
+    let mut frames = VecDeque::new();
+    let mut last = false;
     loop {
-        let (frames, last) = hub.frames(id);
-        for frame in frames {
-            socket.write(frame)?;
+        if frames.is_empty() {
+            let Some(next) = hub.frames(id) else { return Ok(()) };
+            (frames, last) = next;
         }
-        socket.flush()?;
+        match send(socket, &mut frames) {
+            Ok(()) => socket.get_mut().settle(),
+            Err(Error::Io(error)) if is_silence(&error) => {
+                // Who does not take what there is, is not listened to: it cannot ask for ever more.
+                socket.get_mut().wait()?;
+                continue;
+            }
+            Err(error) => return Err(error),
+        }
         if last {
-            return part(socket);
+            return part(socket, None);
         }
         match socket.read() {
             Ok(frame) => hub.answer(id, &frame),
-            Err(error) if is_silence(&error) => {}
+            Err(Error::Io(error)) if is_silence(&error) => {}
+            Err(Error::Capacity(_)) => {
+                let reason = format!("no message may have more than {LARGEST} bytes").into();
+                return part(socket, Some(CloseFrame { code: CloseCode::Size, reason }));
+            }
             Err(error) => return Err(error),
         }
     }
+}
+
+/// Sends frames; those that are left wait for their turn.
+fn send(socket: &mut WebSocket<Wire>, frames: &mut VecDeque<Frame>) -> Result<(), Error> {
+    // A frame is taken over even where the connection has no room for it.
+    while let Some(frame) = frames.pop_front() {
+        socket.write(frame)?;
+    }
+    socket.flush()
 }
 
 /// Says farewell, and waits for the client's: a connection that is cut while something is on its way may lose it.
-fn part(socket: &mut WebSocket<TcpStream>) -> Result<(), Error> {
+fn part(socket: &mut WebSocket<Wire>, why: Option<CloseFrame>) -> Result<(), Error> {
     let began = WallInstant::now();
-    socket.close(None)?;
+    let silent = |result: Result<(), Error>| match result {
+        Err(Error::Io(error)) if is_silence(&error) => Ok(()),
+        result => result,
+    };
+    silent(socket.close(why))?;
     while began.elapsed() < FAREWELL {
-        match socket.read() {
-            Ok(_) => {}
-            Err(error) if is_silence(&error) => {}
-            Err(error) => return Err(error),
-        }
+        silent(socket.read().map(drop))?;
     }
     Ok(())
-}
-
-/// Whether there was nothing to read, which is no error.
-fn is_silence(error: &Error) -> bool {
-    use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
-    matches!(error, Error::Io(error) if matches!(error.kind(), WouldBlock | TimedOut | Interrupted))
 }

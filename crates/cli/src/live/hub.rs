@@ -1,6 +1,7 @@
 //! Where the run and the clients of a live run meet.
 
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant as WallInstant};
 
@@ -12,14 +13,34 @@ use super::protocol::{self, Level, Request};
 use super::state::{Frame, State};
 use crate::stop;
 
-/// The run waits for a client that has so many frames yet to take.
-const MOST_FRAMES: usize = 8192;
+/// There are at most so many clients, and so many connections that are being greeted.
+pub const MOST_CLIENTS: usize = 16;
+const MOST_GREETINGS: usize = 16;
 
 /// What the run and the clients share.
 pub struct Hub {
     greeting: Frame,
     state: Mutex<State>,
     changed: Condvar,
+    seats: Arc<AtomicUsize>,
+    doors: Arc<AtomicUsize>,
+}
+
+/// One of the places for clients, or for connections that are being greeted: free again when it is dropped.
+pub struct Seat(Arc<AtomicUsize>);
+
+impl Seat {
+    fn of(count: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
+        let more = |taken: usize| (taken < most).then_some(taken + 1);
+        let taken = count.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
+        taken.is_ok().then(|| Self(count.clone()))
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
 }
 
 impl Hub {
@@ -27,7 +48,18 @@ impl Hub {
     pub fn new(name: &str, state: State) -> Self {
         let session = format!("{name}-{}", std::process::id());
         let greeting = protocol::server_info(name, &session);
-        Self { greeting, state: Mutex::new(state), changed: Condvar::new() }
+        let (seats, doors) = Default::default();
+        Self { greeting, state: Mutex::new(state), changed: Condvar::new(), seats, doors }
+    }
+
+    /// A place for a client, if there is one.
+    pub fn seat(&self) -> Option<Seat> {
+        Seat::of(&self.seats, MOST_CLIENTS)
+    }
+
+    /// A place for a connection that is to be greeted, if there is one.
+    pub fn door(&self) -> Option<Seat> {
+        Seat::of(&self.doors, MOST_GREETINGS)
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -71,13 +103,15 @@ impl Hub {
         self.changed.notify_all();
     }
 
-    /// The frames that a client has yet to be sent, and whether these are the last.
-    pub fn frames(&self, id: u64) -> (VecDeque<Frame>, bool) {
+    /// The next frames that a client is to be sent, and whether they are the last; nothing for one that is sent away.
+    pub fn frames(&self, id: u64) -> Option<(VecDeque<Frame>, bool)> {
         let mut state = self.lock();
         let closing = state.closing;
-        let frames = state.clients.get_mut(&id).map(|client| std::mem::take(&mut client.frames));
+        let outbox = &mut state.clients.get_mut(&id)?.outbox;
+        let frames = outbox.take()?;
+        let last = closing && outbox.is_empty();
         self.changed.notify_all();
-        (frames.unwrap_or_default(), closing)
+        Some((frames, last))
     }
 
     /// Does what a client asks.
@@ -88,6 +122,16 @@ impl Hub {
             Err(why) => state.send(id, protocol::status(Level::Error, &why)),
         }
         self.changed.notify_all();
+    }
+
+    /// The run has ended.
+    pub fn end(&self) {
+        self.lock().ended = true;
+    }
+
+    /// Whether the run has ended.
+    pub fn ended(&self) -> bool {
+        self.lock().ended
     }
 
     /// How many clients there are.
@@ -117,7 +161,7 @@ pub struct Publisher(pub Arc<Hub>);
 impl Messages for Publisher {
     fn take(&mut self, message: Message<'_>) -> Result<(), RecordError> {
         let mut state = self.0.lock();
-        while state.clients.values().any(|client| client.frames.len() >= MOST_FRAMES) && !stop::asked() {
+        while state.clients.values().any(|client| client.outbox.is_full()) && !stop::asked() {
             state = self.0.wait(state, LOOK);
         }
         state.publish(message);

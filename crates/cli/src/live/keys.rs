@@ -62,6 +62,7 @@ pub fn listen(hub: Arc<Hub>) {
             match Key::of(&line) {
                 Key::Stop => return stop::ask(),
                 Key::Unknown => say!("  {HELP}"),
+                _ if hub.ended() => say!("  the run has ended"),
                 key => {
                     let clock = hub.change(|clock| key.press(clock));
                     let state = if clock.paused() { "paused, " } else { "" };

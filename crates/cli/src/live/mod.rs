@@ -5,11 +5,14 @@
 
 mod client;
 mod clock;
+mod gate;
 mod hub;
 mod keys;
+mod outbox;
 mod protocol;
 mod state;
 mod topics;
+mod wire;
 
 use std::io::{self, Write};
 use std::net::{TcpListener, ToSocketAddrs};
@@ -23,6 +26,7 @@ use flexsc_core::record::{Detail, Encode, Record, RecordError, RunEnd, Sample};
 use flexsc_core::time::Instant;
 
 use clock::{Clock, LOOK, Speed};
+use gate::Gate;
 use hub::{Hub, Publisher};
 use state::State;
 
@@ -51,6 +55,12 @@ pub struct Args {
     /// Begin when a viewer has subscribed to a topic
     #[arg(long, requires = "live")]
     wait: bool,
+    /// Pause at the start, until a viewer or a key lets the run go on
+    #[arg(long, requires = "live")]
+    paused: bool,
+    /// Let pages of this origin connect, such as https://viewer.example
+    #[arg(long, value_name = "ORIGIN", requires = "live", value_parser = gate::origin)]
+    allow_origin: Vec<String>,
 }
 
 fn address(text: &str) -> Result<String, String> {
@@ -77,6 +87,9 @@ impl Args {
         let wall = WallInstant::now();
         let speed = self.speed.unwrap_or(Speed::REAL);
         let mut clock = Clock::new(speed, run.scenario.log.period, wall);
+        if self.paused {
+            clock.pause();
+        }
         if !self.wait {
             clock.begin(wall);
         }
@@ -85,10 +98,12 @@ impl Args {
         let hub = Arc::new(Hub::new(&run.scenario.name, state));
         let messages = Encode::new(Publisher(hub.clone()), &provenance, Detail::Scene);
         let messages = messages.map_err(|error| failed(io::Error::other(error)))?;
-        say!("  live           ws://{bound}, {speed}");
+        let paused = if self.paused { ", paused" } else { "" };
+        say!("  live           ws://{bound}, {speed}{paused}");
+        let gate = Arc::new(Gate::new(address, &self.allow_origin));
         thread::spawn({
             let hub = hub.clone();
-            move || accept(&hub, &listener)
+            move || accept(&hub, &gate, &listener)
         });
         keys::listen(hub.clone());
         Ok(Some(Live { hub, messages: Some(messages) }))
@@ -100,8 +115,9 @@ impl Live {
     pub fn finish(mut self, metrics: &Metrics) {
         if let Some(messages) = self.messages.take() {
             // Viewers take what they are given.
-            let _ = messages.finish(&metrics.to_row(), RunEnd::Complete);
+            let _ = messages.finish(metrics, RunEnd::Complete);
         }
+        self.hub.end();
         if self.hub.clients() > 0 && !stop::asked() {
             say!("  live           the run has ended; Ctrl-C, or the last viewer's leave, ends the server");
         }
@@ -133,15 +149,21 @@ impl Record for Live {
 }
 
 /// Takes in clients, each on a thread of its own, until the hub closes.
-fn accept(hub: &Arc<Hub>, listener: &TcpListener) {
+fn accept(hub: &Arc<Hub>, gate: &Arc<Gate>, listener: &TcpListener) {
     while !hub.closing() {
-        match listener.accept() {
-            Ok((stream, _)) => {
-                let hub = hub.clone();
-                thread::spawn(move || client::serve(&hub, stream));
+        // While too many are being greeted, others wait outside.
+        let next = hub.door().and_then(|door| Some((door, listener.accept().ok()?.0)));
+        let Some((door, stream)) = next else {
+            thread::sleep(LOOK);
+            continue;
+        };
+        let (hub, gate) = (hub.clone(), gate.clone());
+        thread::spawn(move || {
+            let greeted = client::greet(&hub, &gate, stream);
+            drop(door);
+            if let Some((socket, _seat)) = greeted {
+                client::serve(&hub, socket);
             }
-            // Nobody there, or somebody who has gone again.
-            Err(_) => thread::sleep(LOOK),
-        }
+        });
     }
 }

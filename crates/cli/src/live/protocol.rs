@@ -14,6 +14,11 @@ const SERVICES: [&str; 3] = ["/pause", "/resume", "/step"];
 /// The parameters.
 pub const PARAMETERS: [&str; 2] = ["/paused", "/speed"];
 
+/// A request names at most so many things.
+const MOST_NAMED: usize = 256;
+/// Of what is not understood so many characters are told.
+const MOST_TOLD: usize = 200;
+
 /// What a client asks.
 #[derive(Debug, PartialEq)]
 pub enum Request {
@@ -47,8 +52,13 @@ impl Request {
     pub fn read(message: &Message) -> Result<Self, String> {
         match message {
             Message::Text(text) => {
-                let json = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
-                Self::of(&json).ok_or_else(|| format!("not understood: {text}"))
+                let json: Json = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
+                let lists = json.as_object().into_iter().flatten().filter_map(|(_, value)| value.as_array());
+                if lists.into_iter().any(|list| list.len() > MOST_NAMED) {
+                    return Err(format!("a request may name at most {MOST_NAMED} things"));
+                }
+                let start = || text.chars().take(MOST_TOLD).collect::<String>();
+                Self::of(&json).ok_or_else(|| format!("not understood: {}", start()))
             }
             Message::Binary(bytes) => match bytes.split_first() {
                 Some((2, rest)) if rest.len() >= 8 => Ok(Self::Call(number(rest), number(&rest[4..]))),

@@ -1,13 +1,19 @@
 //! What of a live run changes: its clock, its topics, and what each client has yet to be sent.
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant as WallInstant;
 
 use flexsc_core::record::{Message, TOPICS};
 use serde_json::Value as Json;
 
 use super::clock::{Clock, Speed};
+use super::outbox::Outbox;
 use super::protocol::{self, Level, PARAMETERS, Request};
+
+/// Of the latest instant of a topic, so many messages are kept.
+const MOST_LATEST: usize = 64;
+/// What is asked for after the end.
+const ENDED: &str = "the run has ended";
 
 /// A frame of the protocol.
 pub type Frame = tungstenite::Message;
@@ -24,6 +30,8 @@ pub struct State {
     pub clients: BTreeMap<u64, Client>,
     /// How many clients there have been.
     joined: u64,
+    /// Whether the run has ended.
+    pub ended: bool,
     /// Whether the clients are being sent away.
     pub closing: bool,
 }
@@ -32,15 +40,15 @@ pub struct State {
 #[derive(Clone, Default)]
 struct Topic {
     advertised: bool,
-    /// Time and data of its latest message, for clients that come late.
-    latest: Option<(u64, Vec<u8>)>,
+    /// Its latest instant and the data of its messages then, for clients that come late.
+    latest: (u64, Vec<Vec<u8>>),
 }
 
 /// A client.
 #[derive(Default)]
 pub struct Client {
     /// What it has yet to be sent.
-    pub frames: VecDeque<Frame>,
+    pub outbox: Outbox,
     /// The subscription of each channel.
     subscriptions: BTreeMap<u32, u32>,
     /// The parameters of whose changes it is told.
@@ -54,7 +62,8 @@ impl State {
         for index in topics {
             all[index].advertised = true;
         }
-        Self { clock, topics: all, time_ns: 0, clients: BTreeMap::new(), joined: 0, closing: false }
+        let clients = BTreeMap::new();
+        Self { clock, topics: all, time_ns: 0, clients, joined: 0, ended: false, closing: false }
     }
 
     /// A client has come, to be greeted so; its number.
@@ -67,7 +76,10 @@ impl State {
             protocol::advertise_services(),
         ];
         self.joined += 1;
-        self.clients.insert(self.joined, Client { frames: frames.into(), ..Client::default() });
+        let client = self.clients.entry(self.joined).or_default();
+        for frame in frames {
+            client.outbox.push(frame);
+        }
         self.joined
     }
 
@@ -82,7 +94,7 @@ impl State {
             let followed: Vec<_> =
                 PARAMETERS.into_iter().filter(|name| client.follows.contains(*name)).collect();
             if !followed.is_empty() {
-                client.frames.push_back(protocol::parameter_values(&followed, None, &self.clock));
+                client.outbox.push(protocol::parameter_values(&followed, None, &self.clock));
             }
         }
     }
@@ -94,25 +106,30 @@ impl State {
         if !topic.advertised {
             topic.advertised = true;
             let frame = protocol::advertise([(index, &TOPICS[index])].into_iter());
-            self.clients.values_mut().for_each(|client| client.frames.push_back(frame.clone()));
+            self.clients.values_mut().for_each(|client| client.outbox.push(frame.clone()));
         }
         // Viewers give a message the time that they were told last: it must come first.
         let moved = std::mem::replace(&mut self.time_ns, time_ns) != time_ns;
         for client in self.clients.values_mut() {
             if moved {
-                client.frames.push_back(protocol::time(time_ns));
+                client.outbox.push(protocol::time(time_ns));
             }
             if let Some(subscription) = client.subscriptions.get(&protocol::channel_of(index)) {
-                client.frames.push_back(protocol::data(*subscription, time_ns, data));
+                client.outbox.push(protocol::data(*subscription, time_ns, data));
             }
         }
-        topic.latest = Some((time_ns, data.to_owned()));
+        let (instant, latest) = &mut topic.latest;
+        if *instant != time_ns || latest.len() >= MOST_LATEST {
+            latest.clear();
+        }
+        *instant = time_ns;
+        latest.push(data.to_owned());
     }
 
     /// Sends a client something.
     pub fn send(&mut self, id: u64, frame: Frame) {
         if let Some(client) = self.clients.get_mut(&id) {
-            client.frames.push_back(frame);
+            client.outbox.push(frame);
         }
     }
 
@@ -141,7 +158,8 @@ impl State {
                 }
             }
             Request::Follow(names) => {
-                self.clients.entry(id).and_modify(|client| client.follows.extend(names));
+                let known = names.into_iter().filter(|name| PARAMETERS.contains(&name.as_str()));
+                self.clients.entry(id).and_modify(|client| client.follows.extend(known));
             }
             Request::Unfollow(names) => {
                 self.clients
@@ -150,6 +168,7 @@ impl State {
             }
             Request::Call(service, call) => {
                 let answer = match protocol::service(service) {
+                    Some(_) if self.ended => protocol::service_failure(service, call, ENDED),
                     Some(name) => {
                         self.change(|clock| match name {
                             "/pause" => clock.pause(),
@@ -172,18 +191,19 @@ impl State {
             let topic = protocol::topic_of(channel).and_then(|index| self.topics.get(index));
             let Some(topic) = topic.filter(|topic| topic.advertised) else {
                 let why = format!("there is no channel {channel}");
-                client.frames.push_back(protocol::status(Level::Error, &why));
+                client.outbox.push(protocol::status(Level::Error, &why));
                 continue;
             };
             if client.subscriptions.contains_key(&channel) {
                 let why = format!("channel {channel} is subscribed to already");
-                client.frames.push_back(protocol::status(Level::Warning, &why));
+                client.outbox.push(protocol::status(Level::Warning, &why));
                 continue;
             }
             client.subscriptions.insert(channel, subscription);
             // What was said before: parameters, and the state of a paused run.
-            if let Some((time_ns, data)) = &topic.latest {
-                client.frames.push_back(protocol::data(subscription, *time_ns, data));
+            let (time_ns, latest) = &topic.latest;
+            for data in latest {
+                client.outbox.push(protocol::data(subscription, *time_ns, data));
             }
             self.clock.begin(WallInstant::now());
         }
@@ -192,6 +212,7 @@ impl State {
     fn set(&mut self, name: &str, value: &Json) -> Result<(), String> {
         let wall = WallInstant::now();
         match (name, value) {
+            ("/paused" | "/speed", _) if self.ended => return Err(ENDED.to_owned()),
             ("/paused", Json::Bool(true)) => self.change(Clock::pause),
             ("/paused", Json::Bool(false)) => self.change(|clock| clock.resume(wall)),
             ("/paused", _) => return Err(format!("/paused must be true or false, got {value}")),

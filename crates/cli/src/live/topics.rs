@@ -32,6 +32,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/adaptation", scenario.adaptation.is_some()),
         ("/arrival", scenario.plan.is_some()),
         ("/jets", scenario.spatial.is_some()),
+        ("/summary", true),
         ("/metrics", true),
     ];
     topics.into_iter().filter(|(_, there)| *there).map(|(name, _)| name).collect()
@@ -80,6 +81,6 @@ mod tests {
             names.extend(seen.0.iter().map(name));
         }
         let all: BTreeSet<_> = TOPICS.iter().map(|topic| topic.name).collect();
-        assert_eq!(all.difference(&names).collect::<Vec<_>>(), [&"/metrics"], "the last of all");
+        assert_eq!(all.difference(&names).collect::<Vec<_>>(), [&"/metrics", &"/summary"], "the last of all");
     }
 }

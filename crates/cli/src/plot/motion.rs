@@ -3,7 +3,7 @@
 use flexsc_core::record::{self, Column, Columns, Log, Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 
-use super::story::{rows, topics};
+use super::story::{labels, rows, topics};
 use crate::failure::Failure;
 
 /// The motion of a run. All but the envelope and the estimates may be left out where no figure shows it.
@@ -100,11 +100,12 @@ impl Motion {
 }
 
 fn estimates(columns: &Columns) -> Vec<Estimate> {
-    let counts = |name: &str| match columns.get(name) {
+    let modes = match columns.get("dominant") {
         Some(Column::Counts(values)) => values.as_slice(),
         _ => &[],
     };
-    let (modes, gated, lock) = (counts("dominant"), counts("gated"), counts("lock"));
+    let (gated, lock) = (labels(columns, "gated"), labels(columns, "lock"));
+    let is = |of: &[String], index: usize, label: &str| of.get(index).is_some_and(|own| own == label);
     let own = inner(columns, "modes", "frequency_rad_s");
     let names = [
         "time_s",
@@ -115,12 +116,11 @@ fn estimates(columns: &Columns) -> Vec<Estimate> {
         "nis",
         "nees",
     ];
-    let at = |of: &[u64], index: usize| of.get(index).copied().unwrap_or_default();
     let row = |(index, numbers): (usize, [f64; 7])| {
         let [time, read_frequency, frequency_sd, true_frequency, displacement, nis, nees] = numbers;
-        let mode = at(modes, index) as usize;
+        let mode = modes.get(index).copied().unwrap_or_default() as usize;
         let frequency = own.get(mode).and_then(|of| of.get(index)).copied().unwrap_or(f64::NAN);
-        let (gated, lost) = (at(gated, index) != 0, at(lock, index) == 0);
+        let (gated, lost) = (is(&gated, index, "gated"), is(&lock, index, "lost"));
         Estimate {
             time,
             mode,
@@ -215,8 +215,8 @@ impl Estimate {
             displacement: row.displacement_rad,
             nis: row.nis,
             nees: row.nees,
-            gated: row.gated != 0,
-            lost: row.lock == 0,
+            gated: row.gated == record::Gate::Gated,
+            lost: row.lock == record::Lock::Lost,
         }
     }
 }

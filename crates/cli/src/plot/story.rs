@@ -160,7 +160,7 @@ pub fn rows<'a, const N: usize>(
 }
 
 /// The labels of a column, row by row.
-fn labels(columns: &Columns, name: &str) -> Vec<String> {
+pub fn labels(columns: &Columns, name: &str) -> Vec<String> {
     let Some(Column::Labels(values, labels)) = columns.get(name) else { return Vec::new() };
     values.iter().map(|value| labels.get(usize::from(*value)).cloned().unwrap_or_default()).collect()
 }

@@ -91,9 +91,12 @@ impl Document {
         &self.origin
     }
 
-    /// Whether it has a key at the top.
+    /// Whether it has a key, such as `log.period`.
     pub fn has(&self, key: &str) -> bool {
-        self.table.contains_key(key)
+        let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
+        let mut tables = tables.split('.').filter(|name| !name.is_empty());
+        let within = tables.try_fold(&self.table, |table, name| table.get(name)?.as_table());
+        within.is_some_and(|table| table.contains_key(last))
     }
 
     /// An error for a key at the top that is missing.

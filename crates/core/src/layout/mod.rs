@@ -14,7 +14,8 @@ use serde_json::{Map, Value, json};
 
 use crate::actuator::Actuator;
 use crate::estimator::Estimator;
-use crate::record::Detail;
+use crate::metrics::Gather;
+use crate::record::{Detail, Summary};
 use crate::scenario::Scenario;
 
 use panel::Panel;
@@ -92,11 +93,17 @@ impl Layout {
     }
 }
 
+/// The metrics, page by page.
+fn metrics(scenario: &Scenario) -> impl Iterator<Item = Panel> {
+    let pages = Gather::new(scenario).finish(scenario).0.len().div_ceil(Summary::PAGE);
+    (0..pages).map(move |page| Panel::metrics(page, pages))
+}
+
 /// The topics of a complete log of a scenario, with the least detail that has each.
 fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
     use Detail::{Events, Full, Scene};
     let mut topics =
-        vec![("/params", Events), ("/log", Events), ("/metrics", Events), ("/scene", Scene), ("/tf", Scene)];
+        vec![("/params", Events), ("/log", Events), ("/summary", Events), ("/scene", Scene), ("/tf", Scene)];
     let mut add = |there: bool, topic: &'static str, detail: Detail| {
         if there {
             topics.push((topic, detail));

@@ -12,7 +12,7 @@ pub const MOST_LINES: usize = 6;
 /// A panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    name: &'static str,
+    name: String,
     title: String,
     shows: Shows,
     /// The ends of the vertical axis of a plot; without them, the viewer chooses.
@@ -30,7 +30,7 @@ enum Shows {
     States(Vec<Line>),
     /// The last message of a topic.
     Message(String),
-    /// The rows of the last message of a topic.
+    /// Rows of the last message of a topic: viewers show ten.
     Table(String),
     /// Lines of the log.
     Log,
@@ -83,8 +83,8 @@ pub fn topic(path: &str) -> &str {
 }
 
 impl Panel {
-    fn new(name: &'static str, title: impl Into<String>, shows: Shows) -> Self {
-        Self { name, title: title.into(), shows, limits: None }
+    fn new(name: impl Into<String>, title: impl Into<String>, shows: Shows) -> Self {
+        Self { name: name.into(), title: title.into(), shows, limits: None }
     }
 
     /// Values over time.
@@ -107,9 +107,11 @@ impl Panel {
         Self::new(name, title, Shows::Message(topic.to_owned()))
     }
 
-    /// The metrics.
-    pub fn metrics() -> Self {
-        Self::new("metrics", "Metrics, at the end", Shows::Table("/metrics.metrics".to_owned()))
+    /// A page of the metrics, of so many.
+    pub fn metrics(page: usize, of: usize) -> Self {
+        let path = format!("/summary.pages[{page}].metrics");
+        let title = format!("Metrics at the end, {} of {of}", page + 1);
+        Self::new(format!("metrics_{}", page + 1), title, Shows::Table(path))
     }
 
     /// Lines of the log.
@@ -149,7 +151,9 @@ impl Panel {
     pub fn weight(&self) -> u32 {
         match &self.shows {
             Shows::Scene(..) | Shows::Plane(..) => 8,
-            Shows::Plot(_) | Shows::Log | Shows::Message(_) | Shows::Table(_) => 4,
+            // The legend of more lines needs more.
+            Shows::Plot(lines) => 4.max(lines.len() as u32),
+            Shows::Log | Shows::Message(_) | Shows::Table(_) => 4,
             // A row of states has a height of its own.
             Shows::States(lines) => (3 * (lines.len() as u32 + 1)).div_ceil(2),
         }
@@ -179,9 +183,10 @@ impl Panel {
     /// The configuration.
     pub fn config(&self) -> Value {
         let mut config = match &self.shows {
-            Shows::Plot(lines) => plot(lines, json!("timestamp")),
+            Shows::Plot(lines) => plot(lines, json!("timestamp"), true),
             Shows::Plane(lines, x) => {
-                let mut config = plot(lines, json!("custom"));
+                // One that is synchronised takes the range of the others' time for its horizontal axis.
+                let mut config = plot(lines, json!("custom"), false);
                 let path = json!({ "value": x, "enabled": true, "timestampMethod": "receiveTime" });
                 config.insert("xAxisPath".to_owned(), path);
                 config
@@ -213,7 +218,7 @@ fn object(value: Value) -> Map<String, Value> {
     }
 }
 
-fn plot(lines: &[Line], x_axis: Value) -> Map<String, Value> {
+fn plot(lines: &[Line], x_axis: Value, synced: bool) -> Map<String, Value> {
     let path = |(index, line): (usize, &Line)| {
         let limit = line.topic().is_none();
         json!({
@@ -235,8 +240,8 @@ fn plot(lines: &[Line], x_axis: Value) -> Map<String, Value> {
         // A floating one would hide the begin of the lines.
         "legendDisplay": "left",
         "showPlotValuesInLegend": false,
-        "isSynced": true,
-        "sidebarDimension": 48 + 7 * longest,
+        "isSynced": synced,
+        "sidebarDimension": 78 + 7 * longest,
     }));
     config.insert("xAxisVal".to_owned(), x_axis);
     config
@@ -267,8 +272,8 @@ fn scene(extent: &Extent, topics: &[&str]) -> Map<String, Value> {
         },
         "followMode": "follow-pose",
         "followTf": "inertial",
-        // Each message of the frames is whole: to keep those of a long run would only cost memory.
-        "scene": { "transforms": { "showLabel": false, "enablePreloading": false } },
+        // Without preloading Lichtblick raises an alert. Each message of the frames is whole: of a longer run it keeps the first.
+        "scene": { "transforms": { "showLabel": false, "enablePreloading": true, "maxPreloadMessages": 20_000 } },
         "transforms": extent.frames.iter().map(hidden).collect::<Map<_, _>>(),
         "topics": topics.iter().map(shown).collect::<Map<_, _>>(),
         "layers": { "grid": {

@@ -1,7 +1,7 @@
 //! The panels of a body with one angle.
 
-use super::Tab;
 use super::panel::{Line, MOST_LINES, Panel, line};
+use super::{Tab, metrics};
 use crate::actuator::Actuator;
 use crate::estimator::Estimator;
 use crate::law::Law;
@@ -26,8 +26,8 @@ pub fn feeds_back(scenario: &Scenario) -> bool {
 
 /// The tabs of a scenario.
 pub fn tabs(scenario: &Scenario) -> Vec<Tab> {
-    let log =
-        vec![Panel::log(), Panel::message("arrival", "End of the manoeuvre", "/arrival"), Panel::metrics()];
+    let mut log = vec![Panel::log(), Panel::message("arrival", "End of the manoeuvre", "/arrival")];
+    log.extend(metrics(scenario));
     vec![
         Tab { title: "Motion", panels: motion(scenario) },
         Tab { title: "Estimator", panels: estimator(scenario) },
@@ -98,7 +98,7 @@ fn outputs(scenario: &Scenario) -> Vec<Line> {
 
 fn torques(scenario: &Scenario) -> Vec<Line> {
     if !scenario.tells_torque() {
-        return vec![line("/command.torque_nm", "torque").dots(), line("/law.torque_nm", "each second")];
+        return vec![line("/command.torque_nm", "torque").dots(), line("/law.torque_nm", "sampled")];
     }
     let mut lines = vec![line("/torque.applied_nm", "applied")];
     if scenario.plan.is_some() {
@@ -133,8 +133,7 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
         ],
     )];
     if scenario.law.switches() {
-        let lines =
-            vec![line("/envelope_mean.gain", "in each window").thick(), line("/law.gain", "each second")];
+        let lines = vec![line("/envelope_mean.gain", "in each window").thick(), line("/law.gain", "sampled")];
         panels.push(Panel::plot("gain", "Braking gain k_t", lines));
     }
     panels.push(Panel::states(

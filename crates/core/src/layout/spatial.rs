@@ -1,7 +1,7 @@
 //! The panels of a body with three axes.
 
-use super::Tab;
 use super::panel::{Line, MOST_LINES, Panel, line};
+use super::{Tab, metrics};
 use crate::body::spatial::AXES;
 use crate::scenario::{AxesEstimator, Scenario, SpatialLoop};
 use crate::scene::Extent;
@@ -45,11 +45,12 @@ pub fn tabs(scenario: &Scenario, spatial: &SpatialLoop) -> Vec<Tab> {
             }
         }
         elastic.push(Panel::plot("damping", "Elastic rates that damping acts on (rad/s)", lines));
-        elastic.push(Panel::states("latched", "Active damping: 1 beyond the threshold", channels("latched")));
-        elastic.push(Panel::states("resting", "Active damping: 1 at rest", channels("resting")));
+        elastic.push(Panel::states("latched", "Active damping: the threshold", channels("latched")));
+        elastic.push(Panel::states("resting", "Active damping: the watchdog", channels("resting")));
     }
-    elastic.push(Panel::states("trusted", "Observers: 1 where they are trusted", channels("trusted")));
-    let log = vec![Panel::log(), Panel::metrics()];
+    elastic.push(Panel::states("trusted", "Observers", channels("trusted")));
+    let mut log = vec![Panel::log()];
+    log.extend(metrics(scenario));
     vec![
         Tab { title: "Motion", panels: motion },
         Tab { title: "Elastic modes", panels: elastic },

@@ -4,7 +4,7 @@ use super::{
     FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told,
     Value,
 };
-use crate::record::Estimate;
+use crate::record::{Estimate, Lock, Use};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
@@ -50,7 +50,7 @@ impl Filter {
     /// Takes what the filter made of a sample.
     pub fn see(&mut self, now: Instant, estimate: &Estimate) {
         let t = now.seconds();
-        if estimate.lock == 0 {
+        if estimate.lock == Lock::Lost {
             self.lost_at.get_or_insert(t);
         } else {
             self.lost_at = None;
@@ -64,7 +64,7 @@ impl Filter {
         self.nees += estimate.nees;
         self.square += error * error;
         self.largest = self.largest.max(error);
-        if estimate.measured == 1 {
+        if estimate.measured == Use::Used {
             let [low, high] = INSIDE[self.measurements - 1];
             self.count.1 += 1;
             self.nis += estimate.nis;

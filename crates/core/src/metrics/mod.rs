@@ -257,7 +257,7 @@ impl Gather {
         } else {
             Course::Rotation(Box::new(Rotation::new(scenario)))
         };
-        Self { course, filter: Filter::new(scenario), tracked: Tracked::default() }
+        Self { course, filter: Filter::new(scenario), tracked: Tracked::new(scenario) }
     }
 
     /// The metrics of the run that has ended.

@@ -4,7 +4,9 @@ use super::{
     DAMPING_CYCLES, DAMPING_PAUSES, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, INFLUENCE_ERRORS,
     INFLUENCE_ESTIMATES, TRACKING_ERROR, Told, Value,
 };
-use crate::record::{TrackedMode, Tracking};
+use crate::estimator::Estimator;
+use crate::record::{TrackedMode, Tracking, Watch};
+use crate::scenario::Scenario;
 
 /// Gathers the cycles of a run.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +20,12 @@ pub struct Tracked {
 }
 
 impl Tracked {
+    /// An empty gathering for runs of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let adaptive = matches!(scenario.estimator, Some(Estimator::Adaptive(_)));
+        Self { last: adaptive.then(Vec::new), ..Self::default() }
+    }
+
     /// Takes a cycle.
     pub fn see(&mut self, tracking: &Tracking) {
         let error = |of: &crate::record::ChannelState| of.elastic_rad_s - of.true_elastic_rad_s;
@@ -25,7 +33,7 @@ impl Tracked {
         self.square.1 += 1;
         self.cycles += u64::from(tracking.channels.iter().any(|of| of.damping_on_s != 0.0));
         for (resting, channel) in self.resting.iter_mut().zip(&tracking.channels) {
-            let rests = channel.resting == 1;
+            let rests = channel.resting == Watch::Resting;
             self.pauses += u64::from(rests && !*resting);
             *resting = rests;
         }

@@ -9,7 +9,8 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapError, WriteOptions, Writer};
 
 use super::message::{Encode, Message, Messages};
-use super::{Detail, Metrics, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
+use super::{Detail, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
+use crate::metrics::Metrics;
 use crate::time::Instant;
 use crate::whole::discard;
 

@@ -4,8 +4,9 @@ use super::foxglove::{Level, Log};
 use super::proto::Encoder;
 use super::row::{Stamp, TopicRow};
 use super::topics::index_of;
-use super::{Detail, Metrics, OutputName, Params, Record, RecordError, Sample, TakeRow};
+use super::{Detail, OutputName, Params, Record, RecordError, Sample, Summary, TakeRow};
 use crate::layout::Layout;
+use crate::metrics::Metrics;
 use crate::time::Instant;
 
 /// What a log says about where it comes from.
@@ -93,8 +94,9 @@ impl<M: Messages> Encode<M> {
     /// Ends the messages with the metrics, if there are any, and how the run ended, if before its time; tells where the
     /// messages went, and the time of the last.
     pub fn finish(mut self, metrics: &Metrics, end: RunEnd) -> Result<(M, Instant), RecordError> {
-        if !metrics.metrics.is_empty() {
-            self.take(self.last, metrics)?;
+        if !metrics.0.is_empty() {
+            self.take(self.last, &Summary::of(metrics))?;
+            self.take(self.last, &metrics.to_row())?;
         }
         if end != RunEnd::Complete {
             let timestamp = Stamp(self.epoch_ns + self.last.nanoseconds());

@@ -8,6 +8,8 @@ mod message;
 mod proto;
 mod recover;
 pub mod row;
+mod states;
+mod summary;
 mod table;
 mod topics;
 mod trace;
@@ -24,11 +26,12 @@ pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog};
 pub use message::{Encode, Message, Messages, Provenance, RunEnd};
 pub use recover::recover;
+pub use states::{Gate, Latch, Lock, Trust, Use, Watch};
 pub use topics::{
     Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion,
-    Jets, Law, Metric, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName,
-    Outputs, Params, Pointing, Rate, Rates, Residual, TOPICS, Torque, TrackedMode, Tracking, Trigger,
-    Vibration, Vibrations, WheelMotion, WindowMean,
+    Jets, Law, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes,
+    OutputMotion, OutputName, Outputs, Params, Pointing, Rate, Rates, Residual, Summary, TOPICS, Torque,
+    TrackedMode, Tracking, Trigger, Vibration, Vibrations, WheelMotion, WindowMean,
 };
 pub use trace::Trace;
 

@@ -2,6 +2,7 @@
 
 use super::foxglove::{self, Level, Plumes};
 use super::row::{Topic, TopicRow, label_cells, rows};
+use super::states::{Gate, Latch, Lock, Trust, Use, Watch};
 use crate::adaptation::Decision;
 use crate::label::{Labels, labels};
 use crate::law::Phase;
@@ -216,14 +217,14 @@ rows! {
         innovation_rad: f64,
         /// Normalised innovation squared, summed over the measurements; 0 if the sample was dropped.
         nis: f64,
-        /// 1 if the sample was used, 0 if there was none or it was dropped.
-        measured: u64,
+        /// What became of the sample.
+        measured: Use,
         /// Normalised estimation error squared against the true state: of an honest filter about the number of states.
         nees: f64,
-        /// 1 while the dominant mode moves too little for its frequency to be learnt.
-        gated: u64,
-        /// 1 as long as the filter follows the body.
-        lock: u64,
+        /// Whether the dominant mode moves enough for its frequency to be learnt.
+        gated: Gate,
+        /// Whether the filter follows the body.
+        lock: Lock,
     }
     /// The rates about one axis.
     AxisRate {
@@ -312,16 +313,16 @@ rows! {
         innovation_rms_rad_s: f64,
         /// The same of the estimated elastic rate (rad/s).
         elastic_rms_rad_s: f64,
-        /// 1 while the innovations are small enough for the estimate to be acted on.
-        trusted: u64,
+        /// Whether the innovations are small enough for the estimate to be acted on.
+        trusted: Trust,
         /// Elastic rate that active damping acts on: predicted, of the modes that it may act on (rad/s).
         acted_on_rad_s: f64,
         /// Its threshold (rad/s).
         threshold_rad_s: f64,
-        /// 1 since that rate was beyond the threshold, and until it is back.
-        latched: u64,
-        /// 1 while the watchdog keeps active damping quiet.
-        resting: u64,
+        /// Whether that rate was beyond the threshold, and is not yet back.
+        latched: Latch,
+        /// Whether the watchdog keeps active damping quiet.
+        resting: Watch,
         /// Signed length of the pulse that active damping commands in this cycle (s).
         damping_on_s: f64,
     }
@@ -368,6 +369,25 @@ rows! {
     Metrics = "/metrics" {
         /// Each metric.
         metrics: Vec<Metric>,
+    }
+    /// One metric in words.
+    MetricLine {
+        /// Name, as `flexsc schema --metrics` explains it.
+        name: String,
+        /// Value, or the values of a list.
+        value: String,
+        /// Unit.
+        unit: String,
+    }
+    /// Some metrics.
+    MetricPage {
+        /// Each metric.
+        metrics: Vec<MetricLine>,
+    }
+    /// The metrics of the run once more, for people: in pages, since tables of viewers show ten rows.
+    Summary = "/summary" {
+        /// Each page.
+        pages: Vec<MetricPage>,
     }
     /// The name of an observed coordinate.
     OutputName {
@@ -435,8 +455,9 @@ impl Command {
 
 /// The label of an enumeration's value, by its identifier in the schema of a log.
 pub fn label_of(identifier: &str) -> String {
-    let all = [&Phase::LABELS, &Trigger::LABELS, &Decision::LABELS, &Level::LABELS];
-    let mut labels = all.iter().flat_map(|of| of.values);
+    let states = [&Lock::LABELS, &Gate::LABELS, &Use::LABELS, &Trust::LABELS, &Latch::LABELS, &Watch::LABELS];
+    let others = [&Phase::LABELS, &Trigger::LABELS, &Decision::LABELS, &Level::LABELS];
+    let mut labels = others.iter().chain(&states).flat_map(|of| of.values);
     let label = labels.find(|label| Labels::identifier(label) == identifier);
     label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())
 }

@@ -9,6 +9,9 @@ use crate::time::Span;
 /// No frames are nearer than this (s), unless a scenario asks for it: viewers show no more.
 const SHORTEST_PERIOD: f64 = 0.04;
 
+/// A full log holds no more instants of its period than this, unless a scenario asks for it: viewers take minutes to load more.
+const MOST_INSTANTS: f64 = 1e4;
+
 /// What is drawn larger than this is out of any picture, and its square soon no number.
 const LARGEST_FACTOR: f64 = 1e9;
 
@@ -16,7 +19,8 @@ const LARGEST_FACTOR: f64 = 1e9;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Log {
-    /// Period at which a full log holds the motion (s).
+    /// Period at which a full log holds the motion (s); left out, 0.1 or the first of 0.2, 0.5, 1, 2, 5 and so on of which the
+    /// duration has at most 10 000.
     #[serde(default = "tenth")]
     pub period: Span,
     /// How a log with a scene draws the run.
@@ -31,6 +35,16 @@ fn tenth() -> Span {
 impl Default for Log {
     fn default() -> Self {
         Self { period: tenth(), scene: SceneSpec::default() }
+    }
+}
+
+impl Log {
+    /// The period for runs of this duration, where a scenario leaves it out.
+    pub fn period_for(duration: Span) -> Span {
+        let least = duration.seconds() / MOST_INSTANTS;
+        let decades = (-1..).map(|exponent| libm::pow(10.0, f64::from(exponent)));
+        let mut periods = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|step| step * decade));
+        periods.find(|period| *period >= least).map_or_else(tenth, Span::from_seconds)
     }
 }
 
@@ -69,5 +83,28 @@ impl SceneSpec {
     /// The period of the frames, where a log has this one.
     pub fn period(&self, log: Span) -> Span {
         self.period.unwrap_or_else(|| log.max(Span::from_seconds(SHORTEST_PERIOD)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_has_at_most_ten_thousand_instants() {
+        for (duration, period) in [
+            (1e-3, 0.1),
+            (600.0, 0.1),
+            (1000.0, 0.1),
+            (1000.1, 0.2),
+            (1500.0, 0.2),
+            (20_000.0, 2.0),
+            (40_000.0, 5.0),
+            (86_400.0, 10.0),
+            (1e6, 100.0),
+        ] {
+            let own = Log::period_for(Span::from_seconds(duration));
+            assert_eq!(own, Span::from_seconds(period), "{duration}: {own:?}");
+        }
     }
 }

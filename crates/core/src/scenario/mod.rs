@@ -147,6 +147,9 @@ impl Scenario {
         if let Some(error) = document.unread(&scenario.to_table()) {
             return Err(error);
         }
+        if !document.has("log.period") {
+            scenario.log.period = Log::period_for(scenario.duration);
+        }
         if scenario.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();

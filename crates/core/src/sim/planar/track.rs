@@ -192,10 +192,10 @@ impl Track {
             modes: modes.collect(),
             innovation_rad: told.innovation,
             nis: told.nis.unwrap_or(0.0),
-            measured: u64::from(told.nis.is_some()),
+            measured: told.nis.is_some().into(),
             nees: filter.nees(&truth),
-            gated: u64::from(filter.is_gated()),
-            lock: u64::from(!filter.is_lost()),
+            gated: filter.is_gated().into(),
+            lock: (!filter.is_lost()).into(),
         })
     }
 }

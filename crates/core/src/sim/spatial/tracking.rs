@@ -56,11 +56,11 @@ impl Observers {
                 true_elastic_rad_s: (0..rates.len()).map(|mode| seen(&mode)).sum(),
                 innovation_rms_rad_s: libm::sqrt(residual.innovation),
                 elastic_rms_rad_s: libm::sqrt(residual.elastic),
-                trusted: u64::from(channel.is_trusted()),
+                trusted: channel.is_trusted().into(),
                 acted_on_rad_s: damped.rate,
                 threshold_rad_s: damped.threshold,
-                latched: u64::from(damped.latched),
-                resting: u64::from(damped.resting),
+                latched: damped.latched.into(),
+                resting: damped.resting.into(),
                 damping_on_s: damped.on,
             });
             let own = design.own(axis);

@@ -1,0 +1,79 @@
+//! The metrics of a run in words, for the tables of viewers.
+
+use super::{MetricLine, MetricPage, Summary};
+use crate::metrics::{Metrics, Told, Value};
+
+/// Of a longer list no more values are told.
+const MOST_VALUES: usize = 6;
+
+impl Summary {
+    /// Lichtblick's tables show so many rows.
+    pub const PAGE: usize = 10;
+
+    /// What metrics come to.
+    pub fn of(metrics: &Metrics) -> Self {
+        let page = |page: &[Told]| MetricPage { metrics: page.iter().map(line).collect() };
+        Self { pages: metrics.0.chunks(Self::PAGE).map(page).collect() }
+    }
+}
+
+fn line((meaning, value): &Told) -> MetricLine {
+    let value = match value {
+        Value::Count(count) => count.to_string(),
+        Value::Number(value) => number(*value),
+        Value::Word(word) => (*word).to_owned(),
+        Value::Numbers(list) if list.is_empty() => "none".to_owned(),
+        Value::Numbers(list) => {
+            let mut values: Vec<String> = list.iter().take(MOST_VALUES).copied().map(number).collect();
+            if list.len() > MOST_VALUES {
+                values.push(format!("… ({} in all)", list.len()));
+            }
+            values.join(", ")
+        }
+    };
+    MetricLine { name: meaning.name.to_owned(), value, unit: meaning.unit.to_owned() }
+}
+
+/// A number to five digits.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if value.is_nan() {
+        "none".to_owned()
+    } else if libm::trunc(value) == value && size < 1e9 {
+        value.to_string()
+    } else if (1e-3..1e5).contains(&size) {
+        let digits = 4 - libm::floor(libm::log10(size)) as i32;
+        format!("{value:.*}", digits.unsigned_abs() as usize)
+    } else {
+        format!("{value:.4e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::Meaning;
+
+    static MEANING: Meaning = Meaning { name: "a", unit: "s", doc: "" };
+
+    #[test]
+    fn lists_are_one_line_and_pages_have_ten() {
+        let list = |count: usize| Value::Numbers((0..count).map(|i| 0.5 + i as f64).collect());
+        let mut values = vec![
+            Value::Number(718.275_4),
+            Value::Number(-1.5e-7),
+            Value::Number(12.0),
+            Value::Number(f64::NAN),
+            Value::Count(3),
+            list(0),
+            list(2),
+            list(7),
+        ];
+        values.extend([0.0; 3].map(Value::Number));
+        let pages = Summary::of(&Metrics(values.into_iter().map(|value| (&MEANING, value)).collect())).pages;
+        assert_eq!(pages.iter().map(|page| page.metrics.len()).collect::<Vec<_>>(), [10, 1]);
+        let values: Vec<&str> = pages[0].metrics[..8].iter().map(|line| &line.value[..]).collect();
+        let long = "0.50000, 1.5000, 2.5000, 3.5000, 4.5000, 5.5000, … (7 in all)";
+        assert_eq!(values, ["718.28", "-1.5000e-7", "12", "none", "3", "none", "0.50000, 1.5000", long]);
+    }
+}
