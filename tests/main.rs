@@ -12,6 +12,8 @@ mod campaign_figures;
 mod campaigns;
 mod cli;
 mod convergence;
+#[cfg(target_os = "linux")]
+mod costs;
 mod cycles;
 mod damping;
 mod damping_relay;
@@ -19,6 +21,7 @@ mod determinism;
 mod drawing;
 mod events;
 mod filters;
+mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
 mod layout;

@@ -107,6 +107,15 @@ impl Dir {
         Ran::new(arguments, self.command(arguments).output().expect("the command starts"))
     }
 
+    /// Runs the command with 1.5 GB of memory and 10 s of time: what it cannot do within is killed.
+    #[cfg(target_os = "linux")]
+    pub fn run_bounded(&self, arguments: &str) -> Ran {
+        let mut command = Command::new("sh");
+        command.args(["-c", "ulimit -v 1500000; exec timeout -s KILL 10 \"$0\" \"$@\"", FLEXSC]);
+        command.args(arguments.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
+        Ran::new(arguments, command.output().expect("the command starts"))
+    }
+
     /// Starts the command.
     pub fn start(&self, arguments: &str) -> Started {
         Self::started(self.command(arguments), arguments)

@@ -23,15 +23,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     for path in &args.scenarios {
         let scenario = Scenario::load(path)?;
         let modes = scenario.mode_count();
+        let costly = scenario.cost(None, false).excess();
         if args.json {
             let (file, duration) = (path.display().to_string(), scenario.duration.seconds());
             let object = json!({
                 "file": file, "scenario": scenario.name, "duration_s": duration, "modes": modes, "accepted": true,
+                "needs_yes": costly.is_some(),
             });
             print(format!("{object}\n").as_bytes())?;
             continue;
         }
         say!("{}: accepted: {} s, {modes} modes", path.display(), scenario.duration.seconds());
+        if let Some(why) = costly {
+            say!("  {why}");
+        }
     }
     Ok(())
 }

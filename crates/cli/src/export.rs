@@ -1,14 +1,15 @@
 //! `flexsc export`: a topic of a log as a table.
 
-use std::path::PathBuf;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use clap::ValueEnum;
-use flexsc_core::record::{Column, Columns, Log};
+use flexsc_core::record::{Column, Columns, Log, LogError};
 use flexsc_core::whole;
 use serde_json::{Map, Value as Json, json};
 
 use crate::failure::Failure;
-use crate::print;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -33,121 +34,172 @@ enum Format {
     Jsonl,
 }
 
+/// A table of unequal rows within rows has empty cells: at most so many beside ...
+const EMPTY_CELLS: usize = 1 << 24;
+/// ... so many for each full one.
+const EMPTY_PER_FULL: usize = 16;
+
 pub fn run(args: &Args) -> Result<(), Failure> {
     let log = Log::open(&args.log)?;
-    let text = match &args.topic {
-        None => format!("{}\n", log.topics().join("\n")).into_bytes(),
-        Some(topic) => {
-            let columns = flat(&log.columns(topic)?);
-            match args.format {
-                Format::Csv => csv(&columns),
-                Format::Jsonl => jsonl(&columns),
-            }
-        }
+    let Some(topic) = &args.topic else {
+        return tell(args, |out| writeln!(out, "{}", log.topics().join("\n")));
     };
-    match &args.out {
-        Some(path) => whole::write(path, &text).map_err(Failure::write(path)),
-        None => print(&text),
-    }
+    let columns = log.columns(topic)?;
+    let table = flat(&columns).map_err(|why| unreadable(&args.log, topic, why))?;
+    tell(args, |out| match args.format {
+        Format::Csv => csv(&table, columns.len(), out),
+        Format::Jsonl => jsonl(&table, columns.len(), out),
+    })
+}
+
+fn unreadable(path: &Path, topic: &str, why: String) -> Failure {
+    LogError::Undecodable { path: path.to_owned(), topic: topic.to_owned(), why }.into()
+}
+
+/// Writes what is exported where it is wanted.
+fn tell(args: &Args, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    let Some(path) = &args.out else {
+        let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+        return write(&mut out).and_then(|()| out.flush()).map_err(Failure::Stdout);
+    };
+    let mut bytes = Vec::new();
+    write(&mut bytes).and_then(|()| whole::write(path, &bytes)).map_err(Failure::write(path))
 }
 
 /// A cell of a table.
-#[derive(Clone)]
-enum Cell {
+enum Cell<'a> {
     Empty,
     Number(f64),
     /// A number with more digits than a double has.
-    Exact(String),
+    Exact(u64, u64),
     Count(u64),
-    Text(String),
+    Integer(i64),
+    Text(&'a str),
+}
+
+/// A column of a table without nesting.
+struct Flat<'a> {
+    name: String,
+    column: &'a Column,
+    cells: Cells<'a>,
+}
+
+/// Which values of a column are its cells.
+enum Cells<'a> {
+    /// One for each row.
+    Own,
+    /// The whole seconds and the femtoseconds past them that a time is.
+    Exact(&'a [u64], &'a [u64]),
+    /// Of each row the value at this place within it; how many there are in each row, and before it.
+    Within(usize, &'a [u32], Rc<[usize]>),
 }
 
 /// Columns without nesting: `modes[0].displacement_rad`, and the exact time in place of its parts.
-fn flat(columns: &Columns) -> Vec<(String, Vec<Cell>)> {
+fn flat(columns: &Columns) -> Result<Vec<Flat<'_>>, String> {
     let mut flat = Vec::new();
     let parts = (columns.get("time_whole_s"), columns.get("time_fs"));
+    let own = |column| Flat { name: String::new(), column, cells: Cells::Own };
     for (name, column) in &columns.columns {
-        let cells = match (name.as_str(), column, &parts) {
-            ("time_whole_s" | "time_fs", ..) => continue,
+        let of = match (name.as_str(), column, &parts) {
+            ("time_whole_s" | "time_fs", Column::Counts(_), (Some(_), Some(_))) => continue,
             ("time_s", _, (Some(Column::Counts(whole)), Some(Column::Counts(part)))) => {
-                let exact = |(s, fs): (&u64, &u64)| Cell::Exact(format!("{s}.{fs:015}"));
-                whole.iter().zip(part).map(exact).collect()
+                Flat { cells: Cells::Exact(whole, part), ..own(column) }
             }
             (_, Column::Rows(counts, inner), _) => {
-                flat.extend(spread(name, counts, inner));
+                spread(&mut flat, name, counts, inner)?;
                 continue;
             }
-            _ => cells(column),
+            _ => own(column),
         };
-        flat.push((name.clone(), cells));
+        flat.push(Flat { name: name.clone(), ..of });
     }
-    flat
+    Ok(flat)
 }
 
 /// The rows within each row side by side.
-fn spread(name: &str, counts: &[u32], inner: &Columns) -> Vec<(String, Vec<Cell>)> {
+fn spread<'a>(
+    flat: &mut Vec<Flat<'a>>,
+    name: &str,
+    counts: &'a [u32],
+    inner: &'a Columns,
+) -> Result<(), String> {
     let widest = counts.iter().copied().max().unwrap_or(0) as usize;
-    let inner: Vec<_> = inner.columns.iter().map(|(field, column)| (field, cells(column))).collect();
-    let mut spread = Vec::new();
+    let full: usize = counts.iter().map(|count| *count as usize).sum();
+    if widest.saturating_mul(counts.len()) - full > EMPTY_CELLS.saturating_add(EMPTY_PER_FULL * full) {
+        let rows = counts.len();
+        return Err(format!(
+            "`{name}` has up to {widest} values in one of {rows} rows, and most rows have far fewer: no table holds \
+             that\n\nhint: Python reads it, as one array for each row"
+        ));
+    }
+    let before = counts.iter().scan(0, |sum, count| {
+        let before = *sum;
+        *sum += *count as usize;
+        Some(before)
+    });
+    let before: Rc<[usize]> = before.collect();
     for index in 0..widest {
-        for (field, values) in &inner {
-            let mut first = 0;
-            let column = counts.iter().map(|&count| {
-                let cell = if index < count as usize { values[first + index].clone() } else { Cell::Empty };
-                first += count as usize;
-                cell
-            });
-            spread.push((format!("{name}[{index}].{field}"), column.collect()));
+        for (field, column) in &inner.columns {
+            let dot = if field.is_empty() { "" } else { "." };
+            let cells = Cells::Within(index, counts, Rc::clone(&before));
+            flat.push(Flat { name: format!("{name}[{index}]{dot}{field}"), column, cells });
         }
     }
-    spread
+    Ok(())
 }
 
-fn cells(column: &Column) -> Vec<Cell> {
-    match column {
-        Column::Numbers(values) => values.iter().map(|v| Cell::Number(*v)).collect(),
-        Column::Counts(values) => values.iter().map(|v| Cell::Count(*v)).collect(),
-        Column::Texts(values) => values.iter().map(|v| Cell::Text(v.clone())).collect(),
-        Column::Labels(values, labels) => {
-            let label = |v: &u8| labels.get(usize::from(*v)).cloned().map_or(Cell::Empty, Cell::Text);
-            values.iter().map(label).collect()
+impl Flat<'_> {
+    fn cell(&self, row: usize) -> Cell<'_> {
+        let place = match &self.cells {
+            Cells::Own => row,
+            Cells::Exact(whole, part) => return Cell::Exact(whole[row], part[row]),
+            Cells::Within(index, counts, before) if *index < counts[row] as usize => before[row] + index,
+            Cells::Within(..) => return Cell::Empty,
+        };
+        match self.column {
+            Column::Numbers(values) => Cell::Number(values[place]),
+            Column::Counts(values) => Cell::Count(values[place]),
+            Column::Integers(values) => Cell::Integer(values[place]),
+            Column::Texts(values) => Cell::Text(&values[place]),
+            Column::Labels(values, labels) => {
+                labels.get(usize::from(values[place])).map_or(Cell::Empty, |label| Cell::Text(label))
+            }
+            Column::Rows(counts, _) => Cell::Count(u64::from(counts[place])),
         }
-        Column::Rows(counts, _) => counts.iter().map(|v| Cell::Count(u64::from(*v))).collect(),
     }
 }
 
-fn csv(columns: &[(String, Vec<Cell>)]) -> Vec<u8> {
-    let mut writer = ::csv::Writer::from_writer(Vec::new());
-    let rows = columns.first().map_or(0, |(_, cells)| cells.len());
-    let text = |cell: &Cell| match cell {
+fn csv(columns: &[Flat<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()> {
+    let mut writer = ::csv::Writer::from_writer(out);
+    let text = |cell: Cell<'_>| match cell {
         Cell::Empty => String::new(),
         // The shortest text that reads back as the same double.
         Cell::Number(number) => format!("{number:e}"),
-        Cell::Exact(text) | Cell::Text(text) => text.clone(),
+        Cell::Exact(whole, femtoseconds) => format!("{whole}.{femtoseconds:015}"),
+        Cell::Text(text) => text.to_owned(),
         Cell::Count(count) => count.to_string(),
+        Cell::Integer(number) => number.to_string(),
     };
-    // Writing to memory does not fail.
-    let _ = writer.write_record(columns.iter().map(|(name, _)| name));
+    writer.write_record(columns.iter().map(|column| &column.name))?;
     for row in 0..rows {
-        let _ = writer.write_record(columns.iter().map(|(_, cells)| text(&cells[row])));
+        writer.write_record(columns.iter().map(|column| text(column.cell(row))))?;
     }
-    writer.into_inner().unwrap_or_default()
+    writer.flush()
 }
 
-fn jsonl(columns: &[(String, Vec<Cell>)]) -> Vec<u8> {
-    let rows = columns.first().map_or(0, |(_, cells)| cells.len());
-    let value = |cell: &Cell| match cell {
+fn jsonl(columns: &[Flat<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()> {
+    let value = |cell: Cell<'_>| match cell {
         Cell::Empty => Json::Null,
         Cell::Number(number) => json!(number),
-        Cell::Exact(text) => json!(text.parse::<f64>().unwrap_or(f64::NAN)),
+        Cell::Exact(whole, part) => json!(format!("{whole}.{part:015}").parse::<f64>().unwrap_or(f64::NAN)),
         Cell::Count(count) => json!(count),
+        Cell::Integer(number) => json!(number),
         Cell::Text(text) => json!(text),
     };
-    let mut lines = Vec::new();
     for row in 0..rows {
         let object: Map<String, Json> =
-            columns.iter().map(|(name, cells)| (name.clone(), value(&cells[row]))).collect();
-        lines.extend(format!("{}\n", Json::Object(object)).into_bytes());
+            columns.iter().map(|column| (column.name.clone(), value(column.cell(row)))).collect();
+        writeln!(out, "{}", Json::Object(object))?;
     }
-    lines
+    Ok(())
 }

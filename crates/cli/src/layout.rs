@@ -10,8 +10,9 @@ use crate::failure::Failure;
 use crate::logged::logged;
 use crate::{print, scenario};
 
-/// A log of more samples takes minutes and gigabytes: its viewers choose their axes.
-const MOST_SAMPLES: f64 = 1e6;
+/// A log that takes longer on one core (s), or more memory (bytes), is not made: its viewers choose their axes.
+const LONGEST: f64 = 120.0;
+const LARGEST: f64 = 2e9;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -45,8 +46,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 /// The layout of the log with a scene that a scenario will have. A run tells how large its values become.
 fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, Failure> {
     let layout = Layout::of(&scenario).of_detail(Detail::Scene);
-    let samples = scenario.duration.seconds() / scenario.log.period.seconds();
-    if samples > MOST_SAMPLES {
+    let cost = scenario.cost(Some(Detail::Full), true);
+    if cost.seconds > LONGEST || cost.memory > LARGEST {
         return Ok(layout);
     }
     Ok(layout.fitted(&logged(scenario, path, Detail::Full)?)?)
@@ -54,7 +55,7 @@ fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, Failure> {
 
 fn of_log(path: &Path) -> Result<Layout, Failure> {
     let log = Log::open(path)?;
-    let scenario = Scenario::parse(&path.display().to_string(), log.scenario().unwrap_or_default())?;
+    let scenario = Scenario::parse(&path.display().to_string(), log.own_scenario()?)?;
     let layout = Layout::of(&scenario).of_topics(|topic| log.topics().iter().any(|own| own == topic));
     Ok(layout.fitted(&log)?)
 }

@@ -2,6 +2,7 @@
 
 mod campaign;
 mod check;
+mod consent;
 mod cycle;
 mod damping;
 mod export;

@@ -53,6 +53,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             say!("{saved} messages saved in {}", whole.display());
             Ok(())
         }
-        Verb::Scenario { log } => print(Log::open(log)?.scenario().unwrap_or_default().as_bytes()),
+        Verb::Scenario { log } => print(Log::open(log)?.own_scenario()?.as_bytes()),
     }
 }

@@ -4,6 +4,7 @@ use flexsc_core::analysis::sampled_loop::{Loop, Scaling, Window};
 use flexsc_core::law::Pd;
 use flexsc_core::{Scenario, ScenarioError};
 
+use crate::consent::Consent;
 use crate::failure::Failure;
 
 /// What counts as settled, and which modes follow.
@@ -18,6 +19,8 @@ pub struct Settled {
     /// The dominant mode alone changes its frequency, not all by one ratio
     #[arg(long)]
     dominant_alone: bool,
+    #[command(flatten)]
+    consent: Consent,
 }
 
 impl Settled {
@@ -25,16 +28,17 @@ impl Settled {
         if self.dominant_alone { Scaling::First } else { Scaling::All }
     }
 
+    /// Refuses to close a loop so often, with this shortest period (s) and up to this delay more (s), if that is more than
+    /// can be done, or more than is wanted.
+    pub fn allow(&self, of: &Loop, times: usize, shortest: f64, delay: f64) -> Result<(), Failure> {
+        let cost = of.watched(times as f64, self.horizon, shortest, delay);
+        self.consent.to(&cost.map_err(|why| Failure::Arguments(format!("--{why}")))?)
+    }
+
     pub fn window(&self, of: &Loop, name: &str) -> Result<Window, Failure> {
         positive("--horizon", self.horizon)?;
         if let Some(band) = self.band {
             positive("--band", band)?;
-        }
-        let samples = self.horizon / of.period;
-        if samples > 1e7 {
-            return Err(Failure::Arguments(format!(
-                "--horizon must be at most 1e7 samples, got {samples:e}"
-            )));
         }
         Ok(of.window(self.band, self.horizon).map_err(refused(name))?)
     }

@@ -11,8 +11,10 @@ use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd};
+use flexsc_core::scenario::{Cost, MOST_RUNS};
 
 use crate::campaign;
+use crate::consent::Consent;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::results::print_lines;
@@ -45,6 +47,8 @@ pub struct Args {
     /// Print one JSON object for each run on stdout
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    consent: Consent,
     #[cfg(feature = "live")]
     #[command(flatten)]
     live: crate::live::Args,
@@ -89,7 +93,14 @@ fn runs(text: &str) -> Result<Runs, String> {
         Some((low, high)) => (number(low)?..number(high)?, true),
         None => (0..number(text)?, false),
     };
-    if range.is_empty() { Err("there is no run in it".to_owned()) } else { Ok(Runs { range, part }) }
+    if range.is_empty() {
+        return Err("there is no run in it".to_owned());
+    }
+    let count = range.end - range.start;
+    if count > MOST_RUNS {
+        return Err(format!("a campaign has at most {MOST_RUNS} runs, got {count}"));
+    }
+    Ok(Runs { range, part })
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -114,14 +125,21 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             )));
         }
     }
+    let studies = scenarios
+        .into_iter()
+        .map(|(scenario, origin)| {
+            let study = Campaign::new(scenario, &origin, None)?;
+            args.consent.to(&args.cost(&study)?)?;
+            Ok(study)
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
     if let Some(out) = &args.out {
         std::fs::create_dir_all(out).map_err(Failure::write(out))?;
     }
     stop::listen();
-    let prefixed = scenarios.len() > 1;
+    let prefixed = studies.len() > 1;
     let mut failures = Vec::new();
-    for (scenario, origin) in scenarios {
-        let study = Campaign::new(scenario, &origin, None)?;
+    for study in studies {
         let done = match &args.runs {
             None => single(&study, args),
             Some(runs) => several(&study, args, runs, prefixed),
@@ -137,6 +155,17 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         failure.tell();
     }
     last.map_or(Ok(()), Err)
+}
+
+impl Args {
+    /// What the runs of a scenario ask for.
+    fn cost(&self, study: &Campaign) -> Result<Cost, Failure> {
+        let Some(Runs { range, .. }) = &self.runs else {
+            return Ok(study.scenario().cost(self.log.unwrap_or(LogDetail::Events).detail(), false));
+        };
+        let log = self.log.unwrap_or(LogDetail::None).detail();
+        study.cost(range.end - range.start, log).map_err(|why| Failure::Arguments(format!("--runs {why}")))
+    }
 }
 
 /// Runs a campaign over a scenario; its tables are named after it where several share a directory.

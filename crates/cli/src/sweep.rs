@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, Grid};
 
+use crate::consent::Consent;
 use crate::failure::Failure;
 use crate::stop::{self, Stop};
 use crate::{campaign, scenario};
@@ -19,8 +20,8 @@ pub struct Args {
     pub scenario: PathBuf,
     /// A key, and its first value, last value and number of values, such as law.relay.k_t=0.28:0.40:2401; given again, every
     /// combination with the values of another key
-    #[arg(long, required = true, value_name = "KEY=START:END:COUNT", value_parser = grid)]
-    vary: Vec<Grid>,
+    #[arg(long, required = true, value_name = "KEY=START:END:COUNT", value_parser = varied)]
+    vary: Vec<Varied>,
     /// Directory for the tables, made if it is not there
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -36,9 +37,20 @@ pub struct Args {
     /// Print one JSON object for each run on stdout
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    consent: Consent,
 }
 
-fn grid(text: &str) -> Result<Grid, String> {
+/// A key, its first value, its last, and how many there are.
+#[derive(Clone)]
+struct Varied {
+    key: String,
+    first: f64,
+    last: f64,
+    count: u32,
+}
+
+fn varied(text: &str) -> Result<Varied, String> {
     let form = || format!("`{text}` is not KEY=START:END:COUNT, such as law.relay.k_t=0.28:0.40:25");
     let (key, range) = text.split_once('=').ok_or_else(form)?;
     let [start, end, count] = range.split(':').collect::<Vec<_>>()[..] else { return Err(form()) };
@@ -47,21 +59,25 @@ fn grid(text: &str) -> Result<Grid, String> {
     if count > MOST_VALUES {
         return Err(format!("a sweep has at most {MOST_VALUES} values, got {count}"));
     }
-    Ok(Grid::even(key.to_owned(), bound(start)?, bound(end)?, count))
+    Ok(Varied { key: key.to_owned(), first: bound(start)?, last: bound(end)?, count })
 }
 
 impl Args {
     /// The sweep over a scenario of this origin, and its runs.
     pub fn study(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), Failure> {
-        let runs = self.vary.iter().try_fold(1_u64, |runs, grid| runs.checked_mul(grid.values.len() as u64));
+        let runs = self.vary.iter().try_fold(1_u64, |runs, grid| runs.checked_mul(u64::from(grid.count)));
         let runs = runs.filter(|runs| *runs <= u64::from(MOST_VALUES)).ok_or_else(|| {
             Failure::Arguments(format!("--vary: a sweep has at most {MOST_VALUES} combinations of values"))
         })?;
-        let varied = |(place, grid): &(usize, &Grid)| self.vary[..*place].iter().any(|o| o.key == grid.key);
-        if let Some((_, twice)) = self.vary.iter().enumerate().find(varied) {
+        let twice = |(place, grid): &(usize, &Varied)| self.vary[..*place].iter().any(|o| o.key == grid.key);
+        if let Some((_, twice)) = self.vary.iter().enumerate().find(twice) {
             return Err(Failure::Arguments(format!("--vary {}: a key can be varied once", twice.key)));
         }
-        Ok((Campaign::new(scenario, origin, self.vary.clone())?, 0..runs))
+        let grid = |of: &Varied| Grid::even(of.key.clone(), of.first, of.last, of.count);
+        let study = Campaign::new(scenario, origin, self.vary.iter().map(grid))?;
+        let cost = study.cost(runs, None).map_err(|why| Failure::Arguments(format!("--vary: {why}")))?;
+        self.consent.to(&cost)?;
+        Ok((study, 0..runs))
     }
 }
 

@@ -11,8 +11,9 @@ use crate::document::{Document, ScenarioError, key};
 use crate::layout::Layout;
 use crate::metrics::{Gather, Metrics};
 use crate::random::Seed;
+use crate::record::Detail;
 use crate::record::{OutputName, Provenance, Record};
-use crate::scenario::Scenario;
+use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
 
 /// Runs that are handed to the threads at a time: what a stopped campaign loses at most.
@@ -103,6 +104,24 @@ impl Campaign {
         Ok(campaign)
     }
 
+    /// What so many runs ask for, each with a log of this detail: as much as the costliest of the ends of the grids.
+    ///
+    /// # Errors
+    /// More runs than there can be.
+    pub fn cost(&self, runs: u64, log: Option<Detail>) -> Result<Cost, String> {
+        if runs > MOST_RUNS {
+            return Err(format!("must be at most {MOST_RUNS} runs, got {runs}"));
+        }
+        let mut cost = self.scenario.cost(log, false);
+        for grid in &self.grids {
+            for value in grid.values.first().into_iter().chain(grid.values.last()) {
+                let ends = self.scenario_with(&[(&grid.key, self.like(&grid.key, *value))]);
+                cost = cost.max(ends.map_err(|error| error.to_string())?.cost(log, false));
+            }
+        }
+        Ok(cost.times(runs))
+    }
+
     /// The scenario that the runs are drawn from, as TOML: the same campaign can be made from it. It needs no file, unless
     /// the matrices of a structure vary.
     pub fn to_toml(&self) -> String {
@@ -169,7 +188,7 @@ impl Campaign {
     ) -> Result<(), E> {
         let mut from = runs.start;
         while from < runs.end {
-            let block = from..runs.end.min(from + BLOCK);
+            let block = from..runs.end.min(from.saturating_add(BLOCK));
             from = block.end;
             let outcomes: Vec<Outcome> = block
                 .into_par_iter()

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{Finite, NonNegative};
+use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Stream;
 use crate::time::{Instant, Span};
 
@@ -22,10 +22,10 @@ pub struct Disturbance {
     pub period: Option<Span>,
     /// When it begins (s).
     #[serde(default)]
-    pub from: NonNegative,
+    pub from: Time,
     /// When it ends (s); left out, with the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub to: Option<NonNegative>,
+    pub to: Option<Time>,
 }
 
 impl Disturbance {
@@ -79,6 +79,6 @@ impl Disturbing {
     }
 }
 
-fn at(time: NonNegative) -> Instant {
+fn at(time: Time) -> Instant {
     Instant::START + Span::from_seconds(time.get())
 }

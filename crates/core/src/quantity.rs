@@ -73,6 +73,12 @@ quantity!(
 );
 
 quantity!(
+    /// A time from the start of a run, or for which something waits (s): no run is longer.
+    Time, |v| (0.0..=1e13).contains(&v), "a time of 0 to 1e13 s",
+    {"type": "number", "minimum": 0, "maximum": 1e13}
+);
+
+quantity!(
     /// The error that an integration may make in each step, relative to 1 or to the largest angle.
     Tolerance, |v| (1e-14..=1e-3).contains(&v), "a tolerance of 1e-14 to 1e-3",
     {"type": "number", "minimum": 1e-14, "maximum": 1e-3}
@@ -94,7 +100,7 @@ macro_rules! zero_by_default {
     };
 }
 
-zero_by_default!(Finite, NonNegative);
+zero_by_default!(Finite, NonNegative, Time);
 
 impl Frequency {
     /// The lowest (rad/s).

@@ -11,6 +11,8 @@ const FEMTOSECONDS: i64 = 1_000_000_000_000_000;
 const FEMTOSECONDS_F64: f64 = 1e15;
 /// Spans below so many seconds fit 64 bits of femtoseconds.
 const SHORT_S: i64 = 9_000;
+/// No span is longer, whatever number it comes from: a thousand of the longest runs.
+const FARTHEST_S: f64 = 1e16;
 /// The longest span that a scenario may name: 300 000 years.
 const LONGEST_S: f64 = 1e13;
 
@@ -41,6 +43,8 @@ impl Ticks {
         if seconds.abs() < SHORT_S as f64 {
             return nearest(seconds);
         }
+        // Beyond, sums would not fit.
+        let seconds = seconds.clamp(-FARTHEST_S, FARTHEST_S);
         let whole = libm::trunc(seconds);
         let part = nearest(seconds - whole);
         Self { whole: whole as i64 + part.whole, ..part }

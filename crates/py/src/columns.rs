@@ -13,11 +13,15 @@ pub fn of_rows(py: Python<'_>, rows: Columns) -> PyResult<Bound<'_, PyDict>> {
     for (name, column) in rows.columns {
         match column {
             Column::Numbers(values) => columns.set_item(name, values.into_pyarray(py))?,
+            Column::Counts(counts) if counts.iter().any(|count| i64::try_from(*count).is_err()) => {
+                columns.set_item(name, counts.into_pyarray(py))?;
+            }
             Column::Counts(counts) => {
                 // Signed, so that differences are what one expects.
                 let counts: Vec<i64> = counts.into_iter().map(|count| count as i64).collect();
                 columns.set_item(name, counts.into_pyarray(py))?;
             }
+            Column::Integers(values) => columns.set_item(name, values.into_pyarray(py))?,
             Column::Texts(texts) => columns.set_item(name, texts)?,
             Column::Labels(indices, labels) => {
                 columns.set_item(name, (indices.into_pyarray(py), labels))?;

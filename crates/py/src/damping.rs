@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use crate::aside::aside;
+use crate::error::allowed;
 use crate::sampled::all_positive;
 
 /// Weights W1 to W3, natural frequency (rad/s), period (s), damping ratio.
@@ -61,8 +62,10 @@ pub fn identify_json(
     off: (f64, f64),
     rate: f64,
     extent: (u64, u32, u64),
+    yes: bool,
 ) -> PyResult<String> {
     let (runs, cycles, seed) = extent;
+    let squared = (modes.len() * modes.len()) as f64;
     let mut trial = Trial::of(modes, off.0);
     (trial.off[1], trial.cycles, trial.seed) = (off.1, cycles, seed);
     let Some(rate) = NonNegative::new(rate) else {
@@ -70,11 +73,12 @@ pub fn identify_json(
     };
     trial.observer.rate = rate;
     refused(trial.inconsistency())?;
-    if runs == 0 || cycles == 0 {
+    if !((1..=1_000_000).contains(&runs) && (1..=1_000_000).contains(&cycles)) {
         return Err(PyValueError::new_err(format!(
-            "runs and cycles must be 1 or more, got {runs} and {cycles}"
+            "runs and cycles must be from 1 to 1000000, got {runs} and {cycles}"
         )));
     }
+    allowed(&Trial::cost(runs as f64, cycles, squared), yes)?;
     let found = aside(py, |stop| {
         let runs = (0..runs).into_par_iter();
         runs.map(|number| (!stop.asked()).then(|| trial.run(number))).while_some().collect::<Vec<_>>()

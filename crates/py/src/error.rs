@@ -20,6 +20,16 @@ pub fn scenario_error(error: flexsc_core::ScenarioError) -> PyErr {
     ScenarioError::new_err(error.to_string())
 }
 
+/// Refuses work that costs too much, unless it is wanted.
+pub fn allowed(cost: &flexsc_core::scenario::Cost, yes: bool) -> pyo3::PyResult<()> {
+    match cost.excess() {
+        Some(why) if !yes => {
+            Err(PyValueError::new_err(format!("{why}\n\nhint: `yes=True` does it all the same")))
+        }
+        _ => Ok(()),
+    }
+}
+
 pub fn simulation_error(name: &str, error: flexsc_core::SimulationError) -> PyErr {
     SimulationError::new_err(format!("{name}: {error}"))
 }

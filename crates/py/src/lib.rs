@@ -35,7 +35,7 @@ use serde_json::json;
 
 use aside::aside;
 use columns::Told;
-use error::{log_error, no_file, scenario_error, simulation_error};
+use error::{allowed, log_error, no_file, scenario_error, simulation_error};
 
 #[pymodule]
 mod _native {
@@ -188,7 +188,9 @@ fn simulate<'py>(
     scenario: &Scenario,
     run: u64,
     log: &str,
+    yes: bool,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+    allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
     let metrics = aside(py, |stop| Campaign::simulate(&run, (&mut trace, stop)))?;
     let metrics = metrics.map_err(|error| simulation_error(&run.scenario.name, error))?;
@@ -226,8 +228,12 @@ fn campaign<'py>(
     runs: (u64, u64),
     jobs: usize,
     grids: Vec<(String, Vec<f64>)>,
+    yes: bool,
 ) -> PyResult<(Vec<String>, Vec<Told<'py>>, Vec<Summary>)> {
     let study = scenario.study(grids.into_iter().map(|(key, values)| Grid { key, values }))?;
+    let count = runs.1.saturating_sub(runs.0);
+    let cost = study.cost(count, None).map_err(|why| PyValueError::new_err(format!("runs {why}")))?;
+    allowed(&cost, yes)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| PyValueError::new_err(format!("jobs={jobs}: {error}")))?;
     let outcomes = aside(py, |stop| {

@@ -10,21 +10,28 @@ use serde_json::json;
 
 use super::Scenario;
 use crate::aside::aside;
-use crate::error::scenario_error;
+use crate::error::{allowed, scenario_error};
 
-/// Band (rad; 5 % of the angle at the start if there is none), horizon (s), and whether the dominant mode alone changes.
-type Settled = (Option<f64>, f64, bool);
+/// Band (rad; 5 % of the angle at the start if there is none), horizon (s), whether the dominant mode alone changes, and
+/// whether long work is wanted.
+type Settled = (Option<f64>, f64, bool, bool);
+
+/// Refuses to close a loop so often, with this shortest period (s) and up to this delay more (s), if that is more than can be
+/// done, or more than is wanted.
+fn allow(of: &Loop, times: usize, shortest: f64, delay: f64, (_, horizon, _, yes): Settled) -> PyResult<()> {
+    let cost = of.watched(times as f64, horizon, shortest, delay);
+    allowed(&cost.map_err(PyValueError::new_err)?, yes)
+}
 
 fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(Loop, &Pd, Window, Scaling)> {
     let refused = |(key, why): (String, String)| {
         let origin = scenario.inner.name.clone();
         scenario_error(flexsc_core::ScenarioError::Key { origin, key, why })
     };
-    let (band, horizon, alone) = settled;
+    let (band, horizon, alone, _) = settled;
     let (of, law) = Loop::of(&scenario.inner).map_err(refused)?;
-    if !(horizon.is_finite() && horizon > 0.0 && horizon / of.period <= 1e7) {
-        let why = format!("horizon must be positive and at most 1e7 samples, got {horizon}");
-        return Err(PyValueError::new_err(why));
+    if !(horizon.is_finite() && horizon > 0.0) {
+        return Err(PyValueError::new_err(format!("horizon must be a positive number, got {horizon}")));
     }
     let window = of.window(band, horizon).map_err(refused)?;
     Ok((of, law, window, if alone { Scaling::First } else { Scaling::All }))
@@ -57,6 +64,7 @@ pub fn gain_regions_json(
     let (of, _, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     let gains = stepped(gains)?;
+    allow(&of, frequencies.len() * gains.values().len(), of.period, 0.0, settled)?;
     let rows = aside(py, |_| regions(&of, &frequencies, scaling, gains, window, limit))?;
     Ok(json!(rows).to_string())
 }
@@ -93,6 +101,8 @@ pub fn robust_gains_json(
         quantile,
         margin,
     };
+    let closed = frequencies.len() * search.gains.values().len() * search.doubt.most_loops();
+    allow(&of, closed, of.period, delay, settled)?;
     Ok(json!(aside(py, |_| robust(&of, &frequencies, search))?).to_string())
 }
 
@@ -108,6 +118,8 @@ pub fn stability_map_json(
     let (of, law, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     all_positive("periods", &periods)?;
+    let shortest = periods.iter().copied().fold(f64::INFINITY, f64::min);
+    allow(&of, frequencies.len() * periods.len(), shortest, 0.0, settled)?;
     let gain = |frequency: f64| gain.unwrap_or_else(|| law.extra_gain(frequency));
     let cells = aside(py, |_| map(&of, &frequencies, &periods, scaling, gain, window))?;
     Ok(json!(cells).to_string())

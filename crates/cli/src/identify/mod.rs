@@ -10,6 +10,7 @@ use flexsc_core::analysis::identification::{CYCLE, Row, Trial};
 use flexsc_core::quantity::NonNegative;
 use serde_json::{Value as Json, json};
 
+use crate::consent::Consent;
 use crate::failure::Failure;
 use crate::figure::{Drawing, Named};
 use crate::number::{fixed, or_none};
@@ -56,6 +57,8 @@ pub struct Args {
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    consent: Consent,
 }
 
 /// Frequency and influence of each mode of a set.
@@ -114,6 +117,8 @@ impl Args {
         let Some(rate) = NonNegative::new(self.rate) else {
             return Err(Failure::Arguments(format!("--rate must be 0 or more, got {}", self.rate)));
         };
+        let modes: usize = asked.iter().map(|(modes, _)| modes.len() * modes.len()).sum();
+        self.consent.to(&Trial::cost(self.off.len() as f64 * self.runs as f64, self.cycles, modes as f64))?;
         let mut sets = Vec::new();
         let bar = progress::bar((asked.len() * self.off.len()) as u64, "rows");
         for (modes, rate_of_set) in asked {

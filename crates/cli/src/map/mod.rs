@@ -56,6 +56,8 @@ impl Args {
             return Err(Failure::Arguments(format!("--gain must be a finite number, got {gain}")));
         }
         let (Even(frequencies), Even(periods)) = (&self.frequency, &self.period);
+        let shortest = periods.iter().copied().fold(f64::INFINITY, f64::min);
+        self.settled.allow(&of, frequencies.len() * periods.len(), shortest, 0.0)?;
         let gain = |frequency: f64| self.gain.unwrap_or_else(|| law.extra_gain(frequency));
         let cells = map(&of, frequencies, periods, self.settled.scaling(), gain, window);
         Ok(Mapped { name: scenario.name.clone(), cells, own: (of.frequency(), of.period) })

@@ -59,7 +59,7 @@ impl Motion {
         let [goal, torque, outputs] = topics(log, ["/goal", "/torque", "/outputs"])?;
         let [wheel, estimator] = topics(log, ["/wheel", "/estimator"])?;
         let column = |columns: &Columns, name: &str| columns.numbers(name).unwrap_or_default().to_vec();
-        Ok(Self {
+        let mut motion = Self {
             time: column(&attitude, "time_s"),
             angle: column(&attitude, "angle_rad"),
             rate: column(&rate, "rate_rad_s"),
@@ -75,7 +75,21 @@ impl Motion {
                 .map(|[time, value]| (time, value))
                 .collect(),
             estimates: estimates(&estimator),
-        })
+        };
+        motion.keep_whole_rows();
+        Ok(motion)
+    }
+
+    /// Keeps the instants that every topic tells: the last one of a log that was torn may not be of them.
+    fn keep_whole_rows(&mut self) {
+        let needed = [self.time.len(), self.angle.len(), self.rate.len(), self.elastic.len()];
+        let Self { time, angle, rate, elastic, modes, mode_rates, goal, torques, wheel, outputs, .. } = self;
+        let others = modes.iter_mut().chain(mode_rates).chain(torques).chain(wheel).chain(outputs);
+        let mut others: Vec<_> = others.chain([goal]).filter(|column| !column.is_empty()).collect();
+        let told = needed.into_iter().chain(others.iter().map(|column| column.len())).min().unwrap_or(0);
+        for column in [time, angle, rate, elastic].into_iter().chain(others.iter_mut().map(|c| &mut **c)) {
+            column.truncate(told);
+        }
     }
 
     /// The displacement of a mode at a time, between two rows by the cubic that has their values and rates; NaN beyond the
@@ -142,6 +156,9 @@ fn estimates(columns: &Columns) -> Vec<Estimate> {
 fn inner(columns: &Columns, rows: &str, name: &str) -> Vec<Vec<f64>> {
     let Some(Column::Rows(counts, inner)) = columns.get(rows) else { return Vec::new() };
     let count = counts.first().map_or(0, |count| *count as usize);
+    if counts.iter().any(|other| *other as usize != count) {
+        return Vec::new();
+    }
     let values = inner.numbers(name).unwrap_or_default();
     (0..count).map(|place| values.iter().skip(place).step_by(count).copied().collect()).collect()
 }

@@ -58,9 +58,7 @@ pub struct Step {
 impl Story {
     /// Reads the events of a log.
     pub fn read(log: &Log, path: &Path) -> Result<Self, Failure> {
-        let Some(toml) = log.scenario() else {
-            return Err(unusable(path, "it holds no scenario".to_owned()));
-        };
+        let toml = log.own_scenario()?;
         let scenario = Scenario::parse(&format!("{}: scenario.toml", path.display()), toml)?;
         let about = log.metadata();
         let run = about.get("run").and_then(|run| run.parse().ok()).unwrap_or(0);
@@ -88,6 +86,12 @@ impl Story {
     pub fn motion(&self, log: &Log, path: &Path, early: f64, late: f64) -> Result<Motion, Failure> {
         if log.topics().iter().any(|topic| topic == "/attitude") {
             return Motion::read(log);
+        }
+        if let Some(why) = self.scenario.cost(None, true).excess() {
+            let why = format!(
+                "its run is not repeated: {why}\n\nhint: a log made with `--log full` holds all that figures need"
+            );
+            return Err(Failure::Arguments(format!("{}: {why}", path.display())));
         }
         let mut repeat = Repeat::new(early, late);
         // The end of a log that was cut off is rounded, and a switching may lie on it.

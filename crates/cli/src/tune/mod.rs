@@ -81,10 +81,20 @@ impl Args {
             of,
             frequencies,
         };
+        let closed = study.frequencies.len() * study.gains.values().len();
         let found = match self.robust {
-            None => Found::Regions(study.regions()),
+            None => {
+                self.settled.allow(&study.of, closed, study.of.period, 0.0)?;
+                Found::Regions(study.regions())
+            }
             Some(off) => {
                 let search = self.search(&study, off)?;
+                self.settled.allow(
+                    &study.of,
+                    closed * search.doubt.most_loops(),
+                    study.of.period,
+                    self.delay,
+                )?;
                 Found::Robust { off, rows: robust(&study.of, &study.frequencies, search) }
             }
         };

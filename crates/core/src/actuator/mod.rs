@@ -5,7 +5,7 @@ mod jets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{Finite, NonNegative, Positive};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::time::{Instant, Span};
 
 pub use jets::{Group, Groups, Jets, Pair, Thruster};
@@ -53,7 +53,7 @@ pub struct Wheel {
     pub limit: Option<Positive>,
     /// Time from a sample to the command that is computed from it (s).
     #[serde(default)]
-    pub delay: NonNegative,
+    pub delay: Time,
 }
 
 /// The rate that the back-EMF opposes.

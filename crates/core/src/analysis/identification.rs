@@ -10,6 +10,7 @@ use super::damping::Excitation;
 use crate::estimator::adaptive::{Gradient, Observer, Oscillator, Phase, Pulse, Tracker, bounds};
 use crate::quantity::{Finite, Frequency};
 use crate::random::{Seed, Stream};
+use crate::scenario::Cost;
 
 /// The cycle of the station's computer (s).
 pub const CYCLE: f64 = 0.2;
@@ -87,6 +88,11 @@ impl Trial {
             cycles: 1500,
             seed: 1,
         }
+    }
+
+    /// What so many runs of so many cycles ask for; the squares of the numbers of modes add up to this.
+    pub fn cost(runs: f64, cycles: u32, squared: f64) -> Cost {
+        Cost::of_work("the identification", runs * f64::from(cycles), 1e-7 * (3.0 + squared))
     }
 
     /// The first number that is out of its range, by what it is, and what is wrong with the modes then.

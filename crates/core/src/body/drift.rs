@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{Finite, NonNegative, Positive};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
 
 /// Terms of a Taylor series.
 pub const SERIES: usize = 21;
@@ -26,7 +26,7 @@ pub enum Profile {
 pub struct Ramp {
     /// When it begins (s).
     #[serde(default)]
-    pub from: NonNegative,
+    pub from: Time,
     /// How long it lasts (s).
     pub time: Positive,
     /// The ratio after it.
@@ -51,7 +51,7 @@ pub struct Sinusoid {
 #[serde(deny_unknown_fields)]
 pub struct Point {
     /// Time (s).
-    pub time: NonNegative,
+    pub time: Time,
     /// Ratio there.
     pub ratio: Positive,
 }

@@ -18,7 +18,7 @@ use super::{Control, Phase};
 use crate::actuator::Jets;
 use crate::belief::AxesBelief;
 use crate::body::spatial::turned;
-use crate::quantity::{Finite, Fraction, NonNegative, Positive};
+use crate::quantity::{Finite, Fraction, Positive, Time};
 use crate::time::{Instant, Span};
 
 /// The phase-plane law.
@@ -62,7 +62,7 @@ fn half() -> Fraction {
 #[serde(deny_unknown_fields)]
 pub struct Target {
     /// From when on (s).
-    pub from: NonNegative,
+    pub from: Time,
     /// Roll (rad).
     #[serde(default)]
     pub roll: Finite,

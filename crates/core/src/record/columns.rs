@@ -17,6 +17,8 @@ pub enum Column {
     Numbers(Vec<f64>),
     /// Counts.
     Counts(Vec<u64>),
+    /// Whole numbers with a sign, which only logs of other programs have.
+    Integers(Vec<i64>),
     /// Indices into the labels of an enumeration.
     Labels(Vec<u8>, Vec<String>),
     /// Texts.
@@ -90,6 +92,7 @@ impl Column {
         match self {
             Self::Numbers(values) => values.len(),
             Self::Counts(values) => values.len(),
+            Self::Integers(values) => values.len(),
             Self::Labels(values, _) => values.len(),
             Self::Texts(values) => values.len(),
             Self::Rows(values, _) => values.len(),

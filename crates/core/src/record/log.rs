@@ -1,18 +1,20 @@
 //! Reading logs back: any topic as columns, by the schema that the file itself carries.
 
-use std::collections::BTreeMap;
-use std::fs;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{Read, Seek, SeekFrom};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use mcap::sans_io::{LinearReaderOptions, MessageReadEvent, MessageReader};
-use mcap::{McapError, Message};
+use mcap::McapError;
+use mcap::records::{Channel, Record};
+use mcap::sans_io::LinearReaderOptions;
 use thiserror::Error;
 
 use super::Columns;
-use super::table::Table;
-
-/// No chunk or record of a log is larger (bytes); ours are of 1 MiB.
-pub const LARGEST: usize = 256 << 20;
+use super::bounds::{outer, parsed, walk};
+use super::table::{Budget, Schema, Table};
 
 /// A log that cannot be used.
 #[derive(Debug, Error)]
@@ -61,6 +63,12 @@ pub enum LogError {
         /// Those that there are.
         topics: String,
     },
+    /// The log was not made by this program.
+    #[error("{}: holds no scenario, so it is no log of flexsc\n\nhint: `flexsc export` reads any MCAP log of protobuf messages", path.display())]
+    NoScenario {
+        /// The file.
+        path: PathBuf,
+    },
     /// A message cannot be decoded.
     #[error("{}: topic `{topic}` cannot be decoded: {why}", path.display())]
     Undecodable {
@@ -83,35 +91,72 @@ pub struct Log {
     scenario: Option<String>,
 }
 
+/// The bytes of a file that begins as a log.
+pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, LogError> {
+    let io = |source| LogError::Io { path: path.to_owned(), source };
+    // A pipe or a device may never end.
+    if !fs::metadata(path).map_err(io)?.is_file() {
+        return Err(io(std::io::Error::other("not a file")));
+    }
+    let mut file = File::open(path).map_err(io)?;
+    let mut magic = [0; 8];
+    if file.read_exact(&mut magic).is_err() || magic != *mcap::MAGIC {
+        return Err(LogError::Damaged { path: path.to_owned(), source: McapError::BadMagic });
+    }
+    let mut bytes = Vec::new();
+    let length = file.seek(SeekFrom::End(0)).map_err(io)?;
+    // More than there is memory for is an error, and no abort.
+    let room = usize::try_from(length).ok().and_then(|length| bytes.try_reserve_exact(length).ok());
+    room.ok_or_else(|| io(std::io::ErrorKind::OutOfMemory.into()))?;
+    file.seek(SeekFrom::Start(0)).map_err(io)?;
+    file.take(length).read_to_end(&mut bytes).map_err(io)?;
+    Ok(bytes)
+}
+
 impl Log {
     /// Reads a log file.
     pub fn open(path: &Path) -> Result<Self, LogError> {
-        let io = |source| LogError::Io { path: path.to_owned(), source };
-        Self::read(path, fs::read(path).map_err(io)?)
+        Self::read(path, read_file(path)?)
     }
 
     /// Reads a log that is in memory. `path` is what errors call it.
+    ///
+    /// The summary at the end of a file tells where things are; it is not asked, as its offsets may lie.
     pub fn read(path: &Path, bytes: Vec<u8>) -> Result<Self, LogError> {
         let damaged = |source| LogError::Damaged { path: path.to_owned(), source };
         if !bytes.starts_with(mcap::MAGIC) {
             return Err(damaged(McapError::BadMagic));
         }
-        if !bytes.ends_with(mcap::MAGIC) {
+        if bytes.len() < 2 * mcap::MAGIC.len() || !bytes.ends_with(mcap::MAGIC) {
             return Err(LogError::Torn { path: path.to_owned() });
         }
-        let summary = mcap::Summary::read(&bytes).map_err(damaged)?.unwrap_or_default();
         let mut metadata = BTreeMap::new();
-        for index in &summary.metadata_indexes {
-            metadata.extend(mcap::read::metadata(&bytes, index).map_err(damaged)?.metadata);
-        }
         let mut scenario = None;
-        for index in summary.attachment_indexes.iter().filter(|i| i.name == "scenario.toml") {
-            let attachment = mcap::read::attachment(&bytes, index).map_err(damaged)?;
-            scenario = Some(String::from_utf8_lossy(&attachment.data).into_owned());
+        let mut topics = BTreeSet::new();
+        for (opcode, body) in outer(&bytes).map_err(damaged)? {
+            match parsed(opcode, body).map_err(damaged)? {
+                Some(Record::Metadata(record)) => metadata.extend(record.metadata),
+                Some(Record::Attachment { header, data, .. }) if header.name == "scenario.toml" => {
+                    scenario = Some(String::from_utf8_lossy(&data).into_owned());
+                }
+                Some(Record::Channel(channel)) => {
+                    topics.insert(channel.topic);
+                }
+                _ => {}
+            }
         }
-        let mut topics: Vec<_> = summary.channels.values().map(|c| c.topic.clone()).collect();
-        topics.sort();
+        if topics.is_empty() {
+            // A log whose summary does not repeat its channels: they are within chunks.
+            let told = walk(&bytes, checked(), |record| {
+                if let Record::Channel(channel) = record {
+                    topics.insert(channel.topic);
+                }
+                Ok(ControlFlow::Continue(()))
+            });
+            told.map_err(damaged)?;
+        }
         let epoch_ns = metadata.get("epoch_ns").and_then(|ns| ns.parse().ok()).unwrap_or(0);
+        let topics = topics.into_iter().collect();
         Ok(Self { path: path.to_owned(), bytes, epoch_ns, metadata, topics, scenario })
     }
 
@@ -130,9 +175,21 @@ impl Log {
         self.scenario.as_deref()
     }
 
+    /// The same, for what cannot do without.
+    ///
+    /// # Errors
+    /// The log holds none: it is not of this program.
+    pub fn own_scenario(&self) -> Result<&str, LogError> {
+        self.scenario().ok_or_else(|| LogError::NoScenario { path: self.path.clone() })
+    }
+
     /// The rows of a topic. The first column is `time_s`: the messages' own, or else their log time.
     pub fn columns(&self, topic: &str) -> Result<Columns, LogError> {
         let columns = self.tables(&[topic])?.pop().flatten();
+        if columns.is_none() && self.topics.iter().any(|own| own == topic) {
+            let (path, topic) = (self.path.clone(), topic.to_owned());
+            return Err(LogError::Undecodable { path, topic, why: "it has no messages".to_owned() });
+        }
         columns.ok_or_else(|| LogError::NoTopic {
             path: self.path.clone(),
             topic: topic.to_owned(),
@@ -142,56 +199,74 @@ impl Log {
 
     /// The rows of several topics in one pass through the log; nothing for a topic that it does not have.
     pub fn tables(&self, topics: &[&str]) -> Result<Vec<Option<Columns>>, LogError> {
-        let damaged = |source| LogError::Damaged { path: self.path.clone(), source };
         let mut tables: Vec<Option<Table>> = topics.iter().map(|_| None).collect();
-        for message in Messages::of(&self.bytes) {
-            let message = message.map_err(damaged)?;
-            let topic = &message.channel.topic;
-            let Some(index) = topics.iter().position(|asked| asked == topic) else { continue };
-            let undecodable =
-                |why| LogError::Undecodable { path: self.path.clone(), topic: topic.clone(), why };
-            let table = match &mut tables[index] {
-                Some(table) => table,
-                none => none.insert(Table::of(message.channel.schema.as_deref()).map_err(undecodable)?),
-            };
-            table.times.push(message.log_time.saturating_sub(self.epoch_ns) as f64 / 1e9);
-            table.push(&message.data).map_err(undecodable)?;
+        let mut budget = Budget::of_file(self.bytes.len());
+        let mut schemas = BTreeMap::new();
+        let mut channels: BTreeMap<u16, Channel> = BTreeMap::new();
+        let mut undecodable = None;
+        let told = walk(&self.bytes, checked(), |record| {
+            match record {
+                Record::Schema { header, data } => {
+                    let (name, encoding) = (header.name, header.encoding);
+                    let schema = Schema { name, encoding, data: data.into_owned() };
+                    schemas.insert(header.id, Arc::new(schema));
+                }
+                Record::Channel(channel) => {
+                    channels.insert(channel.id, channel);
+                }
+                Record::Message { header, data } => {
+                    let Some(channel) = channels.get(&header.channel_id) else {
+                        return Err(McapError::UnknownChannel(header.sequence, header.channel_id));
+                    };
+                    let Some(index) = topics.iter().position(|asked| *asked == channel.topic) else {
+                        return Ok(ControlFlow::Continue(()));
+                    };
+                    let time = header.log_time.saturating_sub(self.epoch_ns) as f64 / 1e9;
+                    let schema = schemas.get(&channel.schema_id);
+                    if let Err(why) = take(&mut tables[index], channel, schema, &data, time, &mut budget) {
+                        undecodable = Some((channel.topic.clone(), why));
+                        return Ok(ControlFlow::Break(()));
+                    }
+                }
+                _ => {}
+            }
+            Ok(ControlFlow::Continue(()))
+        });
+        told.map_err(|source| LogError::Damaged { path: self.path.clone(), source })?;
+        if let Some((topic, why)) = undecodable {
+            return Err(LogError::Undecodable { path: self.path.clone(), topic, why });
         }
         Ok(tables.into_iter().map(|table| table.map(Table::into_columns)).collect())
     }
 }
 
-/// The messages of a log. Checksums come first and lengths have a bound, so that damage is an error, and neither a
-/// wrong number nor a demand for more memory than there is.
-struct Messages<'a> {
-    rest: &'a [u8],
-    reader: MessageReader,
-}
-
-impl<'a> Messages<'a> {
-    fn of(bytes: &'a [u8]) -> Self {
-        let options = LinearReaderOptions::default()
-            .with_record_length_limit(LARGEST)
-            .with_prevalidate_chunk_crcs(true);
-        Self { rest: bytes, reader: MessageReader::new_with_options(options) }
-    }
-}
-
-impl Iterator for Messages<'_> {
-    type Item = Result<Message<'static>, McapError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            match self.reader.next_event()? {
-                Ok(MessageReadEvent::ReadRequest(wanted)) => {
-                    let (now, rest) = self.rest.split_at(wanted.min(self.rest.len()));
-                    self.reader.insert(now.len()).copy_from_slice(now);
-                    self.reader.notify_read(now.len());
-                    self.rest = rest;
-                }
-                Ok(MessageReadEvent::Message(message)) => return Some(Ok(message)),
-                Err(error) => return Some(Err(error)),
+/// Takes a message of a topic into its table.
+fn take(
+    table: &mut Option<Table>,
+    channel: &Channel,
+    schema: Option<&Arc<Schema>>,
+    data: &[u8],
+    time: f64,
+    budget: &mut Budget,
+) -> Result<(), String> {
+    let schema = schema.ok_or("no schema")?;
+    let table = match table {
+        Some(table) if table.is_of(schema) => table,
+        Some(_) => return Err("its messages have more than one schema".to_owned()),
+        none => {
+            if channel.message_encoding != "protobuf" {
+                let (message, schema) = (&channel.message_encoding, &schema.encoding);
+                return Err(format!(
+                    "only protobuf messages are read, and these are `{message}` with a schema in `{schema}`"
+                ));
             }
+            none.insert(Table::of(Arc::clone(schema))?)
         }
-    }
+    };
+    table.push(time, data, budget)
+}
+
+/// Checksums come first.
+fn checked() -> LinearReaderOptions {
+    LinearReaderOptions::default().with_prevalidate_chunk_crcs(true)
 }

@@ -1,5 +1,6 @@
 //! The record: the only way out of a simulation.
 
+mod bounds;
 mod columns;
 pub mod foxglove;
 mod log;
@@ -8,9 +9,11 @@ mod message;
 mod proto;
 mod recover;
 pub mod row;
+mod shape;
 mod table;
 mod topics;
 mod trace;
+mod wire;
 
 use std::io;
 

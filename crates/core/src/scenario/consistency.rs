@@ -9,7 +9,7 @@ use crate::disturbance::Disturbance;
 use crate::document::key;
 use crate::estimator::{Estimator, Form};
 use crate::law::{Extra, Law};
-use crate::quantity::{Finite, NonNegative, Positive};
+use crate::quantity::{Finite, Positive, Time};
 use crate::sensor::Outage;
 
 impl Scenario {
@@ -32,6 +32,9 @@ impl Scenario {
                 self.duration.seconds()
             );
             return at("duration", why);
+        }
+        if let Some(impossible) = self.impossible() {
+            return Some(impossible);
         }
         if let Some((key, why)) = self.log.scene.inconsistency() {
             return at(key, why);
@@ -176,7 +179,7 @@ impl Scenario {
         let ordered = |d: &Disturbance| d.to.is_none_or(|to| d.from < to);
         if let Some(index) = self.disturbance.iter().position(|d| !ordered(d)) {
             let Disturbance { from, to, .. } = &self.disturbance[index];
-            let (from, to) = (from.get(), to.map_or(f64::NAN, NonNegative::get));
+            let (from, to) = (from.get(), to.map_or(f64::NAN, Time::get));
             return at(
                 &format!("disturbance[{index}].to"),
                 format!("must be later than `from`, {from} s, got {to}"),

@@ -1,6 +1,7 @@
 //! The scenario: everything that a user writes about a study, and nothing that moves.
 
 mod consistency;
+mod cost;
 mod epoch;
 mod log;
 mod spatial;
@@ -29,6 +30,7 @@ use crate::uncertain::Distribution;
 
 use epoch::nanoseconds_since_1970;
 
+pub use cost::{Cost, MOST_RUNS};
 pub use log::{Log, SceneSpec};
 pub use spatial::{AxesEstimator, SpatialLoop};
 

@@ -5,7 +5,7 @@ mod gyro;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{Finite, NonNegative, Positive};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::random::Stream;
 use crate::time::{Instant, Span};
 
@@ -63,10 +63,10 @@ pub enum Fault {
 #[serde(deny_unknown_fields)]
 pub struct Outage {
     /// When it begins (s).
-    pub from: NonNegative,
+    pub from: Time,
     /// When it ends (s); left out, with the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub to: Option<NonNegative>,
+    pub to: Option<Time>,
 }
 
 impl Fault {
@@ -79,7 +79,7 @@ impl Fault {
 
 impl Outage {
     fn lasts(self, now: Instant) -> bool {
-        let at = |time: NonNegative| Instant::START + Span::from_seconds(time.get());
+        let at = |time: Time| Instant::START + Span::from_seconds(time.get());
         at(self.from) <= now && self.to.is_none_or(|to| now < at(to))
     }
 }

@@ -6,6 +6,7 @@ use ::csv::StringRecord;
 use nalgebra::DMatrix;
 
 use super::LARGEST;
+use super::file::open_text;
 
 /// Reads a matrix.
 pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
@@ -35,13 +36,17 @@ pub fn records(path: &Path, most: usize, called: &str) -> Result<Vec<(u64, Strin
         .flexible(true)
         .trim(::csv::Trim::All)
         .comment(Some(b'#'))
-        .from_path(path);
+        .from_reader(open_text(path)?);
     let mut records = Vec::new();
-    for record in reader.map_err(told)?.into_records() {
+    for record in reader.into_records() {
         let record = record.map_err(told)?;
         let line = record.position().map_or(0, ::csv::Position::line);
         if records.len() == most {
             return Err(format!("line {line}: must have at most {most} {called}"));
+        }
+        if record.len() > LARGEST {
+            let found = record.len();
+            return Err(format!("line {line}: must have at most {LARGEST} columns, got {found}"));
         }
         records.push((line, record));
     }

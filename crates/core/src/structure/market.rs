@@ -1,21 +1,20 @@
 //! Matrices from MatrixMarket files: coordinate or array, real or integer, general or symmetric.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 use std::str::FromStr;
 
 use nalgebra::DMatrix;
 
 use super::LARGEST;
+use super::file::open_text;
 
 const HEADER: &str = "must begin with `%%MatrixMarket matrix`, then `coordinate` or `array`, `real` or `integer`, \
                       `general` or `symmetric`";
 
 /// Reads a file.
 pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    parse(BufReader::new(file))
+    parse(open_text(path)?)
 }
 
 fn parse(text: impl BufRead) -> Result<DMatrix<f64>, String> {

@@ -8,6 +8,7 @@
 
 pub(crate) mod csv;
 mod eigen;
+mod file;
 mod market;
 mod matrix;
 mod npz;

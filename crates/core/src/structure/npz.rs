@@ -1,7 +1,7 @@
 //! Matrices from NumPy's archives: dense arrays by name, and what `scipy.sparse.save_npz` writes.
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Cursor, Read};
 use std::path::Path;
 
 use nalgebra::DMatrix;
@@ -9,11 +9,18 @@ use npyz::{NpyFile, Order};
 use zip::ZipArchive;
 
 use super::LARGEST;
+use super::file::open;
+
+/// No header of an array is longer (bytes): those of numbers have at most 128.
+const LONGEST_HEADER: usize = 1024;
+/// No header of an array of numbers has more brackets that open: a shape within the dictionary makes 2.
+const MOST_BRACKETS: usize = 8;
+/// The longest name of a sparse format, in bytes: `csr` in UTF-32 has 12.
+const LONGEST_FORMAT: usize = 64;
 
 /// Reads an array of a file: the named one, or else the sparse matrix or the only array in it.
 pub fn read(path: &Path, array: Option<&str>) -> Result<DMatrix<f64>, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    let archive = ZipArchive::new(BufReader::new(file));
+    let archive = ZipArchive::new(BufReader::new(open(path)?));
     let mut archive = Archive(archive.map_err(|error| format!("is not an npz archive: {error}"))?);
     let names = archive.names();
     match (array, names.as_slice()) {
@@ -53,7 +60,9 @@ impl Archive {
                 }
                 error => format!("array `{name}`: {error}"),
             })?;
-        NpyFile::new(entry).map_err(|error| format!("array `{name}`: {error}"))
+        let wrong = |error: &dyn std::fmt::Display| format!("array `{name}`: {error}");
+        let (header, entry) = header(entry).map_err(|why| wrong(&why))?;
+        NpyFile::new(Cursor::new(header).chain(entry)).map_err(|error| wrong(&error))
     }
 
     fn array(&mut self, name: &str) -> Result<Array, String> {
@@ -83,7 +92,13 @@ impl Archive {
     }
 
     fn sparse(&mut self) -> Result<DMatrix<f64>, String> {
-        let format = self.open("format")?.into_vec::<Vec<u8>>().unwrap_or_default();
+        let format = self.open("format")?;
+        let fits = |length: usize| length <= LONGEST_FORMAT;
+        if !(format.shape().iter().product::<u64>() <= 1 && format.dtype().num_bytes().is_some_and(fits)) {
+            let (kind, shape) = (format.dtype().descr(), format.shape());
+            return Err(format!("array `format` must be one short text, got {kind} of shape {shape:?}"));
+        }
+        let format = format.into_vec::<Vec<u8>>().unwrap_or_default();
         let format =
             format.first().map(|bytes| String::from_utf8_lossy(bytes).into_owned()).unwrap_or_default();
         let shape = self.array("shape")?.numbers;
@@ -99,6 +114,10 @@ impl Archive {
         match format.as_str() {
             "csr" | "csc" => {
                 let (indices, starts) = (self.array("indices")?.numbers, self.array("indptr")?.numbers);
+                let most = if format == "csr" { rows } else { columns };
+                if starts.len() != most + 1 || starts.windows(2).any(|ends| ends[0] > ends[1]) {
+                    return Err(format!("array `indptr` must hold {} increasing places", most + 1));
+                }
                 for (major, ends) in starts.windows(2).enumerate() {
                     for k in (ends[0] as usize)..(ends[1] as usize).min(indices.len()).min(data.len()) {
                         let (major, minor) = (major as f64, indices[k]);
@@ -136,6 +155,27 @@ impl Archive {
         }
         Ok(matrix)
     }
+}
+
+/// The first bytes of an array, up to the end of its header, and the rest. A header is an expression of Python, for whose
+/// brackets within brackets its reader takes twice as long with each.
+fn header<R: Read>(mut entry: R) -> Result<(Vec<u8>, R), String> {
+    let told = |error: std::io::Error| error.to_string();
+    let mut first = vec![0; 8];
+    entry.read_exact(&mut first).map_err(told)?;
+    // The length has two bytes in the first version, four in the others.
+    let mut length = vec![0; if first[6] == 1 { 2 } else { 4 }];
+    entry.read_exact(&mut length).map_err(told)?;
+    let bytes = length.iter().rev().fold(0, |all, byte| all << 8 | usize::from(*byte));
+    if bytes > LONGEST_HEADER {
+        return Err(format!("its header must have at most {LONGEST_HEADER} bytes, got {bytes}"));
+    }
+    let mut text = vec![0; bytes];
+    entry.read_exact(&mut text).map_err(told)?;
+    if text.iter().filter(|byte| b"([{".contains(byte)).count() > MOST_BRACKETS {
+        return Err(format!("its header must have at most {MOST_BRACKETS} brackets"));
+    }
+    Ok(([first, length, text].concat(), entry))
 }
 
 /// The numbers of an array of any real type; none of another.

@@ -66,7 +66,11 @@ class Table:
 
 
 def campaign(
-    scenario: Scenario, runs: int | range = 1000, jobs: int | None = None, seed: int | None = None
+    scenario: Scenario,
+    runs: int | range = 1000,
+    jobs: int | None = None,
+    seed: int | None = None,
+    yes: bool = False,
 ) -> Table:
     """Simulate many runs of a scenario: its `[uncertain]` keys and its noise drawn anew for each.
 
@@ -77,16 +81,18 @@ def campaign(
         runs: Their number, or their range (of step 1).
         jobs: Threads, at most 1024; left out, one for each core.
         seed: Seed, instead of the scenario's.
+        yes: Do what is estimated to take more than 10 h on one core, 4 GB of memory or 20 GB of logs.
 
     Raises:
         ScenarioError: The scenario cannot vary so. A single run that fails is a row with an `error`.
+        ValueError: There are more than 100 000 000 runs, or `yes` is needed.
     """
     numbers = runs if isinstance(runs, range) else range(index(runs))
     if numbers.step != 1 or not numbers:
         raise ValueError(
             f"runs must be a number of runs, or a range of step 1 with a run in it, got {runs!r}"
         )
-    return _campaign(scenario, numbers, jobs, seed, [])
+    return _campaign(scenario, numbers, jobs, seed, [], yes)
 
 
 def sweep(
@@ -95,6 +101,7 @@ def sweep(
     values: Sequence[float] | npt.NDArray[Any] | None = None,
     jobs: int | None = None,
     seed: int | None = None,
+    yes: bool = False,
 ) -> Table:
     """Simulate a scenario once for each value of a key, or each combination of the values of several.
 
@@ -107,6 +114,7 @@ def sweep(
         values: The values of a single key, of shape (runs,), such as `numpy.linspace(0.28, 0.40, 25)`.
         jobs: Threads, at most 1024; left out, one for each core.
         seed: Seed, instead of the scenario's.
+        yes: Do what is estimated to take more than 10 h on one core, 4 GB of memory or 20 GB of logs.
 
     Raises:
         ScenarioError: There is no such key, or it does not accept the first or the last value. Any other
@@ -124,7 +132,7 @@ def sweep(
         grids.append((name, numbers.tolist()))
     if not grids:
         raise ValueError("a sweep needs a key")
-    return _campaign(scenario, range(prod(len(numbers) for _, numbers in grids)), jobs, seed, grids)
+    return _campaign(scenario, range(prod(len(numbers) for _, numbers in grids)), jobs, seed, grids, yes)
 
 
 def _campaign(
@@ -133,6 +141,7 @@ def _campaign(
     jobs: int | None,
     seed: int | None,
     grids: list[tuple[str, list[float]]],
+    yes: bool,
 ) -> Table:
     import numpy as np
 
@@ -142,7 +151,7 @@ def _campaign(
     if seed is not None:
         scenario = scenario.with_("seed", seed)
     span = (run_number(runs.start), run_number(runs.stop))
-    keys, told, summaries = engine.campaign(scenario._native, span, jobs, grids)
+    keys, told, summaries = engine.campaign(scenario._native, span, jobs, grids, yes)
     columns = {"run": np.array([run for run, *_ in told], dtype=np.int64)}
     for place, key in enumerate(keys):
         columns[key] = np.array([drawn[place] for _, drawn, *_ in told])

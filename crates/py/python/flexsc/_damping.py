@@ -132,6 +132,7 @@ def identify(
     runs: int = 100,
     cycles: int = 1500,
     seed: int = 1,
+    yes: bool = False,
 ) -> dict[str, Any]:
     """How often and how fast the gradient observer finds modes under random bursts of thrusters.
 
@@ -146,6 +147,7 @@ def identify(
         runs: Runs of each row.
         cycles: Cycles of a run.
         seed: Seed.
+        yes: Do what is estimated to take more than 10 h on one core.
 
     Returns:
         Columns of shape (off,), NaN where no run converged: `off`, `runs`, `converged`, to 2 % of each
@@ -154,7 +156,7 @@ def identify(
         that converged did.
 
     Raises:
-        ValueError: A number is out of its range.
+        ValueError: A number is out of its range, or `yes` is needed.
     """
     import numpy as np
 
@@ -162,7 +164,7 @@ def identify(
 
     def row(part: float) -> dict[str, Any]:
         found: dict[str, Any] = json.loads(
-            engine.identify_json(pairs, (part, influence_off), rate, (runs, cycles, seed))
+            engine.identify_json(pairs, (part, influence_off), rate, (runs, cycles, seed), yes)
         )
         return found
 

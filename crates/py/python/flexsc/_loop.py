@@ -25,6 +25,7 @@ def gain_region(
     band: float | None = None,
     horizon: float = 2000.0,
     dominant_alone: bool = False,
+    yes: bool = False,
 ) -> dict[str, npt.NDArray[np.float64]]:
     """The gains of the extra loop that are stable and settle in time, at each frequency of the dominant mode.
 
@@ -37,6 +38,7 @@ def gain_region(
             start.
         horizon: How long each loop is watched (s).
         dominant_alone: The dominant mode alone changes its frequency, not all by one ratio.
+        yes: Do what is estimated to take more than 10 h on one core.
 
     Returns:
         Columns of shape (frequencies,), NaN where no gain does: `frequency_rad_s`, `gain_min`, `gain_max`,
@@ -45,9 +47,9 @@ def gain_region(
 
     Raises:
         ScenarioError: The scenario has no loop of this kind.
-        ValueError: A number is out of its range.
+        ValueError: A number is out of its range, or `yes` is needed.
     """
-    settled = (band, horizon, dominant_alone)
+    settled = (band, horizon, dominant_alone, yes)
     rows = json.loads(engine.gain_regions_json(scenario._native, _floats(frequencies), gains, limit, settled))
     for row in rows:
         row["gain_min"], row["gain_max"] = row.pop("gain") or (None, None)
@@ -67,6 +69,7 @@ def robust_gains(
     band: float | None = None,
     horizon: float = 2000.0,
     dominant_alone: bool = False,
+    yes: bool = False,
 ) -> dict[str, npt.NDArray[np.float64]]:
     """The gains that settle soonest while the model is off, at each frequency of the dominant mode.
 
@@ -78,7 +81,7 @@ def robust_gains(
         itae: Minimise the integral of time times angle instead of the settling time.
         quantile: The quantile of the perturbed loops that counts; 1 is the worst.
         margin: By how much every spectral radius stays below 1.
-        gains: As for `gain_region`, with `band`, `horizon` and `dominant_alone`.
+        gains: As for `gain_region`, with `band`, `horizon`, `dominant_alone` and `yes`.
 
     Returns:
         Columns of shape (frequencies,), NaN where there is none: `frequency_rad_s`, `gain`, `settling_s`,
@@ -86,7 +89,7 @@ def robust_gains(
 
     Raises:
         ScenarioError: The scenario has no loop of this kind.
-        ValueError: A number is out of its range.
+        ValueError: A number is out of its range, or `yes` is needed.
     """
     rows = json.loads(
         engine.robust_gains_json(
@@ -95,7 +98,7 @@ def robust_gains(
             gains,
             (off, delay),
             (itae, quantile, margin),
-            (band, horizon, dominant_alone),
+            (band, horizon, dominant_alone, yes),
         )
     )
     return _columns(rows)
@@ -110,6 +113,7 @@ def stability_map(
     band: float | None = None,
     horizon: float = 2000.0,
     dominant_alone: bool = False,
+    yes: bool = False,
 ) -> dict[str, npt.NDArray[np.float64]]:
     """Stability and settling over the dominant mode's frequency and the sampling period.
 
@@ -118,7 +122,7 @@ def stability_map(
         frequencies: Frequencies of the dominant mode (rad/s).
         periods: Periods of the samples (s); a delay of the wheel keeps its part of the period.
         gain: Gain of the extra loop; left out, the scenario's.
-        band: As for `gain_region`, with `horizon` and `dominant_alone`.
+        band: As for `gain_region`, with `horizon`, `dominant_alone` and `yes`.
 
     Returns:
         Columns of shape (frequencies, periods): `frequency_rad_s`, `period_s`, `spectral_radius`,
@@ -126,9 +130,9 @@ def stability_map(
 
     Raises:
         ScenarioError: The scenario has no loop of this kind.
-        ValueError: A number is out of its range.
+        ValueError: A number is out of its range, or `yes` is needed.
     """
-    settled = (band, horizon, dominant_alone)
+    settled = (band, horizon, dominant_alone, yes)
     rows, columns = _floats(frequencies), _floats(periods)
     cells = json.loads(engine.stability_map_json(scenario._native, rows, columns, gain, settled))
     return {name: values.reshape(len(rows), len(columns)) for name, values in _columns(cells).items()}

@@ -40,6 +40,7 @@ __version__: Final[str]
 _Column: TypeAlias = (
     npt.NDArray[np.float64]
     | npt.NDArray[np.int64]
+    | npt.NDArray[np.uint64]
     | list[str]
     | tuple[npt.NDArray[np.uint8], list[str]]
     | tuple[npt.NDArray[np.uint32], dict[str, _Column]]
@@ -94,11 +95,11 @@ class Log:
     def columns(self, topic: str) -> dict[str, _Column]: ...
 
 def simulate(
-    scenario: Scenario, run: int, log: str
+    scenario: Scenario, run: int, log: str, yes: bool
 ) -> tuple[dict[str, Any], dict[str, dict[str, _Column]]]: ...
 def to_mcap(scenario: Scenario, run: int, log: str, path: str | os.PathLike[str]) -> int: ...
 def campaign(
-    scenario: Scenario, runs: tuple[int, int], jobs: int, grids: list[tuple[str, list[float]]]
+    scenario: Scenario, runs: tuple[int, int], jobs: int, grids: list[tuple[str, list[float]]], yes: bool
 ) -> tuple[
     list[str],
     list[tuple[int, list[float], dict[str, Any] | None, str]],
@@ -113,7 +114,7 @@ def gain_regions_json(
     frequencies: Sequence[float],
     gains: tuple[float, float, float],
     limit: float,
-    settled: tuple[float | None, float, bool],
+    settled: tuple[float | None, float, bool, bool],
 ) -> str: ...
 def robust_gains_json(
     scenario: Scenario,
@@ -121,14 +122,14 @@ def robust_gains_json(
     gains: tuple[float, float, float],
     off: tuple[float, float],
     goal: tuple[bool, float, float],
-    settled: tuple[float | None, float, bool],
+    settled: tuple[float | None, float, bool, bool],
 ) -> str: ...
 def stability_map_json(
     scenario: Scenario,
     frequencies: Sequence[float],
     periods: Sequence[float],
     gain: float | None,
-    settled: tuple[float | None, float, bool],
+    settled: tuple[float | None, float, bool, bool],
 ) -> str: ...
 def relay_damping_json(
     frequencies: Sequence[float],
@@ -143,7 +144,11 @@ def observer_margin_json(
     observer: tuple[tuple[float, float, float], float, float, float], kappas: Sequence[float]
 ) -> str: ...
 def identify_json(
-    modes: Sequence[tuple[float, float]], off: tuple[float, float], rate: float, extent: tuple[int, int, int]
+    modes: Sequence[tuple[float, float]],
+    off: tuple[float, float],
+    rate: float,
+    extent: tuple[int, int, int],
+    yes: bool,
 ) -> str: ...
 def persistence(sensitivities: npt.NDArray[np.float64]) -> float: ...
 def write(path: str | os.PathLike[str], text: str) -> None: ...

@@ -165,7 +165,12 @@ class Scenario:
         """
         return Plan(self._native, band)
 
-    def simulate(self, run: int = 0, log: Literal["events", "full", "scene", "none"] = "events") -> Result:
+    def simulate(
+        self,
+        run: int = 0,
+        log: Literal["events", "full", "scene", "none"] = "events",
+        yes: bool = False,
+    ) -> Result:
         """Simulate the scenario as it stands. Other Python threads go on meanwhile.
 
         Args:
@@ -173,12 +178,14 @@ class Scenario:
             log: `events` keeps all that changes (switchings, window means, adaptation), `full` also the
                 motion at each period of the scenario's log and at every switching, `none` the metrics only.
                 `scene` is `full` for columns; a file that is written of it has the scene for viewers, too.
+            yes: Do what is estimated to take more than 10 h on one core, 4 GB of memory or 20 GB of logs.
 
         Raises:
             SimulationError: The state is no longer finite, or the law switches without end.
+            ValueError: The run is estimated to take too much, and `yes` is not given.
         """
         run = run_number(run)
-        metrics, topics = engine.simulate(self._native, run, log)
+        metrics, topics = engine.simulate(self._native, run, log, yes)
         return Result(self, run, log, metrics, {name: arrays(columns) for name, columns in topics.items()})
 
     def __eq__(self, other: object) -> bool:

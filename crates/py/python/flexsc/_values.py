@@ -114,7 +114,8 @@ def arrays(columns: Mapping[str, _Column]) -> dict[str, npt.NDArray[Any]]:
         else:
             counts = column[0]
             for field, values in arrays(column[1]).items():
-                final[f"{name}.{field}"] = _by_row(values, counts)
+                # A list of numbers has no fields.
+                final[f"{name}.{field}" if field else name] = _by_row(values, counts)
     return final
 
 

@@ -58,6 +58,11 @@ struct Score {
 }
 
 impl Doubt {
+    /// There are at most so many perturbed loops.
+    pub fn most_loops(&self) -> usize {
+        if self.delay > 0.0 { 17 } else { 9 }
+    }
+
     /// The perturbed loops, the loop as it is first.
     fn loops(&self, of: &Loop) -> Vec<Loop> {
         let signs = |part: f64| if part > 0.0 { vec![-1.0, 1.0] } else { vec![0.0] };

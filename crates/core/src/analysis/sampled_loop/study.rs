@@ -6,6 +6,12 @@ use crate::actuator::{Actuator, Opposes, Wheel};
 use crate::body::Drive;
 use crate::law::{Extra, Law, Pd};
 use crate::quantity::Positive;
+use crate::scenario::Cost;
+
+/// A delay of more periods makes the loop's matrix too large.
+const MOST_LATE: f64 = 200.0;
+/// A loop is watched for no more samples.
+const MOST_SAMPLES: f64 = 1e7;
 
 impl Loop {
     /// The loop of a scenario whose angle is measured exactly and at once, and the law that closes it.
@@ -44,6 +50,13 @@ impl Loop {
                 return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop");
             }
         };
+        let late = delay / law.period.seconds();
+        if late > MOST_LATE {
+            let why = format!(
+                "is {late:.3e} periods of the law: a loop that is analysed waits for at most {MOST_LATE}"
+            );
+            return refused("actuator.wheel.delay", &why);
+        }
         let shapes = |wheel: &&Wheel| {
             wheel.limit.is_some() || wheel.quantum.get() > 0.0 || wheel.dead_zone.get() > 0.0
         };
@@ -66,6 +79,29 @@ impl Loop {
             body,
         };
         Ok((sampled, law))
+    }
+
+    /// What it takes to close the loop so often with this shortest period (s), each time with up to this delay more (s), and
+    /// to watch it for a time (s).
+    ///
+    /// # Errors
+    /// More samples, or more delay, than a loop is watched with.
+    pub fn watched(&self, times: f64, horizon: f64, shortest: f64, delay: f64) -> Result<Cost, String> {
+        let (samples, late) = (horizon / shortest, (self.delay + delay) / self.period);
+        if samples > MOST_SAMPLES {
+            return Err(format!(
+                "horizon must be at most 1e7 samples, got {samples:e} with a period of {shortest} s"
+            ));
+        }
+        if late > MOST_LATE {
+            return Err(format!(
+                "delay must leave at most {MOST_LATE} periods of the law in all, got {late:.3e}"
+            ));
+        }
+        let order = 3.0 + 2.0 * self.body.modes.len() as f64 + late;
+        // Of a block of 32 samples, the state costs as much as the angles.
+        let watched = samples * order * (1.0 + order / 32.0);
+        Ok(Cost::of_work("the grid", times, (watched + 50.0 * order * order * order) * 1e-9))
     }
 
     /// The measured angle at the start (rad).

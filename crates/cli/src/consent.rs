@@ -1,0 +1,25 @@
+//! Work that takes long needs a yes.
+
+use flexsc_core::scenario::Cost;
+
+use crate::failure::Failure;
+
+/// Whether long work is wanted.
+#[derive(clap::Args, Copy, Clone)]
+pub struct Consent {
+    /// Do what is estimated to take more than 10 h on one core, 4 GB of memory or 20 GB of logs
+    #[arg(long)]
+    yes: bool,
+}
+
+impl Consent {
+    /// Refuses work that costs too much, unless it is wanted.
+    pub fn to(self, cost: &Cost) -> Result<(), Failure> {
+        match cost.excess() {
+            Some(why) if !self.yes => {
+                Err(Failure::Arguments(format!("{why}\n\nhint: `--yes` does it all the same")))
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! Where the fields of a protobuf message go: the columns of a schema, and messages put into them.
+//!
+//! A schema comes from a file that nobody vouches for. Its fields are counted before there are columns, and messages are read
+//! straight into columns, so that nothing takes more memory than what is kept of it.
+
+use prost_reflect::{DescriptorPool, EnumDescriptor, FieldDescriptor, Kind, MessageDescriptor};
+
+use super::table::{Budget, Schema};
+use super::topics::label_of;
+use super::wire::{Raw, Wire};
+use super::{Column, Columns};
+
+/// No schema is longer (bytes); that of a scene has 10 kB.
+const LONGEST_SCHEMA: usize = 1 << 20;
+/// No topic has more fields, those of messages within messages included.
+const MOST_FIELDS: usize = 4096;
+/// No messages within messages are deeper.
+const DEEPEST: usize = 32;
+/// An enumeration has at most so many labels; a value without one is beyond them all.
+const MOST_LABELS: usize = 255;
+
+/// Where the fields of a message go.
+pub struct Shape {
+    /// By their numbers.
+    fields: Vec<(u32, Place)>,
+}
+
+/// Where a field goes.
+enum Place {
+    /// Into the column of this index.
+    Value(usize, Scalar),
+    /// Each of its values into a row within the row.
+    List(usize, Scalar),
+    /// Its own fields into the same row.
+    Inner(Shape),
+    /// Each of its messages into a row within the row. The entries of a map are messages too.
+    Rows(usize, Shape),
+}
+
+/// What a field holds.
+enum Scalar {
+    Double,
+    Float,
+    Int32,
+    Int64,
+    /// Signed, with the sign in the last bit.
+    Zigzag,
+    SignedFixed32,
+    SignedFixed64,
+    Unsigned,
+    Fixed32,
+    Fixed64,
+    Bool,
+    /// The numbers of the labels.
+    Label(Vec<i32>),
+    /// An enumeration with too many labels for a column of them.
+    Word(EnumDescriptor),
+    Text,
+    /// Bytes, of which the number is kept.
+    Bytes,
+    /// A date or a span of time, in seconds.
+    Time,
+}
+
+impl Shape {
+    /// Where the messages of a schema go, and the empty columns.
+    pub fn of(schema: &Schema) -> Result<(Self, Columns), String> {
+        if schema.encoding != "protobuf" {
+            return Err(format!(
+                "only schemas in `protobuf` are read, and it has one in `{}`",
+                schema.encoding
+            ));
+        }
+        if schema.data.len() > LONGEST_SCHEMA {
+            let length = schema.data.len();
+            return Err(format!("its schema has {length} bytes, and at most {LONGEST_SCHEMA} are read"));
+        }
+        let pool = DescriptorPool::decode(&*schema.data).map_err(|error| format!("its schema: {error}"))?;
+        let message = pool.get_message_by_name(&schema.name);
+        let message = message.ok_or_else(|| format!("no message `{}` in its schema", schema.name))?;
+        let mut columns = Columns::default();
+        let shape = Maker::default().add(&mut columns, "", "", &message)?;
+        Ok((shape, columns))
+    }
+
+    /// Puts a message into a row that was begun.
+    pub fn fill(&self, columns: &mut Columns, message: &[u8], budget: &mut Budget) -> Result<(), String> {
+        let mut wire = Wire::of(message);
+        while let Some((number, raw)) = wire.field()? {
+            let Ok(index) = self.fields.binary_search_by_key(&number, |(number, _)| *number) else {
+                continue;
+            };
+            let wrong = || format!("field {number} of a message is not of the type that its schema says");
+            match (&self.fields[index].1, raw) {
+                (Place::Inner(shape), Raw::Block(inner)) => shape.fill(columns, inner, budget)?,
+                (Place::Rows(place, shape), Raw::Block(inner)) => {
+                    let within = another(columns, *place);
+                    begin(within, budget)?;
+                    shape.fill(within, inner, budget)?;
+                }
+                (Place::Inner(_) | Place::Rows(..), _) => return Err(wrong()),
+                (Place::Value(place, scalar), raw) => {
+                    let column = &mut columns.columns[*place].1;
+                    scalar.set(column, raw, budget)?.ok_or_else(wrong)?;
+                }
+                (Place::List(place, scalar), Raw::Block(packed)) if scalar.packs() => {
+                    let mut packed = Wire::of(packed);
+                    while !packed.is_empty() {
+                        let raw = scalar.next(&mut packed).ok_or_else(wrong)?;
+                        let within = another(columns, *place);
+                        begin(within, budget)?;
+                        scalar.set(&mut within.columns[0].1, raw, budget)?.ok_or_else(wrong)?;
+                    }
+                }
+                (Place::List(place, scalar), raw) => {
+                    let within = another(columns, *place);
+                    begin(within, budget)?;
+                    scalar.set(&mut within.columns[0].1, raw, budget)?.ok_or_else(wrong)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Counts one row more within the row of a column, and gives the columns of those rows.
+fn another(columns: &mut Columns, place: usize) -> &mut Columns {
+    let Column::Rows(counts, inner) = &mut columns.columns[place].1 else {
+        unreachable!("a place of rows is made with a column of rows")
+    };
+    if let Some(last) = counts.last_mut() {
+        *last += 1;
+    }
+    inner
+}
+
+/// Begins a row: every field has the value that it has where a message does not tell it.
+pub fn begin(columns: &mut Columns, budget: &mut Budget) -> Result<(), String> {
+    budget.spend(size_of::<String>() * columns.columns.len())?;
+    for (_, column) in &mut columns.columns {
+        match column {
+            Column::Numbers(values) => values.push(0.0),
+            Column::Counts(values) => values.push(0),
+            Column::Integers(values) => values.push(0),
+            Column::Labels(values, _) => values.push(0),
+            Column::Texts(values) => values.push(String::new()),
+            Column::Rows(counts, _) => counts.push(0),
+        }
+    }
+    Ok(())
+}
+
+/// Makes the shape of a schema, within bounds.
+#[derive(Default)]
+struct Maker {
+    /// The messages that the one at work is within.
+    above: Vec<MessageDescriptor>,
+    fields: usize,
+}
+
+impl Maker {
+    /// Adds a column for each field; those of a message within the message have its name before theirs: `rotation.x`.
+    /// `path` is what errors call the message.
+    fn add(
+        &mut self,
+        columns: &mut Columns,
+        before: &str,
+        path: &str,
+        message: &MessageDescriptor,
+    ) -> Result<Shape, String> {
+        if self.above.contains(message) {
+            let (field, name) = (path.trim_end_matches('.'), message.full_name());
+            return Err(format!("field `{field}` is a `{name}` within itself, which has no columns"));
+        }
+        if self.above.len() == DEEPEST {
+            return Err(format!(
+                "field `{}` is more than {DEEPEST} messages deep",
+                path.trim_end_matches('.')
+            ));
+        }
+        self.above.push(message.clone());
+        let mut fields = Vec::new();
+        for field in message.fields() {
+            self.fields += 1;
+            if self.fields > MOST_FIELDS {
+                return Err(format!("its schema has more than {MOST_FIELDS} fields"));
+            }
+            let (name, path) = (format!("{before}{}", field.name()), format!("{path}{}", field.name()));
+            if field.is_group() {
+                return Err(format!("field `{path}` is a group, which is not read"));
+            }
+            let place = self.place(columns, name, &path, &field)?;
+            fields.push((field.number(), place));
+        }
+        self.above.pop();
+        fields.sort_by_key(|(number, _)| *number);
+        Ok(Shape { fields })
+    }
+
+    fn place(
+        &mut self,
+        columns: &mut Columns,
+        name: String,
+        path: &str,
+        field: &FieldDescriptor,
+    ) -> Result<Place, String> {
+        let index = columns.columns.len();
+        let (scalar, column) = match field.kind() {
+            Kind::Message(of) if !is_time(&of) => {
+                let path = format!("{path}.");
+                if !field.is_list() && !field.is_map() {
+                    return Ok(Place::Inner(self.add(columns, &format!("{name}."), &path, &of)?));
+                }
+                let mut inner = Columns::default();
+                let shape = self.add(&mut inner, "", &path, &of)?;
+                columns.columns.push((name, Column::Rows(Vec::new(), inner)));
+                return Ok(Place::Rows(index, shape));
+            }
+            kind => scalar(&kind),
+        };
+        let name = if matches!(scalar, Scalar::Bytes) { format!("{name}.length") } else { name };
+        if field.is_list() {
+            let inner = Columns { columns: vec![(String::new(), column)] };
+            columns.columns.push((name, Column::Rows(Vec::new(), inner)));
+            return Ok(Place::List(index, scalar));
+        }
+        columns.columns.push((name, column));
+        Ok(Place::Value(index, scalar))
+    }
+}
+
+/// Whether a field is a date or a span of time.
+fn is_time(of: &MessageDescriptor) -> bool {
+    matches!(of.full_name(), "google.protobuf.Timestamp" | "google.protobuf.Duration")
+}
+
+/// What a field holds, and its empty column.
+fn scalar(kind: &Kind) -> (Scalar, Column) {
+    let (numbers, counts) = (Column::Numbers(Vec::new()), Column::Counts(Vec::new()));
+    let integers = Column::Integers(Vec::new());
+    match kind {
+        Kind::Double => (Scalar::Double, numbers),
+        Kind::Float => (Scalar::Float, numbers),
+        Kind::Int32 => (Scalar::Int32, integers),
+        Kind::Int64 => (Scalar::Int64, integers),
+        Kind::Sint32 | Kind::Sint64 => (Scalar::Zigzag, integers),
+        Kind::Sfixed32 => (Scalar::SignedFixed32, integers),
+        Kind::Sfixed64 => (Scalar::SignedFixed64, integers),
+        Kind::Uint32 | Kind::Uint64 => (Scalar::Unsigned, counts),
+        Kind::Fixed32 => (Scalar::Fixed32, counts),
+        Kind::Fixed64 => (Scalar::Fixed64, counts),
+        Kind::Bool => (Scalar::Bool, counts),
+        Kind::String => (Scalar::Text, Column::Texts(Vec::new())),
+        Kind::Bytes => (Scalar::Bytes, counts),
+        Kind::Message(_) => (Scalar::Time, numbers),
+        Kind::Enum(of) if of.values().len() > MOST_LABELS => {
+            (Scalar::Word(of.clone()), Column::Texts(Vec::new()))
+        }
+        Kind::Enum(of) => {
+            let labels = of.values().map(|value| label_of(value.name())).collect();
+            let known = of.values().map(|value| value.number()).collect();
+            (Scalar::Label(known), Column::Labels(Vec::new(), labels))
+        }
+    }
+}
+
+impl Scalar {
+    /// Whether lists of it may be one block.
+    fn packs(&self) -> bool {
+        !matches!(self, Self::Text | Self::Bytes | Self::Time)
+    }
+
+    /// The next value of a list in one block.
+    fn next<'a>(&self, wire: &mut Wire<'a>) -> Option<Raw<'a>> {
+        match self {
+            Self::Double | Self::SignedFixed64 | Self::Fixed64 => wire.fixed64().map(Raw::Fixed64),
+            Self::Float | Self::SignedFixed32 | Self::Fixed32 => wire.fixed32().map(Raw::Fixed32),
+            _ => wire.varint().map(Raw::Varint),
+        }
+    }
+
+    /// Sets the last value of a column; nothing if the wire has another type than the schema.
+    fn set(&self, column: &mut Column, raw: Raw<'_>, budget: &mut Budget) -> Result<Option<()>, String> {
+        Ok(match (column, self, raw) {
+            (Column::Numbers(values), Self::Double, Raw::Fixed64(bits)) => put(values, f64::from_bits(bits)),
+            (Column::Numbers(values), Self::Float, Raw::Fixed32(bits)) => {
+                put(values, f64::from(f32::from_bits(bits)))
+            }
+            (Column::Numbers(values), Self::Time, Raw::Block(time)) => put(values, seconds(time)?),
+            (Column::Integers(values), Self::Int32, Raw::Varint(n)) => put(values, i64::from(n as i32)),
+            (Column::Integers(values), Self::Int64, Raw::Varint(n))
+            | (Column::Integers(values), Self::SignedFixed64, Raw::Fixed64(n)) => put(values, n as i64),
+            (Column::Integers(values), Self::Zigzag, Raw::Varint(n)) => {
+                put(values, (n >> 1) as i64 ^ -((n & 1) as i64))
+            }
+            (Column::Integers(values), Self::SignedFixed32, Raw::Fixed32(n)) => {
+                put(values, i64::from(n as i32))
+            }
+            (Column::Counts(values), Self::Unsigned, Raw::Varint(n))
+            | (Column::Counts(values), Self::Fixed64, Raw::Fixed64(n)) => put(values, n),
+            (Column::Counts(values), Self::Bool, Raw::Varint(n)) => put(values, u64::from(n != 0)),
+            (Column::Counts(values), Self::Fixed32, Raw::Fixed32(n)) => put(values, u64::from(n)),
+            (Column::Counts(values), Self::Bytes, Raw::Block(bytes)) => put(values, bytes.len() as u64),
+            (Column::Labels(values, _), Self::Label(known), Raw::Varint(n)) => {
+                let index = known.iter().position(|known| *known == n as i32).unwrap_or(MOST_LABELS);
+                put(values, index as u8)
+            }
+            (Column::Texts(values), Self::Word(of), Raw::Varint(n)) => {
+                let word =
+                    of.get_value(n as i32).map_or_else(|| n.to_string(), |value| value.name().to_owned());
+                budget.spend(word.len())?;
+                put(values, word)
+            }
+            (Column::Texts(values), Self::Text, Raw::Block(bytes)) => {
+                budget.spend(bytes.len())?;
+                let text = std::str::from_utf8(bytes).map_err(|_| "a text in it is not UTF-8".to_owned())?;
+                put(values, text.to_owned())
+            }
+            _ => None,
+        })
+    }
+}
+
+fn put<T>(values: &mut [T], value: T) -> Option<()> {
+    values.last_mut().map(|last| *last = value)
+}
+
+/// A date or a span of time in seconds.
+fn seconds(time: &[u8]) -> Result<f64, String> {
+    let (mut whole, mut past) = (0, 0);
+    let mut wire = Wire::of(time);
+    while let Some((number, raw)) = wire.field()? {
+        match (number, raw) {
+            (1, Raw::Varint(n)) => whole = n as i64,
+            (2, Raw::Varint(n)) => past = n as i32,
+            _ => {}
+        }
+    }
+    // One rounding, as of the nanoseconds themselves.
+    Ok((i128::from(whole) * 1_000_000_000 + i128::from(past)) as f64 / 1e9)
+}

@@ -1,0 +1,110 @@
+//! Protobuf on the wire: keys, numbers, and blocks of bytes, none of which is longer than what is there.
+
+/// What is still to be read of a message.
+#[derive(Copy, Clone)]
+pub struct Wire<'a>(&'a [u8]);
+
+/// A field's value as the wire has it.
+#[derive(Copy, Clone)]
+pub enum Raw<'a> {
+    /// A number of up to 64 bits.
+    Varint(u64),
+    /// Eight bytes.
+    Fixed64(u64),
+    /// Four bytes.
+    Fixed32(u32),
+    /// Bytes after their length.
+    Block(&'a [u8]),
+    /// The fields of a group, which nothing reads.
+    Group,
+}
+
+impl<'a> Wire<'a> {
+    /// The wire of a message.
+    pub fn of(bytes: &'a [u8]) -> Self {
+        Self(bytes)
+    }
+
+    /// The next field's number and value; none at the end.
+    pub fn field(&mut self) -> Result<Option<(u32, Raw<'a>)>, String> {
+        if self.0.is_empty() {
+            return Ok(None);
+        }
+        self.next().map(Some).ok_or_else(|| "a message ends within a field".to_owned())
+    }
+
+    fn next(&mut self) -> Option<(u32, Raw<'a>)> {
+        let (number, mut raw) = self.one()?;
+        if matches!(raw, Some(Raw::Group)) {
+            // Groups within it end before it does.
+            let mut open = 1_u64;
+            while open > 0 {
+                match self.one()?.1 {
+                    Some(Raw::Group) => open += 1,
+                    None => open -= 1,
+                    Some(_) => {}
+                }
+            }
+            raw = Some(Raw::Group);
+        }
+        Some((number, raw?))
+    }
+
+    /// A field, a group's beginning or, without a value, its end.
+    fn one(&mut self) -> Option<(u32, Option<Raw<'a>>)> {
+        let key = self.varint()?;
+        let number = u32::try_from(key >> 3).ok()?;
+        let raw = match key & 7 {
+            0 => Raw::Varint(self.varint()?),
+            1 => Raw::Fixed64(self.fixed64()?),
+            2 => {
+                let length = usize::try_from(self.varint()?).ok()?;
+                Raw::Block(self.take(length)?)
+            }
+            3 => Raw::Group,
+            4 => return Some((number, None)),
+            5 => Raw::Fixed32(self.fixed32()?),
+            _ => return None,
+        };
+        Some((number, Some(raw)))
+    }
+
+    /// Whether nothing is left.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// A number in groups of seven bits.
+    pub fn varint(&mut self) -> Option<u64> {
+        let mut value = 0;
+        for place in 0..10 {
+            let (byte, rest) = self.0.split_first()?;
+            self.0 = rest;
+            value |= u64::from(byte & 0x7f) << (7 * place);
+            if byte & 0x80 == 0 {
+                return Some(value);
+            }
+        }
+        None
+    }
+
+    /// Eight bytes.
+    pub fn fixed64(&mut self) -> Option<u64> {
+        let (now, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(u64::from_le_bytes(*now))
+    }
+
+    /// Four bytes.
+    pub fn fixed32(&mut self) -> Option<u32> {
+        let (now, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(u32::from_le_bytes(*now))
+    }
+
+    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (now, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(now)
+    }
+}

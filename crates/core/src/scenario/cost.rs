@@ -1,0 +1,253 @@
+//! What work asks of the machine, counted before any of it is done: what nothing can do is refused, what takes long needs a
+//! yes.
+
+use super::Scenario;
+use crate::actuator::Actuator;
+use crate::estimator::Estimator;
+use crate::law::Law;
+use crate::quantity::NonNegative;
+use crate::record::Detail;
+use crate::structure::Fault;
+use crate::time::Span;
+
+/// No run takes more steps of one kind: it would take days.
+pub const MOST_STEPS: f64 = 1e12;
+/// No campaign has more runs: what they come to is held in memory.
+pub const MOST_RUNS: u64 = 100_000_000;
+/// No body has more modes.
+const MOST_MODES: usize = 2000;
+/// Nor where they are coupled, or a filter estimates them: its matrices are full.
+const MOST_COUPLED: usize = 200;
+/// No more commands wait for a wheel.
+const MOST_WAITING: f64 = 1e6;
+
+/// Without a yes nothing takes longer on one core (s) ...
+const LONG_S: f64 = 36_000.0;
+/// ... or more memory (bytes) ...
+const MUCH_MEMORY: f64 = 4e9;
+/// ... or more room for logs (bytes).
+const MUCH_DISK: f64 = 2e10;
+
+/// Time of a step (s), and what each mode adds. A rough figure, of an ordinary core.
+const STEP_S: (f64, f64) = (3e-7, 4e-8);
+/// Time of an operation with numbers of a matrix (s).
+const PRODUCT_S: f64 = 1e-9;
+/// What is kept of a run of a campaign (bytes).
+const KEPT: f64 = 2e3;
+/// What a message of a log takes (bytes): its own, and for each mode; two thirds are left of it when it is packed.
+const MESSAGE: (f64, f64) = (200.0, 30.0);
+
+/// An estimate of what work asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cost {
+    /// What asks for most of it, such as a key, and how often it acts.
+    pub most: (String, f64),
+    /// How many runs there are.
+    pub runs: f64,
+    /// Time of all of it on one core (s).
+    pub seconds: f64,
+    /// Memory (bytes).
+    pub memory: f64,
+    /// Room for logs (bytes).
+    pub disk: f64,
+}
+
+impl Cost {
+    /// The cost of work that is no simulation: so many steps of it, and the time of each on one core (s).
+    pub fn of_work(what: &str, steps: f64, step_s: f64) -> Self {
+        Self { most: (what.to_owned(), steps), runs: 1.0, seconds: steps * step_s, memory: 0.0, disk: 0.0 }
+    }
+
+    /// Why the work needs a yes, if it does.
+    pub fn excess(&self) -> Option<String> {
+        let Self { most: (what, steps), runs, seconds, memory, disk } = self;
+        let within = *seconds <= LONG_S && *memory <= MUCH_MEMORY && *disk <= MUCH_DISK;
+        if within {
+            return None;
+        }
+        let each = if *runs > 1.0 { format!(" in each of {} runs", told(*runs)) } else { String::new() };
+        let room = if *disk > 0.0 { format!(", {} for logs", bytes(*disk)) } else { String::new() };
+        Some(format!(
+            "{what} makes {} steps{each}: about {} on one core, {} of memory{room}, and more than {}, {} or {} needs a yes",
+            told(*steps),
+            time(*seconds),
+            bytes(*memory),
+            time(LONG_S),
+            bytes(MUCH_MEMORY),
+            bytes(MUCH_DISK)
+        ))
+    }
+
+    /// The same work so many times, of which what each comes to is kept.
+    #[must_use]
+    pub fn times(self, runs: u64) -> Self {
+        let runs = runs as f64;
+        let Self { most, seconds, disk, memory, .. } = self;
+        Self { most, runs, seconds: runs * seconds, memory: memory + runs * KEPT, disk: runs * disk }
+    }
+
+    /// The larger of two estimates, by what is asked for most.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        let part =
+            |cost: &Self| (cost.seconds / LONG_S).max(cost.memory / MUCH_MEMORY).max(cost.disk / MUCH_DISK);
+        if part(&other) > part(&self) { other } else { self }
+    }
+}
+
+fn told(number: f64) -> String {
+    if number < 1e6 { format!("{number:.0}") } else { format!("{number:.1e}") }
+}
+
+fn time(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.0} h", s / 3600.0),
+        s if s < 3.2e7 => format!("{:.0} days", s / 86_400.0),
+        s => format!("{} years", told(libm::round(s / 3.156e7))),
+    }
+}
+
+fn bytes(number: f64) -> String {
+    match number {
+        n if n < 1e9 => format!("{:.0} MB", n / 1e6),
+        n if n < 1e12 => format!("{:.0} GB", n / 1e9),
+        n => format!("{} TB", told(libm::round(n / 1e12))),
+    }
+}
+
+impl Scenario {
+    /// What a run asks for, with a log of this detail in memory or a file.
+    pub fn cost(&self, log: Option<Detail>, in_memory: bool) -> Cost {
+        let modes = self.mode_count() as f64;
+        let step = STEP_S.0 + modes * STEP_S.1;
+        let own = |(key, steps): &(String, f64)| match &self.estimator {
+            // A filter takes every sample, with matrices of the order of its state.
+            Some(filter) if key.starts_with("sensor") && filter.filters() => {
+                steps * (step + filter_work(filter, modes) * PRODUCT_S)
+            }
+            _ => steps * step,
+        };
+        let acts = self.steps();
+        let mut seconds: f64 = acts.iter().map(own).sum();
+        let mut most = acts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        let mut room = 0.0;
+        for (key, messages) in self.messages(log) {
+            room += messages * (MESSAGE.0 + modes * MESSAGE.1);
+            seconds += messages * 3.0 * step;
+            if most.as_ref().is_none_or(|(_, steps)| messages > *steps) {
+                most = Some((key, messages));
+            }
+        }
+        let (key, steps) = most.unwrap_or_else(|| ("duration".to_owned(), 1.0));
+        let (memory, disk) = if in_memory { (room, 0.0) } else { (0.0, room * 2.0 / 3.0) };
+        Cost { most: (format!("`{key}`"), steps), runs: 1.0, seconds, memory, disk }
+    }
+
+    /// The first key that asks for what no machine can do, and why.
+    pub(super) fn impossible(&self) -> Option<Fault> {
+        let modes = self.mode_count();
+        let filtered = self.estimator.as_ref().is_some_and(Estimator::filters);
+        let coupled = self.drift.is_some() || matches!(self.actuator, Actuator::Wheel(_));
+        let why = if filtered { "that a filter estimates" } else { "that a wheel or a drift couples" };
+        for (applies, most, why) in
+            [(true, MOST_MODES, "of a body"), (coupled || filtered, MOST_COUPLED, why)]
+        {
+            if applies && modes > most {
+                let why = format!("gives {modes} modes, and at most {most} {why} are computed");
+                return Some((format!("body.{}", self.body.kind()), why));
+            }
+        }
+        if let (Actuator::Wheel(wheel), Some(period)) = (&self.actuator, self.decided_every()) {
+            let waiting = wheel.delay.get().min(self.duration.seconds()) / period.seconds();
+            if waiting > MOST_WAITING {
+                let why = format!(
+                    "keeps {} commands waiting, one each {} s: at most {} are kept",
+                    told(waiting),
+                    period.seconds(),
+                    told(MOST_WAITING)
+                );
+                return Some(("actuator.wheel.delay".to_owned(), why));
+            }
+        }
+        let messages = self.messages(Some(Detail::Scene));
+        let (key, steps) = self.steps().into_iter().chain(messages).find(|(_, steps)| *steps > MOST_STEPS)?;
+        let (duration, most) = (self.duration.seconds(), told(MOST_STEPS));
+        Some((key, format!("makes {} steps in the run's {duration} s: at most {most} are done", told(steps))))
+    }
+
+    /// How often the law of a wheel decides, if at fixed times.
+    fn decided_every(&self) -> Option<Span> {
+        match &self.law {
+            Law::Pd(law) => Some(law.period),
+            _ => self.sensor.period(),
+        }
+    }
+
+    /// What happens again and again in a run: its key, and how often.
+    fn steps(&self) -> Vec<(String, f64)> {
+        let duration = self.duration.seconds();
+        let mut steps = Vec::new();
+        let mut each = |key: String, span: f64, period: Span| {
+            steps.push((key, span.max(0.0) / period.seconds()));
+        };
+        if let Some(period) = self.sensor.period() {
+            each("sensor.sampled.period".to_owned(), duration, period);
+        }
+        match &self.law {
+            Law::Pd(law) => each("law.pd.period".to_owned(), duration, law.period),
+            Law::PhasePlane(law) => each("law.phase_plane.period".to_owned(), duration, law.period),
+            Law::Relay(_) | Law::Open(_) => {}
+        }
+        match &self.actuator {
+            Actuator::Hold(hold) => each("actuator.hold.period".to_owned(), duration, hold.period),
+            Actuator::Thrusters(thrusters) => {
+                each("actuator.thrusters.period".to_owned(), duration, thrusters.period);
+            }
+            Actuator::Ideal | Actuator::Wheel(_) | Actuator::Jets(_) => {}
+        }
+        if let Some(envelope) = self.estimator.as_ref().and_then(Estimator::envelope) {
+            each("estimator.envelope.window".to_owned(), duration, envelope.window);
+        }
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
+            if let Some(period) = disturbance.period.filter(|_| disturbance.noise > NonNegative::default()) {
+                each(format!("disturbance[{index}].period"), until - disturbance.from.get(), period);
+            }
+        }
+        // Crossings are searched, and exact panels integrated, by strides within a vibration.
+        let strides = match &self.law {
+            _ if self.chain.is_some() => 20.0,
+            Law::Relay(_) if self.sensor.period().is_none() => 1.0,
+            _ => 0.0,
+        };
+        let fastest = self.model.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
+        if strides * fastest > 0.0 {
+            steps.push(("duration".to_owned(), strides * duration * fastest));
+        }
+        steps
+    }
+
+    /// What a log of this detail holds beside what changes: the key, and how many messages.
+    fn messages(&self, log: Option<Detail>) -> Vec<(String, f64)> {
+        let (duration, period) = (self.duration.seconds(), self.log.period);
+        let topics = if self.spatial.is_some() { 4.0 } else { 5.0 };
+        let mut messages = Vec::new();
+        if log >= Some(Detail::Full) {
+            messages.push(("log.period".to_owned(), topics * duration / period.seconds()));
+        }
+        if log >= Some(Detail::Scene) {
+            let frames = duration / self.log.scene.period(period).seconds();
+            messages.push(("log.scene.period".to_owned(), frames));
+        }
+        messages
+    }
+}
+
+/// Operations of a filter for each sample.
+fn filter_work(filter: &Estimator, modes: f64) -> f64 {
+    let order = 4.0 + 2.0 * modes;
+    let passes = if matches!(filter, Estimator::UnscentedKalman(_)) { 4.0 } else { 2.0 };
+    passes * order * order * order
+}

@@ -1,0 +1,27 @@
+//! Opening the files of structures: regular ones, of a size that a structure can have.
+
+use std::fs::{self, File};
+use std::io::{BufReader, Read, Take};
+use std::path::Path;
+
+/// No file of a structure is longer (bytes): a full matrix of the largest order has half as many.
+const LONGEST: u64 = 256 << 20;
+
+/// Opens a file.
+pub fn open(path: &Path) -> Result<File, String> {
+    let told = |error: std::io::Error| error.to_string();
+    // A pipe or a device may never end, and a pipe not even open.
+    let metadata = fs::metadata(path).map_err(told)?;
+    if !metadata.is_file() {
+        return Err("not a file".to_owned());
+    }
+    if metadata.len() > LONGEST {
+        return Err(format!("must have at most {LONGEST} bytes, got {}", metadata.len()));
+    }
+    File::open(path).map_err(told)
+}
+
+/// Opens a file that is read from its begin to its end, and no further than it may be long.
+pub fn open_text(path: &Path) -> Result<BufReader<Take<File>>, String> {
+    Ok(BufReader::new(open(path)?.take(LONGEST)))
+}
