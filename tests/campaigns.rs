@@ -1,5 +1,7 @@
 //! Campaigns and sweeps: tables, logs, parts, failures, and threads that change nothing.
 
+use std::collections::BTreeMap;
+
 use crate::util::{Dir, UNCERTAIN, table};
 
 #[test]
@@ -151,4 +153,37 @@ fn the_scenario_beside_the_tables_is_that_of_the_runs() {
     dir.run("simulate scenario.toml --runs 4 -o .").exits(2).says(&["./scenario.toml"]);
     assert_eq!(dir.text("scenario.toml"), UNCERTAIN);
     assert!(!dir.has("runs.csv"));
+}
+
+#[test]
+fn statistics_are_finite_and_tell_what_they_leave_out() {
+    let dir = Dir::new();
+    // An unstable loop: the angle grows to some 1e200 rad, whose square is beyond every double.
+    let unstable = "duration = 36.0\n[body.planar]\nangle = 0.1\n[law.pd]\nk_p = 1.0\nk_d = 0.0\nperiod = 1.0\n\
+                    [uncertain]\n\"law.pd.k_p\" = { choice = [1.0, 1e6] }\n";
+    dir.write("unstable.toml", unstable);
+    let ran = dir.run("simulate unstable.toml --runs 12 -o out").exits(0);
+    let statistics = table(&dir, "out/statistics.csv");
+    for row in &statistics {
+        for cell in ["mean", "sd", "q05", "q25", "q50", "q75", "q95"] {
+            let finite = |text: &str| text.parse::<f64>().is_ok_and(f64::is_finite);
+            assert!(row[cell].is_empty() || finite(&row[cell]), "{row:?}");
+        }
+    }
+    let rows = table(&dir, "out/runs.csv");
+    let infinite = |name: &str| rows.iter().filter(|row| row[name] == "inf").count();
+    let counted = |name: &str| {
+        let row = statistics.iter().find(|row| row["metric"] == name).expect("a metric");
+        row["runs"].parse::<usize>().expect("a count")
+    };
+    for row in &statistics {
+        let name = &row["metric"];
+        if rows.iter().all(|row| !row[name].is_empty()) {
+            assert_eq!(counted(name) + infinite(name), 12, "{name}");
+        }
+        let said = ran.err.contains(&format!("{name}: too large for a number in"));
+        assert_eq!(said, infinite(name) > 0, "{name}: {}", ran.err);
+    }
+    let large = |row: &BTreeMap<String, String>| row["sd"].parse::<f64>().is_ok_and(|sd| sd > 1e180);
+    assert!(statistics.iter().any(large), "{statistics:?}");
 }

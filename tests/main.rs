@@ -16,6 +16,7 @@ mod cycles;
 mod damping;
 mod damping_relay;
 mod determinism;
+mod documented;
 mod drawing;
 mod events;
 mod filters;

@@ -69,3 +69,16 @@ fn papers_that_there_are_not_are_told() {
     let dir = Dir::holding("page", "a file");
     dir.run("reproduce station -o page").exits(1).says(&["cannot write page"]);
 }
+
+#[cfg(unix)]
+#[test]
+fn room_is_looked_for_before_anything_is_computed() {
+    let dir = Dir::new();
+    // Files of 512 kB at most stand for a full disk: the page of a paper would fit.
+    let full = dir.start_by("trap '' XFSZ; ulimit -f 1024", "reproduce station -o page").wait();
+    full.exits(1).says(&["cannot write page/papers.html", "16 MB are looked for"]);
+    assert!(dir.names("page").is_empty());
+    std::fs::create_dir(dir.path("page/papers.html")).expect("a directory");
+    dir.run("reproduce station -o page").exits(1).says(&["cannot write page/papers.html", "is a directory"]);
+    assert_eq!(dir.names("page"), ["papers.html"]);
+}

@@ -115,8 +115,14 @@ impl Dir {
     /// The same where signals such as `INT HUP` are ignored.
     #[cfg(unix)]
     pub fn start_ignoring(&self, signals: &str, arguments: &str) -> Started {
+        self.start_by(&format!("trap '' {signals}"), arguments)
+    }
+
+    /// The same after another command of a shell, such as a limit.
+    #[cfg(unix)]
+    pub fn start_by(&self, before: &str, arguments: &str) -> Started {
         let mut command = Command::new("sh");
-        command.args(["-c", &format!("trap '' {signals}; exec \"$0\" \"$@\""), FLEXSC]);
+        command.args(["-c", &format!("{before}; exec \"$0\" \"$@\""), FLEXSC]);
         command.args(arguments.split_whitespace()).current_dir(self.0.path());
         Self::started(command, arguments)
     }

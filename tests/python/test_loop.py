@@ -20,7 +20,7 @@ def fitted(**law: Any) -> Scenario:
             "actuator": {"wheel": {"gain": 5e-4, "back_emf": 1e-4}},
             "law": {"pd": pd},
             "sensor": {"sampled": {"period": 0.3}},
-            "estimator": {"truth": {}},
+            **({"estimator": {"truth": {}}} if "extra" in law else {}),
         }
     )
 

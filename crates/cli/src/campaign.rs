@@ -194,7 +194,7 @@ fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failur
         for s in statistics {
             let mut cells = vec![s.name.to_owned(), s.unit.to_owned(), s.runs.to_string()];
             let numbers = [s.mean, s.sd].into_iter().chain(s.quantiles);
-            cells.extend(numbers.map(|n| if n.is_nan() { String::new() } else { format!("{n:e}") }));
+            cells.extend(numbers.map(|n| if n.is_finite() { format!("{n:e}") } else { String::new() }));
             writer.write_record(cells)?;
         }
         let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
@@ -212,5 +212,8 @@ fn tell_statistics(statistics: &[Statistics], runs: usize) {
     for s in statistics.iter().filter(|s| s.runs > 0) {
         let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
         say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
+    }
+    for s in statistics.iter().filter(|s| s.infinite > 0) {
+        say!("  {}: too large for a number in {} of {runs} runs, left out", s.name, s.infinite);
     }
 }

@@ -5,6 +5,7 @@ use std::io::Write;
 use flexsc_core::Scenario;
 use flexsc_core::actuator::Actuator;
 use flexsc_core::body::Drive;
+use flexsc_core::estimator::Estimator;
 use flexsc_core::metrics::{Metrics, Value};
 
 use crate::say;
@@ -127,6 +128,9 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
         say!("  sampled loop   spectral radius {radius:.7}: {verdict}");
     }
     if metrics.number("lock_lost").is_some() {
+        if scenario.estimator.as_ref().is_some_and(Estimator::watches_only) {
+            say!("  filter         watches only: no law reads it");
+        }
         filter(metrics);
     }
     let of = |name: &str, index: usize| match metrics.get(name) {

@@ -12,13 +12,15 @@ pub struct Statistics {
     pub name: &'static str,
     /// Unit of the metric.
     pub unit: &'static str,
-    /// Runs that have a value.
+    /// Runs that have a finite value: the others are left out.
     pub runs: usize,
-    /// Mean.
+    /// Runs whose value is infinite: it was too large for a double.
+    pub infinite: usize,
+    /// Mean; NaN without a run.
     pub mean: f64,
-    /// Standard deviation, with runs - 1 in the denominator; NaN for a single run.
+    /// Standard deviation, with runs - 1 in the denominator; NaN for a single run, and where it is too large for a double.
     pub sd: f64,
-    /// The [`QUANTILES`], interpolated linearly between order statistics.
+    /// The [`QUANTILES`], interpolated linearly between order statistics; NaN without a run.
     pub quantiles: [f64; 5],
 }
 
@@ -42,21 +44,41 @@ pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
                 Value::Word(word) => goal::score(word).unwrap_or(f64::NAN),
                 Value::Numbers(_) => f64::NAN,
             };
-            let mut values: Vec<f64> = runs.iter().map(value).filter(|v| v.is_finite()).collect();
+            let mut values: Vec<f64> = runs.iter().map(value).filter(|v| !v.is_nan()).collect();
+            let told = values.len();
+            values.retain(|v| v.is_finite());
             values.sort_by(f64::total_cmp);
-            let n = values.len() as f64;
-            let mean = values.iter().sum::<f64>() / n;
-            let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+            let (mean, sd) = mean_and_sd(&values);
             Statistics {
                 name: meaning.name,
                 unit: meaning.unit,
                 runs: values.len(),
+                infinite: told - values.len(),
                 mean,
-                sd: if n > 1.0 { libm::sqrt(squares / (n - 1.0)) } else { f64::NAN },
+                sd,
                 quantiles: QUANTILES.map(|q| quantile(&values, q)),
             }
         })
         .collect()
+}
+
+/// Mean and standard deviation of finite values. Sums and squares that are too large for a double are made of smaller values:
+/// the mean always fits, and the standard deviation is NaN where it does not.
+fn mean_and_sd(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let of = |scale: f64| {
+        let mean = values.iter().map(|v| v * scale).sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|v| (v * scale - mean) * (v * scale - mean)).sum();
+        (mean, if values.len() > 1 { libm::sqrt(squares / (n - 1.0)) } else { 0.0 })
+    };
+    let (mut mean, mut sd) = of(1.0);
+    if mean.is_infinite() || !sd.is_finite() {
+        // A power of two: no digit is lost but of values that are next to nothing here.
+        let scale = libm::exp2(-600.0);
+        (mean, sd) = of(scale);
+        (mean, sd) = (mean / scale, sd / scale);
+    }
+    (mean, if values.len() > 1 && sd.is_finite() { sd } else { f64::NAN })
 }
 
 /// The quantile of sorted values, interpolated linearly between order statistics; NaN without any.
@@ -83,6 +105,20 @@ mod tests {
         let told = statistics(&runs);
         assert_eq!((told[0].name, told[0].runs, told[0].mean), ("goal", 4, 0.75));
         assert_eq!((told[2].name, told[2].runs, told[2].mean), ("time_outside_s", 4, 13.5 / 4.0));
+    }
+
+    #[test]
+    fn large_values_have_finite_statistics() {
+        // Python: statistics.fmean and statistics.stdev of the fractions, exact.
+        let (mean, sd) = mean_and_sd(&[1e200, 3e200, 5e200]);
+        assert!((mean / 3e200 - 1.0).abs() < 1e-15 && (sd / 2e200 - 1.0).abs() < 1e-15, "{mean} {sd}");
+        let (mean, sd) = mean_and_sd(&[1.5e308, 1.7e308]);
+        assert!((mean / 1.6e308 - 1.0).abs() < 1e-15, "{mean}");
+        assert!((sd / 1.414_213_562_373_095_1e307 - 1.0).abs() < 1e-14, "{sd}");
+        let (mean, sd) = mean_and_sd(&[-1.7e308, 1.7e308]);
+        assert!(mean == 0.0 && sd.is_nan(), "{mean} {sd}");
+        assert!(mean_and_sd(&[2.0]).0 == 2.0 && mean_and_sd(&[2.0]).1.is_nan());
+        assert!(mean_and_sd(&[]).0.is_nan() && mean_and_sd(&[]).1.is_nan());
     }
 
     #[test]

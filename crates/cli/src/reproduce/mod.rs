@@ -8,11 +8,14 @@ mod html;
 mod number;
 mod page;
 mod paper;
+#[cfg(test)]
+mod prose;
 mod shipped;
 mod tell;
 mod verdict;
 
-use std::io::Write;
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant as WallInstant;
@@ -61,6 +64,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     for directory in std::iter::once(&args.out).chain(&args.docs) {
         std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
     }
+    // Two minutes of computing are not for nothing.
+    find_room(&args.out, "papers.html")?;
+    args.docs.as_ref().map_or(Ok(()), |docs| find_room(docs, "papers.md"))?;
     let papers = args.paper.as_ref().map_or(Paper::value_variants(), std::slice::from_ref);
     let bar = progress::spinner();
     let filled = papers.par_iter().map(|paper| fill(*paper, &bar)).collect::<Result<Vec<_>, _>>();
@@ -110,6 +116,34 @@ fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
     let (text, outcome) = form(Form::Html)?;
     let (markdown, _) = form(Form::Markdown)?;
     Ok(Filled { section: Section { name: paper.name(), text, outcome, times: computed.times() }, markdown })
+}
+
+/// Room that a page with its figures takes (bytes); it is some 2 MB.
+const ROOM: usize = 16 << 20;
+
+/// Makes sure that a page can be written into a directory: the file there may be replaced, and there is room.
+fn find_room(directory: &Path, page: &str) -> Result<(), Failure> {
+    let path = directory.join(page);
+    if let Ok(there) = std::fs::metadata(&path) {
+        let kind = match there.is_file() {
+            true if there.permissions().readonly() => Some(ErrorKind::PermissionDenied),
+            false if there.is_dir() => Some(ErrorKind::IsADirectory),
+            _ => None,
+        };
+        kind.map_or(Ok(()), |kind| Err(Failure::write(&path)(kind.into())))?;
+    }
+    let room = directory.join(format!("{page}.room.{}", std::process::id()));
+    let made = OpenOptions::new().write(true).create_new(true).open(&room);
+    let filled = made.and_then(|mut file| {
+        let block = vec![0; 1 << 20];
+        (0..ROOM / block.len()).try_for_each(|_| file.write_all(&block))?;
+        file.sync_data()
+    });
+    whole::discard(&room);
+    filled.map_err(|source| {
+        let why = format!("{source} ({} MB are looked for before it is computed)", ROOM >> 20);
+        Failure::write(&path)(std::io::Error::new(source.kind(), why))
+    })
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

@@ -53,9 +53,8 @@ pub struct Outcome {
     pub verdicts: Vec<Verdict>,
 }
 
-/// Fills a template with what is, or has been, computed.
-pub fn fill(computed: &Arc<Computed>, template: &str, form: Form) -> Result<(String, Outcome), Failure> {
-    let outcome = Arc::new(Mutex::new(Outcome::default()));
+/// What templates of numbers know: the commands `run`, `each` and `column`, and the filters and tests of numbers.
+pub fn environment(computed: &Arc<Computed>) -> Result<Environment<'static>, Failure> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     let syntax =
@@ -75,6 +74,13 @@ pub fn fill(computed: &Arc<Computed>, template: &str, form: Form) -> Result<(Str
     environment.add_function("column", move |command: &str, topic: &str, name: &str| {
         known.column(command, topic, name)
     });
+    Ok(environment)
+}
+
+/// Fills a template with what is, or has been, computed.
+pub fn fill(computed: &Arc<Computed>, template: &str, form: Form) -> Result<(String, Outcome), Failure> {
+    let outcome = Arc::new(Mutex::new(Outcome::default()));
+    let mut environment = environment(computed)?;
     let (known, list) = (Arc::clone(computed), Arc::clone(&outcome));
     let figure = move |name: &str, command: &str, what: &str, caption: &str| -> Result<String, Error> {
         let (svg, command) = known.draw(command, what, name)?;
@@ -118,7 +124,7 @@ fn show(outcome: &Mutex<Outcome>, form: Form, drawn: Drawn) -> String {
 }
 
 /// An error with the line of the template and what is behind it.
-fn explained(error: &Error) -> String {
+pub fn explained(error: &Error) -> String {
     let line = error.line().map_or(String::new(), |line| format!("line {line}: "));
     format!("{line}{error}")
 }

@@ -5,6 +5,8 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table, Value};
 
+use super::deep::{DEEPEST, WHY};
+
 /// One step of a path: a key, or a place in an array.
 #[derive(Clone, Debug, PartialEq)]
 enum Step<'a> {
@@ -62,6 +64,9 @@ pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
 pub fn set(table: &mut Table, path: &str, value: Value) -> Result<(), String> {
     let not_a_path = || "not the path of a key, such as `law.relay.k_t` or `body.planar.modes[0].gain`";
     let steps = steps(path).ok_or_else(not_a_path)?;
+    if steps.len() > DEEPEST {
+        return Err(WHY.to_owned());
+    }
     let Some((Step::Key(first), rest)) = steps.split_first() else {
         return Err(not_a_path().to_owned());
     };

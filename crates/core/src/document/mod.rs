@@ -1,5 +1,6 @@
 //! A scenario's TOML text: keys addressed by their paths, and errors that point at the very value.
 
+mod deep;
 pub mod key;
 mod words;
 
@@ -11,7 +12,7 @@ use toml::de::DeTable;
 use toml::{Table, Value};
 
 use key::{bare_or_quoted, span_of};
-use words::{explained, point, pointed, told};
+use words::{explained, point, pointed, shortened, told};
 
 /// No scenario is longer (bytes).
 const LONGEST: u64 = 4 << 20;
@@ -157,7 +158,7 @@ impl Document {
     }
 
     fn key_error(&self, key: &str, why: String) -> ScenarioError {
-        ScenarioError::Key { origin: self.origin.clone(), key: key.to_owned(), why }
+        ScenarioError::Key { origin: self.origin.clone(), key: shortened(key), why }
     }
 }
 

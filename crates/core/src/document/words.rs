@@ -4,14 +4,17 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::ScenarioError;
 use super::key::place_of;
+use super::{ScenarioError, deep};
 
 /// Errors show no more of a line than this before and after the place that they are about (characters).
 const SHOWN: usize = 80;
 
 /// The parser's error, pointed at the place that it is about.
 pub fn pointed(origin: &str, text: &str, error: &toml::de::Error) -> ScenarioError {
+    if let Some(span) = deep::place(text, error) {
+        return ScenarioError::Invalid(point(origin, text, span.clone(), &deep::why(text, &span)));
+    }
     let (message, span) = told(text, error);
     ScenarioError::Invalid(match span {
         Some(span) => point(origin, text, span, &message),
@@ -100,6 +103,9 @@ pub fn explained(message: &str, found: Option<&str>) -> String {
             return format!("found {got}, expected {}", expected(wanted));
         }
     }
+    if deep::is_limit(message) {
+        return deep::WHY.to_owned();
+    }
     match message {
         "string values must be quoted, expected literal string" => {
             "found no TOML value; a text stands in quotes".to_owned()
@@ -143,7 +149,7 @@ fn bracketed(key: &str, place: &str, why: &str) -> Option<String> {
 }
 
 /// A text that fits a message.
-fn shortened(text: &str) -> String {
+pub fn shortened(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),

@@ -65,6 +65,15 @@ impl Estimator {
         matches!(self, Self::Kalman(_) | Self::ExtendedKalman(_) | Self::UnscentedKalman(_))
     }
 
+    /// Whether it is there to be assessed only.
+    pub fn watches_only(&self) -> bool {
+        match self {
+            Self::Kalman(filter) => filter.watch_only,
+            Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => filter.watch_only,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => false,
+        }
+    }
+
     /// The modes that it knows instead of the body's.
     pub fn modes(&self) -> Option<&[Mode]> {
         match self {

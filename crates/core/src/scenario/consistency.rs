@@ -281,6 +281,20 @@ impl Scenario {
         if from >= to {
             return at(".assess", format!("must be [from, to] in this order, got [{from}, {to}]"));
         }
+        let read = matches!(&self.law, Law::Pd(pd) if pd.extra.is_some());
+        if read && estimator.watches_only() {
+            return at(".watch_only", "must be left out where `law.pd.extra` reads the filter".to_owned());
+        }
+        if !read && !estimator.watches_only() {
+            let instead = if estimator.filters() {
+                "or with `watch_only = true` the filter is assessed and changes nothing"
+            } else {
+                "and without one the estimator is left out"
+            };
+            let why =
+                format!("is read by nothing: what reads it is an `extra` loop of `[law.pd]`, {instead}");
+            return at("", why);
+        }
         let (Estimator::ExtendedKalman(filter) | Estimator::UnscentedKalman(filter)) = estimator else {
             return None;
         };

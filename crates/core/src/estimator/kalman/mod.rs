@@ -46,6 +46,9 @@ pub struct Kalman {
     /// When the metrics judge the filter, from one time to another (s); left out, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
+    /// Whether it is there to be assessed only: no law reads it.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub watch_only: bool,
 }
 
 /// An extended or an unscented Kalman filter as a scenario describes it: natural frequencies that drift.
@@ -73,6 +76,9 @@ pub struct Drifting {
     /// When the metrics judge the filter, from one time to another (s); left out, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
+    /// Whether it is there to be assessed only: no law reads it.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub watch_only: bool,
     /// Which frequencies drift together.
     #[serde(default)]
     pub ratios: Ratios,
@@ -120,11 +126,11 @@ pub struct Initial {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Prior {
-    /// The true one.
-    #[default]
-    True,
     /// One drawn around the true one with the standard deviations of `initial` and, around `ratio`, of `ratio_sd`.
+    #[default]
     Drawn,
+    /// The true one: errors begin at 0, and say little of the filter.
+    True,
 }
 
 /// What makes a mode the dominant one.
@@ -279,6 +285,7 @@ impl Default for Drifting {
             prior: Prior::default(),
             dominant: Ranking::default(),
             assess: None,
+            watch_only: false,
             ratios: Ratios::default(),
             ratio: Positive::ONE,
             ratio_sd: ratio_sd(),
@@ -324,6 +331,11 @@ impl<'de> Deserialize<'de> for Substeps {
     }
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
 fn moment_noise() -> NonNegative {
     NonNegative::new(1e-13).unwrap_or_default()
 }
@@ -353,5 +365,5 @@ fn substeps() -> Substeps {
 }
 
 fn gate() -> NonNegative {
-    NonNegative::new(10.0).unwrap_or_default()
+    NonNegative::new(3.0).unwrap_or_default()
 }

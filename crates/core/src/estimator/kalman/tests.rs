@@ -8,7 +8,7 @@ fn scenario(estimator: &str) -> Scenario {
     let text = format!(
         "duration = 1.0\n[law.open]\n[body.planar]\nangle = 0.06\nmodes = [{{ frequency = 0.3, gain = 1.44 }}, \
          {{ frequency = 0.8, gain = 0.21 }}, {{ frequency = 1.0, gain = 0.165 }}, {{ frequency = 2.0, gain = 0.72 }}]\n\
-         [sensor.sampled]\nperiod = 0.3\nnoise = 1e-5\n[estimator.{estimator}"
+         [sensor.sampled]\nperiod = 0.3\nnoise = 1e-5\n[estimator.{estimator}\nwatch_only = true"
     );
     Scenario::parse("filter", &text).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -1,0 +1,230 @@
+//! README.md and the pages of the documentation, whose numbers are what the commands beside them tell.
+//!
+//! A page names its commands and marks its numbers in comments, which no reader sees:
+//! - a comment of its own, `<!--{% set quiet = run("simulate scenarios/relay-quiet.toml") %}-->`, names what a command tells
+//!   ([`super::tell`]);
+//! - `0.34<!--{{ quiet.gain_final }}-->` is a number of the text, which must be the value rounded to its digits; there is no
+//!   `--` in such a comment, and in the cell of a table a `|` is written `\|`;
+//! - `<!--below 0.34 {{ quiet.gain_final }}-->`, on a line of its own, is such a number in the block that follows, where a
+//!   comment would be seen;
+//! - what stands between a comment that begins with `made` and `<!--end-->` must be what the rest of the comment comes to.
+//!
+//! A page without marks is not tested: there is nothing to tell what its numbers should be.
+
+use std::fmt::Write as _;
+use std::sync::{Arc, LazyLock};
+
+use super::computed::Computed;
+use super::page::{environment, explained};
+
+/// What was computed, for all pages.
+static COMPUTED: LazyLock<Arc<Computed>> = LazyLock::new(|| Arc::new(Computed::new(|_| {})));
+
+/// Parts the values of marks from the empty lines between them.
+const PARTING: char = '\u{1}';
+
+/// A mark that has a value.
+struct Mark<'a> {
+    /// Line of the page.
+    line: usize,
+    /// The template of its value.
+    template: String,
+    /// What the page has for it.
+    printed: Printed<'a>,
+}
+
+enum Printed<'a> {
+    /// A number.
+    Number(&'a str),
+    /// A number, which has to stand in this block.
+    Within(&'a str, &'a str),
+    /// The whole text.
+    Text(&'a str),
+}
+
+/// What is wrong with the numbers of a page.
+fn faults(page: &str) -> Result<Vec<String>, String> {
+    let (mut template, mut marks) = (String::new(), Vec::new());
+    let mut rest = page;
+    while let Some((before, after)) = rest.split_once("<!--") {
+        let line = 1 + page[..page.len() - after.len()].matches('\n').count();
+        let (comment, follows) =
+            after.split_once("-->").ok_or_else(|| format!("line {line}: a comment without end"))?;
+        let ahead = &page[..page.len() - after.len() - 4];
+        let inline = !ahead.is_empty() && !ahead.ends_with('\n');
+        // The template has the lines of the page, so that its errors have them too.
+        template.extend(before.chars().filter(|c| *c == '\n'));
+        rest = follows;
+        let mark = |template: &str, printed| Mark { line, template: template.replace("\\|", "|"), printed };
+        let mark = if let Some(made) = comment.strip_prefix("made") {
+            let (text, after) =
+                follows.split_once("<!--end-->").ok_or_else(|| format!("line {line}: `made` without end"))?;
+            rest = after;
+            Some(mark(made, Printed::Text(text)))
+        } else if let Some(below) = comment.strip_prefix("below ") {
+            let (number, value) = below.split_once(' ').ok_or_else(|| format!("line {line}: no value"))?;
+            // The marks of one block stand together.
+            let block = skip_comments(follows.trim_start_matches('\n'));
+            let end = if block.starts_with("```") {
+                block[3..].find("```").map_or(block.len(), |end| end + 3)
+            } else {
+                block.find("\n\n").unwrap_or(block.len())
+            };
+            Some(mark(value, Printed::Within(number, &block[..end])))
+        } else if comment.starts_with("{{") {
+            if inline && comment.contains("--") {
+                return Err(format!("line {line}: `--` ends a comment in some readers"));
+            }
+            Some(mark(comment, Printed::Number(number_at_end(ahead))))
+        } else {
+            if comment.starts_with("{%") {
+                template.push_str(comment);
+            }
+            None
+        };
+        if let Some(mark) = mark {
+            write!(template, "{PARTING}{}{PARTING}", mark.template).map_err(|error| error.to_string())?;
+            marks.push(mark);
+        }
+        let passed = &page[page.len() - follows.len()..page.len() - rest.len()];
+        template.extend(passed.chars().filter(|c| *c == '\n'));
+    }
+    let environment = environment(&COMPUTED).map_err(|failure| failure.to_string())?;
+    let filled = environment.render_str(&template, ()).map_err(|error| explained(&error))?;
+    let values = filled.split(PARTING).skip(1).step_by(2);
+    Ok(marks.iter().zip(values).filter_map(|(mark, value)| mark.fault(value)).collect())
+}
+
+/// What follows the comments that a text begins with.
+fn skip_comments(mut text: &str) -> &str {
+    while let Some((_, after)) = text.strip_prefix("<!--").and_then(|text| text.split_once("-->")) {
+        text = after.trim_start_matches('\n');
+    }
+    text
+}
+
+/// The number that a text ends with.
+fn number_at_end(text: &str) -> &str {
+    let part = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e');
+    let digits = text.trim_end_matches(part);
+    text[digits.len()..].trim_start_matches(['.', 'e'])
+}
+
+impl Mark<'_> {
+    /// What is wrong with what is printed, given what should be.
+    fn fault(&self, value: &str) -> Option<String> {
+        let (line, template) = (self.line, self.template.trim());
+        match self.printed {
+            Printed::Text(text) if text.trim() == value.trim() => None,
+            Printed::Text(text) => {
+                let mut pairs = text.trim().lines().zip(value.trim().lines());
+                let (printed, should) =
+                    pairs.find(|(a, b)| a != b).unwrap_or(("", "another number of lines"));
+                Some(format!("line {line}: made `{printed}` should be `{should}`"))
+            }
+            Printed::Within(number, block) if !has_number(block, number) => {
+                Some(format!("line {line}: there is no {number} in what follows"))
+            }
+            Printed::Number(printed) | Printed::Within(printed, _) => match rounded(value.trim(), printed) {
+                Some(should) if should == printed.trim_start_matches('+') => None,
+                Some(should) => {
+                    Some(format!("line {line}: `{printed}` should be {should}: {value}, {template}"))
+                }
+                None => Some(format!("line {line}: `{printed}` and `{value}`: {template}")),
+            },
+        }
+    }
+}
+
+/// Whether a number stands in a text by itself.
+fn has_number(text: &str, number: &str) -> bool {
+    let apart = |c: Option<char>| c.is_none_or(|c| !c.is_ascii_digit() && c != '.');
+    text.match_indices(number).any(|(at, _)| {
+        let (before, after) = (&text[..at], &text[at + number.len()..]);
+        // A full stop ends a sentence.
+        let after = after
+            .strip_prefix('.')
+            .filter(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()))
+            .unwrap_or(after);
+        apart(before.chars().next_back()) && apart(after.chars().next())
+    })
+}
+
+/// A value with the digits of a number as it is printed.
+fn rounded(value: &str, printed: &str) -> Option<String> {
+    let value: f64 = value.parse().ok()?;
+    printed.parse::<f64>().ok()?;
+    let decimals = |mantissa: &str| mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    Some(match printed.split_once('e') {
+        Some((mantissa, _)) => format!("{value:.*e}", decimals(mantissa)),
+        None => format!("{:.*}", decimals(printed), value),
+    })
+}
+
+/// Tests the numbers of a page, by its path in the repository.
+fn tested(path: &str) {
+    let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(&path).expect("a page");
+    assert!(
+        page.contains("<!--{{") || page.contains("<!--below") || page.contains("<!--made"),
+        "{path}: no number"
+    );
+    let faults = faults(&page).unwrap_or_else(|error| panic!("{path}: {error}"));
+    assert!(faults.is_empty(), "{path}:\n{}", faults.join("\n"));
+}
+
+#[test]
+fn readme_says_what_the_commands_tell() {
+    tested("README.md");
+}
+
+#[test]
+fn scenario_page_says_what_the_commands_tell() {
+    tested("docs/scenario.md");
+}
+
+#[test]
+fn page_of_sampled_loops_says_what_the_commands_tell() {
+    tested("docs/sampled-loops.md");
+}
+
+#[test]
+fn page_of_active_damping_says_what_the_commands_tell() {
+    tested("docs/active-damping.md");
+}
+
+#[test]
+fn page_of_manoeuvres_says_what_the_commands_tell() {
+    tested("docs/manoeuvres.md");
+}
+
+#[test]
+fn a_wrong_number_is_a_fault() {
+    let of = |text: &str| faults(text).map(|faults| faults.join("; ")).unwrap_or_else(|error| error);
+    let set = "<!--{% set x = [1.0, 2.0, 4.26e-3] %}-->\n";
+    let right = [
+        "So 2<!--{{ x[1] }}--> of them, 4.3e-3<!--{{ x[2] }}--> and -0.0043<!--{{ -x[2] }}--> rad, +1.00<!--{{ x[0] }}-->.",
+        "| 1.0<!--{{ x\\|median }}--> |",
+        "<!--made\n{% for y in x[:2] %}\n| {{ y|fixed(1) }} |\n{% endfor %}\n-->\n| 1.0 |\n| 2.0 |\n<!--end-->",
+        "<!--below 0.004 {{ x[2] }}-->\n<!--below 1.0 {{ x[0] }}-->\n\n    a = 0.004 and 1.0.",
+        "<!--below 2 {{ x[1] }}-->\n```\none\n\ntwo: 2\n```\n",
+    ];
+    for text in right {
+        assert_eq!(of(&format!("{set}{text}")), "", "{text}");
+    }
+    let wrong = [
+        ("3<!--{{ x[1] }}-->", "line 2: `3` should be 2"),
+        ("0.005<!--{{ x[2] }}-->", "should be 0.004"),
+        ("4.2e-3<!--{{ x[2] }}-->", "should be 4.3e-3"),
+        ("none<!--{{ x[1] }}-->", "line 2: `` and `2.0`"),
+        ("\n2<!--{{ y }}-->", "line 3: undefined"),
+        ("2<!--{{ x[1] --}}-->", "`--`"),
+        ("<!--below 2 {{ x[1] }}-->\n\n    a = 0.2 and 25.\n\nand 2.", "no 2 in what follows"),
+        ("<!--made\n{{ x[1] }}\n-->\n1.0\n<!--end-->", "`1.0` should be `2.0`"),
+        ("2<!--{{ run('simulate scenarios/none.toml') }}-->", "no scenario of the papers"),
+    ];
+    for (text, why) in wrong {
+        let fault = of(&format!("{set}{text}"));
+        assert!(fault.contains(why), "{text}: {fault}");
+    }
+}

@@ -1,0 +1,53 @@
+//! Tables and arrays that are nested too deep: which line, and which key.
+
+use std::ops::Range;
+
+use toml::Table;
+
+use super::words::shortened;
+
+/// Levels that a path of a key has at most; the parser has a limit of its own, of 80.
+pub const DEEPEST: usize = 60;
+
+/// What is wrong.
+pub const WHY: &str = "is nested too deep: a scenario has a few levels of tables and arrays";
+
+/// Whether the parser's error is that something is nested too deep.
+pub fn is_limit(message: &str) -> bool {
+    message.contains("recursion limit") || message.contains("max recursion depth")
+}
+
+/// The place of the line that is nested too deep, if this is the error.
+pub fn place(text: &str, error: &toml::de::Error) -> Option<Range<usize>> {
+    if !is_limit(error.message()) {
+        return None;
+    }
+    let at = error.span().map_or_else(|| first_deep(text), |span| span.start.min(text.len()));
+    let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+    let line = text[start..].lines().next().unwrap_or_default();
+    let blank = line.len() - line.trim_start().len();
+    let key = line.find('=').unwrap_or(line.len());
+    Some(start + blank..start + line[..key].trim_end().len().max(blank))
+}
+
+/// What is wrong, with the key of the line at a place.
+pub fn why(text: &str, place: &Range<usize>) -> String {
+    let line = &text[place.clone()];
+    let header = |line: &str| line.trim().trim_matches(['[', ']']).trim().to_owned();
+    if line.starts_with('[') {
+        return format!("`{}` {WHY}", shortened(&header(line)));
+    }
+    let mut above = text[..place.start].lines().rev().map(str::trim);
+    let table = above.find(|line| line.starts_with('[') && line.ends_with(']')).map(header);
+    let key = table.map_or_else(|| line.to_owned(), |table| format!("{table}.{line}"));
+    format!("`{}` {WHY}", shortened(&key))
+}
+
+/// Where the first line begins with which the text is nested too deep: the parser does not tell.
+fn first_deep(text: &str) -> usize {
+    let ends: Vec<usize> =
+        text.match_indices('\n').map(|(at, _)| at + 1).chain(std::iter::once(text.len())).collect();
+    let is_deep = |end: &usize| text[..*end].parse::<Table>().is_err_and(|error| is_limit(error.message()));
+    let line = ends.partition_point(|end| !is_deep(end));
+    line.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0).min(text.len())
+}
