@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub struct Partial {
     file: File,
-    partial: PathBuf,
+    beside: PathBuf,
     place: PathBuf,
     finished: bool,
 }
@@ -37,7 +37,7 @@ impl Partial {
         let partial = PathBuf::from(partial);
         for _ in 0..ATTEMPTS {
             if let Some(file) = claim(&partial)? {
-                return Ok(Self { file, partial, place, finished: false });
+                return Ok(Self { file, beside: partial, place, finished: false });
             }
         }
         Err(busy())
@@ -59,7 +59,7 @@ impl Partial {
     /// Puts the file into its place, and tells its size in bytes.
     pub fn finish(mut self) -> io::Result<u64> {
         let bytes = self.file.metadata()?.len();
-        fs::rename(&self.partial, &self.place)?;
+        fs::rename(&self.beside, &self.place)?;
         self.finished = true;
         Ok(bytes)
     }
@@ -89,9 +89,9 @@ impl Seek for Partial {
 
 impl Drop for Partial {
     fn drop(&mut self) {
-        if !self.finished && is_at(&self.file, &self.partial) {
+        if !self.finished && is_at(&self.file, &self.beside) {
             // That it cannot be removed is no news beside why it is of no use.
-            let _ = fs::remove_file(&self.partial);
+            let _ = fs::remove_file(&self.beside);
         }
     }
 }
