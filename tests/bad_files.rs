@@ -65,7 +65,8 @@ fn nothing_is_run_beside_a_bad_file() {
 #[test]
 fn what_is_nested_too_deep_is_told_by_line_and_key() {
     let dir = Dir::new();
-    let headers: String = (1..300).map(|depth| format!("[law{}]\n", ".a".repeat(depth))).collect();
+    let headers: Vec<String> = (1..300).map(|depth| format!("[law{}]", ".a".repeat(depth))).collect();
+    let headers = headers.join("\n");
     let cases = [
         (format!("duration = 1.0\nlaw{} = 1\n", ".a".repeat(100_000)), "deep.toml:2:1: ", "`law.a.a"),
         (format!("duration = 1.0\n[law{}]\nx = 1\n", ".a".repeat(200)), "deep.toml:2:1: ", "`law.a.a"),

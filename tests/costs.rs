@@ -6,7 +6,7 @@ use crate::structure::RELAY;
 use crate::util::{Dir, Ran, UNCERTAIN};
 
 /// A sampled loop with a wheel; the line of a key is replaced by the tests.
-const LOOP: &str = r#"duration = 2000.0
+const LOOP: &str = "duration = 2000.0
 
 [body.planar]
 angle = 0.1
@@ -27,7 +27,7 @@ delay = 0.0
 
 [log]
 period = 0.1
-"#;
+";
 
 #[track_caller]
 fn refused(ran: Ran, words: &[&str]) {

@@ -45,7 +45,7 @@ fn a_full_disk_leaves_nothing() {
     full(10, "relay-fixed.mcap", "simulate relay-fixed.toml -o out --set duration=10");
     assert!(dir.names("out").is_empty());
     full(10, "run 1", "simulate u.toml --runs 1:2 -o out --log events");
-    full(100, "runs.csv", "simulate u.toml --runs 2000 --set duration=1 -o out");
+    full(100, "runs.csv", "simulate u.toml --runs 2000 --set duration=1 -o out --force");
     assert_eq!(dir.names("out"), ["scenario.toml"]);
     dir.run("simulate relay-fixed.toml -o whole").exits(0);
     dir.run("log recover whole/relay-fixed.mcap -o /dev/full").exits(1).says(&["cannot write /dev/full"]);
@@ -418,7 +418,6 @@ fn slow_runs_stop_soon() {
     took.sort_by(|a, b| b.0.total_cmp(&a.0));
     // It is 0.2 s where nothing else wants the processor.
     let (median, worst) = (took[took.len() / 2].0, took[0]);
-    println!("median {median:.3} s, worst {:?}", &took[..5]);
     assert!(median < 0.2 && worst.0 < 1.0, "median {median:.3} s, worst {:?}", &took[..5]);
     for out in ["", "a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "o", "p"] {
         let torn: Vec<_> = dir.names(out).into_iter().filter(|name| name.ends_with(".partial")).collect();

@@ -54,13 +54,11 @@ export async function open(log, layout) {
   return { show, close };
 }
 
-// Waits until all of the log is loaded, as the bar below the slider tells, and then until plots are drawn.
+// Waits until the log is loaded: until the page looks the same for some seconds. The bar below the slider tells of a part only.
 async function loaded(page) {
-  const bar = () => {
-    const parts = [...document.querySelectorAll('[style*="left:"][style*="width:"]')].map((part) => part.style);
-    const ranges = parts.filter(({ left, width }) => left.endsWith("%") && width.endsWith("%"));
-    return ranges.reduce((sum, { width }) => sum + Number.parseFloat(width), 0) > 99.5;
-  };
-  await page.waitForFunction(bar, undefined, { timeout: 900_000 });
-  await page.waitForTimeout(5000);
+  for (let [before, same] = ["", 0]; same < 3; ) {
+    await page.waitForTimeout(3000);
+    const now = (await page.screenshot({ timeout: 300_000 })).toString("base64");
+    [before, same] = [now, now === before ? same + 1 : 0];
+  }
 }

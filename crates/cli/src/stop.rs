@@ -18,7 +18,7 @@ static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 /// How often the flag is looked at.
 const LOOK: Duration = Duration::from_millis(20);
 /// How long work may take to end by itself once it is asked to stop.
-const PATIENCE: Duration = Duration::from_millis(100);
+const PATIENCE: Duration = Duration::from_millis(50);
 /// The same while files are written.
 const PATIENCE_OF_FILES: Duration = Duration::from_secs(2);
 /// What the main thread of a program has on most systems (bytes).

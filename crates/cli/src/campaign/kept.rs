@@ -32,15 +32,14 @@ impl<'a> Kept<'a> {
     /// What is kept of a job of a campaign there.
     pub fn new(directory: &'a Path, job: &'a Job<'a>, study: &Campaign) -> Self {
         let prefix = job.prefix.map_or(String::new(), |name| format!("{name}-"));
-        let mut text = format!("{MARK} {}.\n", env!("CARGO_PKG_VERSION"));
-        for grid in study.grids() {
-            let [first, .., last] = &grid.values[..] else {
-                text += &format!("# {} = {:?}\n", grid.key, grid.values);
-                continue;
-            };
-            text += &format!("# {} = {first} to {last}, {} values\n", grid.key, grid.values.len());
-        }
-        text += &study.to_toml();
+        let grids = study.grids().iter().map(|grid| match &grid.values[..] {
+            [first, .., last] => {
+                format!("# {} = {first} to {last}, {} values\n", grid.key, grid.values.len())
+            }
+            values => format!("# {} = {values:?}\n", grid.key),
+        });
+        let grids: String = grids.collect();
+        let text = format!("{MARK} {}.\n{grids}{}", env!("CARGO_PKG_VERSION"), study.to_toml());
         Self { directory, prefix, job, text }
     }
 

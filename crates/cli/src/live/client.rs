@@ -28,6 +28,7 @@ pub fn greet(hub: &Hub, gate: &Gate, stream: TcpStream) -> Option<(WebSocket<Wir
     let wire = Wire::new(stream, GREETING).ok()?;
     let config = WebSocketConfig::default().max_message_size(Some(LARGEST)).max_frame_size(Some(LARGEST));
     let mut seat = None;
+    #[expect(clippy::result_large_err, reason = "the signature is the library's")]
     let agree = |request: &Request, response| agree(hub, gate, &mut seat, request, response);
     let mut socket = tungstenite::accept_hdr_with_config(wire, agree, Some(config)).ok()?;
     socket.get_mut().greeted().ok()?;

@@ -77,7 +77,9 @@ impl State {
         ];
         self.joined += 1;
         let client = self.clients.entry(self.joined).or_default();
-        frames.into_iter().for_each(|frame| client.outbox.push(frame));
+        for frame in frames {
+            client.outbox.push(frame);
+        }
         self.joined
     }
 

@@ -65,10 +65,9 @@ fn faults(page: &str) -> Result<Vec<String>, String> {
             let (number, value) = below.split_once(' ').ok_or_else(|| format!("line {line}: no value"))?;
             // The marks of one block stand together.
             let block = skip_comments(follows.trim_start_matches('\n'));
-            let end = if block.starts_with("```") {
-                block[3..].find("```").map_or(block.len(), |end| end + 3)
-            } else {
-                block.find("\n\n").unwrap_or(block.len())
+            let end = match block.strip_prefix("```") {
+                Some(code) => code.find("```").map_or(block.len(), |end| end + 3),
+                None => block.find("\n\n").unwrap_or(block.len()),
             };
             Some(mark(value, Printed::Within(number, &block[..end])))
         } else if comment.starts_with("{{") {
@@ -200,7 +199,7 @@ fn page_of_manoeuvres_says_what_the_commands_tell() {
 
 #[test]
 fn a_wrong_number_is_a_fault() {
-    let of = |text: &str| faults(text).map(|faults| faults.join("; ")).unwrap_or_else(|error| error);
+    let of = |text: &str| faults(text).map_or_else(|error| error, |faults| faults.join("; "));
     let set = "<!--{% set x = [1.0, 2.0, 4.26e-3] %}-->\n";
     let right = [
         "So 2<!--{{ x[1] }}--> of them, 4.3e-3<!--{{ x[2] }}--> and -0.0043<!--{{ -x[2] }}--> rad, +1.00<!--{{ x[0] }}-->.",
