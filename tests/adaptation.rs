@@ -58,11 +58,13 @@ fn adaptation_over_seeds_is_distributed_as_it_should_be() {
     let study = Campaign::new(scenario("relay-adaptive", &[]), "relay-adaptive", None).expect("a campaign");
     let mut frozen = Vec::new();
     let mut reduction = Vec::new();
-    study
+    std::sync::Arc::new(study)
         .each::<()>(
             0..400,
+            0,
             |run| Ok(Campaign::simulate(run, ())?),
             |outcome| {
+                let Some(outcome) = outcome else { return Ok(()) };
                 let metrics = outcome.metrics.expect("a run");
                 let gain = metrics.number("gain_frozen").expect("a metric");
                 if gain.is_finite() {

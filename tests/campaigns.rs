@@ -142,13 +142,137 @@ fn the_scenario_beside_the_tables_is_that_of_the_runs() {
     dir.run("simulate out/scenario.toml --runs 4 -o again").exits(0);
     assert_eq!(dir.text("again/runs.csv"), dir.text("out/runs.csv"));
     assert_eq!(dir.text("again/scenario.toml"), dir.text("out/scenario.toml"));
-    // Another campaign takes its place; a part of another one does not.
-    dir.run("simulate u.toml --runs 2:4 -o out").exits(2).says(&["out/scenario.toml", "another directory"]);
+    // Neither another campaign nor a part of one takes its place, unless that is asked for.
+    let before = (dir.text("out/runs.csv"), dir.text("out/statistics.csv"), dir.text("out/scenario.toml"));
+    for other in ["--runs 2:4 --seed 9", "--runs 4 --seed 9", "--runs 4 --set law.relay.weak=2e-6"] {
+        let ran = dir.run(&format!("simulate u.toml -o out {other}")).exits(2);
+        ran.says(&["out/scenario.toml", "another campaign (`", "another directory", "--force"]);
+    }
+    let after = (dir.text("out/runs.csv"), dir.text("out/statistics.csv"), dir.text("out/scenario.toml"));
+    assert_eq!(after, before);
     dir.run("simulate u.toml --runs 2:4 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
-    dir.run("simulate u.toml --runs 4 -o out").exits(0);
+    // The same again, and more of it; but not less.
+    dir.run("simulate u.toml --runs 4 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
+    dir.run("simulate u.toml --runs 6 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
+    let fewer = "simulate u.toml --runs 5 --seed 9 --set law.relay.weak=2e-6 -o out";
+    dir.run(fewer).exits(2).says(&["out/runs.csv", "holds 6 runs of this campaign, and 5 would", "--force"]);
+    assert_eq!(table(&dir, "out/runs.csv").len(), 6);
+    dir.run(&format!("{fewer} --force")).exits(0);
+    assert_eq!(table(&dir, "out/runs.csv").len(), 5);
+    // Replaced, nothing of the other campaign is left beside the new tables.
+    dir.run("simulate u.toml --runs 4 -o out --force").exits(0);
+    assert_eq!(dir.names("out"), ["runs.csv", "scenario.toml", "statistics.csv"]);
     // What somebody wrote is never lost.
     dir.write("scenario.toml", UNCERTAIN);
-    dir.run("simulate scenario.toml --runs 4 -o .").exits(2).says(&["./scenario.toml"]);
+    for force in ["", "--force"] {
+        dir.run(&format!("simulate scenario.toml --runs 4 -o . {force}")).exits(2).says(&["./scenario.toml"]);
+    }
     assert_eq!(dir.text("scenario.toml"), UNCERTAIN);
     assert!(!dir.has("runs.csv"));
+}
+
+#[test]
+fn a_sweep_of_other_values_is_another_one() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let vary = "sweep relay-fixed.toml --set duration=100 -o out --vary law.relay.k_t";
+    dir.run(&format!("{vary}=0.3:0.4:5")).exits(0);
+    dir.run(&format!("{vary}=0.3:0.4:5")).exits(0);
+    for other in [
+        format!("{vary}=0.3:0.39:5"),
+        "simulate relay-fixed.toml --set duration=100 --runs 9 -o out".to_owned(),
+    ] {
+        let ran = dir.run(&other).exits(2);
+        ran.says(&["out/scenario.toml", "another campaign (law.relay.k_t = 0.3 to 0.4, 5 values there"]);
+    }
+    assert_eq!(table(&dir, "out/runs.csv").len(), 5);
+    dir.run(&format!("{vary}=0.3:0.39:7 --force")).exits(0);
+    assert_eq!(table(&dir, "out/runs.csv").len(), 7);
+    // A table of which nothing is known stays, too.
+    std::fs::remove_file(dir.path("out/scenario.toml")).expect("there");
+    dir.run(&format!("{vary}=0.3:0.4:5")).exits(2).says(&["out/runs.csv", "nothing tells of which campaign"]);
+}
+
+#[test]
+fn a_log_of_other_settings_is_not_replaced() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let run = "simulate relay-fixed.toml --set duration=100";
+    dir.run(run).exits(0);
+    let before = dir.read("relay-fixed.mcap");
+    for (other, why) in [
+        ("--set law.relay.k_t=0.32", "(`law.relay.k_t`: 0.31 there, 0.32 here)"),
+        ("--seed 5", "(`seed`: "),
+        ("--set law.relay.k_t=0.32 --log full", "`law.relay.k_t`"),
+    ] {
+        let ran = dir.run(&format!("{run} {other}")).exits(2);
+        ran.says(&["error: relay-fixed.mcap: holds a run of other settings", why, "-o", "--force"]);
+        assert_eq!(dir.names("."), ["relay-fixed.mcap", "relay-fixed.toml"]);
+        assert_eq!(dir.read("relay-fixed.mcap"), before, "{other}");
+    }
+    // The same run again, with more in its log, elsewhere, and where it is asked for.
+    dir.run(run).exits(0);
+    dir.run(&format!("{run} --log full")).exits(0);
+    dir.run(&format!("{run} --set law.relay.k_t=0.32 -o out")).exits(0);
+    dir.run(&format!("{run} --set law.relay.k_t=0.32 --force")).exits(0);
+    dir.write("relay-fixed.mcap", "notes");
+    dir.run(run).exits(2).says(&["relay-fixed.mcap: is no log of flexsc"]);
+    assert_eq!(dir.text("relay-fixed.mcap"), "notes");
+    // Logs of a campaign, too.
+    dir.write("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 2 --log events").exits(0);
+    dir.run("simulate u.toml --runs 2 --log events").exits(0);
+    dir.run("simulate u.toml --runs 2 --log events --seed 8").exits(2).says(&["u-0.mcap: holds", "--force"]);
+}
+
+/// Two processes in one directory: one of them does all, the other says why it does nothing.
+#[cfg(unix)]
+#[test]
+fn two_processes_do_not_share_a_table() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    let one = dir.start("simulate u.toml --runs 1000000 -o out");
+    dir.wait_for("out/runs.csv.partial", 1000);
+    let scenario = dir.text("out/scenario.toml");
+    for (other, why) in [
+        ("simulate u.toml --runs 3 -o out", "another process is writing it"),
+        ("simulate u.toml --runs 3 -o out --force", "another process is writing it"),
+        ("simulate u.toml --runs 3 --seed 8 -o out", "another campaign (`seed`: 7 there, 8 here)"),
+        ("simulate u.toml --runs 3:5 --seed 8 -o out", "another campaign"),
+        ("sweep u.toml --vary duration=1:2:3 -o out", "another campaign"),
+        ("sweep u.toml --vary duration=1:2:3 -o out --force", "another process is writing it"),
+    ] {
+        dir.run(other).exits(2).says(&["error: ", why, "hint: "]);
+        assert_eq!(dir.names("out"), ["runs.csv.partial", "scenario.toml"], "{other}");
+        assert_eq!(dir.text("out/scenario.toml"), scenario);
+    }
+    // A part of the same campaign has its own table.
+    dir.run("simulate u.toml --runs 3:5 -o out").exits(0);
+    one.signal("INT").exits(130).says(&["interrupted at run ", "out/runs-interrupted.csv holds"]);
+    let rows = table(&dir, "out/runs-interrupted.csv");
+    assert!(rows.iter().enumerate().all(|(number, row)| row["run"] == number.to_string()));
+    assert_eq!(
+        dir.names("out"),
+        ["runs-3-5.csv", "runs-interrupted.csv", "scenario.toml", "statistics-3-5.csv"]
+    );
+    dir.run("plot out -o figures").exits(0);
+    // The whole campaign takes the place of what was interrupted.
+    dir.run("simulate u.toml --runs 5 -o out").exits(0);
+    assert!(dir.has("out/runs.csv") && !dir.has("out/runs-interrupted.csv"));
+}
+
+/// Finished rows are on disk within a second, also while other runs take long and where the campaign is killed.
+#[cfg(unix)]
+#[test]
+fn a_killed_campaign_keeps_its_rows() {
+    let dir = Dir::with(&["relay-fixed"]);
+    // The runs become longer, the last ones by far.
+    let run = dir.start("sweep relay-fixed.toml --vary duration=1e3:1e10:12 --jobs 2 -o out");
+    let few = dir.start("simulate relay-fixed.toml --set duration=2e6 --runs 100000 -o few --jobs 1");
+    dir.wait_for("out/runs.csv.partial", 100);
+    dir.wait_for("few/runs.csv.partial", 100);
+    run.signal("KILL");
+    few.signal("KILL");
+    let rows = |name: &str| dir.text(name).lines().count();
+    assert!(rows("out/runs.csv.partial") >= 2 && rows("few/runs.csv.partial") >= 2);
+    // And they do not hinder the next one.
+    dir.run("simulate relay-fixed.toml --set duration=2e6 --runs 2 -o few").exits(0);
+    assert_eq!(dir.names("few"), ["runs.csv", "scenario.toml", "statistics.csv"]);
 }

@@ -56,7 +56,7 @@ fn no_crossing_is_missed() {
         }
         let horizon = Span::from_seconds(5.0);
         let mut there = state.clone();
-        let trip = locate(&arc, &guards, horizon, &mut there);
+        let trip = locate(&arc, &guards, horizon, &mut there, &mut ()).expect("not stopped");
         let until = trip.map_or(5.0, |trip| trip.after.seconds());
         // Nothing was crossed before, seen at 20 000 instants, within the rounding of the angle.
         let mut probe = state.clone();
@@ -94,9 +94,11 @@ fn a_tangent_touch_is_found() {
     let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
     let mut there = state.clone();
     let horizon = Span::from_seconds(100.0);
-    let below = locate(&arc, &[Guard::at_least(peak - 1e-18)], horizon, &mut there).expect("a touch");
+    let below = locate(&arc, &[Guard::at_least(peak - 1e-18)], horizon, &mut there, &mut ());
+    let below = below.expect("not stopped").expect("a touch");
     assert!((below.after.seconds() - 10.0).abs() < 2e-6, "{}", below.after.seconds());
-    assert_eq!(locate(&arc, &[Guard::at_least(peak + 1e-18)], horizon, &mut there), None);
+    let above = locate(&arc, &[Guard::at_least(peak + 1e-18)], horizon, &mut there, &mut ());
+    assert_eq!(above.expect("not stopped"), None);
 }
 
 #[test]
@@ -107,7 +109,8 @@ fn a_guard_that_holds_trips_at_once() {
     arc.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
-    let trip = locate(&arc, &guards, Span::from_seconds(1.0), &mut there).expect("a trip");
+    let trip = locate(&arc, &guards, Span::from_seconds(1.0), &mut there, &mut ());
+    let trip = trip.expect("not stopped").expect("a trip");
     assert_eq!((trip.after, trip.guard), (Span::ZERO, 1));
 }
 
@@ -120,9 +123,11 @@ fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     arc.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];
-    let trip = locate(&arc, &guards, Span::from_seconds(1e6), &mut there).expect("a trip");
+    let trip = locate(&arc, &guards, Span::from_seconds(1e6), &mut there, &mut ());
+    let trip = trip.expect("not stopped").expect("a trip");
     assert!((trip.after.seconds() - 5e5).abs() < 1e-9);
-    assert_eq!(locate(&arc, &guards, Span::from_seconds(4.9e5), &mut there), None);
+    let none = locate(&arc, &guards, Span::from_seconds(4.9e5), &mut there, &mut ());
+    assert_eq!(none.expect("not stopped"), None);
 }
 
 const FLEXIBLE: &str = "

@@ -121,6 +121,15 @@ impl Dir {
         Self::started(command, arguments)
     }
 
+    /// Runs the command where no file can be larger than so many blocks of 512 or 1024 bytes: like a full disk.
+    #[cfg(unix)]
+    pub fn run_within(&self, blocks: u32, arguments: &str) -> Ran {
+        let mut command = Command::new("sh");
+        command.args(["-c", &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\""), FLEXSC]);
+        command.args(arguments.split_whitespace()).current_dir(self.0.path());
+        Self::started(command, arguments).wait()
+    }
+
     fn started(mut command: Command, arguments: &str) -> Started {
         let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
         Started { child: Some(child.expect("the command starts")), arguments: arguments.to_owned() }
@@ -177,6 +186,13 @@ impl Started {
     pub fn signal(self, signal: &str) -> Ran {
         self.sends(signal);
         self.wait()
+    }
+
+    /// Whether it has not ended.
+    #[cfg(unix)]
+    pub fn is_alive(&mut self) -> bool {
+        let child = self.child.as_mut().expect("not yet waited for");
+        child.try_wait().expect("a child").is_none()
     }
 
     /// Sends a signal, such as `INT`.

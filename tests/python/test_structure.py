@@ -1,5 +1,6 @@
 """Structures from elsewhere: state-space matrices, CSV files, Nastran."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -181,18 +182,41 @@ def test_a_scenario_is_written_with_its_modes_beside_it(tmp_path: Path) -> None:
         flexsc.write_scenario(read, tmp_path / "again.toml")
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a full disk, as Linux has one")
-@pytest.mark.parametrize("full", ["station.toml", "station-modes.csv"])
-def test_a_full_disk_keeps_what_was_there(tmp_path: Path, full: str) -> None:
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+def test_what_cannot_be_written_keeps_what_was_there(tmp_path: Path) -> None:
+    import resource
+
     scenario = flexsc.from_state_space(*second_order()).scenario(INERTIA, thrust=10.0, arm=3.0, duration=30.0)
     for name in ("station.toml", "station-modes.csv"):
         (tmp_path / name).write_text("kept")
-    (tmp_path / f"{full}.partial").symlink_to("/dev/full")
-    with pytest.raises(OSError, match="No space left") as raised:
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    # Python ignores the signal beside it, so that this is like a full disk.
+    resource.setrlimit(resource.RLIMIT_FSIZE, (50, before[1]))
+    try:
+        with pytest.raises(OSError, match="File too large") as raised:
+            flexsc.write_scenario(scenario, tmp_path / "station.toml")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert Path(raised.value.filename).parent == tmp_path
+    assert all(path.read_text() == "kept" for path in tmp_path.iterdir())
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize("name", ["station.toml", "station-modes.csv"])
+@pytest.mark.skipif(sys.platform == "win32", reason="links and pipes of POSIX")
+def test_links_and_pipes_in_the_way_are_not_followed(tmp_path: Path, name: str) -> None:
+    scenario = flexsc.from_state_space(*second_order()).scenario(INERTIA, thrust=10.0, arm=3.0, duration=30.0)
+    (tmp_path / "victim").write_text("mine")
+    in_the_way = tmp_path / f"{name}.partial"
+    in_the_way.symlink_to("victim")
+    with pytest.raises(OSError, match="in the way"):
         flexsc.write_scenario(scenario, tmp_path / "station.toml")
-    assert raised.value.filename == str(tmp_path / full)
-    assert (tmp_path / full).read_text() == "kept"
-    assert not (tmp_path / f"{full}.partial").is_symlink()
+    assert (tmp_path / "victim").read_text() == "mine"
+    assert in_the_way.is_symlink()
+    in_the_way.unlink()
+    os.mkfifo(in_the_way)
+    with pytest.raises(OSError, match="in the way"):
+        flexsc.write_scenario(scenario, tmp_path / "station.toml")
 
 
 def test_a_table_of_modes_is_read(tmp_path: Path) -> None:

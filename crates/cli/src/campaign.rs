@@ -1,9 +1,11 @@
 //! Running a campaign: what is told of each run, and its statistics.
 
-use std::fs;
+mod kept;
+
 use std::io::Write;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
@@ -11,7 +13,6 @@ use flexsc_core::campaign::{Campaign, Outcome, Run, RunError};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::RecordError;
 use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
-use flexsc_core::whole;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
@@ -19,12 +20,10 @@ use crate::failure::Failure;
 use crate::number::short;
 use crate::results::print_lines;
 use crate::table::Table;
-use crate::{progress, say, summary};
+use crate::{files, progress, say, stop, summary};
 
-/// The file that holds the scenario of a campaign, beside its tables.
-pub const SCENARIO: &str = "scenario.toml";
-/// How that file begins.
-const MARK: &str = "# What the runs beside it were drawn from, by flexsc";
+use kept::Kept;
+pub use kept::SCENARIO;
 
 /// What of a campaign is run, and what is made of it.
 pub struct Job<'a> {
@@ -36,6 +35,8 @@ pub struct Job<'a> {
     pub table: Option<&'a Path>,
     /// What the tables' names begin with, where several campaigns share a directory.
     pub prefix: Option<&'a str>,
+    /// Whether tables of another campaign are replaced.
+    pub force: bool,
     /// Threads.
     pub jobs: Option<u16>,
     /// Whether each run is printed as JSON.
@@ -44,32 +45,36 @@ pub struct Job<'a> {
 
 /// Runs a campaign; `work` simulates one run.
 pub fn run(
-    study: &Campaign,
+    study: &Arc<Campaign>,
     job: &Job<'_>,
-    work: impl Fn(&Run) -> Result<Metrics, RunError> + Sync + Send,
+    work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
 ) -> Result<(), Failure> {
     let began = WallInstant::now();
+    let _writing = stop::writing();
     let threads = usize::from(job.jobs.unwrap_or(0));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::Arguments(format!("--jobs: {error}")))?;
     let runs = job.range.end - job.range.start;
-    job.keep_scenario(study)?;
+    let mut table = None;
+    if let Some(dir) = job.table {
+        let kept = Kept::new(dir, job, study);
+        // Before what a killed campaign left is touched, and again by the only process that writes there.
+        kept.check()?;
+        table = Some(Table::create(&dir.join(job.file("runs")))?);
+        kept.keep()?;
+    }
     let bar = progress::bar(runs, "runs");
-    let mut table = job.table.map(|dir| Table::create(&dir.join(job.file("runs")))).transpose()?;
-    let mut telling = Telling { study, json: job.json, table: table.as_mut(), all: Vec::new(), failed: None };
-    let done = pool.install(|| {
-        study.each(job.range.clone(), work, |outcome| {
-            bar.inc(1);
-            telling.tell(outcome)
-        })
+    let next = job.range.start;
+    let mut telling =
+        Telling { study, json: job.json, table: table.as_mut(), all: Vec::new(), next, failed: None };
+    let done = study.each(job.range.clone(), threads, work, |outcome| {
+        bar.inc(u64::from(outcome.is_some()));
+        telling.tell(outcome)
     });
     bar.finish_and_clear();
     let Telling { all, failed, .. } = telling;
     if let Err(failure) = done {
-        if let Some(table) = table {
-            table.abandon(study, &failure);
-        }
-        return Err(failure);
+        let (Failure::Interrupted(at), Some(table)) = (&failure, table) else { return Err(failure) };
+        let Some(path) = table.interrupt(study) else { return Err(failure) };
+        return Err(Failure::Interrupted(format!("{at}; {} holds those before", path.display())));
     }
     let table = table.map(|table| table.finish(study)).transpose()?;
     let statistics = statistics(&all);
@@ -95,26 +100,6 @@ pub fn run(
 }
 
 impl Job<'_> {
-    /// Writes the scenario beside the tables, so that any run can be repeated from them alone.
-    fn keep_scenario(&self, study: &Campaign) -> Result<(), Failure> {
-        let Some(dir) = self.table else { return Ok(()) };
-        let path =
-            dir.join(self.prefix.map_or_else(|| SCENARIO.to_owned(), |name| format!("{name}-{SCENARIO}")));
-        let text = format!("{MARK} {}.\n{}", env!("CARGO_PKG_VERSION"), study.to_toml());
-        // Parts make up one campaign only if they are of one scenario; and a file that somebody wrote is not lost.
-        let stays =
-            |there: &[u8]| there != text.as_bytes() && (self.part || !there.starts_with(MARK.as_bytes()));
-        if fs::read(&path).is_ok_and(|there| stays(&there)) {
-            let path = path.display();
-            return Err(Failure::Arguments(format!(
-                "{path}: is there, and is not the scenario of these runs, with their seed and of this version\n\n\
-                 hint: give another directory"
-            )));
-        }
-        let own = format!("{}.partial", self.range.start);
-        whole::write_by(&path, &own, text.as_bytes()).map_err(Failure::write(&path))
-    }
-
     fn file(&self, kind: &str) -> String {
         let prefix = self.prefix.map_or(String::new(), |name| format!("{name}-"));
         let part =
@@ -129,19 +114,28 @@ struct Telling<'a> {
     json: bool,
     table: Option<&'a mut Table>,
     all: Vec<Metrics>,
+    /// The run that is told next.
+    next: u64,
     /// How many runs failed, and the first of them.
     failed: Option<(u64, u64, String)>,
 }
 
 impl Telling<'_> {
-    fn tell(&mut self, outcome: Outcome) -> Result<(), Failure> {
+    fn tell(&mut self, outcome: Option<Outcome>) -> Result<(), Failure> {
+        if let Some(table) = &mut self.table {
+            table.flush_in_time()?;
+        }
+        let interrupted = |at: u64| Failure::Interrupted(format!(" at run {at}"));
+        let Some(outcome) = outcome else {
+            return if stop::asked() { Err(interrupted(self.next)) } else { Ok(()) };
+        };
+        self.next = outcome.number + 1;
         if let Err(RunError::Simulation(SimulationError::Record(error))) = outcome.metrics {
             return Err(match error {
-                RecordError::Io(source) => Failure::Write {
-                    path: PathBuf::from(format!("the log of run {}", outcome.number)),
-                    source,
-                },
-                RecordError::Interrupted => Failure::Interrupted(format!(" at run {}", outcome.number)),
+                RecordError::Io(source) => {
+                    Failure::write(Path::new(&format!("the log of run {}", outcome.number)))(source)
+                }
+                RecordError::Interrupted => interrupted(outcome.number),
             });
         }
         if let Some(table) = &mut self.table {
@@ -186,7 +180,7 @@ pub fn object(
 }
 
 fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failure> {
-    let write = || -> Result<(), csv::Error> {
+    let table = || -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut header: Vec<String> = ["metric", "unit", "runs", "mean", "sd"].map(str::to_owned).into();
         header.extend(QUANTILES.map(|q| format!("q{:02.0}", 100.0 * q)));
@@ -197,10 +191,9 @@ fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failur
             cells.extend(numbers.map(|n| if n.is_nan() { String::new() } else { format!("{n:e}") }));
             writer.write_record(cells)?;
         }
-        let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
-        Ok(whole::write(path, &bytes)?)
+        Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
     };
-    write().map_err(|error| Failure::write(path)(error.into()))
+    files::write(path, &table().map_err(|error| Failure::write(path)(error.into()))?)
 }
 
 fn tell_statistics(statistics: &[Statistics], runs: usize) {

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use flexsc_core::record::{Column, Columns, Log};
-use flexsc_core::whole;
 use serde_json::{Map, Value as Json, json};
 
 use crate::failure::Failure;
-use crate::print;
+use crate::{files, print};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -46,7 +45,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     match &args.out {
-        Some(path) => whole::write(path, &text).map_err(Failure::write(path)),
+        Some(path) => files::write(path, &text),
         None => print(&text),
     }
 }

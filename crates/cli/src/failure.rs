@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anstyle::{AnsiColor, Style};
 use flexsc_core::record::LogError;
+use flexsc_core::whole::is_busy;
 use flexsc_core::{ScenarioError, SimulationError};
 use thiserror::Error;
 
@@ -46,15 +47,44 @@ pub enum Failure {
     /// Stdout is closed.
     #[error("cannot write to stdout: {0}")]
     Stdout(io::Error),
+    /// A file is being written by another process.
+    #[error(
+        "cannot write {}: another process is writing it\n\nhint: wait until that has ended, or give another place with -o",
+        path.display()
+    )]
+    Busy { path: PathBuf },
+    /// There is no thread to work on.
+    #[error("cannot start a thread: {0}")]
+    Thread(io::Error),
     /// The user asked to stop.
     #[error("interrupted{0}")]
     Interrupted(String),
 }
 
+/// Why a file is not replaced.
+#[derive(Debug, Error)]
+#[error("{0}")]
+pub struct Refused(pub String);
+
+impl From<Refused> for io::Error {
+    fn from(refused: Refused) -> Self {
+        Self::new(io::ErrorKind::AlreadyExists, refused)
+    }
+}
+
 impl Failure {
     /// A failure to write a file.
     pub fn write(path: &Path) -> impl FnOnce(io::Error) -> Self + '_ {
-        move |source| Self::Write { path: path.to_owned(), source }
+        move |source| {
+            let path = path.to_owned();
+            if is_busy(&source) {
+                return Self::Busy { path };
+            }
+            match source.downcast() {
+                Ok(Refused(why)) => Self::Arguments(why),
+                Err(source) => Self::Write { path, source },
+            }
+        }
     }
 
     /// Says what went wrong, and returns the exit code.
@@ -68,8 +98,8 @@ impl Failure {
         // Colours go to terminals that have them only, and never where NO_COLOR is set.
         let _ = anstream::stderr().lock().write_all(coloured(&self.to_string()).as_bytes());
         match self {
-            Self::Log(LogError::Unwritable { .. }) => 1,
-            Self::Scenario(_) | Self::Arguments(_) | Self::Log(_) => 2,
+            Self::Log(LogError::Unwritable { source, .. }) if !is_busy(source) => 1,
+            Self::Scenario(_) | Self::Arguments(_) | Self::Log(_) | Self::Busy { .. } => 2,
             Self::Interrupted(_) => 130,
             _ => 1,
         }

@@ -8,7 +8,7 @@ use flexsc_core::record::{Detail, Log};
 
 use crate::failure::Failure;
 use crate::logged::logged;
-use crate::{print, scenario};
+use crate::{files, print, scenario};
 
 /// A log of more samples takes minutes and gigabytes: its viewers choose their axes.
 const MOST_SAMPLES: f64 = 1e6;
@@ -37,7 +37,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let layout = layout.to_json();
     match &args.out {
-        Some(path) => flexsc_core::whole::write(path, layout.as_bytes()).map_err(Failure::write(path)),
+        Some(path) => files::write(path, layout.as_bytes()),
         None => print(layout.as_bytes()),
     }
 }

@@ -7,6 +7,7 @@ mod damping;
 mod export;
 mod failure;
 mod figure;
+mod files;
 mod grid;
 mod identify;
 mod layout;
@@ -104,7 +105,14 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
-    let done = match cli.verb {
+    stop::watched(move || match execute(cli.verb) {
+        Ok(()) => 0,
+        Err(failure) => failure.tell(),
+    })
+}
+
+fn execute(verb: Verb) -> Result<(), Failure> {
+    match verb {
         Verb::Simulate(args) => simulate::run(&args),
         Verb::Sweep(args) => sweep::run(&args),
         Verb::Modes(args) => modes::run(&args),
@@ -127,10 +135,6 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             clap_complete::generate(shell, &mut Cli::command(), "flexsc", &mut script);
             print(&script)
         }
-    };
-    match done {
-        Ok(()) => 0,
-        Err(failure) => failure.tell(),
     }
 }
 

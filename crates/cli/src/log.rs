@@ -8,7 +8,7 @@ use flexsc_core::record::{Log, recover};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::{print, say};
+use crate::{print, say, stop};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -45,7 +45,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             if whole == *torn {
                 return Err(Failure::Arguments(format!("{name}: a log cannot be recovered into itself")));
             }
+            let writing = stop::writing();
             let saved = recover(torn, &whole)?;
+            drop(writing);
             if *json {
                 let object = json!({"file": whole.display().to_string(), "messages": saved});
                 return print(format!("{object}\n").as_bytes());

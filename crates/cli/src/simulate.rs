@@ -4,20 +4,21 @@ use std::collections::BTreeSet;
 use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use clap::ValueEnum;
 use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::metrics::Metrics;
-use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd};
+use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd, There, there};
 
 use crate::campaign;
-use crate::failure::Failure;
+use crate::failure::{Failure, Refused};
 use crate::progress::Progress;
 use crate::results::print_lines;
 use crate::stop::{self, Stop};
-use crate::{say, scenario, summary};
+use crate::{files, say, scenario, summary};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -42,6 +43,9 @@ pub struct Args {
     /// What logs hold [default: events; none in a campaign]
     #[arg(long, value_name = "DETAIL")]
     log: Option<LogDetail>,
+    /// Replace logs of other settings and tables of other campaigns
+    #[arg(long)]
+    force: bool,
     /// Print one JSON object for each run on stdout
     #[arg(long)]
     json: bool,
@@ -115,13 +119,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     if let Some(out) = &args.out {
-        std::fs::create_dir_all(out).map_err(Failure::write(out))?;
+        files::make_directory(out)?;
     }
-    stop::listen();
     let prefixed = scenarios.len() > 1;
     let mut failures = Vec::new();
     for (scenario, origin) in scenarios {
-        let study = Campaign::new(scenario, &origin, None)?;
+        let study = Arc::new(Campaign::new(scenario, &origin, None)?);
         let done = match &args.runs {
             None => single(&study, args),
             Some(runs) => several(&study, args, runs, prefixed),
@@ -140,23 +143,28 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Runs a campaign over a scenario; its tables are named after it where several share a directory.
-fn several(study: &Campaign, args: &Args, runs: &Runs, prefixed: bool) -> Result<(), Failure> {
+fn several(study: &Arc<Campaign>, args: &Args, runs: &Runs, prefixed: bool) -> Result<(), Failure> {
     let job = campaign::Job {
         range: runs.range.clone(),
         part: runs.part,
         table: args.out.as_deref(),
         prefix: prefixed.then_some(study.scenario().name.as_str()),
+        force: args.force,
         jobs: args.jobs,
         json: args.json,
     };
     let detail = args.log.unwrap_or(LogDetail::None).detail();
-    let directory = args.out.as_deref().unwrap_or(Path::new(""));
-    let log = |number| directory.join(format!("{}-{number}.mcap", study.scenario().name));
-    campaign::run(study, &job, |run| match detail {
-        // No log for the runs that had not begun.
-        _ if stop::asked() => Err(SimulationError::from(RecordError::Interrupted).into()),
-        None => Ok(Campaign::simulate(run, Stop)?),
-        Some(detail) => Ok(logged(run, &log(run.number), detail, Stop)?.0),
+    let directory = args.out.clone().unwrap_or_default();
+    let (name, force) = (study.scenario().name.clone(), args.force);
+    let log = move |number| directory.join(format!("{name}-{number}.mcap"));
+    campaign::run(study, &job, {
+        let log = log.clone();
+        move |run| match detail {
+            // No log for the runs that had not begun.
+            _ if stop::asked() => Err(SimulationError::from(RecordError::Interrupted).into()),
+            None => Ok(Campaign::simulate(run, Stop)?),
+            Some(detail) => Ok(logged(run, &log(run.number), (detail, force), Stop)?.0),
+        }
     })?;
     if detail.is_some() && !args.json {
         let (first, last) = (log(runs.range.start), log(runs.range.end - 1));
@@ -177,6 +185,8 @@ pub fn itself(study: &Campaign) -> Run {
 /// Runs a scenario once, with its log.
 fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
     let run = itself(study);
+    let detail = args.log.unwrap_or(LogDetail::Events).detail();
+    let _writing = detail.map(|_| stop::writing());
     let name = run.scenario.name.clone();
     let path = args.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.mcap"));
     #[cfg(feature = "live")]
@@ -187,16 +197,18 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
     // Who steers a live run types on the line of the bar.
     let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
     let record = (Stop, (&mut progress, &mut live));
-    let result = match args.log.unwrap_or(LogDetail::Events).detail() {
+    let result = match detail {
         None => Campaign::simulate(&run, record).map(|metrics| (metrics, None)),
-        Some(detail) => logged(&run, &path, detail, record).map(|(metrics, bytes)| (metrics, Some(bytes))),
+        Some(detail) => {
+            logged(&run, &path, (detail, args.force), record).map(|(metrics, bytes)| (metrics, Some(bytes)))
+        }
     };
     if let Some(progress) = progress {
         progress.finish();
     }
     let took = began.elapsed().as_secs_f64();
     let (metrics, bytes) = result.map_err(|source| match source {
-        SimulationError::Record(RecordError::Io(source)) => Failure::Write { path: path.clone(), source },
+        SimulationError::Record(RecordError::Io(source)) => Failure::write(&path)(source),
         SimulationError::Record(RecordError::Interrupted) => {
             Failure::Interrupted(interrupted(args.log, &path))
         }
@@ -230,19 +242,26 @@ fn interrupted(log: Option<LogDetail>, path: &Path) -> String {
 fn logged(
     run: &Run,
     path: &Path,
-    detail: Detail,
+    (detail, force): (Detail, bool),
     record: impl flexsc_core::record::Record,
 ) -> Result<(Metrics, u64), SimulationError> {
-    let mut log = LogFile::create(path, &Campaign::provenance(run), detail)?;
+    let provenance = Campaign::provenance(run);
+    let mut log = LogFile::create(path, &provenance, detail)?;
+    // Nobody else writes it now.
+    if let (There::Other(what), false) = (there(path, &provenance), force) {
+        let text = format!(
+            "{}: {what}\n\nhint: give another directory with -o, or --force to replace it",
+            path.display()
+        );
+        return Err(RecordError::Io(Refused(text).into()).into());
+    }
     match Campaign::simulate(run, (&mut log, record)) {
         Ok(metrics) => {
             let bytes = log.finish(&metrics.to_row(), RunEnd::Complete)?;
             Ok((metrics, bytes))
         }
-        Err(SimulationError::Record(RecordError::Io(error))) => {
-            log.discard();
-            Err(RecordError::Io(error).into())
-        }
+        // It is removed.
+        Err(SimulationError::Record(RecordError::Io(error))) => Err(RecordError::Io(error).into()),
         Err(error) => {
             let interrupted = matches!(error, SimulationError::Record(RecordError::Interrupted));
             let end = if interrupted { RunEnd::Interrupted } else { RunEnd::Failed };

@@ -1,19 +1,93 @@
 //! Stopping on Ctrl-C, SIGTERM or SIGHUP.
 
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, LazyLock, Once};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, Once, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 
+use crate::failure::Failure;
+
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// From now on, the first Ctrl-C, SIGTERM or SIGHUP asks to stop, so that files are finished; a second one ends the program.
+/// How often the flag is looked at.
+const LOOK: Duration = Duration::from_millis(20);
+/// How long work may take to end by itself once it is asked to stop.
+const PATIENCE: Duration = Duration::from_millis(100);
+/// The same while files are written.
+const PATIENCE_OF_FILES: Duration = Duration::from_secs(2);
+/// What the main thread of a program has on most systems (bytes).
+const STACK: usize = 8 << 20;
+
+/// Who writes files: how many do, and whether nobody may begin to because the program ends.
+static FILES: Mutex<(u32, bool)> = Mutex::new((0, false));
+
+/// Files are being written as long as this lives: the program does not end then, but for work that cannot be stopped.
+pub struct Writing(());
+
+/// Begins to write files.
+pub fn writing() -> Writing {
+    loop {
+        let mut files = files();
+        if !files.1 {
+            files.0 += 1;
+            return Writing(());
+        }
+        drop(files);
+        // The program ends.
+        thread::park();
+    }
+}
+
+impl Drop for Writing {
+    fn drop(&mut self) {
+        files().0 -= 1;
+    }
+}
+
+fn files() -> MutexGuard<'static, (u32, bool)> {
+    FILES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Does a command's work on a thread of its own and returns its exit code.
 ///
-/// A signal that is ignored, as by `nohup` or in the background of a script, stays so.
-pub fn listen() {
+/// From now on, the first Ctrl-C, SIGTERM or SIGHUP asks to stop: simulations end with their files finished, and work that
+/// does not look at the flag is left behind. A second one ends the program. A signal that is ignored, as by `nohup` or in
+/// the background of a script, stays so.
+pub fn watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
     static ONCE: Once = Once::new();
     ONCE.call_once(handle);
+    let (done, wait) = channel();
+    let builder = thread::Builder::new().stack_size(STACK);
+    let working = match builder.spawn(move || done.send(work())) {
+        Ok(working) => working,
+        Err(source) => return Failure::Thread(source).tell(),
+    };
+    let mut noticed = None;
+    loop {
+        match wait.recv_timeout(LOOK) {
+            Ok(code) => return code,
+            // It panicked, and said so.
+            Err(RecvTimeoutError::Disconnected) => match working.join() {
+                Err(panic) => resume_unwind(panic),
+                Ok(_) => return 1,
+            },
+            Err(RecvTimeoutError::Timeout) if asked() => {
+                let waited = noticed.get_or_insert_with(WallInstant::now).elapsed();
+                let mut files = files();
+                if waited >= PATIENCE && (files.0 == 0 || waited >= PATIENCE_OF_FILES) {
+                    files.1 = true;
+                    drop(files);
+                    return Failure::Interrupted(String::new()).tell();
+                }
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+    }
 }
 
 #[cfg(unix)]
@@ -65,6 +139,10 @@ pub struct Stop;
 
 impl Record for Stop {
     fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
+        Ok(())
+    }
+
+    fn poll(&mut self) -> Result<(), RecordError> {
         if asked() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 }

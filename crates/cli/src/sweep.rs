@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, Grid};
 
 use crate::failure::Failure;
-use crate::stop::{self, Stop};
-use crate::{campaign, scenario};
+use crate::stop::Stop;
+use crate::{campaign, files, scenario};
 
 /// Values, and what their runs come to, are held in memory.
 const MOST_VALUES: u32 = 10_000_000;
@@ -33,6 +34,9 @@ pub struct Args {
     /// Threads [default: one for each core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
+    /// Replace the tables of another campaign in DIR
+    #[arg(long, requires = "out")]
+    force: bool,
     /// Print one JSON object for each run on stdout
     #[arg(long)]
     json: bool,
@@ -69,16 +73,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
     let (study, range) = args.study(scenario, &args.scenario.display().to_string())?;
     if let Some(out) = &args.out {
-        std::fs::create_dir_all(out).map_err(Failure::write(out))?;
+        files::make_directory(out)?;
     }
-    stop::listen();
     let job = campaign::Job {
         range,
         part: false,
         table: args.out.as_deref(),
         prefix: None,
+        force: args.force,
         jobs: args.jobs,
         json: args.json,
     };
-    campaign::run(&study, &job, |run| Ok(Campaign::simulate(run, Stop)?))
+    campaign::run(&Arc::new(study), &job, |run| Ok(Campaign::simulate(run, Stop)?))
 }

@@ -1,31 +1,41 @@
 //! The table of a campaign, `runs.csv`: a row a run.
 
-use std::fs::{self, File};
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use flexsc_core::campaign::{Campaign, Outcome};
 use flexsc_core::metrics::{Metrics, Value};
-use flexsc_core::whole::discard;
+use flexsc_core::whole::Partial;
 
 use crate::failure::Failure;
 
-/// The table of a campaign, under a `.partial` name until it is finished.
+/// How long finished rows stay in memory: what a killed campaign loses.
+const FLUSH: Duration = Duration::from_millis(500);
+
+/// The table of a campaign, under a `.partial` name until it is finished. Dropped before, it is removed.
 pub struct Table {
     path: PathBuf,
-    partial: PathBuf,
-    writer: csv::Writer<BufWriter<File>>,
+    writer: csv::Writer<Partial>,
     /// Names of the metrics, known with the first run that has any; the rows before it wait.
     metrics: Option<Vec<&'static str>>,
     waiting: Vec<Vec<String>>,
+    flushed: Instant,
 }
 
 impl Table {
     pub fn create(path: &Path) -> Result<Self, Failure> {
-        let partial = PathBuf::from(format!("{}.partial", path.display()));
-        let file = File::create(&partial).map_err(Failure::write(path))?;
-        let writer = csv::Writer::from_writer(BufWriter::new(file));
-        Ok(Self { path: path.to_owned(), partial, writer, metrics: None, waiting: Vec::new() })
+        let writer = csv::Writer::from_writer(Partial::create(path).map_err(Failure::write(path))?);
+        let (path, flushed) = (path.to_owned(), Instant::now());
+        Ok(Self { path, writer, metrics: None, waiting: Vec::new(), flushed })
+    }
+
+    /// Hands the rows so far to the system, unless that was done just now.
+    pub fn flush_in_time(&mut self) -> Result<(), Failure> {
+        if self.flushed.elapsed() >= FLUSH {
+            self.flushed = Instant::now();
+            self.writer.flush().map_err(Failure::write(&self.path))?;
+        }
+        Ok(())
     }
 
     pub fn row(&mut self, study: &Campaign, outcome: &Outcome) -> Result<(), Failure> {
@@ -76,25 +86,38 @@ impl Table {
         written.map_err(Failure::write(&self.path))
     }
 
-    pub fn finish(mut self, study: &Campaign) -> Result<PathBuf, Failure> {
-        // All runs failed: there are rows without metrics only.
-        let whole = if self.metrics.is_none() { self.header(study, &Metrics::default()) } else { Ok(()) };
-        let Self { path, partial, mut writer, .. } = self;
-        whole
-            .and_then(|()| writer.flush().map_err(Failure::write(&path)))
-            .and_then(|()| fs::rename(&partial, &path).map_err(Failure::write(&path)))
-            .inspect_err(|_| discard(&partial))?;
+    /// Gives the table its name, which is returned.
+    pub fn finish(self, study: &Campaign) -> Result<PathBuf, Failure> {
+        let interrupted = interrupted(&self.path);
+        let path = self.path.clone();
+        self.finish_as(study, &path)?;
+        // The rows of a campaign that was stopped before are among those of the whole one.
+        let _ = std::fs::remove_file(interrupted);
         Ok(path)
     }
 
-    /// A stopped campaign keeps the rows that it has; one that cannot be written keeps nothing.
-    pub fn abandon(self, study: &Campaign, why: &Failure) {
-        if matches!(why, Failure::Interrupted(_)) {
-            let _ = self.finish(study);
-        } else {
-            discard(&self.partial);
-        }
+    /// Keeps the rows of a campaign that was stopped, under a name that says so; nothing if there are none.
+    pub fn interrupt(self, study: &Campaign) -> Option<PathBuf> {
+        let path = interrupted(&self.path);
+        let any = self.metrics.is_some() || !self.waiting.is_empty();
+        (any && self.finish_as(study, &path).is_ok()).then_some(path)
     }
+
+    fn finish_as(mut self, study: &Campaign, path: &Path) -> Result<(), Failure> {
+        // All runs failed: there are rows without metrics only.
+        if self.metrics.is_none() {
+            self.header(study, &Metrics::default())?;
+        }
+        let partial = self.writer.into_inner().map_err(csv::IntoInnerError::into_error);
+        let finished = partial.and_then(|partial| partial.finish_as(path));
+        finished.map_err(Failure::write(path)).map(|_| ())
+    }
+}
+
+/// The name of the table of a campaign that was stopped: `runs-interrupted.csv`.
+pub fn interrupted(path: &Path) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{stem}-interrupted.csv"))
 }
 
 /// A metric as a cell: a list as JSON, and what is not a number as nothing.

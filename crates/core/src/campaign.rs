@@ -1,9 +1,9 @@
-//! Campaigns: many runs of one scenario, in parallel, told in order.
+//! Campaigns: many runs of one scenario.
+
+mod crew;
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
-use rayon::prelude::*;
 use thiserror::Error;
 use toml::{Table, Value};
 
@@ -14,9 +14,6 @@ use crate::random::Seed;
 use crate::record::{OutputName, Provenance, Record};
 use crate::scenario::Scenario;
 use crate::sim::{Simulation, SimulationError};
-
-/// Runs that are handed to the threads at a time: what a stopped campaign loses at most.
-const BLOCK: u64 = 256;
 
 /// A run that failed.
 #[derive(Debug, Error)]
@@ -158,34 +155,17 @@ impl Campaign {
         Ok(both.0.finish(&run.scenario))
     }
 
-    /// Makes runs on the threads of the current rayon pool and tells of each, in order of their numbers.
-    ///
-    /// `work` simulates one run, on any thread; `tell` may stop the campaign with an error.
-    pub fn each<E>(
-        &self,
-        runs: Range<u64>,
-        work: impl Fn(&Run) -> Result<Metrics, RunError> + Sync,
-        mut tell: impl FnMut(Outcome) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let mut from = runs.start;
-        while from < runs.end {
-            let block = from..runs.end.min(from + BLOCK);
-            from = block.end;
-            let outcomes: Vec<Outcome> = block
-                .into_par_iter()
-                .map(|number| match self.run(number) {
-                    Ok(run) => Outcome { number, metrics: work(&run), drawn: run.drawn },
-                    Err(error) => {
-                        let drawn = self.draw(number);
-                        Outcome { number, drawn, metrics: Err(error.into()) }
-                    }
-                })
-                .collect();
-            for outcome in outcomes {
-                tell(outcome)?;
-            }
+    /// What a run comes to; `work` simulates it.
+    pub(crate) fn outcome(&self, number: u64, work: impl Fn(&Run) -> Result<Metrics, RunError>) -> Outcome {
+        match self.run(number) {
+            Ok(run) => Outcome { number, metrics: work(&run), drawn: run.drawn },
+            Err(error) => Outcome { number, drawn: self.draw(number), metrics: Err(error.into()) },
         }
-        Ok(())
+    }
+
+    /// The keys that take given values.
+    pub fn grids(&self) -> &[Grid] {
+        &self.grids
     }
 
     /// What the log of a run says about where it comes from.

@@ -142,15 +142,22 @@ impl Trajectory {
         self.next = self.node.clone();
     }
 
-    /// y at `h` seconds after departure, not before one asked for earlier. The field's time counts from the departure.
-    pub fn at(&mut self, field: &impl Field, h: f64) -> &[f64] {
-        let Self { integrator, node, next, step, here } = self;
-        while next.0 < h {
+    /// Takes one step towards `h` seconds after departure, if it is still ahead; whether it is not.
+    pub fn approach(&mut self, field: &impl Field, h: f64) -> bool {
+        let Self { integrator, node, next, step, .. } = self;
+        if next.0 < h {
             node.clone_from(next);
             let (took, then) = integrator.step(field, next.0, &mut next.1, *step);
             next.0 += took;
             *step = then;
         }
+        next.0 >= h || !next.0.is_finite()
+    }
+
+    /// y at `h` seconds after departure, not before one asked for earlier. The field's time counts from the departure.
+    pub fn at(&mut self, field: &impl Field, h: f64) -> &[f64] {
+        while !self.approach(field, h) {}
+        let Self { integrator, node, here, .. } = self;
         // A look between two steps changes neither.
         here.clone_from(&node.1);
         let mut t = node.0;

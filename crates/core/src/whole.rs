@@ -1,29 +1,224 @@
-//! Files that are whole or not there.
+//! Files that are whole or not there: each is written beside its place, under a name that one process holds.
 
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::thread;
+use std::time::{Duration, Instant};
 
-/// Writes a file: first beside its place, so that what was there stays until the new one is whole. A device is written as it
-/// is, and a file that is read-only is refused.
-pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    write_by(path, "partial", bytes)
+/// Others may find a name in the short time in which it is made and not yet held: then it is made again.
+const ATTEMPTS: u32 = 100;
+/// So long is waited for another process that writes a file in one go.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// A file on its way, whose name is that of its place with `.partial` more.
+///
+/// The name is made anew, so that no link, pipe or file of somebody else's is written to, and it is locked as long as the
+/// process lives. What a killed process left is not locked: the next one removes it. Dropped before it is
+/// [`finish`](Self::finish)ed, the file is removed.
+#[derive(Debug)]
+pub struct Partial {
+    file: File,
+    partial: PathBuf,
+    place: PathBuf,
+    finished: bool,
 }
 
-/// The same by way of a file with this extension more, for programs that write one file side by side.
-pub fn write_by(path: &Path, extension: &str, bytes: &[u8]) -> io::Result<()> {
+impl Partial {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::ResourceBusy`] if another process writes it now; a place that is no file, or a read-only one; what
+    /// the file system says.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let place = place(path)?;
+        let mut partial = place.as_os_str().to_owned();
+        partial.push(".partial");
+        let partial = PathBuf::from(partial);
+        for _ in 0..ATTEMPTS {
+            if let Some(file) = claim(&partial)? {
+                return Ok(Self { file, partial, place, finished: false });
+            }
+        }
+        Err(busy())
+    }
+
+    /// The same, but if another process writes the file it has a moment to finish.
+    pub fn create_in_time(path: &Path) -> io::Result<Self> {
+        let began = Instant::now();
+        loop {
+            match Self::create(path) {
+                Err(error) if is_busy(&error) && began.elapsed() < PATIENCE => {
+                    thread::sleep(Duration::from_millis(5));
+                }
+                done => return done,
+            }
+        }
+    }
+
+    /// Puts the file into its place, and tells its size in bytes.
+    pub fn finish(mut self) -> io::Result<u64> {
+        let bytes = self.file.metadata()?.len();
+        fs::rename(&self.partial, &self.place)?;
+        self.finished = true;
+        Ok(bytes)
+    }
+
+    /// Puts the file into another place of the same directory.
+    pub fn finish_as(mut self, path: &Path) -> io::Result<u64> {
+        self.place = place(path)?;
+        self.finish()
+    }
+}
+
+impl Write for Partial {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for Partial {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
+impl Drop for Partial {
+    fn drop(&mut self) {
+        if !self.finished && is_at(&self.file, &self.partial) {
+            // That it cannot be removed is no news beside why it is of no use.
+            let _ = fs::remove_file(&self.partial);
+        }
+    }
+}
+
+/// Writes a file: what was there stays until the new one is whole. A device is written as it is, and a file that is
+/// read-only is refused.
+pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    match begin(path, bytes)? {
+        Some(partial) => partial.finish().map(|_| ()),
+        None => fs::write(path, bytes),
+    }
+}
+
+/// Writes files that belong together: none takes its place before all are whole, and no other process writes one of them
+/// in between. An error comes with its file.
+pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), (PathBuf, io::Error)> {
+    let of = |path: &PathBuf| {
+        let path = path.clone();
+        move |error| (path, error)
+    };
+    let begun = files.iter().map(|(path, bytes)| begin(path, bytes).map_err(of(path)));
+    for (partial, (path, bytes)) in begun.collect::<Result<Vec<_>, _>>()?.into_iter().zip(files) {
+        match partial {
+            Some(partial) => partial.finish().map(|_| ()).map_err(of(path))?,
+            None => fs::write(path, bytes).map_err(of(path))?,
+        }
+    }
+    Ok(())
+}
+
+/// All of a file but its place; nothing of a device.
+fn begin(path: &Path, bytes: &[u8]) -> io::Result<Option<Partial>> {
+    if fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+        return Ok(None);
+    }
+    let mut partial = Partial::create_in_time(path)?;
+    partial.write_all(bytes)?;
+    Ok(Some(partial))
+}
+
+/// Whether a file could not be written because another process writes it.
+pub fn is_busy(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::ResourceBusy
+}
+
+/// Where a file goes: a link stays one.
+fn place(path: &Path) -> io::Result<PathBuf> {
     match fs::metadata(path) {
-        Ok(there) if !there.is_file() => return fs::write(path, bytes),
+        Ok(there) if there.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+        Ok(there) if !there.is_file() => return Err(in_the_way(path)),
         Ok(there) if there.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
         _ => {}
     }
-    // A link stays one.
-    let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let partial = PathBuf::from(format!("{}.{extension}", place.display()));
-    let written = fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, &place));
-    written.inspect_err(|_| discard(&partial))
+    Ok(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()))
 }
 
-/// Removes a file that is of no use. That it cannot be removed is no news beside why it is of no use.
-pub fn discard(path: &Path) {
-    let _ = fs::remove_file(path);
+/// Makes a name and holds it, if nobody has it; what a dead process left there is removed for the next attempt.
+fn claim(partial: &Path) -> io::Result<Option<File>> {
+    match OpenOptions::new().write(true).create_new(true).open(partial) {
+        Ok(file) => {
+            lock(&file)?;
+            // Somebody who saw it before it was locked took it for a leftover.
+            Ok(is_at(&file, partial).then_some(file))
+        }
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+            remove_leftover(partial)?;
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn remove_leftover(partial: &Path) -> io::Result<()> {
+    let gone = |error: &io::Error| error.kind() == io::ErrorKind::NotFound;
+    match fs::symlink_metadata(partial) {
+        Ok(there) if there.is_file() => {}
+        Ok(_) => return Err(in_the_way(partial)),
+        Err(error) if gone(&error) => return Ok(()),
+        Err(error) => return Err(error),
+    }
+    let file = match open_itself(partial) {
+        Ok(file) => file,
+        Err(error) if gone(&error) => return Ok(()),
+        Err(error) => return Err(error),
+    };
+    lock(&file)?;
+    if is_at(&file, partial) {
+        fs::remove_file(partial)?;
+    }
+    Ok(())
+}
+
+/// Opens a file that is there, and never what a link leads to or what would have to be waited for.
+fn open_itself(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.write(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NOFOLLOW | libc::O_NONBLOCK);
+    options.open(path)
+}
+
+fn lock(file: &File) -> io::Result<()> {
+    file.try_lock().map_err(|error| match error {
+        TryLockError::WouldBlock => busy(),
+        TryLockError::Error(error) => error,
+    })
+}
+
+/// Whether a path names this very file.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |of: fs::Metadata| (of.dev(), of.ino());
+    let there = fs::symlink_metadata(path).map(identity);
+    there.is_ok_and(|there| file.metadata().is_ok_and(|file| identity(file) == there))
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+fn busy() -> io::Error {
+    io::Error::new(io::ErrorKind::ResourceBusy, "another process is writing it")
+}
+
+fn in_the_way(path: &Path) -> io::Error {
+    let why = format!("{} is in the way: it is no file that can be replaced", path.display());
+    io::Error::new(io::ErrorKind::AlreadyExists, why)
 }

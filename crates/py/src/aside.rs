@@ -1,59 +1,75 @@
 //! Work beside Python: without the interpreter's lock, and stopped by its signals.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-use pyo3::exceptions::PyRuntimeError;
-
 /// How often Python is asked for signals.
-const PATIENCE: Duration = Duration::from_millis(50);
+const LOOK: Duration = Duration::from_millis(20);
+/// How long work may take to end once it is asked to stop: what has not ended then is left behind.
+const PATIENCE: Duration = Duration::from_millis(150);
+/// What a main thread has on most systems (bytes).
+const STACK: usize = 8 << 20;
 
 /// A record that ends its run when Python asks.
-#[derive(Copy, Clone)]
-pub struct Stop<'a>(&'a AtomicBool);
+#[derive(Clone, Default)]
+pub struct Stop(Arc<AtomicBool>);
 
-impl Stop<'_> {
-    pub fn asked(self) -> bool {
+impl Stop {
+    pub fn asked(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-impl Record for Stop<'_> {
+impl Record for Stop {
     fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
+        Ok(())
+    }
+
+    fn poll(&mut self) -> Result<(), RecordError> {
         if self.asked() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 }
 
 /// Does work on a thread of its own. Python answers signals on the calling thread alone, so this one waits, and
 /// raises what they raise, such as `KeyboardInterrupt`.
-pub fn aside<T: Send>(py: Python<'_>, work: impl FnOnce(Stop<'_>) -> T + Send) -> PyResult<T> {
-    let asked = AtomicBool::new(false);
-    let stop = Stop(&asked);
+pub fn aside<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(Stop) -> T + Send + 'static,
+) -> PyResult<T> {
+    let stop = Stop::default();
+    let for_work = stop.clone();
     py.detach(|| {
-        thread::scope(|scope| {
-            let (done, wait) = channel::<()>();
-            let working = thread::Builder::new().spawn_scoped(scope, move || {
-                // Dropped at the end, also by a panic.
-                let _done = done;
-                work(stop)
-            })?;
-            let mut raised = None;
-            while wait.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                if raised.is_none() {
-                    raised = Python::attach(|py| py.check_signals().err());
-                    asked.store(raised.is_some(), Ordering::Relaxed);
+        let (done, wait) = channel();
+        thread::Builder::new().stack_size(STACK).spawn(move || {
+            // Nobody waits any more for what was left behind.
+            let _ = done.send(work(for_work));
+        })?;
+        let mut raised: Option<(PyErr, WallInstant)> = None;
+        loop {
+            match (wait.recv_timeout(LOOK), &raised) {
+                (Ok(worked), _) => return raised.map_or(Ok(worked), |(error, _)| Err(error)),
+                (Err(RecvTimeoutError::Disconnected), _) => {
+                    return Err(PyRuntimeError::new_err("the engine panicked: please report it"));
+                }
+                (Err(RecvTimeoutError::Timeout), None) => {
+                    let error = Python::attach(|py| py.check_signals().err());
+                    raised = error.map(|error| (error, WallInstant::now()));
+                    stop.0.store(raised.is_some(), Ordering::Relaxed);
+                }
+                (Err(RecvTimeoutError::Timeout), Some((error, since))) => {
+                    if since.elapsed() >= PATIENCE {
+                        return Err(Python::attach(|py| error.clone_ref(py)));
+                    }
                 }
             }
-            let worked = working
-                .join()
-                .map_err(|_| PyRuntimeError::new_err("the engine panicked: please report it"))?;
-            raised.map_or(Ok(worked), Err)
-        })
+        }
     })
 }

@@ -75,11 +75,12 @@ pub fn identify_json(
             "runs and cycles must be 1 or more, got {runs} and {cycles}"
         )));
     }
-    let found = aside(py, |stop| {
+    let row = aside(py, move |stop| {
         let runs = (0..runs).into_par_iter();
-        runs.map(|number| (!stop.asked()).then(|| trial.run(number))).while_some().collect::<Vec<_>>()
+        let found = runs.map(|number| (!stop.asked()).then(|| trial.run(number))).while_some();
+        trial.row(&found.collect::<Vec<_>>())
     })?;
-    Ok(json!(trial.row(&found)).to_string())
+    Ok(json!(row).to_string())
 }
 
 #[pyfunction]

@@ -14,6 +14,7 @@ mod sampled;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
@@ -93,8 +94,13 @@ impl Scenario {
 #[pymethods]
 impl Scenario {
     #[staticmethod]
-    fn load(path: PathBuf) -> PyResult<Self> {
-        Self::read(&Document::load(&path).map_err(scenario_error)?)
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let read = aside(py, move |_| {
+            let document = Document::load(&path)?;
+            let inner = flexsc_core::Scenario::from_document(&document)?;
+            Ok(Self { inner, origin: document.origin().to_owned() })
+        })?;
+        read.map_err(scenario_error)
     }
 
     #[staticmethod]
@@ -190,8 +196,8 @@ fn simulate<'py>(
     log: &str,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
-    let metrics = aside(py, |stop| Campaign::simulate(&run, (&mut trace, stop)))?;
-    let metrics = metrics.map_err(|error| simulation_error(&run.scenario.name, error))?;
+    let (metrics, trace) = aside(py, move |stop| (Campaign::simulate(&run, (&mut trace, stop)), trace))?;
+    let metrics = metrics.map_err(|error| simulation_error(scenario.name(), error))?;
     let topics = PyDict::new(py);
     for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
         topics.set_item(name, columns::of_rows(py, rows)?)?;
@@ -203,17 +209,13 @@ fn simulate<'py>(
 fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathBuf) -> PyResult<u64> {
     let none = || PyValueError::new_err("log must be 'events', 'full' or 'scene' for a file");
     let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
-    let written = aside(py, |stop| {
-        let mut file = LogFile::create(&path, &Campaign::provenance(&run), detail)?;
-        match Campaign::simulate(&run, (&mut file, stop)) {
-            Ok(metrics) => Ok(file.finish(&metrics.to_row(), RunEnd::Complete)?),
-            Err(error) => {
-                file.discard();
-                Err(error)
-            }
-        }
+    let place = path.clone();
+    let written = aside(py, move |stop| {
+        let mut file = LogFile::create(&place, &Campaign::provenance(&run), detail)?;
+        let metrics = Campaign::simulate(&run, (&mut file, stop))?;
+        Ok(file.finish(&metrics.to_row(), RunEnd::Complete)?)
     })?;
-    written.map_err(|error| error::unwritten(&path, &run.scenario.name, error))
+    written.map_err(|error| error::unwritten(&path, scenario.name(), error))
 }
 
 /// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
@@ -227,18 +229,16 @@ fn campaign<'py>(
     jobs: usize,
     grids: Vec<(String, Vec<f64>)>,
 ) -> PyResult<(Vec<String>, Vec<Told<'py>>, Vec<Summary>)> {
-    let study = scenario.study(grids.into_iter().map(|(key, values)| Grid { key, values }))?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
-    let pool = pool.map_err(|error| PyValueError::new_err(format!("jobs={jobs}: {error}")))?;
-    let outcomes = aside(py, |stop| {
+    let study = Arc::new(scenario.study(grids.into_iter().map(|(key, values)| Grid { key, values }))?);
+    let at_work = study.clone();
+    let outcomes = aside(py, move |stop| {
         let mut outcomes: Vec<Outcome> = Vec::new();
-        let work = |run: &Run| Ok(Campaign::simulate(run, stop)?);
+        let each = stop.clone();
+        let work = move |run: &Run| Ok(Campaign::simulate(run, each.clone())?);
         // Asked to stop, `aside` raises what asked for it: the outcomes so far are not used.
-        let _ = pool.install(|| {
-            study.each(runs.0..runs.1, work, |outcome| {
-                outcomes.push(outcome);
-                if stop.asked() { Err(()) } else { Ok(()) }
-            })
+        let _ = at_work.each(runs.0..runs.1, jobs, work, |outcome| {
+            outcomes.extend(outcome);
+            if stop.asked() { Err(()) } else { Ok(()) }
         });
         outcomes
     })?;
@@ -302,19 +302,21 @@ fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Opti
     let none = |peak| PyValueError::new_err(format!("peak_torque must be a positive number, got {peak}"));
     let limit = peak_torque.map(|peak| Positive::new(peak).ok_or_else(|| none(peak))).transpose()?;
     let common = Common::of(manoeuvre, limit, plan);
-    let rows = aside(py, |_| compare(manoeuvre, common, scenario.inner.planned_for(), band))?;
+    let (manoeuvre, body) = (manoeuvre.clone(), scenario.inner.planned_for().clone());
+    let rows = aside(py, move |_| compare(&manoeuvre, common, &body, band))?;
     Ok(serde_json::Value::from(rows.iter().map(Row::to_json).collect::<Vec<_>>()).to_string())
 }
 
 /// A log in memory.
 #[pyclass(frozen, module = "flexsc._native")]
-struct Log(record::Log);
+struct Log(Arc<record::Log>);
 
 #[pymethods]
 impl Log {
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        aside(py, |_| record::Log::open(&path))?.map(Self).map_err(log_error)
+        let log = aside(py, move |_| record::Log::open(&path))?.map_err(log_error)?;
+        Ok(Self(Arc::new(log)))
     }
 
     #[getter]
@@ -333,7 +335,8 @@ impl Log {
     }
 
     fn columns<'py>(&self, py: Python<'py>, topic: &str) -> PyResult<Bound<'py, PyDict>> {
-        columns::of_rows(py, aside(py, |_| self.0.columns(topic))?.map_err(log_error)?)
+        let (log, topic) = (self.0.clone(), topic.to_owned());
+        columns::of_rows(py, aside(py, move |_| log.columns(&topic))?.map_err(log_error)?)
     }
 }
 

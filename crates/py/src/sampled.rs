@@ -57,7 +57,7 @@ pub fn gain_regions_json(
     let (of, _, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     let gains = stepped(gains)?;
-    let rows = aside(py, |_| regions(&of, &frequencies, scaling, gains, window, limit))?;
+    let rows = aside(py, move |_| regions(&of, &frequencies, scaling, gains, window, limit))?;
     Ok(json!(rows).to_string())
 }
 
@@ -93,7 +93,7 @@ pub fn robust_gains_json(
         quantile,
         margin,
     };
-    Ok(json!(aside(py, |_| robust(&of, &frequencies, search))?).to_string())
+    Ok(json!(aside(py, move |_| robust(&of, &frequencies, search))?).to_string())
 }
 
 #[pyfunction]
@@ -108,7 +108,10 @@ pub fn stability_map_json(
     let (of, law, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     all_positive("periods", &periods)?;
-    let gain = |frequency: f64| gain.unwrap_or_else(|| law.extra_gain(frequency));
-    let cells = aside(py, |_| map(&of, &frequencies, &periods, scaling, gain, window))?;
+    let law = law.clone();
+    let cells = aside(py, move |_| {
+        let gain = |frequency: f64| gain.unwrap_or_else(|| law.extra_gain(frequency));
+        map(&of, &frequencies, &periods, scaling, gain, window)
+    })?;
     Ok(json!(cells).to_string())
 }

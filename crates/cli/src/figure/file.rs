@@ -4,7 +4,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use flexsc_core::whole;
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -12,7 +11,7 @@ use super::Named;
 use super::image::Renderer;
 use super::sheet::sheet;
 use crate::failure::Failure;
-use crate::{print, say};
+use crate::{files, print, say};
 
 /// Whether a command that tells numbers also draws them.
 #[derive(clap::Args)]
@@ -92,7 +91,9 @@ impl Target {
                     Format::Png => Renderer::new().png(&svg).map_err(undrawn)?,
                 };
                 let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
-                write(path, &bytes, &names, json)
+                let bytes = [(path.clone(), bytes)];
+                files::write_all(&bytes)?;
+                tell(&bytes[0], &names, json)
             }
         }
     }
@@ -100,7 +101,7 @@ impl Target {
 
 /// Writes figures into a directory, which is made if it is not there.
 fn save_each(directory: &Path, format: Format, figures: &[Named], json: bool) -> Result<(), Failure> {
-    std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
+    files::make_directory(directory)?;
     let renderer = Renderer::new();
     let path = |name: &str, extension: &str| directory.join(format!("{name}.{extension}"));
     let draw = |(name, figure): &Named| -> Result<(String, Vec<u8>), Failure> {
@@ -110,19 +111,24 @@ fn save_each(directory: &Path, format: Format, figures: &[Named], json: bool) ->
         Ok((svg, png))
     };
     let drawn = figures.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?;
-    for ((name, _), (svg, png)) in figures.iter().zip(&drawn) {
+    let mut names = Vec::new();
+    let mut all = Vec::new();
+    for ((name, _), (svg, png)) in figures.iter().zip(drawn) {
         if format != Format::Png {
-            write(&path(name, "svg"), svg.as_bytes(), &[name], json)?;
+            names.push(name);
+            all.push((path(name, "svg"), svg.into_bytes()));
         }
         if format != Format::Svg {
-            write(&path(name, "png"), png, &[name], json)?;
+            names.push(name);
+            all.push((path(name, "png"), png));
         }
     }
-    Ok(())
+    files::write_all(&all)?;
+    names.into_iter().zip(&all).try_for_each(|(name, file)| tell(file, &[name], json))
 }
 
-fn write(path: &Path, bytes: &[u8], figures: &[&str], json: bool) -> Result<(), Failure> {
-    whole::write(path, bytes).map_err(Failure::write(path))?;
+/// Tells of a file with these figures.
+fn tell((path, bytes): &(PathBuf, Vec<u8>), figures: &[&str], json: bool) -> Result<(), Failure> {
     if json {
         let object = json!({"file": path.display().to_string(), "figures": figures, "bytes": bytes.len()});
         return print(format!("{object}\n").as_bytes());

@@ -5,8 +5,8 @@ mod figure;
 use std::io::Write;
 use std::path::PathBuf;
 
+use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{Cell, map};
-use flexsc_core::{Scenario, whole};
 use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
@@ -14,7 +14,7 @@ use crate::figure::{Drawing, Named, Point};
 use crate::grid::Even;
 use crate::results::{Results, show};
 use crate::sampled::{Settled, sampled};
-use crate::{print, say, scenario};
+use crate::{files, print, say, scenario};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let mapped = args.results(&args.scenario.load()?)?;
     let Some(path) = &args.output else { return show(&mapped, Some(&args.drawing), args.scenario.json) };
     args.drawing.save(|| mapped.figures())?;
-    whole::write(path, csv(&mapped.cells).as_bytes()).map_err(Failure::write(path))?;
+    files::write(path, csv(&mapped.cells).as_bytes())?;
     let Mapped { name, cells, .. } = &mapped;
     let stable = cells.iter().filter(|cell| cell.spectral_radius < 1.0).count();
     say!("{name}   {} cells, {stable} of them stable, in {}", cells.len(), path.display());

@@ -27,7 +27,7 @@ impl Command {
         let (detail, option) = if spatial { (Detail::Full, " --log full") } else { (Detail::Events, "") };
         let figure = plot::figure_of(&self.log(detail)?, path, what)?;
         let (text, name) = (&self.text, &scenario.name);
-        Ok((figure, format!("{text}{option}; flexsc plot {name}.mcap --what {what}")))
+        Ok((figure, format!("{text}{option} && flexsc plot {name}.mcap --what {what}")))
     }
 
     /// The log of a simulation in this detail.

@@ -13,17 +13,16 @@ mod tell;
 mod verdict;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use clap::ValueEnum;
-use flexsc_core::whole;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use crate::failure::Failure;
-use crate::{progress, say, stop};
+use crate::{files, progress, say, stop};
 use computed::Computed;
 use html::Section;
 use page::{Drawn, Form, Outcome};
@@ -50,7 +49,6 @@ struct Filled {
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let began = WallInstant::now();
-    stop::listen();
     let page = args.docs.as_ref().map(|docs| docs.join("papers.md"));
     if let Some(page) = page.filter(|page| args.paper.is_some() && page.exists()) {
         let page = page.display();
@@ -59,7 +57,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     for directory in std::iter::once(&args.out).chain(&args.docs) {
-        std::fs::create_dir_all(directory).map_err(Failure::write(directory))?;
+        files::make_directory(directory)?;
     }
     let papers = args.paper.as_ref().map_or(Paper::value_variants(), std::slice::from_ref);
     let bar = progress::spinner();
@@ -71,15 +69,22 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (sections, markdown): (Vec<Section>, Vec<String>) =
         filled?.into_iter().map(|filled| (filled.section, filled.markdown)).unzip();
     let took = began.elapsed().as_secs_f64();
-    write(&args.out.join("papers.html"), &html::page(&sections, took))?;
+    let mut pages = vec![(args.out.join("papers.html"), html::page(&sections, took).into_bytes())];
     if let Some(docs) = &args.docs {
+        let text = format!("{HEAD}\n{}", markdown.join("\n"));
+        pages.push((docs.join("papers.md"), text.into_bytes()));
         let images = docs.join("images");
-        std::fs::create_dir_all(&images).map_err(Failure::write(&images))?;
-        for Drawn { name, svg, .. } in sections.iter().flat_map(|section| &section.outcome.figures) {
-            let path = images.join(format!("{name}.svg"));
-            whole::write(&path, svg.as_bytes()).map_err(Failure::write(&path))?;
-        }
-        write(&docs.join("papers.md"), &format!("{HEAD}\n{}", markdown.join("\n")))?;
+        files::make_directory(&images)?;
+        let drawn = sections.iter().flat_map(|section| &section.outcome.figures);
+        pages.extend(
+            drawn.map(|Drawn { name, svg, .. }| {
+                (images.join(format!("{name}.svg")), svg.clone().into_bytes())
+            }),
+        );
+    }
+    files::write_all(&pages)?;
+    for (path, bytes) in pages.iter().take(1 + args.docs.iter().count()) {
+        say!("{} ({:.0} kB)", path.display(), bytes.len() as f64 / 1e3);
     }
     let all = || sections.iter().flat_map(|section| &section.outcome.verdicts);
     say!("{} verdicts in {took:.1} s", all().count());
@@ -110,10 +115,4 @@ fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
     let (text, outcome) = form(Form::Html)?;
     let (markdown, _) = form(Form::Markdown)?;
     Ok(Filled { section: Section { name: paper.name(), text, outcome, times: computed.times() }, markdown })
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    whole::write(path, text.as_bytes()).map_err(Failure::write(path))?;
-    say!("{} ({:.0} kB)", path.display(), text.len() as f64 / 1e3);
-    Ok(())
 }

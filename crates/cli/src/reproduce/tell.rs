@@ -1,6 +1,7 @@
 //! What the commands of a page tell: what they print for machines with `--json`.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use flexsc_core::campaign::{Campaign, Outcome};
 use serde_json::{Map, Value as Json, json};
@@ -23,13 +24,13 @@ impl Command {
                 let study = Campaign::new(scenario, &path.to_string_lossy(), None)?;
                 match &args.runs {
                     None => single(&study)?,
-                    Some(runs) => columns(&several(&study, runs.range.clone())?),
+                    Some(runs) => columns(&several(&Arc::new(study), runs.range.clone())?),
                 }
             }
             Verb::Sweep(args) => {
                 let scenario = shipped::load(&args.scenario, &args.set, args.seed)?;
                 let (study, range) = args.study(scenario, &args.scenario.to_string_lossy())?;
-                columns(&several(&study, range)?)
+                columns(&several(&Arc::new(study), range)?)
             }
             _ => {
                 let mut lines = self.results()?.json();
@@ -65,13 +66,15 @@ fn single(study: &Campaign) -> Result<Json, Failure> {
 }
 
 /// The objects of some runs, all of which must succeed.
-fn several(study: &Campaign, range: Range<u64>) -> Result<Vec<Json>, Failure> {
+fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, Failure> {
     let runs = range.end - range.start;
     let mut objects = Vec::new();
     study.each(
         range,
+        0,
         |run| Ok(Campaign::simulate(run, Stop)?),
-        |Outcome { number, drawn, metrics }| {
+        |outcome| {
+            let Some(Outcome { number, drawn, metrics }) = outcome else { return Ok(()) };
             let failed = |why| Failure::Runs { failed: 1, runs, number, why };
             let metrics = metrics.map_err(|error| failed(error.to_string()))?;
             objects.push(campaign::object(study, number, &drawn, Ok(&metrics)));

@@ -152,6 +152,11 @@ impl Flight {
         self.trajectory.depart();
     }
 
+    /// Takes one step towards `h` seconds after departure; whether no more are needed.
+    pub fn approach(&mut self, h: f64) -> bool {
+        self.trajectory.approach(&Driven { chain: &self.chain, input: &self.input }, h)
+    }
+
     /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor at the hub sees.
     pub fn at(&mut self, h: f64, state: &mut State) -> Sight {
         self.trajectory.at(&Driven { chain: &self.chain, input: &self.input }, h);

@@ -8,6 +8,8 @@ use super::{Drift, Planar, SERIES};
 
 /// e²: the step over the radius of convergence at which the series of this order leaves out the last bit of a double.
 const SAFETY: f64 = 7.389_056_098_930_65;
+/// Steps that are taken at a time.
+const STEPS: u32 = 16;
 
 /// One coordinate: its series, and what moves it.
 #[derive(Clone, Debug)]
@@ -106,13 +108,22 @@ impl Drifting {
         self.expand();
     }
 
-    /// Goes to `h` seconds after departure, not before a time gone to earlier.
-    pub fn go(&mut self, h: f64) {
-        while h - self.begins > self.reach {
+    /// Takes some steps towards `h` seconds after departure, not before a time gone to earlier; whether no more are needed.
+    pub fn approach(&mut self, h: f64) -> bool {
+        for _ in 0..STEPS {
+            if h - self.begins <= self.reach {
+                return true;
+            }
             self.rebase(self.reach);
             self.begins += self.reach;
             self.expand();
         }
+        false
+    }
+
+    /// Goes to `h` seconds after departure, not before a time gone to earlier.
+    pub fn go(&mut self, h: f64) {
+        while !self.approach(h) {}
         self.seen = h;
     }
 

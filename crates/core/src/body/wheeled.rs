@@ -73,6 +73,14 @@ impl Coupling {
         }
     }
 
+    /// Takes some steps towards `h` seconds after departure; whether no more are needed.
+    pub fn approach(&mut self, h: f64) -> bool {
+        match &mut self.flow {
+            Flow::Constant(_) => true,
+            Flow::Drifting(drifting) => drifting.approach(h),
+        }
+    }
+
     /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor sees.
     pub fn at(&mut self, h: f64, state: &mut State) -> Sight {
         let sight = match &mut self.flow {

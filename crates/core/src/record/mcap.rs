@@ -1,9 +1,8 @@
 //! The log file: a run as MCAP, whose bytes depend on the scenario, the seed and the version alone.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapError, WriteOptions, Writer};
@@ -11,7 +10,7 @@ use mcap::{Attachment, McapError, WriteOptions, Writer};
 use super::message::{Encode, Message, Messages};
 use super::{Detail, Metrics, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
 use crate::time::Instant;
-use crate::whole::discard;
+use crate::whole::Partial;
 
 /// A chunk is closed after so many messages: what a killed run loses at most.
 const MESSAGES_PER_FLUSH: u64 = 2000;
@@ -115,40 +114,24 @@ impl<W: Write + Seek> Messages for Channels<W> {
     }
 }
 
-/// A log on disk, under a `.partial` name until it is finished.
+/// A log on disk, under a `.partial` name until it is finished. Dropped before, it is removed.
 pub struct LogFile {
-    log: McapLog<BufWriter<File>>,
-    path: PathBuf,
-    partial: PathBuf,
+    log: McapLog<BufWriter<Partial>>,
 }
 
 impl LogFile {
     /// Creates the file beside its final place.
     pub fn create(path: &Path, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
-        let mut partial = path.as_os_str().to_owned();
-        partial.push(".partial");
-        let partial = PathBuf::from(partial);
-        let file = BufWriter::new(File::create(&partial)?);
-        let log = McapLog::new(file, from, detail).inspect_err(|_| discard(&partial))?;
-        Ok(Self { log, path: path.to_owned(), partial })
+        let file = BufWriter::new(Partial::create(path)?);
+        Ok(Self { log: McapLog::new(file, from, detail)? })
     }
 
     /// Finishes the log, gives it its final name, and tells its size in bytes. A log that cannot be finished is
     /// removed.
     pub fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<u64, RecordError> {
-        let Self { log, path, partial } = self;
-        let finish = || -> Result<u64, RecordError> {
-            let file = log.finish(metrics, end)?.into_inner().map_err(io::IntoInnerError::into_error)?;
-            let bytes = file.metadata()?.len();
-            fs::rename(&partial, &path)?;
-            Ok(bytes)
-        };
-        finish().inspect_err(|_| discard(&partial))
-    }
-
-    /// Removes what was written.
-    pub fn discard(self) {
-        discard(&self.partial);
+        let file = self.log.finish(metrics, end)?;
+        let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+        Ok(file.finish()?)
     }
 }
 

@@ -5,6 +5,7 @@ pub mod foxglove;
 mod log;
 mod mcap;
 mod message;
+mod origin;
 mod proto;
 mod recover;
 pub mod row;
@@ -23,6 +24,7 @@ pub use columns::{Column, Columns};
 pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog};
 pub use message::{Encode, Message, Messages, Provenance, RunEnd};
+pub use origin::{There, difference, there};
 pub use recover::recover;
 pub use topics::{
     Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion,
@@ -147,6 +149,14 @@ pub trait Record {
 
     /// Takes a sample.
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError>;
+
+    /// Whether the run may go on: asked at every event, and now and then in long searches and integrations between two.
+    ///
+    /// # Errors
+    /// [`RecordError::Interrupted`] to end the run.
+    fn poll(&mut self) -> Result<(), RecordError> {
+        Ok(())
+    }
 }
 
 /// A record could not be kept.
@@ -179,6 +189,10 @@ impl<R: Record + ?Sized> Record for &mut R {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         (**self).record(now, sample)
     }
+
+    fn poll(&mut self) -> Result<(), RecordError> {
+        (**self).poll()
+    }
 }
 
 /// Records if there is something to record to.
@@ -193,6 +207,10 @@ impl<R: Record> Record for Option<R> {
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         self.as_mut().map_or(Ok(()), |record| record.record(now, sample))
+    }
+
+    fn poll(&mut self) -> Result<(), RecordError> {
+        self.as_mut().map_or(Ok(()), Record::poll)
     }
 }
 
@@ -209,6 +227,11 @@ impl<A: Record, B: Record> Record for (A, B) {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         self.0.record(now, sample)?;
         self.1.record(now, sample)
+    }
+
+    fn poll(&mut self) -> Result<(), RecordError> {
+        self.0.poll()?;
+        self.1.poll()
     }
 }
 

@@ -70,6 +70,8 @@ pub fn read(directory: &Path, files: &[String]) -> Result<Vec<Runs>, Failure> {
 /// What the name of a table begins with, if a file is one: nothing, or `NAME-`.
 fn prefix(file: &str) -> Option<String> {
     let stem = file.strip_suffix(".csv")?;
+    // What there is of a campaign that was stopped.
+    let stem = stem.strip_suffix("-interrupted").unwrap_or(stem);
     let number = |text: &str| text.parse::<u64>().is_ok();
     let whole = match stem.rsplit('-').collect::<Vec<_>>()[..] {
         [high, low, _, ..] if number(high) && number(low) => &stem[..stem.len() - high.len() - low.len() - 2],
@@ -215,6 +217,7 @@ mod tests {
     fn tables_are_known_by_their_names() {
         for (file, expected) in [
             ("runs.csv", Some("")),
+            ("runs-interrupted.csv", Some("")),
             ("runs-0-500.csv", Some("")),
             ("relay-fixed-runs.csv", Some("relay-fixed-")),
             ("relay-2-runs-10-20.csv", Some("relay-2-")),

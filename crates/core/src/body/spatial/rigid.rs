@@ -15,6 +15,9 @@ const LONGEST: f64 = 1.0 / 16.0;
 /// Passes after which the stages are taken as they are: they converge by a factor of 16 or more each.
 const PASSES: u32 = 40;
 
+/// Steps after which the motion asks whether it may go on.
+const STEPS: u64 = 256;
+
 /// sqrt(15).
 const R: f64 = 3.872_983_346_207_417;
 /// The three-stage Gauss-Legendre method: nodes, weights, matrix.
@@ -78,14 +81,24 @@ impl Rigid {
         0.5 * turn.momentum.dot(&self.rate(turn))
     }
 
-    /// Moves on by `h` seconds from `t` seconds after the start, under this torque (N m) and the surroundings'.
-    pub fn advance(&self, turn: &mut Turn, torque: &Vector, t: f64, h: f64) {
+    /// Moves on by `h` seconds from `t` seconds after the start, under this torque (N m) and the surroundings', as long as
+    /// it may `go_on`.
+    pub fn advance<E>(
+        &self,
+        turn: &mut Turn,
+        torque: &Vector,
+        (t, h): (f64, f64),
+        mut go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<(), E> {
         let (exerted, slow) = self.disturbance.as_ref().map_or((0.0, 0.0), |d| (d.bound(), d.frequency()));
         let push = torque.norm() + exerted;
         let rate = self.mobility * (turn.momentum.norm() + push * h);
         let steps = libm::ceil(h * (rate + slow) / LONGEST).max(1.0);
         let small = h / steps;
         for step in 0..steps as u64 {
+            if step % STEPS == STEPS - 1 {
+                go_on()?;
+            }
             let from = t + small * step as f64;
             let torques = NODES.map(|node| match &self.disturbance {
                 None => *torque,
@@ -93,6 +106,7 @@ impl Rigid {
             });
             self.step(turn, &torques, small, rate * small);
         }
+        Ok(())
     }
 
     /// One step of `h` seconds under the torques at the nodes. Each pass over the stages errs less by `contraction`.

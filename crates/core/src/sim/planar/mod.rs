@@ -116,6 +116,7 @@ impl PlanarRun {
         }
         loop {
             let next = self.next();
+            self.body.approach(next.min(until), record)?;
             if next > until {
                 self.now = until;
                 self.view()?;
@@ -150,7 +151,7 @@ impl PlanarRun {
         let rigid_rate = self.body.state().rigid_rate;
         self.drive.command(self.now, self.hold.torque, rigid_rate);
         self.drive.serve(self.now, rigid_rate);
-        self.depart();
+        self.depart(record)?;
         record.record(self.now, Sample::Begin(&self.law_row()))?;
         if record.dense() {
             self.next_dense = Some(self.now);
@@ -210,7 +211,7 @@ impl PlanarRun {
         if self.drive.due == Some(now) {
             self.view()?;
             self.drive.serve(now, self.body.state().rigid_rate);
-            self.depart();
+            self.depart(record)?;
         }
         if self.next_dense == Some(now) {
             self.view()?;
@@ -261,7 +262,7 @@ impl PlanarRun {
         let before = self.law.state();
         self.hold = self.law.decide(now, cause, &self.goal, &self.belief);
         self.drive.command(now, self.hold.torque, self.body.state().rigid_rate);
-        self.depart();
+        self.depart(record)?;
         if before == self.law.state() {
             return Ok(());
         }
@@ -285,7 +286,7 @@ impl PlanarRun {
     }
 
     /// Begins a motion under what drives the body from now on, and finds the next trip.
-    fn depart(&mut self) {
+    fn depart(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
         if let Some(watch) = &mut self.watch {
             watch.command(self.now, self.body.state(), self.hold.torque);
         }
@@ -297,8 +298,9 @@ impl PlanarRun {
         // A sampled sensor trips its guards at samples.
         if self.next_sample.is_none() && !self.hold.guards.is_empty() {
             let ends = [self.hold.until, self.drive.due].into_iter().flatten().fold(self.end, Instant::min);
-            self.trip = self.body.trip(&self.hold.guards, ends.since(self.now));
+            self.trip = self.body.trip(&self.hold.guards, ends.since(self.now), record)?;
         }
+        Ok(())
     }
 
     /// What a sensor would see now.

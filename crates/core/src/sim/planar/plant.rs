@@ -3,7 +3,7 @@
 use crate::body::{Arc, Coupling, Flight, Input, Output, Sight, State};
 use crate::crossing::locate;
 use crate::guard::Guard;
-use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate};
+use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
@@ -62,6 +62,24 @@ impl Plant {
         &self.state
     }
 
+    /// Integrates up to an instant what has no closed form, as long as the record lets it: seeing the body there is then soon
+    /// done.
+    pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        record.poll()?;
+        let h = now.since(self.departed).seconds();
+        loop {
+            let is_there = match &mut self.motion {
+                Motion::Planar(_) => true,
+                Motion::Chain(flight) => flight.approach(h),
+                Motion::Coupled(coupling) => coupling.approach(h),
+            };
+            if is_there {
+                return Ok(());
+            }
+            record.poll()?;
+        }
+    }
+
     /// What a sensor sees at an instant, to which the body is brought.
     pub fn view(&mut self, now: Instant) -> Sight {
         if self.seen != now {
@@ -93,13 +111,20 @@ impl Plant {
     }
 
     /// The instant and index of the guard that trips first on this motion, within a span.
-    pub fn trip(&mut self, guards: &[Guard], horizon: Span) -> Option<(Instant, usize)> {
+    pub fn trip(
+        &mut self,
+        guards: &[Guard],
+        horizon: Span,
+        record: &mut impl Record,
+    ) -> Result<Option<(Instant, usize)>, RecordError> {
         // No law with guards acts on a body without a closed form.
-        let Motion::Planar(arc) = &self.motion else { return None };
-        let trip = locate(arc, guards, horizon, &mut self.ahead.0)?;
-        let at = self.departed + trip.after;
-        (self.ahead.1, self.ahead.2) = (trip.sight, at);
-        Some((at, trip.guard))
+        let Motion::Planar(arc) = &self.motion else { return Ok(None) };
+        let trip = locate(arc, guards, horizon, &mut self.ahead.0, record)?;
+        Ok(trip.map(|trip| {
+            let at = self.departed + trip.after;
+            (self.ahead.1, self.ahead.2) = (trip.sight, at);
+            (at, trip.guard)
+        }))
     }
 
     /// The motion at the instant seen last, as logged; `measured` is the held measurement of a sampled sensor.

@@ -119,10 +119,10 @@ impl SpatialRun {
             let due = [self.jets.due(), self.next_dense, self.next_frames];
             let next = due.into_iter().flatten().fold(self.next_cycle, Instant::min);
             if next > until {
-                self.body.view(until);
+                self.body.view(until, record)?;
                 return if until == self.end { Ok(self.news.end(until, record)?) } else { Ok(()) };
             }
-            self.body.view(next);
+            self.body.view(next, record)?;
             let ended = self.jets.end(next);
             if next == self.next_cycle {
                 self.cycle(next, record)?;

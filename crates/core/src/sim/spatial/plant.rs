@@ -1,7 +1,7 @@
 //! The spatial body on its way, from one change of the jets to the next.
 
 use crate::body::spatial::{Elastic, Rigid, SpatialState, Vector};
-use crate::record::{Energy, Pointing, Vibration, Vibrations};
+use crate::record::{Energy, Pointing, Record, RecordError, Vibration, Vibrations};
 use crate::scenario::SpatialLoop;
 use crate::time::Instant;
 
@@ -49,16 +49,18 @@ impl Plant {
         }
     }
 
-    /// Brings the body to an instant. What is seen on the way does not change the motion.
-    pub fn view(&mut self, now: Instant) -> &SpatialState {
+    /// Brings the body to an instant, as long as the record lets it. What is seen on the way does not change the motion.
+    pub fn view(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        record.poll()?;
         if self.seen != now {
             let h = now.since(self.departed).seconds();
             self.state.clone_from(&self.origin);
-            self.rigid.advance(&mut self.state.turn, &self.push.torque, self.departed.seconds(), h);
+            let began = self.departed.seconds();
+            self.rigid.advance(&mut self.state.turn, &self.push.torque, (began, h), || record.poll())?;
             self.elastic.advance(&mut self.state.modes, &self.push.forces, h);
             self.seen = now;
         }
-        &self.state
+        Ok(())
     }
 
     /// Begins a new motion at the instant seen last, under what pushes from now on.

@@ -1,0 +1,153 @@
+//! The scenario beside a campaign's tables: any run can be repeated from it, and it tells whose the tables are.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flexsc_core::campaign::Campaign;
+use flexsc_core::record::difference;
+use flexsc_core::whole::Partial;
+
+use super::Job;
+use crate::failure::Failure;
+
+/// The file that holds the scenario of a campaign, beside its tables.
+pub const SCENARIO: &str = "scenario.toml";
+/// How that file begins.
+const MARK: &str = "# What the runs beside it were drawn from, by flexsc";
+/// What helps.
+const HINT: &str = "hint: give another directory with -o, or --force to replace what is there";
+
+/// What is kept of a campaign in a directory.
+pub struct Kept<'a> {
+    directory: &'a Path,
+    /// What all names begin with.
+    prefix: String,
+    job: &'a Job<'a>,
+    /// What the file says.
+    text: String,
+}
+
+impl<'a> Kept<'a> {
+    /// What is kept of a job of a campaign there.
+    pub fn new(directory: &'a Path, job: &'a Job<'a>, study: &Campaign) -> Self {
+        let prefix = job.prefix.map_or(String::new(), |name| format!("{name}-"));
+        let mut text = format!("{MARK} {}.\n", env!("CARGO_PKG_VERSION"));
+        for grid in study.grids() {
+            let [first, .., last] = &grid.values[..] else {
+                text += &format!("# {} = {:?}\n", grid.key, grid.values);
+                continue;
+            };
+            text += &format!("# {} = {first} to {last}, {} values\n", grid.key, grid.values.len());
+        }
+        text += &study.to_toml();
+        Self { directory, prefix, job, text }
+    }
+
+    /// Writes the scenario, once [`check`](Self::check) lets it; tables of another campaign are removed then.
+    pub fn keep(&self) -> Result<(), Failure> {
+        let path = self.path(SCENARIO);
+        let mut partial = Partial::create_in_time(&path).map_err(Failure::write(&path))?;
+        if !self.check()? {
+            for table in self.tables() {
+                fs::remove_file(&table).map_err(Failure::write(&table))?;
+            }
+        }
+        let written = partial.write_all(self.text.as_bytes()).and_then(|()| partial.finish());
+        written.map_err(Failure::write(&path)).map(|_| ())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.directory.join(format!("{}{name}", self.prefix))
+    }
+
+    /// Whether the tables that are there are of this campaign.
+    ///
+    /// # Errors
+    /// They are of another one, or have more runs of this one, and are not to be replaced.
+    pub fn check(&self) -> Result<bool, Failure> {
+        let path = &self.path(SCENARIO);
+        let refused = |path: &Path, why: &str, hint: &str| {
+            Err(Failure::Arguments(format!("{}: {why}\n\n{hint}", path.display())))
+        };
+        let there = match fs::read(path) {
+            Ok(there) => String::from_utf8_lossy(&there).into_owned(),
+            Err(_) => String::new(),
+        };
+        if !there.is_empty() && !there.starts_with(MARK) {
+            let why = "is there, and flexsc did not write it";
+            return refused(path, why, "hint: give another directory with -o");
+        }
+        let tables = self.tables();
+        if there == self.text {
+            if self.job.part || self.job.force {
+                return Ok(true);
+            }
+            let (whole, runs) = (self.path("runs.csv"), self.job.range.end - self.job.range.start);
+            let before = rows(&whole);
+            if before > runs {
+                let why = format!("holds {before} runs of this campaign, and {runs} would replace them");
+                return refused(&whole, &why, HINT);
+            }
+            return Ok(true);
+        }
+        if self.job.force {
+            return Ok(false);
+        }
+        match tables.first() {
+            Some(table) if there.is_empty() => {
+                refused(table, "is there, and nothing tells of which campaign", HINT)
+            }
+            _ if there.is_empty() => Ok(true),
+            _ => {
+                let why = format!("what is there is of another campaign{}", other(&there, &self.text));
+                refused(path, &why, HINT)
+            }
+        }
+    }
+
+    /// The tables that are there, of whole campaigns and of parts.
+    fn tables(&self) -> Vec<PathBuf> {
+        let entries = fs::read_dir(self.directory).into_iter().flatten().flatten();
+        let is_table = |name: &str| {
+            let stem = name.strip_prefix(&self.prefix)?.strip_suffix(".csv")?;
+            let rest = stem.strip_prefix("runs").or_else(|| stem.strip_prefix("statistics"))?;
+            let rest = rest.strip_suffix("-interrupted").unwrap_or(rest);
+            rest.chars().all(|c| c == '-' || c.is_ascii_digit()).then_some(())
+        };
+        let mut tables: Vec<PathBuf> = entries
+            .filter(|entry| is_table(&entry.file_name().to_string_lossy()).is_some())
+            .map(|entry| entry.path())
+            .collect();
+        tables.sort();
+        tables
+    }
+}
+
+/// In what two campaigns differ: scenario, version or what is swept.
+fn other(there: &str, here: &str) -> String {
+    let difference = difference(there, here);
+    let comments = |text: &str| -> Vec<String> {
+        text.lines().take_while(|line| line.starts_with('#')).map(str::to_owned).collect()
+    };
+    if !difference.is_empty() {
+        return difference;
+    }
+    let (there, here) = (comments(there), comments(here));
+    let not_in = |one: &[String], other: &[String]| {
+        let line = one.iter().find(|line| !other.contains(line));
+        line.map_or("nothing".to_owned(), |line| line.trim_start_matches("# ").to_owned())
+    };
+    format!(" ({} there, {} here)", not_in(&there, &here), not_in(&here, &there))
+}
+
+/// The rows of a table; 0 if there is none.
+fn rows(path: &Path) -> u64 {
+    let Ok(mut reader) = csv::Reader::from_path(path) else { return 0 };
+    let mut row = csv::ByteRecord::new();
+    let mut rows = 0;
+    while reader.read_byte_record(&mut row).is_ok_and(|any| any) {
+        rows += 1;
+    }
+    rows
+}

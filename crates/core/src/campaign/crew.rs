@@ -1,0 +1,155 @@
+//! The runs of a campaign on several threads, told in order.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::{Campaign, Outcome, Run, RunError};
+use crate::metrics::Metrics;
+
+/// No run begins that is so many runs ahead of the one told next: those between wait in memory.
+const AHEAD: u64 = 4096;
+/// How long nothing is told at most.
+const LOOK: Duration = Duration::from_millis(20);
+/// How long a campaign that was stopped waits for the runs under way, which are stopped too.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// What the threads share: which run is next, and which one is told next.
+struct Crew {
+    state: Mutex<State>,
+    told: Condvar,
+}
+
+struct State {
+    next: u64,
+    due: u64,
+    end: u64,
+}
+
+impl Crew {
+    fn state(&self) -> MutexGuard<'_, State> {
+        // A number is whole, whatever its thread did then.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The number of the next run, which is waited for.
+    fn take(&self) -> Option<u64> {
+        let mut state = self.state();
+        while state.next < state.end && state.next - state.due >= AHEAD {
+            state = self.told.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        (state.next < state.end).then(|| {
+            state.next += 1;
+            state.next - 1
+        })
+    }
+
+    fn tell(&self, due: u64) {
+        self.state().due = due;
+        self.told.notify_all();
+    }
+
+    /// No more runs begin.
+    fn close(&self) {
+        self.state().end = 0;
+        self.told.notify_all();
+    }
+}
+
+/// A thread at work: where it panics, no thread begins another run.
+struct Worker(Arc<Crew>);
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.close();
+        }
+    }
+}
+
+impl Campaign {
+    /// Makes runs on so many threads, or with 0 on one for each core, and tells of each, in order of their numbers.
+    ///
+    /// `work` simulates one run, on any thread. `tell` may stop the campaign with an error; it is called without an outcome
+    /// now and then while no run ends. A run that does not stop then is left behind.
+    ///
+    /// # Panics
+    /// Where a run does.
+    pub fn each<E>(
+        self: &Arc<Self>,
+        runs: Range<u64>,
+        threads: usize,
+        work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+        mut tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let state = State { next: runs.start, due: runs.start, end: runs.end };
+        let crew = Arc::new(Crew { state: Mutex::new(state), told: Condvar::new() });
+        let (outcomes, ended) = channel();
+        let work = Arc::new(work);
+        let count = runs.end.saturating_sub(runs.start);
+        let cores = || thread::available_parallelism().map_or(1, usize::from);
+        let threads = if threads == 0 { cores() } else { threads };
+        for _ in 0..threads.min(usize::try_from(count).unwrap_or(usize::MAX)) {
+            let (study, worker, outcomes) = (self.clone(), Worker(crew.clone()), outcomes.clone());
+            let work = work.clone();
+            thread::spawn(move || study.work_through(&worker, &outcomes, &*work));
+        }
+        drop(outcomes);
+        let told = tell_in_order(&crew, runs, &ended, &mut tell);
+        if told.is_err() {
+            crew.close();
+            let began = Instant::now();
+            while let Some(left) = PATIENCE.checked_sub(began.elapsed()) {
+                if ended.recv_timeout(left).is_err() {
+                    break;
+                }
+            }
+        }
+        told
+    }
+
+    fn work_through(
+        &self,
+        worker: &Worker,
+        outcomes: &Sender<Outcome>,
+        work: &impl Fn(&Run) -> Result<Metrics, RunError>,
+    ) {
+        while let Some(number) = worker.0.take() {
+            if outcomes.send(self.outcome(number, work)).is_err() {
+                return;
+            }
+        }
+    }
+}
+
+fn tell_in_order<E>(
+    crew: &Crew,
+    runs: Range<u64>,
+    ended: &Receiver<Outcome>,
+    tell: &mut impl FnMut(Option<Outcome>) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut early = BTreeMap::new();
+    let mut due = runs.start;
+    while due < runs.end {
+        match ended.recv_timeout(LOOK) {
+            Ok(outcome) => {
+                early.insert(outcome.number, outcome);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => panic!("run {due} panicked"),
+        }
+        if !early.contains_key(&due) {
+            tell(None)?;
+            continue;
+        }
+        while let Some(outcome) = early.remove(&due) {
+            tell(Some(outcome))?;
+            due += 1;
+        }
+        crew.tell(due);
+    }
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! Of which run a log is, read off its beginning: whether another log may take its place.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use mcap::records::Record as McapRecord;
+use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use toml::{Table, Value};
+
+use super::Provenance;
+use super::log::LARGEST;
+
+/// What there is in the place of a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum There {
+    /// Nothing.
+    Nothing,
+    /// A log of the same run: of the same scenario, seed, number and version.
+    Same,
+    /// Something else: what it is.
+    Other(String),
+}
+
+/// What there is in the place of a run's log.
+pub fn there(path: &Path, run: &Provenance) -> There {
+    let Ok(file) = File::open(path) else {
+        return if path.exists() { There::Other("cannot be read".to_owned()) } else { There::Nothing };
+    };
+    let Some(origin) = Origin::read(BufReader::new(file)) else {
+        return There::Other("is no log of flexsc".to_owned());
+    };
+    let own = (env!("CARGO_PKG_VERSION"), run.seed.to_string(), run.run.to_string());
+    let Origin { toml, version, seed, run: number } = origin;
+    if version != own.0 {
+        There::Other(format!("holds a run by flexsc {version}, and this is {}", own.0))
+    } else if number != own.2 {
+        There::Other(format!("holds run {number}, not run {}", own.2))
+    } else if toml != run.toml {
+        There::Other(format!("holds a run of other settings{}", difference(&toml, &run.toml)))
+    } else if seed != own.1 {
+        There::Other(format!("holds a run with the seed {seed}, not {}", own.1))
+    } else {
+        There::Same
+    }
+}
+
+/// The first key in which two scenarios differ, with both values where they are short.
+pub fn difference(there: &str, here: &str) -> String {
+    let (Ok(there), Ok(here)) = (there.parse::<Table>(), here.parse::<Table>()) else { return String::new() };
+    let Some((key, there, here)) = first_difference("", &there, &here) else { return String::new() };
+    let short = |value: Option<&Value>| match value {
+        None => "nothing".to_owned(),
+        Some(value @ (Value::Table(_) | Value::Array(_))) if value.to_string().len() > 60 => {
+            "more".to_owned()
+        }
+        Some(value) => value.to_string(),
+    };
+    format!(" (`{key}`: {} there, {} here)", short(there), short(here))
+}
+
+type Difference<'a> = (String, Option<&'a Value>, Option<&'a Value>);
+
+fn first_difference<'a>(within: &str, there: &'a Table, here: &'a Table) -> Option<Difference<'a>> {
+    let keys = there.keys().chain(here.keys().filter(|key| !there.contains_key(*key)));
+    keys.filter(|key| there.get(*key) != here.get(*key)).find_map(|key| {
+        let path = if within.is_empty() { key.clone() } else { format!("{within}.{key}") };
+        match (there.get(key), here.get(key)) {
+            (Some(Value::Table(there)), Some(Value::Table(here))) => first_difference(&path, there, here),
+            (there, here) => Some((path, there, here)),
+        }
+    })
+}
+
+/// Where a log comes from, as it says itself.
+struct Origin {
+    toml: String,
+    version: String,
+    seed: String,
+    run: String,
+}
+
+impl Origin {
+    /// Reads a log up to what it says about its run, which stands before all messages.
+    fn read(mut file: impl Read) -> Option<Self> {
+        let options = LinearReaderOptions::default().with_record_length_limit(LARGEST);
+        let mut reader = LinearReader::new_with_options(options);
+        let mut toml = String::new();
+        loop {
+            match reader.next_event()?.ok()? {
+                LinearReadEvent::ReadRequest(wanted) => {
+                    let read = file.read(reader.insert(wanted)).ok()?;
+                    reader.notify_read(read);
+                }
+                LinearReadEvent::Record { data, opcode } => match mcap::parse_record(opcode, data).ok()? {
+                    McapRecord::Attachment { header, data, .. } if header.name == "scenario.toml" => {
+                        toml = String::from_utf8(data.into_owned()).ok()?;
+                    }
+                    McapRecord::Metadata(mut about) if about.name == "flexsc.run" => {
+                        let mut said = |key: &str| about.metadata.remove(key).unwrap_or_default();
+                        let (version, seed, run) = (said("version"), said("seed"), said("run"));
+                        return Some(Self { toml, version, seed, run });
+                    }
+                    McapRecord::Message { .. } | McapRecord::Chunk { .. } | McapRecord::DataEnd(_) => {
+                        return None;
+                    }
+                    _ => {}
+                },
+            }
+        }
+    }
+}
