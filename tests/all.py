@@ -1,6 +1,7 @@
 """All tests of flexsc, Rust and Python: `python3 tests/all.py`.
 
-Formatting and lints, the Rust tests, a minute of fuzzing, then the Python wheel in an environment of its own and its tests.
+Formatting and lints, the Rust tests, a minute of fuzzing, then the Python wheel in an environment of its own
+and its tests.
 """
 
 import os

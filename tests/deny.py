@@ -1,6 +1,7 @@
 """The rules of deny.toml for every crate that is built in: `python3 tests/deny.py`.
 
-Licences, sources and duplicates as `cargo deny check bans licenses sources` judges them, where that is not installed.
+Licences, sources and duplicates as `cargo deny check bans licenses sources` judges them, where that is not
+installed.
 """
 
 import json
