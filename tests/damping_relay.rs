@@ -18,7 +18,7 @@ fn relay(spec: &Damping) -> DampingRelay {
 /// and 1e-4 rad/s are allowed.
 fn fired(relay: &mut DampingRelay, rate: f64, influence: f64, gates: [bool; 2]) -> f64 {
     let modes = [ElasticRate { rate, frequency: 1.256_637, influence }];
-    relay.decide(&modes, gates, [9e-5, 1e-4], ACCELERATIONS).on
+    relay.decide(&modes, gates, (9e-5, [1e-4; 2]), ACCELERATIONS).on
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn the_relay_keeps_its_rules() {
     assert_eq!(fired(at, -5e-5, 0.1, open), 0.2);
     let modes = [ElasticRate { rate: -5e-5, frequency: 1.0, influence: 0.1 }];
     for (excess, on) in [(9.5e-5, 0.2), (9.7e-5, 0.0), (-9.7e-5, 0.2)] {
-        assert_eq!(at.decide(&modes, open, [excess, 1e-4], ACCELERATIONS).on, on, "{excess}");
+        assert_eq!(at.decide(&modes, open, (excess, [1e-4; 2]), ACCELERATIONS).on, on, "{excess}");
     }
     // Without pulse widths the whole cycle.
     let whole = Damping { pulse_width: false, ..spec };
@@ -53,7 +53,7 @@ fn the_relay_keeps_its_rules() {
     for (hertz, eligible) in [(0.25, true), (0.5, true), (0.6, false), (0.8, false)] {
         let frequency = std::f64::consts::TAU * hertz;
         let modes = [ElasticRate { rate: -5e-5, frequency, influence: 0.1 }];
-        let damped = relay(&late).decide(&modes, open, [0.0, 1e-4], ACCELERATIONS);
+        let damped = relay(&late).decide(&modes, open, (0.0, [1e-4; 2]), ACCELERATIONS);
         assert_eq!(damped.on != 0.0, eligible, "{hertz} Hz");
     }
     assert_eq!(relay(&late).ahead(), 0.0);

@@ -71,6 +71,34 @@ def quaternion(roll, pitch, yaw):
     return times(times(about(2, yaw), about(1, pitch)), about(0, roll)), times
 
 
+class Lines:
+    """Switching lines about an axis, as docs/scenario.md states them."""
+
+    def __init__(self, law, jets, strength):
+        self.slope, self.limit = 0.05, law["rate_limit"]
+        self.on, self.off = law["switch_on"], law["switch_off"]
+        self.brake = 0.5 * min(strength)
+        self.least = max(strength) * max(jets["minimum_on"], jets["quantum"])
+        self.least = min(max(self.least, self.on / 1000), self.on)
+        zone = law["dead_zone"]
+        self.edge = max(zone - max(self.least, self.off) / self.slope, zone / 2)
+
+    def back(self, beyond):
+        if beyond <= 0:
+            return 0.0
+        slow = min(self.off, self.slope * beyond, np.sqrt(2 * self.brake * beyond))
+        return min(self.limit, max(min(self.slope, self.brake / self.limit) * beyond, slow))
+
+    def wanted(self, angle):
+        return -np.sign(angle) * self.back(abs(angle) - self.edge)
+
+    def allowed(self, ahead):
+        """How much too fast the body may go on towards an edge that lies at +edge."""
+        beyond = ahead - self.edge
+        room = self.back(beyond) / 2 if beyond > 0 else np.sqrt(-2 * self.brake * beyond)
+        return min(max(room, self.least), self.on)
+
+
 def station():
     path = pathlib.Path(__file__).parents[2] / "scenarios" / "iss-manoeuvre-off.toml"
     study = tomllib.loads(path.read_text())
@@ -95,6 +123,7 @@ def station():
             groups[axis, sign] = torque, forces, thrust / (jets["specific_impulse"] * 9.80665)
     strength = {key: abs(torque[key[0]]) / inertia[key[0], key[0]] for key, (torque, _, _) in groups.items()}
 
+    lines = [Lines(law, jets, [strength[a, 1], strength[a, -1]]) for a in range(3)]
     step, cycle = 0.01, law["period"]
     flows = []
     for mode in body["modes"]:
@@ -127,15 +156,11 @@ def station():
         estimate = predicted + part * (w + seen.T @ bending[:, 0] - predicted)
         command = np.zeros(3)
         for a in range(3):
-            zone = law["dead_zone"]
-            least = min(strength[a, 1], strength[a, -1])
-            slope = min(0.05, 0.5 * least / law["rate_limit"])
-            outside = error[a] - np.clip(error[a], -zone, zone)
-            wanted = np.clip(-slope * outside, -law["rate_limit"], law["rate_limit"])
-            excess = estimate[a] + changes(queued)[a] - wanted
-            if abs(excess) > law["switch_on"]:
+            excess = estimate[a] + changes(queued)[a] - lines[a].wanted(error[a])
+            allowed = lines[a].allowed(error[a] if excess > 0 else -error[a])
+            if abs(excess) > allowed:
                 firing[a] = True
-            elif abs(excess) < law["switch_off"]:
+            elif abs(excess) < min(law["switch_off"], allowed / 2):
                 firing[a] = False
             if firing[a]:
                 sign = -1 if excess > 0 else 1

@@ -49,6 +49,7 @@ fn spatial(metrics: &Metrics) {
     );
     say!("  at the gyro    {:.3e} rad/s rms over the last 200 s", number("elastic_rate_rms_rad_s"));
     say!("  pointing       {:.3e} rad from the target at the end", number("pointing_error_end_rad"));
+    goal(metrics);
     if let Some(Value::Numbers(frequencies)) = metrics.get("frequency_estimates_hz") {
         let found: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.4}")).collect();
         say!(

@@ -6,6 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::phase_plane::is_beyond;
 use crate::actuator::Jets;
 use crate::analysis::damping::{Relay, partition};
 use crate::belief::ElasticRate;
@@ -138,13 +139,13 @@ impl DampingRelay {
     }
 
     /// What to do in a cycle: `free` tells whether the rigid motion leaves the jets free, `trusted` whether the observer
-    /// follows, `excess` where the rigid rate is from where it should be (rad/s), within `switch_on`; the accelerations
+    /// follows, `rigid` how far the rigid rate is from where it should be, and how far it may be above and below (rad/s); the accelerations
     /// are those of plus and minus (rad/s²).
     pub fn decide(
         &mut self,
         modes: &[ElasticRate],
         [free, trusted]: [bool; 2],
-        [excess, switch_on]: [f64; 2],
+        (excess, allowed): (f64, [f64; 2]),
         accelerations: [f64; 2],
     ) -> Damped {
         let acted = || modes.iter().filter(|mode| self.acts_on(mode));
@@ -166,7 +167,7 @@ impl DampingRelay {
         let wanted =
             if self.spec.pulse_width { rate.abs() / (acceleration * influence) } else { self.period };
         let on = self.jets.on_time(wanted, self.period);
-        let kicked = (excess + sign * acceleration * on).abs() > switch_on;
+        let kicked = is_beyond(excess + sign * acceleration * on, allowed);
         if on > 0.0 && !(kicked && self.spec.guards.dead_zone) {
             damped.on = sign * on;
             self.watch(rate.abs());

@@ -5,6 +5,7 @@ mod open;
 mod pd;
 mod phase_plane;
 mod relay;
+mod switching_lines;
 
 use crate::belief::Belief;
 use crate::guard::Guard;
@@ -17,6 +18,7 @@ pub use open::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use phase_plane::{PhasePlane, PhasePlaneLaw, Target};
 pub use relay::{Relay, Sides};
+pub use switching_lines::{SwitchingLines, band};
 
 one_of! {
     /// The kinds of law.

@@ -1,20 +1,15 @@
 //! The phase-plane law of a spatial body: for each axis a relay with hysteresis on the rate, and pulses of measured length.
 //!
 //! Seed paper 4 tells that the station's jets follow a relay law with pulse-width modulation in the phase plane; its switching
-//! lines are not known. Here, about each axis, with the angle e beyond the goal and the rigid rate w:
-//!
-//! ```text
-//! w* = -clip(k dz(e), w_max),   k = min(slope, braking m / w_max),   s = w + (what is on its way) - w*
-//! ```
-//!
-//! where dz leaves out the dead zone and m is the jets' acceleration. Beyond `switch_on` the jets fire against s, until it
-//! is within `switch_off`, for |s|/m or the whole cycle if that is longer.
+//! lines are not known. Here, about each axis, s is how far the rigid rate, what is on its way included, is from the rate that
+//! the [`SwitchingLines`] want at the angle beyond the goal. Where it is further than they allow the jets fire against s, for
+//! |s|/m or the whole cycle if that is longer, until it is within `switch_off` and half of what is allowed.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::damping::{Damped, Damping, DampingRelay};
-use super::{Control, Phase};
+use super::{Control, Phase, SwitchingLines};
 use crate::actuator::Jets;
 use crate::belief::AxesBelief;
 use crate::body::spatial::turned;
@@ -31,15 +26,16 @@ pub struct PhasePlane {
     pub dead_zone: Positive,
     /// Largest rate at which the law turns the body (rad/s).
     pub rate_limit: Positive,
-    /// Largest rate for each unit of the angle beyond the dead zone (1/s).
+    /// Largest rate of the return for each unit of the angle beyond the dead zone (1/s).
     #[serde(default = "slope")]
     pub slope: Positive,
-    /// Part of the jets' acceleration that slowing down along that line may take: it makes the line flatter for weak jets.
+    /// Part of the jets' acceleration that slowing down may take.
     #[serde(default = "half")]
     pub braking: Fraction,
-    /// The jets begin to fire where the rate is further than this from where it should be (rad/s).
+    /// The jets begin to fire where the rate is further than this from where it should be (rad/s), near and beyond the
+    /// edges of the dead zone where it is less far.
     pub switch_on: Positive,
-    /// They end where it is nearer than this (rad/s).
+    /// They end where it is nearer than this (rad/s), at which rate the body returns at least.
     pub switch_off: Positive,
     /// Attitudes to turn to, in the order of their times; before the first it is the inertial one.
     #[serde(default)]
@@ -83,6 +79,12 @@ impl PhasePlane {
         turned(angles[0], angles[1], angles[2])
     }
 
+    /// When the last target begins that does so before an instant; the start without one.
+    pub fn last_target(&self, before: Instant) -> Instant {
+        let begins = |target: &Target| Instant::START + Span::from_seconds(target.from.get());
+        self.targets.iter().rev().map(begins).find(|from| *from < before).unwrap_or(Instant::START)
+    }
+
     /// What single values cannot show to be wrong: a key within the law, and why.
     pub fn inconsistency(&self) -> Option<(String, String)> {
         let (on, off) = (self.switch_on.get(), self.switch_off.get());
@@ -108,6 +110,7 @@ pub struct PhasePlaneLaw {
     jets: Jets,
     /// Of plus and minus, about each axis (rad/s²).
     accelerations: [[f64; 2]; 3],
+    lines: [SwitchingLines; 3],
     firing: [bool; 3],
     damping: Option<[DampingRelay; 3]>,
     damped: [Damped; 3],
@@ -120,6 +123,7 @@ impl PhasePlaneLaw {
         let relay = |damping| thresholds.map(|threshold| DampingRelay::new(damping, jets, period, threshold));
         Self {
             damping: spec.damping.as_ref().map(relay),
+            lines: accelerations.map(|accelerations| SwitchingLines::new(spec, jets, accelerations)),
             spec: spec.clone(),
             jets: jets.clone(),
             accelerations,
@@ -146,38 +150,27 @@ impl PhasePlaneLaw {
     /// How long the jets of each axis shall fire in a cycle (s), with the sign of the rate that they push to.
     pub fn decide(&mut self, belief: &AxesBelief) -> [f64; 3] {
         std::array::from_fn(|axis| {
-            let excess = self.excess(axis, belief);
-            let on = self.relay(axis, excess);
+            let (lines, angle) = (&self.lines[axis], belief.angle[axis]);
+            let excess = belief.rate[axis] + belief.queued[axis] - lines.wanted(angle);
+            let allowed = lines.allowed(angle);
+            let on = self.relay(axis, excess, allowed);
             let Some(damping) = &mut self.damping else { return on };
-            let switch_on = self.spec.switch_on.get();
-            let free = !self.firing[axis] && excess.abs() <= switch_on;
+            let free = !self.firing[axis] && !is_beyond(excess, allowed);
             self.damped[axis] = damping[axis].decide(
                 &belief.elastic[axis],
                 [free, belief.trusted[axis]],
-                [excess, switch_on],
+                (excess, allowed),
                 self.accelerations[axis],
             );
             on + self.damped[axis].on
         })
     }
 
-    /// How far the rigid rate is from where it should be (rad/s).
-    fn excess(&self, axis: usize, belief: &AxesBelief) -> f64 {
-        let Self { spec, accelerations, .. } = self;
-        let [plus, minus] = accelerations[axis];
-        let (limit, zone) = (spec.rate_limit.get(), spec.dead_zone.get());
-        let slope = spec.slope.get().min(spec.braking.get() * plus.min(minus) / limit);
-        let angle = belief.angle[axis];
-        let outside = angle - angle.clamp(-zone, zone);
-        let wanted = (-slope * outside).clamp(-limit, limit);
-        belief.rate[axis] + belief.queued[axis] - wanted
-    }
-
-    fn relay(&mut self, axis: usize, excess: f64) -> f64 {
-        let Self { spec, jets, accelerations, firing, .. } = self;
-        if excess.abs() > spec.switch_on.get() {
+    fn relay(&mut self, axis: usize, excess: f64, allowed: [f64; 2]) -> f64 {
+        let Self { spec, jets, accelerations, lines, firing, .. } = self;
+        if is_beyond(excess, allowed) {
             firing[axis] = true;
-        } else if excess.abs() < spec.switch_off.get() {
+        } else if excess.abs() < lines[axis].release(allowed[usize::from(excess < 0.0)]) {
             firing[axis] = false;
         }
         if !firing[axis] {
@@ -190,4 +183,9 @@ impl PhasePlaneLaw {
         firing[axis] = on > 0.0;
         sign * on
     }
+}
+
+/// Whether a rate is further from where it should be than is allowed above and below (rad/s).
+pub(super) fn is_beyond(excess: f64, [above, below]: [f64; 2]) -> bool {
+    excess > above || -excess > below
 }

@@ -299,8 +299,8 @@ enum Kind {
 impl Gather {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        let kind = if scenario.spatial.is_some() {
-            Kind::Spatial(Box::new(Spatial::new(scenario)))
+        let kind = if let Some(spatial) = &scenario.spatial {
+            Kind::Spatial(Box::new(Spatial::new(scenario, spatial)))
         } else if scenario.law.switches() {
             Kind::Switchings(Box::new(Switchings::new(scenario)))
         } else {

@@ -1,11 +1,13 @@
 //! What a run of a spatial body comes to: propellant, firings, elastic energy, pointing.
 
+use super::goal::Verdict;
 use super::{
     BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, POINTING_END,
     Told, VISIBLE_END, VISIBLE_PEAK, Value,
 };
+use crate::quantity::Positive;
 use crate::record::Cycle;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, SpatialLoop};
 use crate::time::Instant;
 
 /// The elastic rates are judged over so much of the run's end (s).
@@ -28,12 +30,24 @@ pub struct Spatial {
     /// Sum of the squared elastic rates of late cycles (rad²/s²), and how many they were.
     square: (f64, u64),
     error: f64,
+    verdict: Verdict,
+    /// How near to the target each axis shall be (rad), and since when one is not (s).
+    bands: [f64; 3],
+    outside: Option<f64>,
+    end: f64,
 }
 
 impl Spatial {
     /// An empty gathering for runs of a scenario.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &Scenario, spatial: &SpatialLoop) -> Self {
+        let end = Instant::START + scenario.duration;
+        let bands = scenario.reference.band.map_or(spatial.bands, |band| [Positive::get(band); 3]);
+        let from = spatial.law.last_target(end).seconds();
         Self {
+            verdict: Verdict::new(from, bands.into_iter().fold(0.0, f64::max)),
+            bands,
+            outside: None,
+            end: end.seconds(),
             late: scenario.duration.seconds() - LATE,
             fuel: 0.0,
             firings: (0, 0),
@@ -67,12 +81,20 @@ impl Spatial {
             self.square.1 += 1;
         }
         self.error = libm::sqrt(norm(cycle.error_rad));
+        if let Some(since) = self.outside.take() {
+            self.verdict.outside(since, t);
+        }
+        let is_outside = cycle.error_rad.iter().zip(self.bands).any(|(error, band)| error.abs() > band);
+        self.outside = is_outside.then_some(t);
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(self) -> Vec<Told> {
+    pub fn finish(mut self) -> Vec<Told> {
+        if let Some(since) = self.outside {
+            self.verdict.outside(since, self.end);
+        }
         let [tenth, hundredth] = self.below;
-        vec![
+        let metrics = [
             (&FUEL, Value::Number(self.fuel)),
             (&FIRINGS, Value::Count(self.firings.0)),
             (&FIRING_CYCLES, Value::Count(self.firings.1)),
@@ -84,6 +106,7 @@ impl Spatial {
             (&BELOW_1, Value::Number(hundredth)),
             (&ELASTIC_RATE, Value::Number(libm::sqrt(self.square.0 / self.square.1 as f64))),
             (&POINTING_END, Value::Number(self.error)),
-        ]
+        ];
+        metrics.into_iter().chain(self.verdict.finish(self.end)).collect()
     }
 }

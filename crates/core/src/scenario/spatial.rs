@@ -4,7 +4,7 @@ use super::Scenario;
 use crate::actuator::{Actuator, Group, Jets};
 use crate::body::{Body, Spatial};
 use crate::estimator::{Estimator, RigidRate, adaptive};
-use crate::law::{Damping, Law, PhasePlane};
+use crate::law::{Damping, Law, PhasePlane, band as law_band};
 use crate::sensor::{Gyro, Sensor};
 use crate::structure::Fault;
 
@@ -25,6 +25,8 @@ pub struct SpatialLoop {
     pub groups: [[Group; 2]; 3],
     /// Elastic rates beyond which the law damps actively (rad/s).
     pub thresholds: [f64; 3],
+    /// How near to its target the law keeps the body about each axis (rad).
+    pub bands: [f64; 3],
 }
 
 /// The estimators of a spatial body.
@@ -135,10 +137,16 @@ impl SpatialLoop {
             estimator,
             law: law.clone(),
             jets: jets.clone(),
+            bands: [0, 1, 2].map(|axis| law_band(law, jets, accelerations(&groups, axis))),
             groups,
             thresholds,
         }))
     }
+}
+
+/// Accelerations of plus and minus about an axis (rad/s²).
+fn accelerations(groups: &[[Group; 2]; 3], axis: usize) -> [f64; 2] {
+    [0, 1].map(|sign| groups[axis][sign].acceleration)
 }
 
 /// No structure has elastic rates like this (rad/s).

@@ -1,0 +1,97 @@
+//! Switching lines in the phase plane of one axis: the rate that the body shall have at an angle, and how far off it may be.
+//!
+//! With the jets' acceleration m, the angle e beyond the target, and d what of it lies outside an edge c just within the dead
+//! zone, the body shall return at the rate
+//!
+//! ```text
+//! r(d) = min(rate_limit, max(k d, min(switch_off, slope d, sqrt(2 b m d)))),   k = min(slope, b m/rate_limit)
+//! ```
+//!
+//! with b = `braking`: along k d it brakes in time from the largest rate; jets for which that line is flat do not wait on it,
+//! but return at `switch_off` until sqrt(2 b m d), from which they can brake. Beyond the edge half of r is the least rate of
+//! return that is left alone. Within it a rate outwards is left alone as long as the jets can stop the body before the edge,
+//! and none above `switch_on` is ([Wie08], chapter 7, for the parabolas; the rest is ours).
+
+use super::PhasePlane;
+use crate::actuator::Jets;
+
+/// The switching lines of an axis.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct SwitchingLines {
+    /// From this angle on the body is turned back (rad).
+    edge: f64,
+    rate_limit: f64,
+    /// Rates for each rad beyond the edge: at most, and as far as jets can brake along it from the largest rate (1/s).
+    slope: f64,
+    flat: f64,
+    /// Twice the deceleration (rad/s²).
+    parabola: f64,
+    on: f64,
+    off: f64,
+    /// What the smallest pulse changes (rad/s): less is not worth one.
+    least: f64,
+}
+
+impl SwitchingLines {
+    /// The lines about an axis on which plus and minus jets give these accelerations (rad/s²).
+    pub fn new(spec: &PhasePlane, jets: &Jets, [plus, minus]: [f64; 2]) -> Self {
+        let (on, off) = (spec.switch_on.get(), spec.switch_off.get());
+        let (slope, zone) = (spec.slope.get(), spec.dead_zone.get());
+        let braking = spec.braking.get() * plus.min(minus);
+        let least = smallest_change(jets, [plus, minus]).clamp(LEAST * on, on);
+        Self {
+            edge: (zone - least.max(off) / slope).max(0.5 * zone),
+            rate_limit: spec.rate_limit.get(),
+            slope,
+            flat: slope.min(braking / spec.rate_limit.get()),
+            parabola: 2.0 * braking,
+            on,
+            off,
+            least,
+        }
+    }
+
+    /// The rate that the body shall have at an angle (rad/s).
+    pub fn wanted(&self, angle: f64) -> f64 {
+        -libm::copysign(self.returning(angle.abs() - self.edge), angle)
+    }
+
+    /// Rate of the return from so far beyond the edge (rad/s).
+    fn returning(&self, beyond: f64) -> f64 {
+        if beyond <= 0.0 {
+            return 0.0;
+        }
+        let least = self.off.min(self.slope * beyond).min(libm::sqrt(self.parabola * beyond));
+        (self.flat * beyond).max(least).min(self.rate_limit)
+    }
+
+    /// How far the rate may be above, and below, the one that it shall have at an angle (rad/s).
+    pub fn allowed(&self, angle: f64) -> [f64; 2] {
+        [angle, -angle].map(|ahead| {
+            let beyond = ahead - self.edge;
+            let allowed =
+                if beyond > 0.0 { 0.5 * self.returning(beyond) } else { libm::sqrt(-self.parabola * beyond) };
+            allowed.clamp(self.least, self.on)
+        })
+    }
+
+    /// Below which excess of the rate the jets end to fire, where so much is allowed (rad/s).
+    pub fn release(&self, allowed: f64) -> f64 {
+        self.off.min(0.5 * allowed)
+    }
+}
+
+/// No rate below this part of `switch_on` is worth a pulse, however short pulses may be.
+const LEAST: f64 = 1e-3;
+
+/// What the smallest pulse of the stronger jets changes (rad/s).
+fn smallest_change(jets: &Jets, [plus, minus]: [f64; 2]) -> f64 {
+    plus.max(minus) * jets.minimum_on.get().max(jets.quantum.get())
+}
+
+/// How near to its target the law keeps the body about an axis (rad): the dead zone, and what the smallest pulse turns it
+/// until the next one can act.
+pub fn band(spec: &PhasePlane, jets: &Jets, accelerations: [f64; 2]) -> f64 {
+    let cycles = f64::from(jets.delay) + 2.0;
+    spec.dead_zone.get() + smallest_change(jets, accelerations) * cycles * spec.period.seconds()
+}
