@@ -108,7 +108,7 @@ const TYPES: &[Case] = &[
 const KEYS: &[Case] = &[
     ("unknown key at the top", Line(1, "duration = 1\ndurration = 2"), 2, "durration", &["unknown key `durration`", "expected one of", "`duration`"]),
     ("unknown table at the top", Line(11, "[lew.relay]"), 11, "lew", &["unknown key `lew`", "expected one of", "`law`"]),
-    ("unknown key of the body", Line(4, "angel = 1"), 4, "angel", &["unknown key `angel`", "`inertia`, `angle`, `rate`, `drive`, `modes`, `outputs`"]),
+    ("unknown key of the body", Line(4, "angel = 1"), 4, "angel", &["unknown key `angel`", "`inertia`, `angle`, `rate`, `drive`, `damping_matrix`, `modes`, `outputs`"]),
     ("unknown key of a mode", Line(7, "frequncy = 1"), 7, "frequncy", &["unknown key `frequncy`", "`frequency`"]),
     ("unknown key of the law", Line(16, "k_T = 0.3"), 16, "k_T", &["unknown key `k_T`", "`k_t`"]),
     ("unknown key of the sensor", Line(26, "period = 0.1\nrate = 1"), 27, "rate", &["unknown key `rate`", "`period`, `noise`, `bias`, `resolution`"]),

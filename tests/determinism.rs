@@ -14,11 +14,12 @@ fn fingerprint(text: &str) -> u64 {
 
 #[test]
 fn runs_repeat_to_the_last_bit() {
-    // (scenario, topic, fingerprint): undamped with adaptation; damped with noise, quadrature and drawn numbers;
+    // (scenario, topic, fingerprint): undamped with adaptation; coupled modes; damped with noise, quadrature and drawn numbers;
     // three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
     let runs = [
         ("relay-adaptive", "", "/command", 0xfed5_1b8d_2885_31dd),
         ("relay-adaptive", "", "/adaptation", 0x6fc9_7027_b350_262f),
+        ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0xbc8b_d593_5234_1614),

@@ -14,6 +14,7 @@ mod cli;
 mod convergence;
 #[cfg(target_os = "linux")]
 mod costs;
+mod coupled;
 mod cycles;
 mod damping;
 mod damping_relay;
@@ -27,6 +28,8 @@ mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
 mod layout;
+mod linear;
+mod linear_poles;
 #[cfg(feature = "live")]
 mod live;
 mod live_limits;
@@ -35,6 +38,7 @@ mod loops;
 mod manoeuvres;
 mod plan;
 mod plan_figures;
+mod plants;
 mod plot;
 mod relay;
 mod reproduce;

@@ -197,9 +197,23 @@ fn a_delay_moves_the_command() {
 
 #[test]
 fn what_does_not_go_with_a_wheel_is_refused() {
-    let dir = Dir::with(&["wheel-fixed-gain", "relay-fixed", "rotation-sine"]);
+    let dir = Dir::with(&["wheel-fixed-gain", "relay-fixed", "relay-wheel", "rotation-sine"]);
     let cases = [
-        ("relay-fixed", "actuator.wheel.gain=1.0", "`law.relay` finds its crossings in closed form"),
+        (
+            "relay-fixed",
+            "actuator.wheel.gain=1.0",
+            "`actuator` must be `ideal` with an `[estimator.envelope]`",
+        ),
+        (
+            "relay-wheel",
+            "drift.common.ramp={time=1.0,to=0.5}",
+            "`law.relay` finds its crossings in closed form: with a drift the sensor is `sampled`",
+        ),
+        (
+            "relay-wheel",
+            "actuator.wheel.rotor.speed_limit=100.0",
+            "`actuator.wheel.rotor.speed_limit` is watched at the law's commands",
+        ),
         ("rotation-sine", "actuator.wheel.gain=1.0", "`actuator.wheel` executes a law's samples"),
         ("rotation-sine", "drift.common.ramp={time=1.0,to=0.5}", "`drift` leaves no closed form"),
         ("wheel-fixed-gain", "drift={each=[]}", "must have a profile for each of 4 modes, got 0"),

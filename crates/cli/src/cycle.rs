@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use flexsc_core::Scenario;
+use flexsc_core::actuator::Actuator;
 use flexsc_core::analysis::rigid_cycle::{Resonance, RigidCycle, cycles, resonances};
 use flexsc_core::law::{Law, Sides};
 use serde_json::{Value as Json, json};
@@ -35,6 +36,12 @@ pub fn results(scenario: &Scenario) -> Result<RelayCycles, Failure> {
             scenario.name
         )));
     };
+    if matches!(scenario.actuator, Actuator::Wheel(_)) {
+        return Err(Failure::Arguments(format!(
+            "{}: limit cycles are those of a torque that is executed as it is, not by a wheel",
+            scenario.name
+        )));
+    }
     let (name, k_t) = (scenario.name.clone(), law.k_t.get());
     let unit = if body.has_unit_inertia() { "rad/s" } else { "N m s" };
     Ok(RelayCycles { name, k_t, unit, cycles: cycles(law, body, k_t), resonances: resonances(law, body) })

@@ -1,6 +1,6 @@
 //! The certified search for the instant at which a guard trips.
 //!
-//! It strides only as far as the bounds on the arc prove that no guard can trip, so that no crossing is missed, however
+//! It strides only as far as the bounds on the motion prove that no guard can trip, so that no crossing is missed, however
 //! brief, and no tolerance exists. `docs/events.md` derives the stride.
 
 use crate::body::{Arc, Sight, State};
@@ -10,13 +10,41 @@ use crate::time::Span;
 
 /// A guard that tripped.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Trip {
-    /// The span since the arc's departure.
+pub struct Trip<S = Sight> {
+    /// The span since departure.
     pub after: Span,
     /// The index of the guard.
     pub guard: usize,
-    /// What a sensor sees there.
-    pub sight: Sight,
+    /// What is seen there.
+    pub sight: S,
+}
+
+/// A motion in closed form whose derivatives are bounded.
+pub trait Approach {
+    /// A level that is watched.
+    type Guard: Copy;
+    /// Where the motion is at one instant.
+    type State;
+    /// What is seen of it.
+    type Sight: Copy;
+
+    /// What is seen at departure.
+    fn begin(&self, state: &mut Self::State) -> Self::Sight;
+    /// The state `h` seconds after it, and what is seen.
+    fn go(&self, h: f64, state: &mut Self::State) -> Self::Sight;
+    /// Whether it is a number.
+    fn is_finite(state: &Self::State, sight: Self::Sight) -> bool;
+    /// Whether a guard holds.
+    fn holds(guard: Self::Guard, state: &Self::State, sight: Self::Sight) -> bool;
+    /// For how long the bounds hold that are in use now (s).
+    fn window(state: &Self::State) -> f64;
+    /// A time after departure (s) before which the guard cannot trip, of a motion that lasts so long (s); 0 if it is not
+    /// known at once.
+    fn earliest(&self, guard: Self::Guard, horizon: Span, state: &Self::State) -> f64;
+    /// A time (s) for which the guard cannot trip, given what is seen now.
+    fn stride(&self, guard: Self::Guard, state: &Self::State, sight: Self::Sight) -> f64;
+    /// Whether the guard cannot trip within a time (s), given what is seen now.
+    fn is_clear(&self, guard: Self::Guard, state: &Self::State, sight: Self::Sight, time: f64) -> bool;
 }
 
 /// Strides after which a search asks whether it may go on.
@@ -27,20 +55,20 @@ const STRIDES: u32 = 256;
 ///
 /// # Errors
 /// The record ends the search, however small its strides.
-pub fn locate(
-    arc: &Arc,
-    guards: &[Guard],
+pub fn locate<M: Approach>(
+    motion: &M,
+    guards: &[M::Guard],
     horizon: Span,
-    state: &mut State,
+    state: &mut M::State,
     record: &mut impl Record,
-) -> Result<Option<Trip>, RecordError> {
-    let mut sight = arc.origin();
-    if let Some(guard) = guards.iter().position(|guard| guard.holds(sight.angle)) {
-        arc.at(0.0, state);
+) -> Result<Option<Trip<M::Sight>>, RecordError> {
+    let mut sight = motion.begin(state);
+    if let Some(guard) = guards.iter().position(|guard| M::holds(*guard, state, sight)) {
+        motion.go(0.0, state);
         return Ok(Some(Trip { after: Span::ZERO, guard, sight }));
     }
-    let first = |&guard| match arc.earliest(guard) {
-        0.0 => arc.stride(guard, sight),
+    let first = |&guard| match motion.earliest(guard, horizon, state) {
+        0.0 => motion.stride(guard, state, sight),
         jump => jump,
     };
     let mut stride = guards.iter().map(first).fold(f64::INFINITY, f64::min);
@@ -50,28 +78,92 @@ pub fn locate(
     loop {
         let (base_s, last) = (base.seconds(), horizon.minus(base).leading_femtoseconds());
         let mut ticks = 0;
-        while ticks < last && sight.angle.is_finite() {
+        while ticks < last && M::is_finite(state, sight) {
             strides = strides.wrapping_add(1);
             if strides.is_multiple_of(STRIDES) {
                 record.poll()?;
             }
             // The tick before the stride's end is certain not to trip: the next one is the first that can.
             ticks = ticks.saturating_add((stride * 1e15) as i64).saturating_add(1).min(last);
-            sight = arc.at(base_s + ticks as f64 / 1e15, state);
-            stride = f64::INFINITY;
+            sight = motion.go(base_s + ticks as f64 / 1e15, state);
+            stride = M::window(state);
             for (index, &guard) in guards.iter().enumerate() {
-                if guard.holds(sight.angle) {
+                if M::holds(guard, state, sight) {
                     let after = base + Span::from_femtoseconds(ticks);
                     return Ok(Some(Trip { after, guard: index, sight }));
                 }
-                if !arc.is_clear(guard, sight, stride) {
-                    stride = stride.min(arc.stride(guard, sight));
+                if !motion.is_clear(guard, state, sight, stride) {
+                    stride = stride.min(motion.stride(guard, state, sight));
                 }
             }
         }
         base = base + Span::from_femtoseconds(last);
-        if base >= horizon || !sight.angle.is_finite() {
+        if base >= horizon || !M::is_finite(state, sight) {
             return Ok(None);
         }
+    }
+}
+
+impl Approach for Arc {
+    type Guard = Guard;
+    type State = State;
+    type Sight = Sight;
+
+    #[inline]
+    fn begin(&self, _: &mut State) -> Sight {
+        self.origin()
+    }
+
+    #[allow(clippy::inline_always, reason = "the search calls it")]
+    #[inline(always)]
+    fn go(&self, h: f64, state: &mut State) -> Sight {
+        self.at(h, state)
+    }
+
+    #[inline]
+    fn is_finite(_: &State, sight: Sight) -> bool {
+        sight.angle.is_finite()
+    }
+
+    #[inline]
+    fn holds(guard: Guard, _: &State, sight: Sight) -> bool {
+        guard.holds(sight.angle)
+    }
+
+    #[inline]
+    fn window(_: &State) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline]
+    fn earliest(&self, guard: Guard, _: Span, _: &State) -> f64 {
+        Self::earliest(self, guard)
+    }
+
+    #[inline]
+    fn stride(&self, guard: Guard, _: &State, sight: Sight) -> f64 {
+        Self::stride(self, guard, sight)
+    }
+
+    #[inline]
+    fn is_clear(&self, guard: Guard, _: &State, sight: Sight, time: f64) -> bool {
+        Self::is_clear(self, guard, sight, time)
+    }
+}
+
+/// The first root t >= 0 of gap - speed t - acceleration t²/2 for a gap >= 0, or infinity.
+#[inline]
+pub fn first_root(gap: f64, speed: f64, acceleration: f64) -> f64 {
+    let discriminant = speed * speed + 2.0 * acceleration * gap;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    let root = libm::sqrt(discriminant);
+    if speed > 0.0 {
+        2.0 * gap / (speed + root)
+    } else if acceleration > 0.0 {
+        (root - speed) / acceleration
+    } else {
+        f64::INFINITY
     }
 }

@@ -49,6 +49,7 @@ pub mod law;
 pub mod layout;
 pub mod manoeuvre;
 pub mod metrics;
+pub mod motion;
 mod one_of;
 pub mod phasor;
 mod polynomial;

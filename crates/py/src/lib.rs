@@ -16,6 +16,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use flexsc_core::actuator::Actuator;
 use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
@@ -265,6 +266,10 @@ fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
         let why = format!("{}: limit cycles are those of a law `relay`", scenario.inner.name);
         return Err(PyValueError::new_err(why));
     };
+    if matches!(scenario.inner.actuator, Actuator::Wheel(_)) {
+        let why = "limit cycles are those of a torque that is executed as it is, not by a wheel";
+        return Err(PyValueError::new_err(format!("{}: {why}", scenario.inner.name)));
+    }
     let (cycles, resonances) = (cycles(law, body, law.k_t.get()), resonances(law, body));
     Ok(json!({"cycles": cycles, "resonances": resonances}).to_string())
 }

@@ -1,4 +1,4 @@
-//! The planar body as one linear system, z' = A z + g m: what its motion is where a wheel's back-EMF couples all modes.
+//! The planar body as one linear system, z' = A z + g m: what its motion is where a wheel's back-EMF or damping couples modes.
 //!
 //! z = (x_r, x_r', x_1, x_1', x_2, x_2', ...); x_r'' = m - a r z, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i (m - a r z), where
 //! r picks the rate that the wheel feels (seed papers 3 and 5, equations (4) and (6), corrected).
@@ -6,6 +6,7 @@
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::{Phase, Planar, State};
+use crate::motion::linear::{Linear, System};
 
 /// The matrices of a body at constant frequencies.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +39,27 @@ impl Coupled {
             system[(v, x)] = -w * w;
             system[(v, v)] = -2.0 * mode.damping.get() * w;
         }
+        for (i, row) in body.damping_matrix.iter().enumerate() {
+            for (j, damping) in row.iter().enumerate() {
+                system[(3 + 2 * i, 3 + 2 * j)] -= damping.get();
+            }
+        }
         let felt =
             if total { rate.clone() } else { RowDVector::from_fn(order, |_, j| f64::from(u8::from(j == 1))) };
         system -= &input * felt * back_emf;
         Self { system, input, angle, rate }
+    }
+
+    /// The exact flow of the system, with the measured angle as its output; none where its numbers leave the range of
+    /// doubles.
+    pub fn flow(&self) -> Option<Linear> {
+        let order = self.system.nrows();
+        let system = System {
+            matrix: self.system.clone(),
+            input: DMatrix::from_column_slice(order, 1, self.input.as_slice()),
+            output: DMatrix::from_row_slice(1, order, self.angle.clone_owned().as_slice()),
+        };
+        Linear::new(system.form())
     }
 
     /// The transition over `h` seconds and what a constant unit of the reduced moment adds to it.

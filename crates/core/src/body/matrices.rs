@@ -1,5 +1,6 @@
 //! A body given by the mass and the stiffness matrix of its structure.
 
+use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +10,7 @@ use super::{Damping, Drive, Planar, Weights};
 use crate::quantity::Finite;
 use crate::structure::{Fault, Matrix, Structure};
 
-/// A body by its matrices: M q'' + K q = Q, where one coordinate is the hub's angle.
+/// A body by its matrices: M q'' + C q' + K q = Q, where one coordinate is the hub's angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Matrices {
@@ -33,6 +34,10 @@ pub struct Matrices {
     /// Damping ratio of all modes, or one for each that is kept.
     #[serde(default)]
     pub damping: Damping,
+    /// Damping matrix, symmetric, without resistance to the rotation (N m s/rad for angles, N s/m for displacements); it
+    /// adds to those ratios, and may couple the modes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping_matrix: Option<Matrix>,
     /// How many of the lowest modes are kept; left out, all up to 1e3 rad/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<u32>,
@@ -63,8 +68,6 @@ pub struct Sum {
 impl Matrices {
     /// The structure, its matrices read.
     pub fn structure(&self) -> Result<Structure, Fault> {
-        let read =
-            |key: &str, matrix: &Matrix| matrix.read().map_err(|(at, why)| (format!("{key}{at}"), why));
         let rotation: Option<Vec<f64>> =
             self.rotation.as_ref().map(|rotation| rotation.iter().map(|r| r.get()).collect());
         let (mass, stiffness) = (read("mass", &self.mass)?, read("stiffness", &self.stiffness)?);
@@ -82,7 +85,10 @@ impl Matrices {
         };
         let Self { drive, damping, keep, angle, rate, .. } = self;
         let outputs = self.outputs.iter().enumerate().map(observed).collect::<Result<_, Fault>>()?;
-        Reduction { drive: *drive, damping, keep: *keep, angle: *angle, rate: *rate, outputs }
+        let damping_matrix = self.damping_matrix.as_ref();
+        let damping_matrix = damping_matrix.map(|matrix| structure.damping(read("damping_matrix", matrix)?));
+        let damping_matrix = damping_matrix.transpose()?;
+        Reduction { drive: *drive, damping, damping_matrix, keep: *keep, angle: *angle, rate: *rate, outputs }
             .planar(&structure)
     }
 
@@ -102,4 +108,8 @@ impl Matrices {
         }
         Ok(self.coordinates.clone())
     }
+}
+
+fn read(key: &str, matrix: &Matrix) -> Result<DMatrix<f64>, Fault> {
+    matrix.read().map_err(|(at, why)| (format!("{key}{at}"), why))
 }

@@ -73,6 +73,9 @@ impl Body {
             Self::Matrices(matrices) => {
                 matrices.mass.locate(directory);
                 matrices.stiffness.locate(directory);
+                if let Some(damping) = &mut matrices.damping_matrix {
+                    damping.locate(directory);
+                }
             }
             Self::Spatial(spatial) => spatial.modes.locate(directory),
             Self::Planar(_) | Self::Panels(_) => {}

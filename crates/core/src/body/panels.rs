@@ -166,8 +166,15 @@ impl Panels {
         };
         let outputs = self.sections.iter().enumerate().map(observed).collect();
         let Self { drive, damping, keep, angle, rate, .. } = self;
-        let reduction =
-            Reduction { drive: *drive, damping, keep: *keep, angle: *angle, rate: *rate, outputs };
+        let reduction = Reduction {
+            drive: *drive,
+            damping,
+            damping_matrix: None,
+            keep: *keep,
+            angle: *angle,
+            rate: *rate,
+            outputs,
+        };
         reduction.planar(&structure).map_err(|(key, why)| match key.as_str() {
             "damping" | "keep" => (key, why),
             _ => too_far_apart(&why),

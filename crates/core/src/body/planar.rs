@@ -12,6 +12,7 @@ use super::forced::{Forced, Input, Push};
 use super::mode::Flow;
 use super::stretch::{Expansion, REACH};
 use super::{Mode, Output, Phase, Sight, State};
+use crate::crossing::first_root;
 use crate::guard::Guard;
 use crate::polynomial::TERMS;
 use crate::quantity::{Finite, Positive};
@@ -32,6 +33,9 @@ pub struct Planar {
     /// What is commanded.
     #[serde(default)]
     pub drive: Drive,
+    /// Damping that couples the modes, beside their own ratios (1/s): x_i'' has also -sum_j `damping_matrix`\[i\]\[j\] x_j'.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub damping_matrix: Vec<Vec<Finite>>,
     /// Elastic modes.
     #[serde(default)]
     pub modes: Vec<Mode>,
@@ -52,6 +56,9 @@ pub enum Drive {
     Motion,
 }
 
+/// What a damping matrix needs.
+pub const HUB_FREE: &str = "couples the modes of a body whose hub turns freely, not one whose hub's motion is given (`drive = \"motion\"`)";
+
 fn unit() -> Positive {
     Positive::ONE
 }
@@ -64,6 +71,7 @@ impl Default for Planar {
             angle: Finite::default(),
             rate: Finite::default(),
             drive: Drive::default(),
+            damping_matrix: Vec::new(),
             modes: Vec::new(),
             outputs: Vec::new(),
         }
@@ -74,18 +82,44 @@ impl Planar {
     /// What single values cannot show to be wrong: the key, and what is wrong with it.
     pub fn inconsistency(&self) -> Option<(String, String)> {
         let modes = self.modes.len();
-        self.outputs.iter().enumerate().find_map(|(index, output)| {
-            let at = |key: &str, why: String| Some((format!("outputs[{index}].{key}"), why));
-            if output.modes.len() != modes {
-                let found = output.modes.len();
-                return at("modes", format!("must have one number for each of {modes} modes, got {found}"));
-            }
-            let before = self.outputs[..index].iter();
-            if before.map(|other| &other.name).any(|name| *name == output.name) {
-                return at("name", format!("must differ from the other names, got `{}` again", output.name));
-            }
-            None
+        self.damping_inconsistency().or_else(|| {
+            self.outputs.iter().enumerate().find_map(|(index, output)| {
+                let at = |key: &str, why: String| Some((format!("outputs[{index}].{key}"), why));
+                if output.modes.len() != modes {
+                    let found = output.modes.len();
+                    return at(
+                        "modes",
+                        format!("must have one number for each of {modes} modes, got {found}"),
+                    );
+                }
+                let before = self.outputs[..index].iter();
+                if before.map(|other| &other.name).any(|name| *name == output.name) {
+                    return at(
+                        "name",
+                        format!("must differ from the other names, got `{}` again", output.name),
+                    );
+                }
+                None
+            })
         })
+    }
+
+    fn damping_inconsistency(&self) -> Option<(String, String)> {
+        let modes = self.modes.len();
+        let rows = &self.damping_matrix;
+        if rows.is_empty() {
+            return None;
+        }
+        if self.drive == Drive::Motion {
+            return Some(("damping_matrix".to_owned(), HUB_FREE.to_owned()));
+        }
+        if rows.len() != modes {
+            let why = format!("must have one row for each of {modes} modes, got {}", rows.len());
+            return Some(("damping_matrix".to_owned(), why));
+        }
+        let index = rows.iter().position(|row| row.len() != modes)?;
+        let why = format!("must have one number for each of {modes} modes, got {}", rows[index].len());
+        Some((format!("damping_matrix[{index}]"), why))
     }
 
     /// What a unit of the command accelerates (kg m²): 1 where the motion itself is commanded.
@@ -366,22 +400,5 @@ impl Arc {
             velocity.extend(swing.flow.velocity(from_rest, phase.quadrature));
         }
         DVector::from_vec(velocity)
-    }
-}
-
-/// The first root t >= 0 of gap - speed t - acceleration t²/2 for a gap >= 0, or infinity.
-#[inline]
-fn first_root(gap: f64, speed: f64, acceleration: f64) -> f64 {
-    let discriminant = speed * speed + 2.0 * acceleration * gap;
-    if discriminant < 0.0 {
-        return f64::INFINITY;
-    }
-    let root = libm::sqrt(discriminant);
-    if speed > 0.0 {
-        2.0 * gap / (speed + root)
-    } else if acceleration > 0.0 {
-        (root - speed) / acceleration
-    } else {
-        f64::INFINITY
     }
 }

@@ -4,14 +4,18 @@
 //! Modes of the clamped structure do not: x_n = -(m_n/J) f_n with the gain m_n²/J, so that the torque that moves the hub
 //! as commanded is J (u - sum x_n'').
 
+use nalgebra::DMatrix;
+
+use super::planar::HUB_FREE;
 use super::{Damping, Drive, Mode, Output, Planar};
 use crate::quantity::{Finite, Frequency, Positive};
-use crate::structure::{Fault, Structure, TOO_FAR_APART};
+use crate::structure::{Fault, Structure, TOO_FAR_APART, eigenvalues};
 
 /// What is kept of a structure, and how it starts.
 pub struct Reduction<'a> {
     pub drive: Drive,
     pub damping: &'a Damping,
+    pub damping_matrix: Option<DMatrix<f64>>,
     pub keep: Option<u32>,
     pub angle: Finite,
     pub rate: Finite,
@@ -28,7 +32,16 @@ pub struct Observed {
 impl Reduction<'_> {
     /// The planar body.
     pub fn planar(&self, structure: &Structure) -> Result<Planar, Fault> {
-        let weights: Vec<_> = self.outputs.iter().map(|output| output.weights.clone()).collect();
+        let mut weights: Vec<_> = self.outputs.iter().map(|output| output.weights.clone()).collect();
+        if let Some(damping) = &self.damping_matrix {
+            if self.drive == Drive::Motion {
+                return Err(("damping_matrix".to_owned(), HUB_FREE.to_owned()));
+            }
+            // Every coordinate is observed, and so the whole of each mode.
+            let order = damping.nrows();
+            let unit = |i: usize| (0..order).map(|j| f64::from(u8::from(i == j))).collect();
+            weights.extend((0..order).map(unit));
+        }
         let solved = structure.modes(self.drive, &weights)?;
         let within = |w: &&f64| **w <= Frequency::LARGEST;
         let resolved = solved.frequencies.iter().take_while(within).count();
@@ -71,9 +84,54 @@ impl Reduction<'_> {
         };
         let seen = solved.rigid.iter().zip(&solved.shapes);
         let outputs = self.outputs.iter().zip(seen).map(output).collect::<Result<_, Fault>>()?;
+        let damping_matrix = match &self.damping_matrix {
+            Some(matrix) => coupled(matrix, &solved.shapes[self.outputs.len()..], kept, &scale)?,
+            None => Vec::new(),
+        };
         let inertia = Positive::new(inertia).ok_or_else(too_large)?;
-        Ok(Planar { inertia, angle: self.angle, rate: self.rate, drive: self.drive, modes, outputs })
+        Ok(Planar {
+            inertia,
+            angle: self.angle,
+            rate: self.rate,
+            drive: self.drive,
+            damping_matrix,
+            modes,
+            outputs,
+        })
     }
+}
+
+/// The damping matrix of the modes that are kept, from that of the coordinates and what each coordinate is in each mode
+/// of unit modal mass: f_n'' has -sum_m X_n' C X_m f_m', and x_n is so many times f_n.
+fn coupled(
+    matrix: &DMatrix<f64>,
+    shapes: &[Vec<f64>],
+    kept: usize,
+    scale: &dyn Fn(usize) -> f64,
+) -> Result<Vec<Vec<Finite>>, Fault> {
+    let at = |why: String| ("damping_matrix".to_owned(), why);
+    let modes = DMatrix::from_fn(shapes.len(), kept, |i, n| shapes[i][n]);
+    let damping = modes.tr_mul(&(matrix * &modes));
+    let largest = damping.amax();
+    let symmetric = (&damping + damping.transpose()) * 0.5;
+    let lowest = eigenvalues(&symmetric).ok_or_else(too_large)?.first().copied().unwrap_or(0.0);
+    if lowest < -1e-9 * largest {
+        return Err(at(format!("must be positive semidefinite, and drives a mode with {lowest} 1/s")));
+    }
+    let element = |n: usize, m: usize| {
+        if n == m || damping[(n, m)] == 0.0 {
+            return finite(damping[(n, m)]);
+        }
+        if scale(n) != 0.0 && scale(m) != 0.0 {
+            return finite(scale(n) * damping[(n, m)] / scale(m));
+        }
+        if damping[(n, m)].abs() > 1e-9 * largest {
+            let still = if scale(n) == 0.0 { n } else { m };
+            return Err(at(format!("moves mode {still} by the others, and the hub does not feel that mode")));
+        }
+        Ok(Finite::default())
+    };
+    (0..kept).map(|n| (0..kept).map(|m| element(n, m)).collect()).collect()
 }
 
 fn finite(value: f64) -> Result<Finite, Fault> {

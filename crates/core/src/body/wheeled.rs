@@ -1,12 +1,20 @@
 //! The planar body where its modes do not move on their own: coupled by a wheel's back-EMF, or with frequencies that drift.
 //!
-//! At constant frequencies the motion under a constant input is that of the matrix exponential; with drifting ones it is
-//! a Taylor series, anew between the kinks of their profiles.
+//! At constant frequencies the motion under a constant input is that of the matrix exponential, or in closed form by its
+//! poles; with drifting ones it is a Taylor series, anew between the kinks of their profiles.
+
+use std::sync::Arc as Shared;
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::stretch::{Expansion, Linear};
+use super::stretch::{self, Expansion};
 use super::{Coupled, Drift, Drifting, Planar, Sight, State};
+use crate::crossing::{Trip, locate};
+use crate::guard::Guard;
+use crate::motion::linear::{Level, Linear, Modal, Seen, Segment};
+use crate::phasor::abs;
+use crate::record::{Record, RecordError};
+use crate::time::Span;
 
 /// So many transitions are kept, the newest last: the periods of a run are few.
 const KEPT: usize = 8;
@@ -24,10 +32,25 @@ pub struct Coupling {
 #[derive(Clone, Debug)]
 enum Flow {
     Constant(Constant),
+    Linear(Box<Poles>),
     Drifting(Drifting),
 }
 
-/// A motion at constant frequencies.
+/// A motion at constant frequencies, in closed form.
+#[derive(Clone, Debug)]
+struct Poles {
+    system: Coupled,
+    /// Reduced moment (rad/s²), and z at departure.
+    moment: f64,
+    from: DVector<f64>,
+    flow: Shared<Linear>,
+    segment: Segment,
+    here: Modal,
+    seen: Seen,
+    levels: Vec<Level>,
+}
+
+/// A motion at constant frequencies, from transition to transition.
 #[derive(Clone, Debug)]
 struct Constant {
     system: Coupled,
@@ -43,6 +66,30 @@ struct Constant {
 }
 
 impl Coupling {
+    /// A body at its start, under no input, by the poles of its flow. A wheel takes back-EMF a (1/s) from the total rate, or
+    /// from the rigid one.
+    pub fn by_poles(body: &Planar, flow: &Shared<Linear>, back_emf: f64, total: bool) -> Self {
+        let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
+        let start = body.start().to_vector(&frequencies);
+        let (segment, here) = (Segment::new(Shared::clone(flow)), flow.modal(&start));
+        let poles = Poles {
+            system: Coupled::new(body, back_emf, total, &vec![1.0; frequencies.len()]),
+            moment: 0.0,
+            from: start.clone(),
+            flow: Shared::clone(flow),
+            segment,
+            here,
+            seen: Seen::default(),
+            levels: Vec::with_capacity(2),
+        };
+        Self {
+            mobility: 1.0 / body.inertia.get(),
+            frequencies,
+            here: start,
+            flow: Flow::Linear(Box::new(poles)),
+        }
+    }
+
     /// A body at its start, under no input. A wheel takes back-EMF a (1/s) from the total rate, or from the rigid one.
     pub fn new(body: &Planar, drift: Option<&Drift>, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
@@ -77,6 +124,11 @@ impl Coupling {
                 constant.moment = moment;
                 constant.from.copy_from(&self.here);
             }
+            Flow::Linear(poles) => {
+                poles.moment = moment;
+                poles.from.copy_from(&self.here);
+                poles.segment.depart(&poles.here, &[moment]);
+            }
             Flow::Drifting(drifting) => drifting.depart(now, moment),
         }
     }
@@ -84,7 +136,7 @@ impl Coupling {
     /// Takes some steps towards `h` seconds after departure; whether no more are needed.
     pub fn approach(&mut self, h: f64) -> bool {
         match &mut self.flow {
-            Flow::Constant(_) => true,
+            Flow::Constant(_) | Flow::Linear(_) => true,
             Flow::Drifting(drifting) => drifting.approach(h),
         }
     }
@@ -93,6 +145,12 @@ impl Coupling {
     pub fn at(&mut self, h: f64, state: &mut State) -> Sight {
         let sight = match &mut self.flow {
             Flow::Constant(constant) => constant.go(h, &mut self.here),
+            Flow::Linear(poles) => {
+                poles.segment.at(h, &mut poles.seen);
+                poles.segment.arrive(h, &mut poles.here);
+                self.here = poles.flow.vector(&poles.here);
+                poles.seen.sights[0]
+            }
             Flow::Drifting(drifting) => {
                 drifting.go(h);
                 let mut sight = Sight::default();
@@ -108,13 +166,30 @@ impl Coupling {
         state.set_vector(&self.here, &self.frequencies);
         sight
     }
+
+    /// The first guard of the angle that trips on this motion within a span; none is found but in closed form, which a law
+    /// with guards of a continuous sensor gets.
+    ///
+    /// # Errors
+    /// The record ends the search.
+    pub fn trip(
+        &mut self,
+        guards: &[Guard],
+        horizon: Span,
+        record: &mut impl Record,
+    ) -> Result<Option<Trip<()>>, RecordError> {
+        let Flow::Linear(poles) = &mut self.flow else { return Ok(None) };
+        poles.levels.clear();
+        poles.levels.extend(guards.iter().map(|guard| Level { output: 0, guard: *guard }));
+        locate(&poles.segment, &poles.levels, horizon, &mut poles.seen, record)
+    }
 }
 
 /// A motion that is taken apart from its departure on.
 #[derive(Clone, Debug)]
 pub enum Unfolding {
     /// At constant frequencies.
-    Linear(Linear),
+    Linear(stretch::Linear),
     /// With drifting ones.
     Drifting(Box<Drifting>),
 }
@@ -125,12 +200,17 @@ impl Coupling {
         match &self.flow {
             Flow::Constant(constant) => {
                 let push = &constant.system.input * constant.moment;
-                Unfolding::Linear(Linear::new(
+                Unfolding::Linear(stretch::Linear::new(
                     &constant.system.system,
                     push,
                     &constant.from,
                     constant.fastest,
                 ))
+            }
+            Flow::Linear(poles) => {
+                let push = &poles.system.input * poles.moment;
+                let fastest = poles.flow.poles().into_iter().map(abs).fold(0.0, f64::max);
+                Unfolding::Linear(stretch::Linear::new(&poles.system.system, push, &poles.from, fastest))
             }
             Flow::Drifting(drifting) => Unfolding::Drifting(Box::new(drifting.from_departure())),
         }

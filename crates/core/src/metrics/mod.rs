@@ -98,7 +98,7 @@ metrics! {
     CYCLE_IMPULSE = "cycle_impulse_per_hour_nm_s", "N m s",
         "Integral of the absolute torque per hour of that cycle, in rad/s on a body without inertia; null without one";
     CYCLE_MULTIPLIERS = "cycle_multipliers", "",
-        "Absolute values of the cycle's Floquet multipliers, largest first; empty without a cycle";
+        "Absolute values of the cycle's Floquet multipliers, largest first; empty without a cycle, and where modes are coupled";
     CYCLE_MULTIPLIER_ARGUMENTS = "cycle_multiplier_arguments_rad", "rad",
         "Arguments of the same multipliers";
     CYCLE_MULTIPLIER_MAX = "cycle_multiplier_max", "",

@@ -42,7 +42,8 @@ pub struct Switchings {
 impl Switchings {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        let smooth = scenario.sensor.period().is_none();
+        // The multipliers are those of modes that move on their own.
+        let smooth = scenario.sensor.period().is_none() && scenario.linear.is_none();
         Self {
             duration: scenario.duration.seconds(),
             reference: scenario.reference.envelope.map(crate::quantity::Positive::get),

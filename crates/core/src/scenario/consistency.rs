@@ -2,9 +2,9 @@
 
 use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Wheel};
 use crate::adaptation::Adaptation;
-use crate::body::{Body, Drift, Drive, Profile};
+use crate::body::{Body, Drift, Drive, Planar, Profile};
 use crate::disturbance::Disturbance;
 use crate::document::key;
 use crate::estimator::{Estimator, Form};
@@ -56,6 +56,7 @@ impl Scenario {
 
     fn planar_inconsistency(&self) -> Option<(String, String)> {
         self.law_inconsistency()
+            .or_else(|| self.damping_inconsistency())
             .or_else(|| self.coupling_inconsistency())
             .or_else(|| self.drive_inconsistency())
             .or_else(|| self.estimator_inconsistency())
@@ -80,11 +81,47 @@ impl Scenario {
             let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form, or the sensor `sampled`";
             return at("body.panels.kinematics", why.to_owned());
         }
-        if self.coupling().is_some() && continuous {
-            let why = "finds its crossings in closed form: with a wheel or a drift the sensor is `sampled`";
+        if self.drift.is_some() && continuous {
+            let why = "finds its crossings in closed form: with a drift the sensor is `sampled`";
             return at("law.relay", why.to_owned());
         }
+        let limited = |wheel: &Wheel| wheel.rotor.as_ref().is_some_and(|rotor| rotor.speed_limit.is_some());
+        if matches!(&self.actuator, Actuator::Wheel(wheel) if limited(wheel)) && continuous {
+            let why = "is watched at the law's commands: with a law `relay` the sensor is `sampled`";
+            return at("actuator.wheel.rotor.speed_limit", why.to_owned());
+        }
         None
+    }
+
+    /// The key of the damping matrix.
+    pub(super) fn damping_key(&self) -> String {
+        format!("body.{}.damping_matrix", self.body.kind())
+    }
+
+    fn damping_inconsistency(&self) -> Option<(String, String)> {
+        let couples = |body: &Planar| !body.damping_matrix.is_empty();
+        if self.manoeuvre.is_some() && couples(self.planned_for()) {
+            let why = "couples modes, which a `[manoeuvre]` takes each on its own: give it a `model` without";
+            return Some((self.damping_key(), why.to_owned()));
+        }
+        if !couples(&self.model) {
+            return None;
+        }
+        let why = match &self.estimator {
+            _ if self.drift.is_some() => "leaves no closed form of modes that drift",
+            _ if self.manoeuvre.is_some() && self.actuator == Actuator::Ideal => {
+                "moves in closed form under torques that are constant for a while: a `[manoeuvre]` is then executed by \
+                 an `[actuator.hold]` or thrusters"
+            }
+            Some(Estimator::Envelope(_)) => {
+                "couples modes, which an `[estimator.envelope]` follows each on its own"
+            }
+            Some(Estimator::ExtendedKalman(_) | Estimator::UnscentedKalman(_)) => {
+                "couples modes, which a filter of their frequencies predicts each on its own: `kalman` knows it"
+            }
+            _ => return None,
+        };
+        Some((self.damping_key(), why.to_owned()))
     }
 
     fn coupling_inconsistency(&self) -> Option<(String, String)> {

@@ -8,6 +8,7 @@ mod spatial;
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,15 +17,16 @@ use toml::value::Datetime;
 
 use crate::actuator::{Actuator, Opposes};
 use crate::adaptation::Adaptation;
-use crate::body::{Body, Chain, Coupling, Drift, Planar};
+use crate::body::{Body, Chain, Coupled, Coupling, Drift, Planar};
 use crate::disturbance::Disturbance;
 use crate::document::{Document, ScenarioError};
 use crate::estimator::Estimator;
 use crate::law::{Goal, Law, Promise};
 use crate::manoeuvre::{Manoeuvre, Plan};
+use crate::motion::linear::Linear;
 use crate::quantity::Positive;
 use crate::sensor::Sensor;
-use crate::structure::Fault;
+use crate::structure::{Fault, TOO_FAR_APART};
 use crate::time::{Instant, Span};
 use crate::uncertain::Distribution;
 
@@ -33,6 +35,9 @@ use epoch::nanoseconds_since_1970;
 pub use cost::{Cost, MOST_RUNS};
 pub use log::{Log, SceneSpec};
 pub use spatial::{AxesEstimator, SpatialLoop};
+
+/// More modes than these are not taken apart into the poles of their coupled motion.
+const MOST_COUPLED: usize = 100;
 
 /// A scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -94,6 +99,9 @@ pub struct Scenario {
     /// Distributions of keys that a campaign draws anew for each run.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertain: BTreeMap<String, Distribution>,
+    /// The exact flow of a body whose modes are coupled, where the motion is in closed form.
+    #[serde(skip)]
+    pub linear: Option<Arc<Linear>>,
     /// The exact chain, where the scenario asks for it.
     #[serde(skip)]
     pub chain: Option<Chain>,
@@ -172,7 +180,10 @@ impl Scenario {
         let inconsistent = |(key, why): (String, String)| document.inconsistent(&key, &why);
         scenario.spatial = SpatialLoop::of(&scenario).map_err(inconsistent)?;
         match scenario.inconsistency() {
-            None => scenario.plan = scenario.planned().map_err(inconsistent)?,
+            None => {
+                scenario.plan = scenario.planned().map_err(inconsistent)?;
+                scenario.linear = scenario.flow().map_err(inconsistent)?;
+            }
             Some(problem) => return Err(inconsistent(problem)),
         }
         Ok(scenario)
@@ -228,15 +239,47 @@ impl Scenario {
         toml::to_string(self).unwrap_or_default()
     }
 
-    /// The motion of a body whose modes a wheel couples, or whose frequencies drift; none if they move on their own.
+    /// The motion of a body whose modes a wheel or damping couples, or whose frequencies drift; none if they move on their
+    /// own.
     pub fn coupling(&self) -> Option<Coupling> {
-        let (back_emf, total) = match &self.actuator {
-            Actuator::Wheel(wheel) => (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate),
-            _ if self.drift.is_none() => return None,
+        let (back_emf, total) = self.back_emf();
+        if let Some(flow) = &self.linear {
+            return Some(Coupling::by_poles(&self.model, flow, back_emf, total));
+        }
+        let wheel = matches!(self.actuator, Actuator::Wheel(_));
+        (wheel || self.drift.is_some())
+            .then(|| Coupling::new(&self.model, self.drift.as_ref(), back_emf, total))
+    }
+
+    /// What a wheel's back-EMF takes from a rate (1/s), and whether from that of the elastic body.
+    fn back_emf(&self) -> (f64, bool) {
+        match &self.actuator {
+            Actuator::Wheel(wheel) => {
+                (wheel.back_emf.get() / self.model.inertia.get(), wheel.opposes == Opposes::BodyRate)
+            }
             _ => (0.0, true),
-        };
-        let back_emf = back_emf / self.model.inertia.get();
-        Some(Coupling::new(&self.model, self.drift.as_ref(), back_emf, total))
+        }
+    }
+
+    /// The flow by poles of a body that a damping matrix couples, or a wheel under a law that switches at crossings.
+    fn flow(&self) -> Result<Option<Arc<Linear>>, (String, String)> {
+        let wheel = matches!(self.actuator, Actuator::Wheel(_));
+        let crosses = self.law.switches() && self.sensor.period().is_none();
+        let damped = !self.model.damping_matrix.is_empty();
+        if self.spatial.is_some() || !(damped || wheel && crosses) {
+            return Ok(None);
+        }
+        let key = if damped { self.damping_key() } else { "actuator.wheel".to_owned() };
+        let modes = self.model.modes.len();
+        if modes > MOST_COUPLED {
+            return Err((key, format!("couples at most {MOST_COUPLED} modes, and the body has {modes}")));
+        }
+        let (back_emf, total) = self.back_emf();
+        let coupled = Coupled::new(&self.model, back_emf, total, &vec![1.0; self.model.modes.len()]);
+        match coupled.flow() {
+            Some(flow) => Ok(Some(Arc::new(flow))),
+            None => Err((key, format!("with the modes {TOO_FAR_APART}"))),
+        }
     }
 
     /// The body that the manoeuvre is planned for.

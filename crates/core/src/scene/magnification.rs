@@ -82,12 +82,13 @@ pub fn spatial_angle(spatial: &SpatialLoop) -> f64 {
 }
 
 /// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, or once where a
-/// wheel lets go as the body turns, but no more than the same push gives without a spring, or what the initial state holds.
+/// wheel under a PD law lets go as the body turns, but no more than the same push gives without a spring, or what the initial state holds.
 pub fn displacements(scenario: &Scenario) -> Vec<f64> {
     let model = &scenario.model;
     let travel = angle(scenario);
     let moment = largest(scenario) / model.commanded_inertia();
-    let times = if matches!(scenario.actuator, Actuator::Wheel(_)) { 1.0 } else { 2.0 };
+    let lets_go = matches!(scenario.actuator, Actuator::Wheel(_)) && !scenario.law.switches();
+    let times = if lets_go { 1.0 } else { 2.0 };
     let of = |mode: &Mode| {
         let start = mode.start();
         // One that does not swing holds what it is displaced by.

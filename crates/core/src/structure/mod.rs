@@ -125,6 +125,31 @@ impl Structure {
         &self.stiffness
     }
 
+    /// A damping matrix of this structure, made symmetric to the last digit.
+    ///
+    /// # Errors
+    /// A matrix that is not symmetric and finite, that does not fit, or that resists the rotation.
+    pub fn damping(&self, damping: DMatrix<f64>) -> Result<DMatrix<f64>, Fault> {
+        let damping = symmetric("damping_matrix", damping)?;
+        let (order, found) = (self.mass.nrows(), damping.nrows());
+        if found != order {
+            return fault(
+                "damping_matrix",
+                format!("must be {order} x {order}, as the mass, got {found} x {found}"),
+            );
+        }
+        let resistance = &damping * &self.rotation;
+        let bound = ROUNDING * damping.amax() * self.rotation.amax();
+        if let Some(i) = (0..order).find(|i| resistance[*i].abs() > bound) {
+            let why = format!(
+                "must not resist the rotation of the whole, but gives {} for coordinate {i}",
+                resistance[i]
+            );
+            return fault("damping_matrix", why);
+        }
+        Ok(damping)
+    }
+
     /// The elastic modes: those of the free structure where a torque is commanded, of the clamped one where the hub's
     /// motion is. An observed coordinate is a sum of coordinates with these weights.
     ///

@@ -230,11 +230,19 @@ impl Plant {
         horizon: Span,
         record: &mut impl Record,
     ) -> Result<Option<(Instant, usize)>, RecordError> {
-        // No law with guards acts on a body without a closed form.
-        let Motion::Planar(arc) = &self.motion else { return Ok(None) };
+        let departed = self.departed;
+        let arc = match &mut self.motion {
+            Motion::Planar(arc) => arc,
+            Motion::Coupled(coupling) => {
+                let trip = coupling.trip(guards, horizon, record)?;
+                return Ok(trip.map(|trip| (departed + trip.after, trip.guard)));
+            }
+            // No law with guards acts on a body without a closed form.
+            Motion::Chain(_) => return Ok(None),
+        };
         let trip = locate(arc, guards, horizon, &mut self.ahead.0, record)?;
         Ok(trip.map(|trip| {
-            let at = self.departed + trip.after;
+            let at = departed + trip.after;
             (self.ahead.1, self.ahead.2) = (trip.sight, at);
             (at, trip.guard)
         }))

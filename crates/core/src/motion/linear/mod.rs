@@ -1,0 +1,25 @@
+//! The linear flow: coupled plants x' = A x + B u, y = C x in closed form, by complex poles and residues.
+//!
+//! [`System`] or [`SecondOrder`] is what is given; both become a [`Form`] in which angles that nothing feels are split off
+//! exactly. [`Linear`] is its eigen decomposition, computed once, and [`Segment`] the motion under one input: the
+//! residues of the acceleration at each pole, which also bound the derivatives for the certified search for crossings.
+//! No equilibrium is ever formed, so that a pole at 0, one at -1e-9 and one at -2 + 30i go through the same formulas.
+//! Poles that nearly coalesce with their eigenvectors are kept together as a cluster, a small triangular matrix.
+
+mod bounds;
+mod cluster;
+mod energy;
+mod extended;
+mod flow;
+mod form;
+mod phi;
+mod poles;
+mod schur;
+mod search;
+mod segment;
+
+pub use energy::SecondOrder;
+pub use flow::{Linear, Modal};
+pub use form::{Form, System};
+pub use search::Level;
+pub use segment::{Seen, Segment};

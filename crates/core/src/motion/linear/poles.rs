@@ -1,0 +1,287 @@
+//! Poles and their vectors: F V = V T with T diagonal where the vectors allow, polished beyond the solver's digits.
+//!
+//! The order of poles and of every sum is fixed, so that a plant has the same poles on every machine.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::extended::residual;
+use super::schur::Schur;
+use crate::phasor::{Phasor, abs};
+
+/// Poles nearer than this part of their size are candidates for a cluster.
+const NEAR: f64 = 3e-3;
+/// Condition of a vector beyond which near poles are kept together, and beyond which any pole joins its neighbour.
+const NEAR_CONDITION: f64 = 30.0;
+const CONDITION: f64 = 1e3;
+/// Condition of a cluster beyond which nothing is split.
+const LOST: f64 = 1e6;
+/// Poles nearer than this part of the norm are not polished: the equations for it are singular.
+const UNPOLISHED: f64 = 1e-8;
+
+/// Some poles, with the subspace in which they live: F `right` = `right` `triangle`, `left` `right` = 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    pub triangle: DMatrix<Phasor>,
+    pub right: DMatrix<Phasor>,
+    pub left: DMatrix<Phasor>,
+    /// 2 if the conjugate block, which is not kept, counts too; else 1.
+    pub weight: f64,
+}
+
+impl Block {
+    fn pole(&self) -> Phasor {
+        self.triangle[(0, 0)]
+    }
+
+    /// How much larger than 1 the product of its vectors' lengths is.
+    pub fn condition(&self) -> f64 {
+        size(&self.left) * size(&self.right) / self.triangle.nrows() as f64
+    }
+}
+
+/// The blocks of a matrix. The rows of `seen` and `carried` tell what each output sees of w and of the integral of w,
+/// so that a pole's vector gets the phase in which it shows. None if there is no Schur form.
+pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>) -> Option<Vec<Block>> {
+    let order = matrix.nrows();
+    let schur = Schur::new(matrix)?;
+    let norm = matrix.norm();
+    let poles = Spectrum::new(&schur);
+    let mut groups = poles.singles();
+    let mut blocks = gather(&schur, &poles, &groups, norm)?;
+    // Near poles with nearly equal vectors, then any pole that cannot be told from its neighbour.
+    for (nearest, condition) in [(true, NEAR_CONDITION), (false, CONDITION)] {
+        let ill: Vec<usize> =
+            blocks.iter().filter(|(b, _)| b.condition() > condition).map(|(_, i)| *i).collect();
+        if ill.is_empty() {
+            continue;
+        }
+        for pole in ill {
+            poles.merge(pole, nearest, &mut groups);
+        }
+        blocks = gather(&schur, &poles, &groups, norm)?;
+    }
+    if blocks.iter().any(|(block, _)| block.condition() > LOST) {
+        let unit = schur.basis.clone();
+        let left = unit.adjoint();
+        return Some(vec![Block { triangle: schur.triangle, right: unit, left, weight: 1.0 }]);
+    }
+    let mut blocks: Vec<Block> = blocks.into_iter().map(|(block, _)| block).collect();
+    for _ in 0..2 {
+        polish(&mut blocks, matrix, norm);
+    }
+    for block in blocks.iter_mut().filter(|block| block.triangle.nrows() == 1) {
+        turn(block, seen, carried, norm);
+    }
+    invert(&mut blocks, order)?;
+    blocks.sort_by(|a, b| {
+        let key = |block: &Block| (abs(block.pole()), block.pole().im);
+        let ((x, u), (y, v)) = (key(a), key(b));
+        x.total_cmp(&y).then(u.total_cmp(&v))
+    });
+    Some(blocks)
+}
+
+/// The eigenvalues, and which is the conjugate of which.
+struct Spectrum {
+    poles: Vec<Phasor>,
+    conjugate: Vec<usize>,
+}
+
+impl Spectrum {
+    fn new(schur: &Schur) -> Self {
+        let mut poles: Vec<Phasor> = schur.triangle.diagonal().iter().copied().collect();
+        let largest = poles.iter().map(|pole| abs(*pole)).fold(0.0, f64::max);
+        for pole in poles.iter_mut().filter(|pole| pole.im.abs() < 1e-13 * largest) {
+            pole.im = 0.0;
+        }
+        let mut conjugate: Vec<usize> = (0..poles.len()).collect();
+        for i in (0..poles.len()).filter(|i| poles[*i].im > 0.0) {
+            let distance = |j: &usize| abs(poles[*j] - poles[i].conj());
+            let free = (0..poles.len()).filter(|j| poles[*j].im < 0.0 && conjugate[*j] == *j);
+            if let Some(j) = free.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+                (conjugate[i], conjugate[j]) = (j, i);
+            }
+        }
+        Self { poles, conjugate }
+    }
+
+    /// Each pole in a group of its own: the number of its group.
+    fn singles(&self) -> Vec<usize> {
+        (0..self.poles.len()).collect()
+    }
+
+    /// Joins the group of a pole with that of its nearest neighbour outside, or with those of all poles near it, and the
+    /// conjugates alike.
+    fn merge(&self, pole: usize, near: bool, groups: &mut [usize]) {
+        let distance = |j: usize| abs(self.poles[j] - self.poles[pole]);
+        let outside: Vec<usize> = (0..self.poles.len()).filter(|j| groups[*j] != groups[pole]).collect();
+        let with: Vec<usize> = if near {
+            let reach = NEAR * abs(self.poles[pole]);
+            outside.into_iter().filter(|j| distance(*j) <= reach).collect()
+        } else {
+            outside.into_iter().min_by(|a, b| distance(*a).total_cmp(&distance(*b))).into_iter().collect()
+        };
+        let mut join = |a: usize, b: usize| {
+            let (from, to) = (groups[b], groups[a]);
+            groups.iter_mut().filter(|group| **group == from).for_each(|group| *group = to);
+        };
+        for other in with {
+            join(pole, other);
+            join(self.conjugate[pole], self.conjugate[other]);
+        }
+        // A group that holds a pair holds all conjugates.
+        for i in 0..self.poles.len() {
+            let conjugate = self.conjugate[i];
+            if conjugate != i && groups[i] == groups[conjugate] {
+                let group = groups[i];
+                for j in (0..groups.len()).filter(|j| groups[*j] == group).collect::<Vec<_>>() {
+                    let (from, to) = (groups[self.conjugate[j]], group);
+                    groups.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+                }
+            }
+        }
+    }
+}
+
+/// The blocks of the groups, one of each conjugate pair, each with a pole of it.
+fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Option<Vec<(Block, usize)>> {
+    let mut blocks = Vec::new();
+    let mut done = vec![false; groups.len()];
+    for first in 0..groups.len() {
+        let members: Vec<usize> = (0..groups.len()).filter(|i| groups[*i] == groups[first]).collect();
+        let mirrored = poles.conjugate[first];
+        let own = groups[mirrored] == groups[first];
+        if done[first] || (!own && poles.poles[first].im < 0.0) {
+            continue;
+        }
+        for member in &members {
+            done[*member] = true;
+        }
+        let weight = if own { 1.0 } else { 2.0 };
+        let (right, triangle) = schur.subspace(&members);
+        let count = members.len();
+        let coupling = (0..count).flat_map(|j| (0..j).map(move |i| (i, j))).map(|at| abs(triangle[at]));
+        let coupled = coupling.fold(0.0, f64::max) > 64.0 * f64::EPSILON * norm;
+        if count > 1 && coupled {
+            let left = right.adjoint();
+            blocks.push((Block { triangle, right, left, weight }, first));
+            continue;
+        }
+        // A pole of several independent vectors is several poles.
+        for (j, member) in members.iter().enumerate() {
+            let mut pole = triangle[(j, j)];
+            let mut vector = right.columns(j, 1).into_owned();
+            if poles.poles[*member].im == 0.0 && count == 1 {
+                pole.im = 0.0;
+                make_real(&mut vector);
+            }
+            let triangle = DMatrix::from_element(1, 1, pole);
+            blocks.push((Block { triangle, left: vector.adjoint(), right: vector, weight }, *member));
+        }
+    }
+    let mut bare: Vec<Block> = blocks.iter().map(|(block, _)| block.clone()).collect();
+    invert(&mut bare, groups.len())?;
+    Some(bare.into_iter().zip(blocks).map(|(block, (_, pole))| (block, pole)).collect())
+}
+
+/// Turns the vector of a real pole, of whatever phase, into a real one.
+fn make_real(vector: &mut DMatrix<Phasor>) {
+    let largest = vector.iter().copied().fold(Phasor::default(), |a, b| if abs(b) > abs(a) { b } else { a });
+    vector.apply(|v| *v = Phasor { re: (*v / largest).re, im: 0.0 });
+}
+
+/// Gives a vector the phase in which the output that sees most of it sees it as a real number.
+fn turn(block: &mut Block, seen: &DMatrix<f64>, carried: &DMatrix<f64>, norm: f64) {
+    let pole = block.pole();
+    if pole.im == 0.0 || abs(pole) < 1e-13 * norm {
+        return;
+    }
+    let sight = |rows: &DMatrix<f64>, j: usize| {
+        let row = rows.row(j);
+        row.iter().zip(block.right.iter()).fold(Phasor::default(), |sum, (c, v)| sum + v * *c)
+    };
+    let sights = (0..seen.nrows()).map(|j| sight(seen, j) + sight(carried, j) / pole);
+    let largest = sights.fold(Phasor::default(), |a, b| if abs(b) > abs(a) { b } else { a });
+    if abs(largest) > 1e-14 * size(&block.right) {
+        block.right.apply(|v| *v /= largest);
+        block.left.apply(|w| *w *= largest);
+    }
+}
+
+/// Newton's step for every pole that stands alone, with the residual in extended precision.
+fn polish(blocks: &mut [Block], matrix: &DMatrix<f64>, norm: f64) {
+    let old = blocks.to_vec();
+    let spread = |pole: Phasor, block: &Block| {
+        let diagonal = block.triangle.diagonal();
+        let (one, other) = (diagonal.iter(), diagonal.iter().map(Phasor::conj));
+        one.copied()
+            .chain(other.filter(|_| block.weight == 2.0))
+            .map(|z| abs(z - pole))
+            .fold(f64::INFINITY, f64::min)
+    };
+    for (index, block) in blocks.iter_mut().enumerate().filter(|(_, block)| block.triangle.nrows() == 1) {
+        let pole = block.pole();
+        let alone = |(i, other): (usize, &Block)| i == index || spread(pole, other) > UNPOLISHED * norm;
+        if !old.iter().enumerate().all(alone) {
+            continue;
+        }
+        let wrong = residual(matrix, block.right.column(0), pole);
+        let mut step = DVector::zeros(matrix.nrows());
+        for (i, other) in old.iter().enumerate() {
+            for mirrored in [false, true] {
+                if mirrored && other.weight < 2.0 {
+                    continue;
+                }
+                let of = |m: &DMatrix<Phasor>| if mirrored { m.conjugate() } else { m.clone() };
+                let part = of(&other.left) * &wrong;
+                if i == index && !mirrored {
+                    block.triangle[(0, 0)] = pole + part[0];
+                    continue;
+                }
+                let count = other.triangle.nrows();
+                let apart = DMatrix::from_diagonal_element(count, count, pole) - of(&other.triangle);
+                step += of(&other.right) * apart.solve_upper_triangular(&part).unwrap_or(part);
+            }
+        }
+        if block.weight < 2.0 {
+            block.triangle[(0, 0)].im = pole.im;
+            step.apply(|s| s.im = if pole.im == 0.0 { 0.0 } else { s.im });
+        }
+        block.right += step;
+    }
+}
+
+/// Sets the left vectors to the inverse of the right ones, with one step of Newton's iteration.
+fn invert(blocks: &mut [Block], order: usize) -> Option<()> {
+    let mut right = DMatrix::zeros(order, order);
+    let mut at = 0;
+    for block in blocks.iter() {
+        let count = block.right.ncols();
+        right.columns_mut(at, count).copy_from(&block.right);
+        at += count;
+        if block.weight == 2.0 {
+            right.columns_mut(at, count).copy_from(&block.right.conjugate());
+            at += count;
+        }
+    }
+    // Vectors that are equal to the last bit make no inverse; what is as good as that makes a huge one.
+    let mut left =
+        right.clone().lu().try_inverse().unwrap_or_else(|| DMatrix::from_element(order, order, HUGE));
+    let rest = DMatrix::identity(order, order) - &left * &right;
+    left += rest * left.clone();
+    let mut at = 0;
+    for block in blocks.iter_mut() {
+        let count = block.right.ncols();
+        block.left = left.rows(at, count).into_owned();
+        let real = block.weight < 2.0 && count == 1 && block.right.iter().all(|v| v.im == 0.0);
+        block.left.apply(|w| w.im = if real { 0.0 } else { w.im });
+        at += if block.weight == 2.0 { 2 * count } else { count };
+    }
+    (at == order).then_some(())
+}
+
+const HUGE: Phasor = Phasor { re: 1e150, im: 0.0 };
+
+fn size(matrix: &DMatrix<Phasor>) -> f64 {
+    libm::sqrt(matrix.iter().map(Phasor::norm_sqr).sum())
+}

@@ -1,0 +1,94 @@
+//! The certified search on a linear flow: any number of guards on any outputs, in one search.
+
+use super::segment::{Seen, Segment};
+use crate::crossing::{Approach, first_root};
+use crate::guard::Guard;
+use crate::time::Span;
+
+/// The horizon beyond which no pole counts as slow (s).
+const LONG: f64 = 1e3;
+
+/// A guard on one of the outputs.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Level {
+    /// The index of the output.
+    pub output: usize,
+    /// Its level.
+    pub guard: Guard,
+}
+
+impl Approach for Segment {
+    type Guard = Level;
+    type State = Seen;
+    type Sight = ();
+
+    fn begin(&self, seen: &mut Seen) {
+        self.origin(seen);
+    }
+
+    fn go(&self, h: f64, seen: &mut Seen) {
+        self.at(h, seen);
+    }
+
+    fn is_finite(seen: &Seen, (): ()) -> bool {
+        seen.sights.iter().all(|sight| sight.angle.is_finite())
+    }
+
+    fn holds(level: Level, seen: &Seen, (): ()) -> bool {
+        level.guard.holds(seen.sights[level.output].angle)
+    }
+
+    fn window(seen: &Seen) -> f64 {
+        seen.window
+    }
+
+    /// Fast poles that do not grow keep within their residues of a line; slow ones accelerate towards the guard at most as
+    /// they do at one of the ends, or by what they turn meanwhile.
+    fn earliest(&self, Level { output, guard }: Level, horizon: Span, seen: &Seen) -> f64 {
+        let (flow, towards) = (&*self.flow, guard.side.sign());
+        let horizon = horizon.seconds().min(LONG).min(seen.window);
+        let (mut angle, mut rate) = self.origins[output];
+        let (mut reach, mut acceleration) = (0.0, 0.0);
+        let count = flow.poles.len();
+        for (k, simple) in flow.poles.iter().enumerate() {
+            let (pole, sigma) = (&simple.pole, simple.pole.lambda.re);
+            let (a, size) = (self.residues[output * count + k], self.sizes[output * count + k]);
+            if pole.size * horizon > 3.0 && sigma <= 0.0 {
+                let slope = a * pole.inverse;
+                rate -= simple.weight * slope.re;
+                angle -= simple.weight * (slope * pole.inverse).re;
+                reach += size / (pole.size * pole.size);
+                continue;
+            }
+            let now = simple.weight * towards * a.re;
+            acceleration += if a.im == 0.0 && pole.lambda.im == 0.0 {
+                now.max(now * libm::exp(sigma * horizon))
+            } else {
+                let growth = if sigma > 0.0 { simple.growth } else { 1.0 };
+                (size * growth).min(now + size * pole.size * growth * horizon)
+            };
+        }
+        for (cluster, rates) in flow.clusters.iter().zip(&seen.rates) {
+            acceleration += cluster.bounds(output, rates)[0];
+        }
+        let gap = towards * (guard.level - angle) - reach;
+        if gap <= 0.0 {
+            return 0.0;
+        }
+        first_root(gap, towards * rate, acceleration).min(horizon)
+    }
+
+    fn stride(&self, Level { output, guard }: Level, seen: &Seen, (): ()) -> f64 {
+        let (now, towards) = (seen.sights[output], guard.side.sign());
+        let (gap, speed, acceleration) =
+            (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
+        let q = first_root(gap, speed, acceleration);
+        let steepest = seen.curvature[output].min(acceleration + seen.jerk[output] * q / 3.0);
+        first_root(gap, speed, steepest).min(seen.window)
+    }
+
+    fn is_clear(&self, Level { output, guard }: Level, seen: &Seen, (): (), time: f64) -> bool {
+        let (now, towards) = (seen.sights[output], guard.side.sign());
+        guard.gap(now.angle) > time * (towards * now.rate + 0.5 * seen.curvature[output] * time)
+    }
+}

@@ -1,0 +1,182 @@
+//! The motion under one input: residues at departure, and everything at a later time from them.
+
+use std::sync::Arc as Shared;
+
+use nalgebra::DVector;
+
+use super::cluster::moved;
+use super::flow::{Linear, Modal};
+use crate::body::Sight;
+use crate::phasor::{Phasor, abs};
+
+/// A motion under one constant input.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    pub(super) flow: Shared<Linear>,
+    from: Modal,
+    /// Modal rates at departure.
+    rates: Vec<Phasor>,
+    cluster_rates: Vec<DVector<Phasor>>,
+    /// Of each output and pole: the residue of the acceleration, and its absolute value times the pole's weight.
+    pub(super) residues: Vec<Phasor>,
+    pub(super) sizes: Vec<f64>,
+    /// Of each output: value and rate at departure.
+    pub(super) origins: Vec<(f64, f64)>,
+}
+
+/// What is seen at one instant, and bounds of what comes.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    /// Of each output: value, rate and acceleration.
+    pub sights: Vec<Sight>,
+    /// No |y''| of the output is larger within the window.
+    pub curvature: Vec<f64>,
+    /// No |y'''| of the output is larger within the window.
+    pub jerk: Vec<f64>,
+    /// For how long the bounds hold (s).
+    pub window: f64,
+    /// Of each pole: e^(lambda h) and its absolute value.
+    pub(super) exponentials: Vec<(Phasor, f64)>,
+    /// Rates of the clusters now.
+    pub(super) rates: Vec<DVector<Phasor>>,
+}
+
+impl Segment {
+    /// A motion of a flow, not yet departed.
+    pub fn new(flow: Shared<Linear>) -> Self {
+        let (outputs, poles) = (flow.outputs(), flow.poles.len());
+        Self {
+            from: Modal::default(),
+            rates: vec![Phasor::default(); poles],
+            cluster_rates: Vec::new(),
+            residues: vec![Phasor::default(); outputs * poles],
+            sizes: vec![0.0; outputs * poles],
+            origins: vec![(0.0, 0.0); outputs],
+            flow,
+        }
+    }
+
+    /// Begins the motion anew: from this state, under this input.
+    pub fn depart(&mut self, from: &Modal, input: &[f64]) {
+        self.from.clone_from(from);
+        let (flow, count) = (&*self.flow, self.flow.poles.len());
+        for (j, origin) in self.origins.iter_mut().enumerate() {
+            let rigid = flow.rigid.row(j);
+            *origin = (rigid.iter().zip(&from.cyclic).map(|(c, theta)| c * theta).sum(), 0.0);
+        }
+        for (k, (simple, w)) in flow.poles.iter().zip(&from.simple).enumerate() {
+            let pushed = simple.push.iter().zip(input).fold(Phasor::default(), |sum, (b, u)| sum + b * *u);
+            let rate = simple.pole.lambda * w + pushed;
+            self.rates[k] = rate;
+            for (j, sights) in simple.sights.iter().enumerate() {
+                let residue = sights.residue * rate;
+                self.residues[j * count + k] = residue;
+                self.sizes[j * count + k] = simple.weight * abs(residue);
+                let (y, v) = &mut self.origins[j];
+                *y += simple.weight * real(sights.angle, *w);
+                *v += simple.weight * (real(sights.rate, *w) + real(sights.angle, rate));
+            }
+        }
+        self.cluster_rates.clear();
+        for (cluster, w) in flow.clusters.iter().zip(&from.clusters) {
+            let input = DVector::from_iterator(input.len(), input.iter().map(|u| Phasor { re: *u, im: 0.0 }));
+            let rates = &cluster.block.triangle * w + &cluster.push * input;
+            let (angle, rate) = (&cluster.angle * w, &cluster.rate * w + &cluster.angle * &rates);
+            for (j, (y, v)) in self.origins.iter_mut().enumerate() {
+                *y += cluster.block.weight * angle[j].re;
+                *v += cluster.block.weight * rate[j].re;
+            }
+            self.cluster_rates.push(rates);
+        }
+    }
+
+    /// What is seen `h` seconds after departure.
+    pub fn at(&self, h: f64, seen: &mut Seen) {
+        let (flow, count) = (&*self.flow, self.flow.poles.len());
+        seen.fit(self);
+        for (sight, (y, v)) in seen.sights.iter_mut().zip(&self.origins) {
+            *sight = Sight { angle: y + v * h, rate: *v, acceleration: 0.0 };
+        }
+        for (k, simple) in flow.poles.iter().enumerate() {
+            let phi = simple.pole.phi(h);
+            let shrunk = if simple.pole.lambda.re == 0.0 { 1.0 } else { abs(phi.exp) };
+            seen.exponentials[k] = (phi.exp, shrunk);
+            for (j, sight) in seen.sights.iter_mut().enumerate() {
+                let residue = self.residues[j * count + k];
+                sight.acceleration += simple.weight * real(residue, phi.exp);
+                sight.rate += simple.weight * real(residue, phi.first);
+                sight.angle += simple.weight * real(residue, phi.second);
+            }
+        }
+        for (k, (cluster, rates)) in flow.clusters.iter().zip(&self.cluster_rates).enumerate() {
+            let moved = moved(&cluster.block.triangle, rates, h);
+            let [acceleration, rate, angle] =
+                [&moved.exp, &moved.first, &moved.second].map(|vector| &cluster.residue * vector);
+            for (j, sight) in seen.sights.iter_mut().enumerate() {
+                sight.acceleration += cluster.block.weight * acceleration[j].re;
+                sight.rate += cluster.block.weight * rate[j].re;
+                sight.angle += cluster.block.weight * angle[j].re;
+            }
+            seen.rates[k] = moved.exp;
+        }
+        flow.bound(self, seen);
+    }
+
+    /// What is seen at departure, which needs no exponential.
+    pub fn origin(&self, seen: &mut Seen) {
+        let (flow, count) = (&*self.flow, self.flow.poles.len());
+        seen.fit(self);
+        seen.exponentials.fill((Phasor { re: 1.0, im: 0.0 }, 1.0));
+        for (j, (sight, (angle, rate))) in seen.sights.iter_mut().zip(&self.origins).enumerate() {
+            let residues = flow.poles.iter().zip(&self.residues[j * count..]);
+            let mut acceleration: f64 = residues.map(|(simple, a)| simple.weight * a.re).sum();
+            for (cluster, rates) in flow.clusters.iter().zip(&self.cluster_rates) {
+                acceleration += cluster.block.weight * (cluster.residue.row(j) * rates)[0].re;
+            }
+            *sight = Sight { angle: *angle, rate: *rate, acceleration };
+        }
+        seen.rates.clone_from(&self.cluster_rates);
+        flow.bound(self, seen);
+    }
+
+    /// The state `h` seconds after departure.
+    pub fn arrive(&self, h: f64, state: &mut Modal) {
+        state.clone_from(&self.from);
+        for (k, simple) in self.flow.poles.iter().enumerate() {
+            let phi = simple.pole.phi(h);
+            let (w, rate) = (self.from.simple[k], self.rates[k]);
+            state.simple[k] = w + phi.first * rate;
+            for (theta, carry) in state.cyclic.iter_mut().zip(&simple.carry) {
+                *theta += simple.weight * (h * real(*carry, w) + real(*carry, phi.second * rate));
+            }
+        }
+        for (k, (cluster, rates)) in self.flow.clusters.iter().zip(&self.cluster_rates).enumerate() {
+            let moved = moved(&cluster.block.triangle, rates, h);
+            let carried =
+                &cluster.carry * (&self.from.clusters[k] * Phasor { re: h, im: 0.0 } + &moved.second);
+            for (theta, carried) in state.cyclic.iter_mut().zip(carried.iter()) {
+                *theta += cluster.block.weight * carried.re;
+            }
+            state.clusters[k] += &moved.first;
+        }
+    }
+}
+
+impl Seen {
+    fn fit(&mut self, segment: &Segment) {
+        let outputs = segment.origins.len();
+        if self.sights.len() != outputs || self.exponentials.len() != segment.rates.len() {
+            self.sights = vec![Sight::default(); outputs];
+            self.curvature = vec![0.0; outputs];
+            self.jerk = vec![0.0; outputs];
+            self.exponentials = vec![Default::default(); segment.rates.len()];
+            self.rates.clone_from(&segment.cluster_rates);
+        }
+    }
+}
+
+/// Re(a b).
+#[inline]
+pub fn real(a: Phasor, b: Phasor) -> f64 {
+    a.re * b.re - a.im * b.im
+}

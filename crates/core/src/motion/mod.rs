@@ -1,0 +1,3 @@
+//! How a body moves between events.
+
+pub mod linear;
