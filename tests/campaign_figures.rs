@@ -113,7 +113,7 @@ fn sweeps_have_curves_and_maps() {
     dir.run("plot one -o figures/one.svg --metric torque_impulse_per_hour_nm_s").exits(1).says(&["figures"]);
     dir.run("plot one -o one.svg --metric torque_impulse_per_hour_nm_s").exits(0);
     let curve = Drawing::at(&dir, "one.svg");
-    curve.shows(&["law.relay.k_t", "torque impulse per hour, mN m s"]);
+    curve.shows(&["law.relay.k_t", "acceleration impulse per hour, mrad/s"]);
     let dots = curve.each(|node| {
         let is = node.has_tag_name("circle") && node.attribute("fill") == Some(BLUE);
         is.then(|| node.attribute("cx").and_then(|x| x.parse::<f64>().ok()))?

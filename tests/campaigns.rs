@@ -267,7 +267,7 @@ fn a_killed_campaign_keeps_its_rows() {
     let dir = Dir::with(&["relay-fixed"]);
     // The runs become longer, the last ones by far.
     let run = dir.start("sweep relay-fixed.toml --vary duration=1e3:1e10:12 --jobs 2 -o out");
-    let few = dir.start("simulate relay-fixed.toml --set duration=2e6 --runs 100000 -o few --jobs 1");
+    let few = dir.start("simulate relay-fixed.toml --set duration=2e6 --runs 100000 -o few --jobs 1 --yes");
     dir.wait_for("out/runs.csv.partial", 100);
     dir.wait_for("few/runs.csv.partial", 100);
     run.signal("KILL");

@@ -36,7 +36,7 @@ fn every_figure_is_drawn_in_both_forms() {
     dir.run("plot relay-adaptive.mcap -o figures").exits(0).says(&["relay-adaptive-gain.svg"]);
     let axes = [
         ["angle x, µrad", "rate dx/dt, µrad/s"],
-        ["torque, µrad/s²", "time, s"],
+        ["acceleration, µrad/s²", "time, s"],
         ["angle x, µrad", "time, s"],
         ["envelope a, µrad", "elastic angle, µrad"],
         ["gain k_t", "mean envelope, µrad"],

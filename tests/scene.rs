@@ -5,7 +5,7 @@ use flexsc_core::record::{Column, Columns, Log};
 use crate::util::{Dir, SCENARIOS};
 
 fn log(dir: &Dir, scenario: &str, options: &str) -> Log {
-    dir.run(&format!("simulate {scenario}.toml --log scene {options}")).exits(0);
+    dir.run(&format!("simulate {scenario}.toml --log scene --force {options}")).exits(0);
     Log::open(&dir.path(&format!("{scenario}.mcap"))).expect("a log")
 }
 

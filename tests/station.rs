@@ -10,7 +10,7 @@ use flexsc_core::{Scenario, Simulation};
 
 use crate::spatial::{body, free};
 use crate::study::{close, metrics, scenario};
-use crate::util::{Dir, table};
+use crate::util::{Dir, SCENARIOS, table};
 
 /// The full trace of a run.
 fn trace(scenario: &Scenario) -> Trace {
@@ -64,22 +64,22 @@ fn the_manoeuvre_is_that_of_another_program() {
         [("sensor.gyro.noise", "[0, 0, 0]"), ("sensor.gyro.resolution", "[0, 0, 0]"), ("log.period", "700")];
     let study = scenario("iss-manoeuvre-off", &quiet);
     let metrics = metrics(study.clone());
-    assert_eq!(metrics.number("firings"), Some(348.0));
-    close(metrics.number("fuel_kg").expect("fuel"), 3.417_182_331_490_496_8, 1e-13);
-    close(metrics.number("elastic_energy_peak_j").expect("energy"), 0.785_503_236_699_503, 1e-9);
-    close(metrics.number("elastic_energy_end_j").expect("energy"), 8.746_060_300_084_537e-4, 1e-9);
+    assert_eq!(metrics.number("firings"), Some(402.0));
+    close(metrics.number("fuel_kg").expect("fuel"), 5.222_986_442_872_973_5, 1e-13);
+    close(metrics.number("elastic_energy_peak_j").expect("energy"), 0.700_602_865_028_065_9, 1e-9);
+    close(metrics.number("elastic_energy_end_j").expect("energy"), 2.273_590_161_058_662e-3, 1e-9);
     let trace = trace(&study);
     let q = [
-        0.999_473_251_733_564_2,
-        -0.002_878_502_794_995_379,
-        0.005_971_808_569_657_621,
-        0.031_769_022_540_866_98,
+        0.999_526_448_340_867_7,
+        0.006_376_044_650_535_278,
+        0.011_205_942_500_709_11,
+        0.027_940_149_783_028_78,
     ];
     for (name, exact) in ["q_w", "q_x", "q_y", "q_z"].into_iter().zip(q) {
         assert!((last(&trace, "/pointing", name) - exact).abs() < 1e-13);
     }
     let rates = trace.topic("/rates").expect("rates");
-    for (axis, exact) in [-4.089_981_204_796_903e-6, -6.831_324_711_762_216e-5, 1.290_907_628_385_545e-5]
+    for (axis, exact) in [-2.592_779_610_222_489e-7, 4.299_136_880_407_197e-7, -2.130_946_966_433_296_4e-6]
         .into_iter()
         .enumerate()
     {
@@ -87,12 +87,12 @@ fn the_manoeuvre_is_that_of_another_program() {
     }
     // The first pulses come a cycle after the law has seen the new target.
     let jets = |name: &str| column(&trace, "/jets", name)[0];
-    assert_eq!([jets("roll_on_s"), jets("pitch_on_s"), jets("yaw_on_s")], [0.0, 0.2, 0.2]);
+    assert_eq!([jets("roll_on_s"), jets("pitch_on_s"), jets("yaw_on_s")], [0.2, 0.2, 0.2]);
     let mut pulses = Trace::new(Detail::Events);
     Simulation::new(&study, 0).run(&mut pulses).expect("a run");
     let times = pulses.into_columns().find(|(topic, _)| *topic == "jets").expect("jets").1;
     let times = times.numbers("time_s").expect("times").to_vec();
-    assert_eq!((times[0], times[1], *times.last().expect("a pulse")), (10.2, 10.4, 505.6));
+    assert_eq!((times[0], times[1], *times.last().expect("a pulse")), (10.2, 10.4, 472.4));
 }
 
 /// Two modes, 5.956 and 0.518 J, decay as exp(-2 zeta w t) each, and swing a little about that.
@@ -110,10 +110,10 @@ fn the_station_rings_down_by_its_structure_alone() {
 fn the_manoeuvre_uses_the_propellant_that_it_should() {
     let metrics = metrics(scenario("iss-manoeuvre-off", &[]));
     let number = |name: &str| metrics.number(name).expect("a number");
-    close(number("fuel_kg"), 3.4, 0.15);
+    close(number("fuel_kg"), 5.2, 0.15);
     // It hangs on when the burns of yaw begin and end: 0.88 to 0.97 J with an observer of the modes.
     assert!((0.5..1.2).contains(&number("elastic_energy_peak_j")));
-    assert!((1.0e-5..1.4e-5).contains(&number("elastic_rate_rms_rad_s")));
+    assert!((5e-6..9e-6).contains(&number("elastic_rate_rms_rad_s")));
 }
 
 /// Looking at a run does not change it, not even between the ends of its pulses.
@@ -287,5 +287,56 @@ fn the_command_knows_spatial_bodies() {
         "map iss-manoeuvre-off.toml --frequency 0.1:0.3:3 --period 0.1:0.3:3",
     ] {
         dir.run(verb).exits(2).says(&["body.spatial: turns about three axes", "one angle"]);
+    }
+}
+
+/// Weak and strong jets, narrow and wide zones, with and without a torque of the surroundings: the attitude comes to each
+/// target and stays within what the law promises.
+#[test]
+fn every_target_is_reached_and_held() {
+    let mut draw = 1_u64;
+    let mut uniform = |low: f64, high: f64| {
+        draw = draw.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * (draw >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for case in 0..40 {
+        // Thrust sets the accelerations over three decades; the weakest axis has 8.4e-6 rad/s² at 130 N.
+        let scale = 10_f64.powf(uniform(-1.0, 2.0));
+        let zone = 10_f64.powf(uniform(-3.0, -2.0));
+        let strongest = 4.8e-5 * scale;
+        let limit = 10_f64.powf(uniform(-3.5, -2.5)).max(20.0 * strongest * 0.05);
+        let on = (limit * uniform(0.08, 0.25)).max(2.5 * strongest * 0.05);
+        let off = on * uniform(0.2, 0.5);
+        let [roll, pitch, yaw] = [0; 3].map(|_| uniform(-0.05, 0.05));
+        let torque = if case % 2 == 0 { 0.0 } else { uniform(-0.03, 0.03) * 1092.0 * scale };
+        let mut document =
+            flexsc_core::Document::load(&std::path::Path::new(SCENARIOS).join("iss-manoeuvre-off.toml"))
+                .expect("a scenario");
+        let time = 700.0 + 0.5 / limit + 60.0 * (zone.max(1e-3) / (8.4e-6 * scale)).sqrt() + 0.2 / off;
+        for (key, value) in [
+            ("duration", format!("{:.0}", time.min(20_000.0))),
+            ("law.phase_plane.dead_zone", zone.to_string()),
+            ("law.phase_plane.rate_limit", limit.to_string()),
+            ("law.phase_plane.switch_on", on.to_string()),
+            ("law.phase_plane.switch_off", off.to_string()),
+            ("law.phase_plane.targets", format!("[{{ from = 1.0, roll = {roll}, pitch = {pitch}, yaw = {yaw} }}]")),
+            ("body.spatial.modes", "[]".to_owned()),
+            ("body.spatial.disturbance", format!("{{ constant = [{torque}, {torque}, {torque}] }}")),
+            ("sensor.gyro.noise", "[0, 0, 0]".to_owned()),
+            ("sensor.gyro.resolution", "[0, 0, 0]".to_owned()),
+        ] {
+            document.set_text(key, &value).expect(key);
+        }
+        for thruster in 0..12 {
+            let key = format!("actuator.jets.thrusters[{thruster}].thrust");
+            document.set_text(&key, &(130.0 * scale).to_string()).expect("a thruster");
+        }
+        let told = metrics(Scenario::from_document(&document).expect("valid"));
+        let goal = told.get("goal");
+        assert_eq!(
+            goal,
+            Some(&flexsc_core::metrics::Value::Word("met")),
+            "case {case}: scale {scale}, zone {zone}, limit {limit}, on {on}, off {off}, torque {torque}: {told:?}"
+        );
     }
 }
