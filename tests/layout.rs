@@ -282,7 +282,8 @@ fn a_long_log_has_some_ten_thousand_instants() {
     assert_eq!(counts["/tf"], 10_001);
     assert!(statistics.message_count < 100_000, "{}", statistics.message_count);
     // Who asks for more gets it.
-    dir.run("simulate relay-adaptive.toml --log scene --set duration=2000 --set log.period=0.1 --force").exits(0);
+    dir.run("simulate relay-adaptive.toml --log scene --set duration=2000 --set log.period=0.1 --force")
+        .exits(0);
     let log = Log::open(&dir.path("relay-adaptive.mcap")).expect("a log");
     assert_eq!(log.columns("/tf").expect("frames").len(), 20_001);
 }

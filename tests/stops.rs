@@ -379,7 +379,8 @@ const SLOW: &[&str] = &[
 #[cfg(unix)]
 fn stopped(dir: &Dir, arguments: &str, signal: &str) -> f64 {
     // They take long: that is what they are for.
-    let asks = ["simulate", "sweep", "identify", "tune", "map"].iter().any(|verb| arguments.starts_with(verb));
+    let asks =
+        ["simulate", "sweep", "identify", "tune", "map"].iter().any(|verb| arguments.starts_with(verb));
     let mut run = dir.start(&format!("{arguments}{}", if asks { " --yes" } else { "" }));
     std::thread::sleep(Duration::from_millis(300));
     assert!(run.is_alive(), "flexsc {arguments}: not slow");

@@ -132,7 +132,7 @@ fn a_wheel_is_drawn_with_its_limits() {
     let highest = limits.iter().flatten().filter(|p| p.0 > 1000.0 && p.1 > 500.0).map(|p| p.1);
     near(wheel.up(highest.fold(f64::INFINITY, f64::min), ["−40", "−20"]), 40.0, 0.2);
     // A wheel without a rotor stores nothing.
-    dir.run("simulate wheel-fast-mode.toml --set duration=10").exits(0);
+    dir.run("simulate wheel-fast-mode.toml --set duration=10 --force").exits(0);
     dir.run("plot wheel-fast-mode.mcap --what wheel,frequency")
         .exits(2)
         .says(&["it has torque, angle, modes"]);

@@ -82,11 +82,12 @@ class Lines:
         self.least = min(max(self.least, self.on / 1000), self.on)
         zone = law["dead_zone"]
         self.edge = max(zone - max(self.least, self.off) / self.slope, zone / 2)
+        self.steep = max(self.slope, self.least / (zone - self.edge))
 
     def back(self, beyond):
         if beyond <= 0:
             return 0.0
-        slow = min(self.off, self.slope * beyond, np.sqrt(2 * self.brake * beyond))
+        slow = min(max(self.off, self.least), self.steep * beyond, np.sqrt(2 * self.brake * beyond))
         return min(self.limit, max(min(self.slope, self.brake / self.limit) * beyond, slow))
 
     def wanted(self, angle):

@@ -311,9 +311,8 @@ fn reach(angles: &[Series], fastest: f64) -> f64 {
     const SAFETY: f64 = 7.389_056_098_930_65;
     let largest = |n: usize| angles.iter().map(|c| c[n].abs()).fold(0.0, f64::max);
     // Of all terms: a chain may begin at rest, under a torque that begins at 0.
-    let (size, _) = (0..TERMS).fold((0.0_f64, 1.0), |(size, unit), n| {
-        (size.max(largest(n) * unit), unit / fastest)
-    });
+    let (size, _) =
+        (0..TERMS).fold((0.0_f64, 1.0), |(size, unit), n| (size.max(largest(n) * unit), unit / fastest));
     let radius = |n: usize| match largest(n) {
         0.0 => f64::INFINITY,
         term => libm::pow(size / term, 1.0 / n as f64),

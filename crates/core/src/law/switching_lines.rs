@@ -4,11 +4,12 @@
 //! zone, the body shall return at the rate
 //!
 //! ```text
-//! r(d) = min(rate_limit, max(k d, min(switch_off, slope d, sqrt(2 b m d)))),   k = min(slope, b m/rate_limit)
+//! r(d) = min(rate_limit, max(k d, min(slow, steep d, sqrt(2 b m d)))),   k = min(slope, b m/rate_limit)
 //! ```
 //!
 //! with b = `braking`: along k d it brakes in time from the largest rate; jets for which that line is flat do not wait on it,
-//! but return at `switch_off` until sqrt(2 b m d), from which they can brake. Beyond the edge half of r is the least rate of
+//! but return at the rate slow until sqrt(2 b m d), from which they can brake. That rate is `switch_off`, or what the smallest
+//! pulse changes if that is more, and steep is `slope`, or what makes that rate of the dead zone's end. Beyond the edge half of r is the least rate of
 //! return that is left alone. Within it a rate outwards is left alone as long as the jets can stop the body before the edge,
 //! and none above `switch_on` is ([Wie08], chapter 7, for the parabolas; the rest is ours).
 
@@ -39,10 +40,12 @@ impl SwitchingLines {
         let (slope, zone) = (spec.slope.get(), spec.dead_zone.get());
         let braking = spec.braking.get() * plus.min(minus);
         let least = smallest_change(jets, [plus, minus]).clamp(LEAST * on, on);
+        let edge = (zone - least.max(off) / slope).max(0.5 * zone);
         Self {
-            edge: (zone - least.max(off) / slope).max(0.5 * zone),
+            edge,
             rate_limit: spec.rate_limit.get(),
-            slope,
+            // What the smallest pulse gives is worth a return from the end of the dead zone on.
+            slope: slope.max(least / (zone - edge)),
             flat: slope.min(braking / spec.rate_limit.get()),
             parabola: 2.0 * braking,
             on,
@@ -61,7 +64,8 @@ impl SwitchingLines {
         if beyond <= 0.0 {
             return 0.0;
         }
-        let least = self.off.min(self.slope * beyond).min(libm::sqrt(self.parabola * beyond));
+        let slow = self.off.max(self.least);
+        let least = slow.min(self.slope * beyond).min(libm::sqrt(self.parabola * beyond));
         (self.flat * beyond).max(least).min(self.rate_limit)
     }
 
