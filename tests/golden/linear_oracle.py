@@ -3,10 +3,10 @@
     pip install mpmath
     python3 tests/golden/linear_oracle.py > tests/golden/linear/f_crests.csv
 
-Plants (a) and (b) of tests/plants.rs with coefficients as doubles, from drawn states. A crest of the angle that nothing
-before it exceeds has a level laid beside it, d above or below, rounded to a double. Told is the time at which the angle
-first reaches the level within the horizon, half a second after the crest; empty if it never does. The matrix exponential
-is mpmath's, by Taylor's series; it knows no poles.
+Plants (a) and (b) of tests/plants.rs with coefficients as doubles, from drawn states. A crest of the angle
+that nothing before it exceeds has a level laid beside it, d above or below, rounded to a double. Told is the
+time at which the angle first reaches the level within the horizon, half a second after the crest; empty if it
+never does. The matrix exponential is mpmath's, by Taylor's series; it knows no poles.
 """
 
 import random
@@ -88,7 +88,19 @@ def main():
         if found is None:
             continue
         top, y, b = found
-        for d in ("1e-8", "1e-12", "1e-14", "1e-16", "1e-17", "0", "-1e-17", "-1e-16", "-1e-14", "-1e-12", "-1e-10"):
+        for d in (
+            "1e-8",
+            "1e-12",
+            "1e-14",
+            "1e-16",
+            "1e-17",
+            "0",
+            "-1e-17",
+            "-1e-16",
+            "-1e-14",
+            "-1e-12",
+            "-1e-10",
+        ):
             level = float(y + mpf(d))
             trip = mp.nstr(reached(a, start, mpf(level), top, y, b), 30) if level <= y else ""
             numbers = ",".join(repr(s) for s in state)

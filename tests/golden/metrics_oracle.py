@@ -1,9 +1,12 @@
 """Metrics of a rotation by dense search with SciPy: what tests/exact.rs compares with.
 
-The body of the test under its sampled PD law, from sample to sample by the matrix exponential of the whole system in physical
-coordinates. Extremes: 4000 points in each piece, then Brent's method on the derivative. Integrals: Gauss-Legendre between
-the zeros of the error. Nothing of the program is used: python tests/golden/metrics_oracle.py
+The body of the test under its sampled PD law, from sample to sample by the matrix exponential of the whole
+system in physical coordinates. Extremes: 4000 points in each piece, then Brent's method on the derivative.
+Integrals: Gauss-Legendre between the zeros of the error. Nothing of the program is used:
+python tests/golden/metrics_oracle.py
 """
+
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import expm
@@ -19,7 +22,7 @@ POINTS = 4000
 A = np.zeros((6, 6))
 B = np.zeros(6)
 A[0, 1], B[1] = 1.0, 1.0
-for i, (w, k, zeta) in enumerate(zip(W, K, ZETA)):
+for i, (w, k, zeta) in enumerate(zip(W, K, ZETA, strict=True)):
     x, v = 2 + 2 * i, 3 + 2 * i
     A[x, v], A[v, x], A[v, v], B[v] = 1.0, -w * w, -2 * zeta * w, k
 ANGLE = np.array([1.0, 0, 1, 0, 1, 0])
@@ -38,7 +41,7 @@ def main():
     edges = sorted({*np.arange(0, END + 1e-9, PERIOD), *PUSH[:2]})
     z, torque, peak = START.copy(), 0.0, 0.0
     pieces = []
-    for a, b in zip(edges, edges[1:]):
+    for a, b in pairwise(edges):
         if abs(a / PERIOD - round(a / PERIOD)) < 1e-9:
             torque = -KP * (ANGLE @ z) - KD * (ANGLE @ (A @ z))
         peak = max(peak, abs(torque))
@@ -48,15 +51,16 @@ def main():
         e, f = flow(b - a, u)
         z = e @ z + f
     extremes = {"angle": [], "late": [], "tip": [], "tip late": []}
-    roots = []
     itae = 0.0
     outside = 0.0
     last = 0.0
     nodes, weights = np.polynomial.legendre.leggauss(16)
     for a, b, z0, u in pieces:
+
         def state(h, z0=z0, u=u):
             e, f = flow(h, u)
             return e @ z0 + f
+
         step = (b - a) / POINTS
         e, f = flow(step, u)
         states = [z0]
@@ -68,30 +72,50 @@ def main():
             values, rates = states @ row, states @ (row @ A)
             found = [(a, values[0]), (b, values[-1])]
             for i in np.nonzero(rates[:-1] * rates[1:] < 0)[0]:
-                h = brentq(lambda h: row @ (A @ state(h)), i * step, (i + 1) * step, xtol=1e-15, rtol=1e-15)
+                h = brentq(
+                    lambda h, row=row, state=state: row @ (A @ state(h)),
+                    i * step,
+                    (i + 1) * step,
+                    xtol=1e-15,
+                    rtol=1e-15,
+                )
                 found.append((a + h, row @ state(h)))
             extremes[name] += [v for _, v in found]
             if a >= LATE:
                 extremes["late" if name == "angle" else "tip late"] += [v for _, v in found]
         values = states @ ANGLE
 
-        def crossings(level):
+        def crossings(level, values=values, state=state, step=step):
             y = values - level
+
+            def off(h):
+                return ANGLE @ state(h) - level  # noqa: B023
+
             return [
-                brentq(lambda h: ANGLE @ state(h) - level, i * step, (i + 1) * step, xtol=1e-15, rtol=1e-15)
+                brentq(off, i * step, (i + 1) * step, xtol=1e-15, rtol=1e-15)
                 for i in np.nonzero(y[:-1] * y[1:] < 0)[0]
             ]
+
         cuts = [0.0, *crossings(0.0), b - a]
-        for c, d in zip(cuts, cuts[1:]):
+        for c, d in pairwise(cuts):
             h = 0.5 * (c + d) + 0.5 * (d - c) * nodes
-            itae += 0.5 * (d - c) * sum(w * (a + t) * abs(ANGLE @ state(t)) for w, t in zip(weights, h))
+            itae += (
+                0.5
+                * (d - c)
+                * sum(w * (a + t) * abs(ANGLE @ state(t)) for w, t in zip(weights, h, strict=True))
+            )
         cuts = [0.0, *sorted(crossings(BAND) + crossings(-BAND)), b - a]
-        for c, d in zip(cuts, cuts[1:]):
+        for c, d in pairwise(cuts):
             if abs(ANGLE @ state(0.5 * (c + d))) > BAND:
                 outside += d - c
                 last = a + d
-    most = lambda name: max(abs(v) for v in extremes[name])
-    swing = lambda name: 0.5 * (max(extremes[name]) - min(extremes[name]))
+
+    def most(name):
+        return max(abs(v) for v in extremes[name])
+
+    def swing(name):
+        return 0.5 * (max(extremes[name]) - min(extremes[name]))
+
     print(f"peak_torque_nm {peak:.15e}")
     print(f"angle_error_peak_rad {most('angle'):.15e}")
     print(f"angle_error_late_rad {most('late'):.15e}")

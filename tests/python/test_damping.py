@@ -87,5 +87,5 @@ def test_how_fast_modes_are_found() -> None:
     assert near["persistence"][0] < 0.05 < found["persistence"][0]
     with pytest.raises(ValueError, match="must have influences other than 0"):
         identify([(1.0, 0.0)])
-    with pytest.raises(ValueError, match="runs and cycles must be 1 or more, got 0"):
+    with pytest.raises(ValueError, match="runs and cycles must be from 1 to 1000000, got 0"):
         identify(modes, runs=0)

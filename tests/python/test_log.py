@@ -44,7 +44,7 @@ def labels(message: Any, field: str) -> str:
 
 def test_the_foreign_reader_sees_the_same_numbers(dense: Result, path: Path) -> None:
     topics = decoded(path)
-    assert {name.removeprefix("/") for name in topics} == {*dense, "metrics", "params"}
+    assert {name.removeprefix("/") for name in topics} == {*dense, "metrics", "summary", "params"}
     assert sum(map(len, topics.values())) < 20_000
     for name in dense:
         messages = topics[f"/{name}"]
@@ -90,7 +90,7 @@ def test_metrics_and_parameters_in_a_log(dense: Result, path: Path) -> None:
 
 def test_our_reader_sees_the_same_columns(dense: Result, path: Path) -> None:
     log = flexsc.read_log(path)
-    assert set(log) == {*dense, "metrics", "params"}
+    assert set(log) == {*dense, "metrics", "summary", "params"}
     for name in dense:
         for column, values in dense[name].items():
             if column == "time_s" and name != "command":

@@ -86,7 +86,7 @@ impl Args {
         let bound = listener.local_addr().map_err(failed)?;
         let wall = WallInstant::now();
         let speed = self.speed.unwrap_or(Speed::REAL);
-        let mut clock = Clock::new(speed, run.scenario.log.period, wall);
+        let mut clock = Clock::new(speed, run.scenario.log_period(), wall);
         if self.paused {
             clock.pause();
         }

@@ -231,7 +231,7 @@ impl Scenario {
 
     /// What a log of this detail holds beside what changes: the key, and how many messages.
     fn messages(&self, log: Option<Detail>) -> Vec<(String, f64)> {
-        let (duration, period) = (self.duration.seconds(), self.log.period);
+        let (duration, period) = (self.duration.seconds(), self.log_period());
         let topics = if self.spatial.is_some() { 4.0 } else { 5.0 };
         let mut messages = Vec::new();
         if log >= Some(Detail::Full) {

@@ -16,13 +16,13 @@ const MOST_INSTANTS: f64 = 1e4;
 const LARGEST_FACTOR: f64 = 1e9;
 
 /// What a full log holds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Log {
     /// Period at which a full log holds the motion (s); left out, 0.1 or the first of 0.2, 0.5, 1, 2, 5 and so on of which the
     /// duration has at most 10 000.
-    #[serde(default = "tenth")]
-    pub period: Span,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<Span>,
     /// How a log with a scene draws the run.
     #[serde(default, skip_serializing_if = "SceneSpec::is_default")]
     pub scene: SceneSpec,
@@ -32,15 +32,12 @@ fn tenth() -> Span {
     Span::from_seconds(0.1)
 }
 
-impl Default for Log {
-    fn default() -> Self {
-        Self { period: tenth(), scene: SceneSpec::default() }
-    }
-}
-
 impl Log {
-    /// The period for runs of this duration, where a scenario leaves it out.
-    pub fn period_for(duration: Span) -> Span {
+    /// The period for runs of this duration.
+    pub fn period_for(&self, duration: Span) -> Span {
+        if let Some(period) = self.period {
+            return period;
+        }
         let least = duration.seconds() / MOST_INSTANTS;
         let decades = (-1..).map(|exponent| libm::pow(10.0, f64::from(exponent)));
         let mut periods = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|step| step * decade));
@@ -103,7 +100,7 @@ mod tests {
             (86_400.0, 10.0),
             (1e6, 100.0),
         ] {
-            let own = Log::period_for(Span::from_seconds(duration));
+            let own = Log::default().period_for(Span::from_seconds(duration));
             assert_eq!(own, Span::from_seconds(period), "{duration}: {own:?}");
         }
     }

@@ -158,9 +158,6 @@ impl Scenario {
         if let Some(error) = document.unread(&scenario.to_table()) {
             return Err(error);
         }
-        if !document.has("log.period") {
-            scenario.log.period = Log::period_for(scenario.duration);
-        }
         if scenario.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
@@ -294,6 +291,11 @@ impl Scenario {
             angle: self.model.angle.get() + plan.angle,
             rate: plan.end_rate,
         })
+    }
+
+    /// Period at which a full log holds the motion.
+    pub fn log_period(&self) -> Span {
+        self.log.period_for(self.duration)
     }
 
     /// How near to its goal the body shall stay: as the scenario says, else as its manoeuvre or its law promises.

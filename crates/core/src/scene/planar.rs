@@ -57,7 +57,7 @@ impl PlanarScene {
     pub fn new(scenario: &Scenario) -> Self {
         let spec = &scenario.log.scene;
         let panels = Panels::of(scenario);
-        let period = spec.period(scenario.log.period);
+        let period = spec.period(scenario.log_period());
         let mut scene = Self {
             period,
             bending: spec.bending.map_or_else(|| bending(panels.bent), Positive::get),

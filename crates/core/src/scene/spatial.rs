@@ -98,7 +98,7 @@ impl SpatialScene {
         });
         let bent = bent.fold(0.0, f64::max);
         let mut made = Self {
-            period: spec.period(scenario.log.period),
+            period: spec.period(scenario.log_period()),
             bending: spec.bending.map_or_else(|| bending(bent), Positive::get),
             turning: spec.turning.map_or_else(|| turning(spatial_angle(spatial)), Positive::get),
             size,

@@ -93,7 +93,7 @@ impl PlanarRun {
             hold: Hold::NONE,
             trip: None,
             next_sample: scenario.sensor.period().map(|period| Instant::START + period),
-            log_period: scenario.log.period,
+            log_period: scenario.log_period(),
             next_dense: None,
             next_law: Instant::START,
             scene: None,

@@ -85,7 +85,7 @@ impl SpatialRun {
             measured: [0.0; 3],
             period: spatial.law.period,
             next_cycle: Instant::START,
-            log_period: scenario.log.period,
+            log_period: scenario.log_period(),
             next_dense: None,
             scene: None,
             next_frames: None,
