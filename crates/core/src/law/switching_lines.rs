@@ -11,7 +11,7 @@
 //! but return at the rate slow until sqrt(2 b m d), from which they can brake. That rate is `switch_off`, or what the smallest
 //! pulse changes if that is more, and steep is `slope`, or what makes that rate of the dead zone's end. Beyond the edge half of r is the least rate of
 //! return that is left alone. Within it a rate outwards is left alone as long as the jets can stop the body before the edge,
-//! and none above `switch_on` is ([Wie08], chapter 7, for the parabolas; the rest is ours).
+//! and none above `switch_on` is. Parabolas are as in B. Wie, Space Vehicle Dynamics and Control; the rest is ours.
 
 use super::PhasePlane;
 use crate::actuator::Jets;
