@@ -4,6 +4,9 @@ check:
     cargo fmt --check
     cargo clippy --release --workspace --all-targets -- -D warnings
 
+quick:
+    python3 tests/all.py --quick
+
 test:
     python3 tests/all.py
 

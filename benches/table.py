@@ -181,7 +181,7 @@ def filtered(name):
 
 def table():
     subprocess.run(["cargo", "build", "--release"], cwd=ROOT, check=True)
-    subprocess.run(["cargo", "bench", "-p", "flexsc-core", "--bench", "engine"], cwd=ROOT, check=True)
+    subprocess.run(["cargo", "bench", "-p", "flexsc-bench", "--bench", "engine"], cwd=ROOT, check=True)
     events = criterion(RUN, "events only")
     scipy_time, scipy_events = dop853(2000.0)
     rows = [

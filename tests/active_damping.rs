@@ -80,6 +80,8 @@ fn what_is_off_is_identified_on_the_way() {
         let keys = [
             ("estimator.adaptive.frequency_error", errors[0]),
             ("estimator.adaptive.influence_error", errors[1]),
+            // Later yaw comes to the edge of its dead zone, and burns there move its first frequency by up to 4.2 %.
+            ("duration", "200"),
         ];
         let runs = twelve("iss-ringdown", &keys);
         within(median(&runs, "energy_below_10pct_at_s"), [22.2, 35.2]);
@@ -88,18 +90,22 @@ fn what_is_off_is_identified_on_the_way() {
         // The modes that ring are yaw's first and pitch's first.
         for run in &runs {
             let errors = numbers(run, "frequency_estimate_errors");
-            assert!(errors[2].abs() < 0.02 && errors[4].abs() < 0.05, "{errors:?}");
+            assert!(errors[2].abs() < 0.02 && errors[4].abs() < 0.02, "{errors:?}");
         }
     }
 }
 
-/// The same draws of noise with and without damping.
+/// The same draws of noise with and without damping. After 400 s yaw comes to the other edge of its dead zone, before 500 s
+/// without damping and in ten runs later with it: pulses that stop it there leave 5e-6 to 1.4e-5 rad/s, below the thresholds,
+/// and the last 200 s of 700 s would compare when they come.
 #[test]
-fn a_turn_excites_a_third_for_a_few_percent_of_propellant() {
-    let off = twelve("iss-manoeuvre", &[("law.phase_plane.damping.threshold", "[1, 1, 1]")]);
-    let on = twelve("iss-manoeuvre", &[]);
+fn a_turn_ends_quieter_and_excites_a_third_for_a_few_percent_of_propellant() {
+    let until = ("duration", "400");
+    let off = twelve("iss-manoeuvre", &[("law.phase_plane.damping.threshold", "[1, 1, 1]"), until]);
+    let on = twelve("iss-manoeuvre", &[until]);
     within(median(&on, "fuel_kg") / median(&off, "fuel_kg"), [1.0, 1.1]);
     assert!(median(&on, "elastic_energy_peak_j") < 0.4 * median(&off, "elastic_energy_peak_j"));
+    assert!(median(&on, "elastic_rate_rms_rad_s") < 0.4 * median(&off, "elastic_rate_rms_rad_s"));
     assert!(sorted(&on, "damping_cycles")[11] < 80.0);
     assert!(sorted(&off, "damping_cycles")[11] == 0.0);
 }
@@ -202,7 +208,8 @@ fn turns_tell_frequencies_and_influences() {
 }
 
 /// Jets of yaw excite the pair at 0.605 Hz and the modes at 0.682 and 0.773 Hz, which the gyro's roll sees. Without noise the
-/// estimates of frequencies begin where they are, and any change of them is taken for motion that roll's jets did not make.
+/// estimates of frequencies begin where they are, and any change of them is taken for motion that roll's jets did not make. The
+/// mode at 0.682 Hz, roll's second, the pulses of these turns excite too little for any change.
 #[test]
 fn an_axis_that_knows_the_jets_of_the_others_sees_no_motion_that_is_not() {
     let turns = "[{ from = 10.0, yaw = 0.02 }, { from = 70.0 }, { from = 130.0, yaw = 0.02 }]";
@@ -230,12 +237,12 @@ fn an_axis_that_knows_the_jets_of_the_others_sees_no_motion_that_is_not() {
             let ratios = found.iter().zip(&truth).map(|(found, truth)| (found / truth - 1.0).abs());
             ratios.fold(0.0, f64::max)
         };
-        (rate, off(0), off(1), off(2))
+        (rate, off(0), off(2))
     };
     let (alone, with) = (errors("false"), errors("true"));
     assert!(alone.0 > 0.18 && with.0 < 0.12, "{alone:?} {with:?}");
     assert!(alone.1 > 0.05 && with.1 < 0.04, "{alone:?} {with:?}");
-    assert!(alone.3 > 0.04 && with.3 < 0.025, "{alone:?} {with:?}");
+    assert!(alone.2 > 0.04 && with.2 < 0.025, "{alone:?} {with:?}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The random search against an independent one: draw for draw, and over many seeds.
 
-use flexsc_core::PlanarRun;
+use flexsc_core::Simulation;
 use flexsc_core::adaptation::{Adaptation, Decision, Search, Step};
 use flexsc_core::campaign::Campaign;
 use flexsc_core::time::{Instant, Span};
@@ -30,14 +30,14 @@ fn search_freezes_where_an_independent_one_does() {
         };
         let mut search = Search::new(constants, 0.31);
         let mut draws = SplitMix(seed);
-        let mut simulation = PlanarRun::new(&scenario, 0);
+        let mut simulation = Simulation::new(&scenario, 0);
         let mut last = None;
         for window in 1..=40 {
             let now = Instant::START + Span::from_seconds(500.0 * f64::from(window));
             simulation.run_until(now, &mut ()).expect("a run");
             let mean = simulation.window_mean().expect("a mean");
             if let Some(step) = search.learn(now, mean, draws.uniform()) {
-                simulation.belief.gain = step.gain;
+                simulation.tune("k_t", step.gain);
                 last = Some((now, step));
             }
         }

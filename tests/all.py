@@ -1,86 +1,213 @@
-"""All tests of flexsc, Rust and Python: `python3 tests/all.py`.
+"""All tests of flexsc, Rust and Python: `python3 tests/all.py`; `--quick` runs what a change needs first.
 
-Formatting and lints, the Rust tests, a minute of fuzzing, then the Python wheel in an environment of its own
-and its tests.
+Each step tells about how long it takes on two cores from a clean checkout, and then how long it took. All
+Rust is built with one profile, and but for the light build one set of features: nothing is compiled twice.
 """
 
+import argparse
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
+import time
 import venv
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ENVIRONMENT = ROOT / "target" / "venv"
+TARGET = ROOT / "target"
+ENVIRONMENT = TARGET / "venv"
 # pyNastran wants an older numpy than the newest Pythons have: it has an environment of its own.
-NASTRAN = ROOT / "target" / "venv-nastran"
+NASTRAN = TARGET / "venv-nastran"
+# The benchmarks are checked, and not built.
+EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
+PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
+# So many inputs, the same on every machine: about 12 s each.
+FUZZED = {"scenarios": "2500", "structures": "15000", "logs": "1000", "arguments": "1100", "live": "3500"}
+# What the runners of tests say at their ends.
+SUMMARY = re.compile(r"^(test result: .*|(?:=+ )?\d+ (?:passed|failed).* in [\d.]+ ?s.*)$", re.MULTILINE)
+SUMMARIES: list[str] = []
 
 
-def run(*command):
+@dataclass
+class Step:
+    """One step: what it does, about how long (s), and whether it is part of `--quick`."""
+
+    name: str
+    seconds: int
+    work: Callable[[], str | None]
+    quick: bool = False
+
+
+def run(*command: str | Path) -> str:
+    """Runs a command, which must succeed, and returns what it printed, which is also shown."""
     print("+", " ".join(map(str, command)), flush=True)
-    done = subprocess.run(command, cwd=ROOT, check=False)
-    if done.returncode != 0:
-        sys.exit(done.returncode)
+    printed = bytearray()
+    with subprocess.Popen([str(word) for word in command], cwd=ROOT, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        while piece := os.read(process.stdout.fileno(), 4096):
+            sys.stdout.buffer.write(piece)
+            sys.stdout.flush()
+            printed += piece
+    if process.returncode != 0:
+        sys.exit(f"{command[0]} failed with {process.returncode}")
+    text = printed.decode(errors="replace")
+    SUMMARIES.extend(match.group(0) for match in SUMMARY.finditer(text))
+    return text
 
 
-def binaries(environment):
-    """The programs of an environment, which is made if it is not there."""
-    within = environment / ("Scripts" if os.name == "nt" else "bin")
+def tally(printed: str) -> str:
+    """How many tests passed, failed not, and were left out."""
+    passed, ignored = (
+        sum(int(number) for number in re.findall(rf"(\d+) {words}", printed))
+        for words in ("passed", "(?:ignored|skipped)")
+    )
+    return f"{passed} tests passed" + (f", {ignored} left out" if ignored else "")
+
+
+def environment(path: Path) -> Path:
+    """The Python of an environment, which is made if it is not there."""
+    within = path / ("Scripts" if os.name == "nt" else "bin")
     if not within.exists():
-        venv.create(environment, with_pip=True)
-    return within
+        venv.create(path, with_pip=True)
+    return within / "python"
 
 
-def nastran():
-    """The tests that need pyNastran, where it can be installed."""
-    python = binaries(NASTRAN) / "python"
-    options = ("--quiet", "--disable-pip-version-check")
-    install = (python, "-m", "pip", "install", *options, ".[nastran]", "pytest")
-    print("+", " ".join(map(str, install)), flush=True)
-    if subprocess.run(install, cwd=ROOT, check=False).returncode != 0:
-        print("pyNastran cannot be installed here: tests/python/test_nastran.py is left out", flush=True)
-        return
-    run(python, "-m", "pytest", "tests/python/test_nastran.py", "-q")
+def form() -> None:
+    python = environment(ENVIRONMENT)
+    run("cargo", "fmt", "--all", "--check")
+    run(python, *PIP, "install", "ruff")
+    run(python, "-m", "ruff", "check", ".")
+    run(python, "-m", "ruff", "format", "--check", ".")
 
 
-def papers():
-    """docs/papers.md is what the program computes."""
-    out = ROOT / "target" / "reproduce"
-    run(ROOT / "target" / "release" / "flexsc", "reproduce", "-o", out, "--docs", out)
-    made, kept = (path / "papers.md" for path in (out, ROOT / "docs"))
-    if made.read_bytes() != kept.read_bytes():
-        sys.exit(f"{kept} is not what `flexsc reproduce` makes: see {made}")
-
-
-def crates():
-    """Licences, sources and duplicates of all crates: by `cargo deny` too, where it is installed."""
+def crates() -> None:
     run(sys.executable, "tests/deny.py")
     if shutil.which("cargo-deny") is not None:
         run("cargo", "deny", "check", "bans", "licenses", "sources")
 
 
-def main():
+def clippy(*selected: str) -> None:
+    run("cargo", "clippy", "--release", "--quiet", *selected, "--", "-D", "warnings")
+
+
+def lint() -> None:
+    clippy("--workspace", "--all-targets")
+
+
+def lint_light() -> None:
+    clippy("--bins", "--tests")
+
+
+def build() -> None:
+    run("cargo", "build", "--release", "--quiet", *EVERYTHING, "--bins", "--tests")
+
+
+def rust() -> str:
+    return tally(run("cargo", "test", "--release", "--quiet", *EVERYTHING))
+
+
+def rust_light() -> str:
+    return tally(run("cargo", "test", "--release", "--quiet"))
+
+
+def papers() -> None:
+    out = TARGET / "reproduce"
+    run(TARGET / "release" / "flexsc", "reproduce", "-o", out, "--docs", out)
+    made, kept = (path / "papers.md" for path in (out, ROOT / "docs"))
+    if made.read_bytes() != kept.read_bytes():
+        sys.exit(f"{kept} is not what `flexsc reproduce` makes: see {made}")
+
+
+def fuzz() -> None:
+    if os.name == "posix":
+        for surface, inputs in FUZZED.items():
+            run(TARGET / "release" / "flexsc-fuzz", "--surface", surface, "--inputs", inputs)
+
+
+def wheel() -> None:
+    wheels = TARGET / "wheels"
+    shutil.rmtree(wheels, ignore_errors=True)
+    run(environment(ENVIRONMENT), *PIP, "wheel", "--no-deps", "-w", wheels, ".")
+
+
+def built() -> Path:
+    (path,) = (TARGET / "wheels").glob("*.whl")
+    return path
+
+
+def python() -> str:
+    python = environment(ENVIRONMENT)
+    run(python, *PIP, "install", "--force-reinstall", "--no-deps", built())
+    run(python, *PIP, "install", f"{built()}[test]")
+    return tally(run(python, "-m", "pytest", "tests/python", "-q"))
+
+
+def nastran() -> str:
+    """The tests that need pyNastran, where it can be installed."""
+    python = environment(NASTRAN)
+    for options in (["--force-reinstall", "--no-deps", built()], [f"{built()}[nastran]", "pytest"]):
+        install = [python, *PIP, "install", *options]
+        print("+", " ".join(map(str, install)), flush=True)
+        if subprocess.run(install, cwd=ROOT, check=False).returncode != 0:
+            return "pyNastran cannot be installed here: tests/python/test_nastran.py is left out"
+    return tally(run(python, "-m", "pytest", "tests/python/test_nastran.py", "-q"))
+
+
+STEPS = [
+    Step("form of the code: rustfmt, ruff", 10, form, quick=True),
+    Step("licences, sources and duplicates of all crates", 5, crates, quick=True),
+    Step("clippy of everything", 180, lint),
+    Step("clippy of the light build", 50, lint_light),
+    Step("building the command, the tests and the fuzzer", 420, build),
+    Step("Rust tests", 100, rust),
+    Step("docs/papers.md is what the program computes", 75, papers),
+    Step("fuzzing", 65, fuzz),
+    Step("the wheel", 55, wheel),
+    Step("Python tests", 70, python),
+    Step("Python tests with pyNastran", 30, nastran),
+]
+QUICK = [
+    *(step for step in STEPS if step.quick),
+    Step("Rust tests of the light build", 150, rust_light),
+]
+LEFT_OUT = """left out: clippy, the features `matrices`, `papers` and `png` with their tests, docs/papers.md,
+the fuzzer, the wheel and the Python tests"""
+
+
+def perform(steps: Sequence[Step]) -> None:
+    began = time.monotonic()
+    about = sum(step.seconds for step in steps)
+    print(f"{len(steps)} steps, about {about} s on two cores from a clean checkout", flush=True)
+    times = []
+    for number, step in enumerate(steps, 1):
+        print(f"\n{number}/{len(steps)} {step.name} (about {step.seconds} s)", flush=True)
+        start = time.monotonic()
+        told = step.work()
+        times.append(time.monotonic() - start)
+        print(f"{number}/{len(steps)} done in {times[-1]:.0f} s" + (f": {told}" if told else ""), flush=True)
+    print(f"\nall passed in {time.monotonic() - began:.0f} s")
+    for step, took in zip(steps, times, strict=True):
+        print(f"{took:6.0f} s  {step.name}")
+    print("\n" + "\n".join(SUMMARIES))
+
+
+def main() -> None:
     if sys.version_info < (3, 10):
         sys.exit("flexsc needs Python 3.10 or newer")
     if shutil.which("cargo") is None:
         sys.exit("flexsc needs Rust: no `cargo` on the path")
+    parser = argparse.ArgumentParser(description="All tests of flexsc, Rust and Python.")
+    parser.add_argument("--quick", action="store_true", help="what a change needs first, in minutes")
+    quick = parser.parse_args().quick
     # A shell's background jobs ignore Ctrl-C, and what they start inherits that: the tests send it.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    python = binaries(ENVIRONMENT) / "python"
-    run("cargo", "fmt", "--all", "--check")
-    crates()
-    run("cargo", "clippy", "--release", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings")
-    run("cargo", "test", "--release", "--quiet")
-    papers()
-    if os.name == "posix":
-        run("cargo", "run", "--release", "--quiet", "-p", "flexsc-fuzz", "--", "--seconds", "12")
-    run(python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", ".[test]")
-    run(python, "-m", "ruff", "check", ".")
-    run(python, "-m", "ruff", "format", "--check", ".")
-    run(python, "-m", "pytest", "tests/python", "-q")
-    nastran()
+    perform(QUICK if quick else STEPS)
+    if quick:
+        print(LEFT_OUT)
 
 
 if __name__ == "__main__":

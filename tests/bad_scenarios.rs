@@ -118,7 +118,7 @@ const KEYS: &[Case] = &[
     ("unknown key of the reference", Line(32, "envlope = 1"), 32, "envlope", &["unknown key `envlope`", "expected `envelope`"]),
     ("unknown key of a distribution", Line(35, r#""law.relay.k_t" = { normal = { mean = 0.3, sd = 0.1, x = 1 } }"#), 35, "x", &["unknown key `x`", "expected `mean` or `sd`"]),
     ("unknown distribution", Line(35, r#""law.relay.k_t" = { unifrm = [0.3, 0.32] }"#), 35, "unifrm", &[r#"`uncertain."law.relay.k_t"`"#, "`unifrm` is not known here", "`uniform`"]),
-    ("unknown kind of law", Line(11, "[law.rely]"), 11, "rely", &["`rely` is not known here", "expected one of `relay`, `pd`, `open`"]),
+    ("unknown kind of law", Line(11, "[law.rely]"), 11, "rely", &["`rely` is not known here", "expected one of `relay`, `pd`, `attitude`, `open`"]),
     ("unknown kind of body", Lines(&[(3, "[body.planer]"), (6, "[[body.planer.modes]]")]), 3, "planer", &["`planer` is not known here", "expected one of `planar`"]),
     ("unknown kind of sensor", Line(25, "[sensor.sampld]"), 25, "sampld", &["`sampld` is not known here", "`continuous`, `sampled`, `gyro`"]),
     ("unknown kind of sensor, as a word", Cut(25, 26, "sensor = \"continous\"\nduration = 1"), 1, "\"continous\"", &["`sensor`", "`continous` is not known here", "`continuous`, `sampled`, `gyro`"]),
@@ -220,7 +220,7 @@ const NUMBERS: &[Case] = &[
 ];
 
 const EPOCH: &str = "must be a date and time from 1970 to 2500, such as 2026-";
-const FILE_NAME: &str = "names files: it has at most 200 bytes, no slash and no control character";
+const FILE_NAME: &str = "is used for file names: at most 200 bytes, no slash, no control character";
 const ORDER: &str = "needs [low, high] in this order";
 
 #[rustfmt::skip] // One case a line.
@@ -236,7 +236,7 @@ const RELATIONS: &[Case] = &[
     ("hysteresis as wide as the dead zone", Line(13, "hysteresis = 1e-3"), 13, "1e-3", &["`law.relay.hysteresis`", "must be less than the dead zone's width of 0.001", "got 0.001"]),
     ("critical damping under an envelope", Line(9, "damping = 1"), 9, "1", &["`body.planar.modes[0].damping`", "must be below 1 for a mode to have an envelope", "got 1"]),
     ("critical damping of an estimator's mode", Line(19, "window = 50.0\nmodes = [{ frequency = 1.0, gain = 1.0, damping = 2.0 }]"), 20, "2.0", &["`estimator.envelope.modes[0].damping`", "must be below 1", "got 2"]),
-    ("modes of an estimator that reads the truth", Line(19, "window = 50.0\nform = \"truth\"\nmodes = [{ frequency = 1.0, gain = 1.0 }]"), 21, "[{ frequency = 1.0, gain = 1.0 }]", &["`estimator.envelope.modes`", "no use for the form `truth`"]),
+    ("modes of an estimator that reads the truth", Line(19, "window = 50.0\nform = \"truth\"\nmodes = [{ frequency = 1.0, gain = 1.0 }]"), 21, "[{ frequency = 1.0, gain = 1.0 }]", &["`estimator.envelope.modes`", "must be left out for the form `truth`"]),
     ("adaptation without an estimator", Cut(18, 19, "duration = 1"), 21, "[adaptation.random_search]", &["`adaptation.random_search`", "needs the window means of an `[estimator.envelope]`", "there is none"]),
     ("k_t out of bounds", Line(16, "k_t = 0.5"), 16, "0.5", &["`law.relay.k_t`", "within the adaptation's bounds [0.28, 0.4]", "got 0.5"]),
     ("bounds in the wrong order", Line(23, "bounds = [0.40, 0.28]"), 23, "[0.40, 0.28]", &["`adaptation.random_search.bounds`", "[low, high] in this order", "got [0.4, 0.28]"]),
@@ -269,7 +269,7 @@ const SYNTAX: &[Case] = &[
     ("no value", Line(1, "duration = "), 1, "", &["found no TOML value"]),
     ("two values", Line(1, "duration = 1 2"), 1, "1 2", &["found no TOML value"]),
     ("no equals sign", Line(1, "duration 100"), 1, "", &["expected `=`"]),
-    ("two points", Line(1, "duration = 1.2.3"), 1, ".3", &["found no number that TOML knows"]),
+    ("two points", Line(1, "duration = 1.2.3"), 1, ".3", &["found no valid TOML number"]),
     ("duplicate key", Line(1, "duration = 1\nduration = 2"), 2, "duration", &["duplicate key"]),
     ("duplicate table", More("[log]\nperiod = 2"), 36, "log", &["duplicate key"]),
     ("a key that is a value and a table", Line(1, "duration = 1\nbody = 5"), 4, "body", &["cannot extend value of type integer"]),

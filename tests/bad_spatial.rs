@@ -18,22 +18,23 @@ const CASES: &[Case] = &[
     ("rate = [0.3, -0.2, 0.5]", "rates = [0.3, -0.2, 0.5]", 4, &["unknown key `rates`", "`rate`"]),
     ("rate = [0.3, -0.2, 0.5]", "disturbance = { period = 0 }", 4, &["`body.spatial.disturbance.period`", "must be a positive number, got 0"]),
     ("{ name = \"hub\" }]", "{ name = \"hub\" }, { name = \"hub\" }]", 5, &["`body.spatial.points[1].name`", "got `hub` again"]),
-    ("{ name = \"hub\" }]", "{ name = \"hub\" }, { name = \"tip\" }]", 9, &["`body.spatial.modes[0].shapes` must tell the shape at each point, and `tip` is missing"]),
+    ("{ name = \"hub\" }]", "{ name = \"hub\" }, { name = \"tip\" }]", 9, &["`body.spatial.modes[0].shapes` must have a shape at each point, and `tip` is missing"]),
     ("frequency = 1.2566370614359172", "frequency = 0", 7, &["`body.spatial.modes[0].frequency`", "must be a natural frequency of 1e-4 to 1e3 rad/s, got 0"]),
     ("damping = 0.005", "damping = -1", 8, &["`body.spatial.modes[0].damping`", "must be a number of 0 or more, got -1"]),
     ("shapes.hub", "shapes.hab", 9, &["`body.spatial.modes[0].shapes.hab` must be one of the points, `hub`"]),
     ("translation = [1.0, 0.0, 0.0]", "translation = [1.0, 0.0]", 9, &["`body.spatial.modes[0].shapes.hub.translation`", "expected an array of length 3"]),
     ("[sensor.gyro]\npoint = \"hub\"", "[sensor.gyro]\npoint = \"hab\"", 11, &["`sensor.gyro.point` must be one of the body's points, `hub`, got `hab`"]),
     ("[sensor.gyro]\npoint = \"hub\"", "[sensor.gyro]\npoint = \"hub\"\nnoise = [0, -1, 0]", 12, &["`sensor.gyro.noise`", "must be a number of 0 or more, got -1"]),
-    ("[sensor.gyro]\npoint = \"hub\"", "[sensor.sampled]\nperiod = 0.2", 10, &["`sensor` must be `gyro` for a `[body.spatial]`"]),
+    ("[sensor.gyro]\npoint = \"hub\"", "[sensor.sampled]\nperiod = 0.2\npoint = \"hab\"", 12, &["`sensor.sampled.point` must be one of the body's points, `hub`, got `hab`"]),
     ("period = 0.2", "period = 0", 13, &["`law.phase_plane.period`", "must be a time of"]),
     ("switch_off = 1.0", "switch_off = 100.0", 17, &["`law.phase_plane.switch_off` must be below `switch_on`, 100, got 100"]),
     ("switch_off = 1.0", "switch_off = 1.0\nbraking = 1.0", 18, &["`law.phase_plane.braking`", "must be a number between 0 and 1, got 1"]),
     ("switch_off = 1.0", "switch_off = 1.0\ntargets = [{ from = 5 }, { from = 5 }]", 18, &["`law.phase_plane.targets[1].from` must be later than the one before, got 5"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[estimator.rigid_rate]\ncorrection = 1.0", 19, &["`estimator.rigid_rate.correction`", "must be a number between 0 and 1, got 1"]),
-    ("switch_off = 1.0", "switch_off = 1.0\n[estimator.truth]", 18, &["`estimator` must be `rigid_rate`, `adaptive` or left out for a `[body.spatial]`"]),
-    ("switch_off = 1.0", "switch_off = 1.0\n[manoeuvre]\nangle = 1.0\ntime = 10.0\ncommand = { bang_bang = {} }", 18, &["`manoeuvre` is for bodies with one angle", "its law has `targets`"]),
-    ("switch_off = 1.0", "switch_off = 1.0\n[[disturbance]]\ntorque = 1.0", 18, &["`disturbance` is for bodies with one angle", "`body.spatial.disturbance`"]),
+    ("switch_off = 1.0", "switch_off = 1.0\n[estimator.envelope]\nwindow = 1.0", 18, &["`estimator.envelope` follows the modes of one angle"]),
+    ("switch_off = 1.0", "switch_off = 1.0\n[[target]]\nfrom = 9\n[[target]]\nfrom = 5", 21, &["`target[1].from` must be later than the one before, got 5"]),
+    ("switch_off = 1.0", "switch_off = 1.0\n[manoeuvre]\nangle = 1.0\ntime = 10.0\ncommand = { bang_bang = {} }", 18, &["`manoeuvre` is for bodies with one angle", "one with three axes has `[[target]]`"]),
+    ("switch_off = 1.0", "switch_off = 1.0\n[[disturbance]]\ntorque = 1.0", 18, &["`disturbance[0].about` must be given for a body with three axes: `roll`, `pitch` or `yaw`"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[drift.common]\nsinusoid = { amplitude = 0.1, period = 10.0 }", 18, &["`drift` is for bodies with one angle"]),
     ("specific_impulse = 200.0", "specific_impulse = 0", 19, &["`actuator.jets.specific_impulse`", "must be a positive number, got 0"]),
     ("specific_impulse = 200.0", "specific_impulse = 200.0\ndelay = 2", 20, &["`actuator.jets.delay` must be 0 or 1 cycles, got 2"]),
@@ -60,7 +61,7 @@ fn bad_spatial_scenarios_are_refused() {
     }
 }
 
-/// Parts of a spatial loop have no place beside a body with one angle, and a spatial body needs all of them.
+/// What has no place beside a body with one angle, and what a law needs of its actuator.
 #[test]
 fn parts_of_a_loop_fit_each_other() {
     let planar = "duration = 1\n[body.planar]\nangle = 1e-3\n";
@@ -72,23 +73,21 @@ fn parts_of_a_loop_fit_each_other() {
     };
     let (gyro, phase_plane, jets) =
         (part("[sensor", "[law"), part("[law", "[actuator"), part("[actuator", ""));
-    let rate = "[estimator.rigid_rate]\ncorrection = 0.1\n";
     let dir = Dir::new();
-    for (text, key) in [
-        (format!("{planar}{phase_plane}"), "law.phase_plane"),
-        (format!("{planar}{law}{gyro}"), "sensor.gyro"),
-        (format!("{planar}{law}{jets}"), "actuator.jets"),
-        (format!("{planar}{law}{rate}"), "estimator.rigid_rate"),
+    let spatial = "is for a body with three axes, and the body is `planar`";
+    for (text, key, why) in [
+        (format!("{planar}{phase_plane}"), "law.phase_plane", "needs the largest torque"),
+        (format!("{planar}{law}{gyro}"), "sensor.gyro.point", spatial),
+        (format!("{planar}{law}{jets}"), "actuator.jets", spatial),
+        (format!("{planar}{law}[[target]]\nfrom = 1.0"), "target", spatial),
+        (format!("{planar}{law}[[disturbance]]\nabout = \"yaw\""), "disturbance[0].about", "names an axis"),
     ] {
         dir.write("bad.toml", text);
-        let why = format!("`{key}` is for a `[body.spatial]`, and the body is `planar`");
-        dir.run("check bad.toml").exits(2).says(&[&why]);
+        dir.run("check bad.toml").exits(2).says(&[&format!("`{key}` {why}")]);
     }
-    for (without, words) in [
-        (gyro, "`sensor` must be `gyro` for a `[body.spatial]`"),
-        (phase_plane, "missing key `law`"),
-        (jets, "`actuator` must be `jets` for a `[body.spatial]`"),
-    ] {
+    for (without, words) in
+        [(phase_plane, "missing key `law`"), (jets, "`law.phase_plane` needs the largest torque")]
+    {
         dir.write("bad.toml", FREE.replace(without, ""));
         dir.run("check bad.toml").exits(2).says(&[words]);
     }

@@ -79,6 +79,7 @@ const BAD: &[Case] = &[
 ];
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn bad_structures_are_refused_at_their_keys() {
     let dir = Dir::new();
     dir.write("words.csv", "1, 2\nx, 3\n");

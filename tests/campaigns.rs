@@ -191,7 +191,9 @@ fn a_sweep_of_other_values_is_another_one() {
     assert_eq!(table(&dir, "out/runs.csv").len(), 7);
     // A table of which nothing is known stays, too.
     std::fs::remove_file(dir.path("out/scenario.toml")).expect("there");
-    dir.run(&format!("{vary}=0.3:0.4:5")).exits(2).says(&["out/runs.csv", "nothing tells of which campaign"]);
+    dir.run(&format!("{vary}=0.3:0.4:5"))
+        .exits(2)
+        .says(&["out/runs.csv", "exists, and its campaign is unknown"]);
 }
 
 #[test]

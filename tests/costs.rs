@@ -172,6 +172,11 @@ fn campaigns_and_grids_have_bounds() {
     assert_eq!(ran.out.lines().count(), 3);
     let vary = "--vary law.relay.k_t=0.3:0.4:10000000 --vary duration=1:2:10000000 --vary seed=1:2:10000000";
     refused(dir.run_bounded(&format!("sweep b.toml --yes {vary}")), &["at most 10000000 combinations"]);
+    let vary = "--vary law.relay.k_t=0.3:0.4:10000000000";
+    refused(
+        dir.run_bounded(&format!("sweep b.toml --yes {vary}")),
+        &["at most 10000000 values, got 10000000000"],
+    );
     refused(
         dir.run_bounded("sweep b.toml --vary duration=1:1e10:10000"),
         &["in each of 10000 runs", "needs a yes"],
@@ -207,6 +212,7 @@ fn structure(file: &str) -> String {
 
 /// Files that never end, or are larger than any structure.
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn files_of_structures_have_bounds() {
     let dir = Dir::new();
     let made = |program: &str, arguments: &[&str]| {
@@ -281,6 +287,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn archives_have_bounds() {
     let doubles = |values: &[f64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<_>>();
     let counts = |values: &[i64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<_>>();

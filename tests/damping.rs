@@ -4,8 +4,10 @@
 
 use std::f64::consts::PI;
 
-use flexsc_core::analysis::damping::{Decay, Relay, Study, partition};
+use flexsc_core::actuator::PulseTiming;
+use flexsc_core::analysis::damping::{Decay, Study};
 use flexsc_core::estimator::adaptive::{Oscillator, Phase};
+use flexsc_core::numerics::delay_margin::delay_margin;
 
 use crate::study::close;
 use crate::util::Dir;
@@ -15,8 +17,8 @@ const CYCLE: f64 = 0.2;
 /// Elastic acceleration of the yaw thrusters on their dominant mode (rad/s²).
 const YAW: f64 = 5.908_32e-5;
 
-fn relay(delay: f64, on_time: f64) -> Relay {
-    Relay { period: CYCLE, delay, on_time }
+fn relay(delay: f64, on_time: f64) -> PulseTiming {
+    PulseTiming { period: CYCLE, delay, on_time }
 }
 
 /// The amplitude of a mode's rate at each sample under a relay with a push over the whole cycle, exact.
@@ -74,7 +76,7 @@ fn phase_factor_is_the_mean_fall_of_the_amplitude() {
 #[test]
 fn a_relay_damps_up_to_a_limit() {
     // A pure delay; a push over the whole cycle, at once and one cycle late (Hz).
-    let pure = Relay { period: 0.0, delay: CYCLE, on_time: 0.0 };
+    let pure = PulseTiming { period: 0.0, delay: CYCLE, on_time: 0.0 };
     for (relay, hertz) in
         [(pure, 1.25), (relay(0.0, CYCLE), 2.5), (relay(CYCLE, CYCLE), 5.0 / 6.0), (relay(CYCLE, 0.1), 1.0)]
     {
@@ -83,7 +85,7 @@ fn a_relay_damps_up_to_a_limit() {
         assert!((relay.delay_limit(limit) - relay.delay).abs() < 1e-14);
         assert!(relay.phase_factor(0.99 * limit) > 0.0 && relay.phase_factor(1.01 * limit) < 0.0);
     }
-    assert!((Relay { period: 0.0, delay: 0.0, on_time: 0.0 }).frequency_limit().is_infinite());
+    assert!((PulseTiming { period: 0.0, delay: 0.0, on_time: 0.0 }).frequency_limit().is_infinite());
     close(relay(0.0, 0.1).phase_factor(1e-9), 0.5, 1e-12);
 }
 
@@ -104,7 +106,7 @@ fn delayed_feedback_is_stable_up_to_a_gain() {
         (3.0, 1.5, 0.1, 3.769_911_184),
     ];
     for (hertz, delay, damping, gain) in exact {
-        let border = partition(TURN * hertz, delay, damping).expect("a border");
+        let border = delay_margin(TURN * hertz, delay, damping).expect("a border");
         let digits = if gain.to_string().len() > 8 { 1e-8 } else { 1e-4 };
         close(border.gain, gain, digits);
         // The characteristic equation holds at i y.
@@ -113,12 +115,12 @@ fn delayed_feedback_is_stable_up_to_a_gain() {
         let imaginary = 2.0 * damping * w * y + k * y * (y * delay).cos();
         assert!(real.abs() < 1e-11 * w * w && imaginary.abs() < 1e-11 * w * w, "{hertz}: {real} {imaginary}");
     }
-    assert_eq!(partition(1.0, 0.0, 0.01), None);
+    assert_eq!(delay_margin(1.0, 0.0, 0.01), None);
     // Without damping a delay of more than a quarter of a period makes every gain unstable.
-    assert!(partition(TURN, 0.3, 0.0).expect("a border").gain < 1e-12);
-    close(partition(TURN, 0.2, 0.0).expect("a border").gain, 2.5 * PI - TURN * TURN / (2.5 * PI), 1e-12);
+    assert!(delay_margin(TURN, 0.3, 0.0).expect("a border").gain < 1e-12);
+    close(delay_margin(TURN, 0.2, 0.0).expect("a border").gain, 2.5 * PI - TURN * TURN / (2.5 * PI), 1e-12);
     // Far intervals and long delays end, too.
-    assert!(partition(1e3, 1e3, 0.3).expect("a border").gain >= 600.0 * (1.0 - 1e-12));
+    assert!(delay_margin(1e3, 1e3, 0.3).expect("a border").gain >= 600.0 * (1.0 - 1e-12));
 }
 
 /// The delay equation x'' + 2 zeta w x' + w² x + k x'(t - h) = 0 by steps, the delayed rate held over a thousandth of h
@@ -143,7 +145,7 @@ fn delayed(frequency: f64, delay: f64, damping: f64, gain: f64, time: f64) -> f6
 
 #[test]
 fn beyond_that_gain_the_delay_equation_grows() {
-    let limit = partition(TURN, 0.2, 0.005).expect("a border").gain;
+    let limit = delay_margin(TURN, 0.2, 0.005).expect("a border").gain;
     let after = |part: f64| {
         delayed(TURN, 0.2, 0.005, part * limit, 60.0) / delayed(TURN, 0.2, 0.005, part * limit, 20.0)
     };
@@ -242,7 +244,7 @@ fn a_delayed_relay_ends_in_a_limit_cycle() {
     let cases =
         [(0.2476, YAW, 9.95e-6, 1.22e-5, 1.252, 1.247), (0.5119, 1.289e-4, 2.50e-5, 3.00e-5, 1.254, 1.250)];
     for (hertz, acceleration, foreseen, rate, swing, seen) in cases {
-        let border = partition(TURN * hertz, 0.2, 0.005).expect("a border");
+        let border = delay_margin(TURN * hertz, 0.2, 0.005).expect("a border");
         close(border.limit_cycle(acceleration), foreseen, 2e-3);
         close(border.frequency, TURN * swing, 1e-3);
         // Steps of 1 ms: the relay reads all the time.
@@ -307,7 +309,7 @@ fn the_command_tells_what_a_relay_does() {
         dir.run(&format!("damping {arguments}")).exits(2).says(&[words]);
     }
     let study = Study {
-        relay: relay(0.0, CYCLE),
+        timing: relay(0.0, CYCLE),
         damping: 0.005,
         acceleration: YAW,
         amplitude: 5e-4,

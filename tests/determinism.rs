@@ -22,8 +22,8 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
-        ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0xd337_4d4d_e9d0_be52),
-        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xdfa0_a2b1_821d_d0aa),
+        ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
+        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xe18f_c212_5f78_e08b),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
     ];

@@ -1,6 +1,6 @@
 //! Reading figures: their words, shapes and numbers.
 
-use resvg::usvg::roxmltree::{Document, Node};
+use roxmltree::{Document, Node};
 
 use crate::util::Dir;
 

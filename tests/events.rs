@@ -1,10 +1,10 @@
 //! The rules of time: no crossing is missed, and nothing that watches a run changes it.
 
 use flexsc_core::belief::Belief;
-use flexsc_core::body::{Arc, Input, Planar, State};
+use flexsc_core::body::{Input, Planar, Segment, State};
 use flexsc_core::crossing::locate;
 use flexsc_core::guard::Guard;
-use flexsc_core::law::{Cause, Control, Goal, Law};
+use flexsc_core::law::{Cause, Command, Goal};
 use flexsc_core::random::{Seed, Stream};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::time::{Instant, Span};
@@ -45,8 +45,8 @@ fn no_crossing_is_missed() {
     let (mut tripped, mut clear) = (0, 0);
     for trial in 0..1500 {
         let (body, state) = random_body(&mut stream);
-        let mut arc = Arc::new(&body);
-        arc.depart(&state, &Input::constant(3e-6 * stream.normal()));
+        let mut segment = Segment::new(&body);
+        segment.depart(&state, &Input::constant(3e-6 * stream.normal()));
         let start = state.angle();
         let mut away = || 3e-4 * stream.uniform();
         let mut guards = [Guard::at_least(start + away()), Guard::at_most(start - away())];
@@ -56,14 +56,14 @@ fn no_crossing_is_missed() {
         }
         let horizon = Span::from_seconds(5.0);
         let mut there = state.clone();
-        let trip = locate(&arc, &guards, horizon, &mut there, &mut ()).expect("not stopped");
+        let trip = locate(&segment, &guards, horizon, &mut there, &mut ()).expect("not stopped");
         let until = trip.map_or(5.0, |trip| trip.after.seconds());
         // Nothing was crossed before, seen at 20 000 instants, within the rounding of the angle.
         let mut probe = state.clone();
         for index in 0..20_000 {
-            let sight = arc.at(until * f64::from(index) / 20_000.0, &mut probe);
+            let sensed = segment.at(until * f64::from(index) / 20_000.0, &mut probe);
             for guard in guards {
-                assert!(guard.gap(sight.angle) > -1e-18, "crossed before {until} s: {body:?}");
+                assert!(guard.gap(sensed.angle) > -1e-18, "crossed before {until} s: {body:?}");
             }
         }
         match trip {
@@ -71,11 +71,11 @@ fn no_crossing_is_missed() {
             Some(trip) => {
                 tripped += 1;
                 let guard = guards[trip.guard];
-                let sight = arc.at(trip.after.seconds(), &mut probe);
-                assert!(guard.holds(sight.angle));
+                let sensed = segment.at(trip.after.seconds(), &mut probe);
+                assert!(guard.holds(sensed.angle));
                 assert_eq!(probe, there);
                 // It is the first tick: one before, the angle is short of the level, or at it to rounding.
-                let before = arc.at(trip.after.minus(Span::TICK).seconds(), &mut probe);
+                let before = segment.at(trip.after.minus(Span::TICK).seconds(), &mut probe);
                 assert!(guard.gap(before.angle) > -1e-18);
             }
         }
@@ -88,28 +88,28 @@ fn a_tangent_touch_is_found() {
     // The body turns round a ten-thousandth of the last bit of its angle beyond the level: 1e-4 + v²/2m.
     let text = format!("duration = 1.0\n[body.planar]\nangle = 1e-4\nrate = 1e-5\n{RELAY}");
     let scenario = scenario(&text);
-    let mut arc = Arc::new(&scenario.model);
+    let mut segment = Segment::new(&scenario.model);
     let state = scenario.model.start();
-    arc.depart(&state, &Input::constant(-1e-6));
+    segment.depart(&state, &Input::constant(-1e-6));
     let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
     let mut there = state.clone();
     let horizon = Span::from_seconds(100.0);
-    let below = locate(&arc, &[Guard::at_least(peak - 1e-18)], horizon, &mut there, &mut ());
+    let below = locate(&segment, &[Guard::at_least(peak - 1e-18)], horizon, &mut there, &mut ());
     let below = below.expect("not stopped").expect("a touch");
     assert!((below.after.seconds() - 10.0).abs() < 2e-6, "{}", below.after.seconds());
-    let above = locate(&arc, &[Guard::at_least(peak + 1e-18)], horizon, &mut there, &mut ());
+    let above = locate(&segment, &[Guard::at_least(peak + 1e-18)], horizon, &mut there, &mut ());
     assert_eq!(above.expect("not stopped"), None);
 }
 
 #[test]
 fn a_guard_that_holds_trips_at_once() {
     let scenario = scenario(&format!("duration = 1.0\n[body.planar]\nangle = 1e-4\n{RELAY}"));
-    let mut arc = Arc::new(&scenario.model);
+    let mut segment = Segment::new(&scenario.model);
     let state = scenario.model.start();
-    arc.depart(&state, &Input::constant(0.0));
+    segment.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
-    let trip = locate(&arc, &guards, Span::from_seconds(1.0), &mut there, &mut ());
+    let trip = locate(&segment, &guards, Span::from_seconds(1.0), &mut there, &mut ());
     let trip = trip.expect("not stopped").expect("a trip");
     assert_eq!((trip.after, trip.guard), (Span::ZERO, 1));
 }
@@ -118,15 +118,15 @@ fn a_guard_that_holds_trips_at_once() {
 fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     let text = format!("duration = 1.0\n[body.planar]\nrate = 1e-9\n{RELAY}");
     let scenario = scenario(&text);
-    let mut arc = Arc::new(&scenario.model);
+    let mut segment = Segment::new(&scenario.model);
     let state = scenario.model.start();
-    arc.depart(&state, &Input::constant(0.0));
+    segment.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];
-    let trip = locate(&arc, &guards, Span::from_seconds(1e6), &mut there, &mut ());
+    let trip = locate(&segment, &guards, Span::from_seconds(1e6), &mut there, &mut ());
     let trip = trip.expect("not stopped").expect("a trip");
     assert!((trip.after.seconds() - 5e5).abs() < 1e-9);
-    let none = locate(&arc, &guards, Span::from_seconds(4.9e5), &mut there, &mut ());
+    let none = locate(&segment, &guards, Span::from_seconds(4.9e5), &mut there, &mut ());
     assert_eq!(none.expect("not stopped"), None);
 }
 
@@ -218,15 +218,16 @@ fn a_state_that_overflows_is_an_error() {
 
 #[test]
 fn the_brake_keeps_the_gain_that_it_began_with() {
-    let Law::Relay(mut law) = scenario(&format!("duration = 1\n{FLEXIBLE}{RELAY}")).law else {
-        panic!("a relay law")
-    };
+    let study = scenario(&format!("duration = 1\n{FLEXIBLE}{RELAY}"));
+    let mut law = study.law.start(&study.study.authorities[0]);
     let at = |seconds| Instant::START + Span::from_seconds(seconds);
-    let belief = |gain| Belief { angle: 6e-4, gain, ..Belief::default() };
-    let push = law.decide(at(0.0), Cause::Start, &Goal::default(), &belief(0.31));
-    assert_eq!(push.torque, -4e-5);
-    let brake = law.decide(at(4.0), Cause::Guard(0), &Goal::default(), &belief(0.25));
-    assert_eq!((brake.torque, brake.until), (4e-5, Some(at(5.0))));
-    let coast = law.decide(at(5.0), Cause::Timeout, &Goal::default(), &belief(0.9));
-    assert_eq!((coast.torque, coast.until, coast.guards.len()), (1e-6, None, 2));
+    let belief = Belief { angle: 6e-4, ..Belief::default() };
+    let push = law.decide(at(0.0), Cause::Start, &Goal::default(), &belief);
+    assert_eq!(push.command, Command::Torque(-4e-5));
+    law.tune("k_t", 0.25);
+    let brake = law.decide(at(4.0), Cause::Guard(0), &Goal::default(), &belief);
+    assert_eq!((brake.command, brake.until), (Command::Torque(4e-5), Some(at(5.0))));
+    law.tune("k_t", 0.9);
+    let coast = law.decide(at(5.0), Cause::Timeout, &Goal::default(), &belief);
+    assert_eq!((coast.command, coast.until, coast.guards.len()), (Command::Torque(1e-6), None, 2));
 }

@@ -350,7 +350,7 @@ fn filters_that_cannot_work_are_refused() {
         ("kalman]", "kalman]\nratio = 4.0", "ratio", "must lie within the bounds [0.1, 3], got 4"),
         ("kalman]", "kalman]\nassess = [100, 30]", "assess", "must be [from, to] in this order"),
         ("watch_only = true", "", "estimator.extended_kalman", "is read by nothing"),
-        ("watch_only = true", "watch_only = false", "`watch_only = true`", "is assessed and changes nothing"),
+        ("watch_only = true", "watch_only = false", "`watch_only = true`", "the filter is assessed"),
         ("extended_kalman]\nwatch_only = true", "truth]", "estimator.truth", "is read by nothing"),
         ("kalman]", "kalman]\nsubsteps = 0", "substeps", "must be 1 to 100 steps, got 0"),
     ];

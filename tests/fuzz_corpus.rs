@@ -1,5 +1,6 @@
 //! What the fuzzer found once: none of it crashes, hangs, eats memory or leaves half a file any more.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -61,6 +62,12 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
+/// All files within a directory.
+fn files(directory: &Path) -> BTreeSet<PathBuf> {
+    let entries = fs::read_dir(directory).expect("there").map(|entry| entry.expect("readable").path());
+    entries.flat_map(|path| if path.is_dir() { files(&path) } else { BTreeSet::from([path]) }).collect()
+}
+
 fn start(input: &Input) -> Child {
     let mut command = Command::new("sh");
     command.args(["-c", &format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\""), FLEXSC]).args(&input.arguments);
@@ -97,6 +104,7 @@ fn what_the_fuzzer_found_is_mended() {
     let inputs = inputs();
     assert!(!inputs.is_empty(), "the corpus is gone");
     for input in inputs.iter().filter(|input| !input.dir.has("sent")) {
+        let given = files(&input.dir.path(""));
         let mut child = start(input);
         let stops = !["export", "plot", "log", "check", "modes"].contains(&&*input.arguments[0]);
         let mut err = child.stderr.take().expect("piped");
@@ -111,6 +119,8 @@ fn what_the_fuzzer_found_is_mended() {
         let code = status.code().unwrap_or(if stops { 130 } else { -1 });
         assert!([0, 1, 2, 130].contains(&code), "{}: {status}\n{said}", input.name);
         assert!(code == 0 || code == 130 || said.contains("error"), "{}: {status}\n{said}", input.name);
+        let left = files(&input.dir.path(""));
+        assert!(code != 2 || left == given, "{}: {status}, but there are {left:?}", input.name);
     }
 }
 

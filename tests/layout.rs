@@ -8,21 +8,26 @@ use serde_json::Value;
 use crate::util::{Dir, SCENARIOS};
 
 /// The scenarios whose layouts are shipped, by the layouts' names.
-const SHIPPED: [(&str, &str); 4] = [
+const SHIPPED: [(&str, &str); 5] = [
     ("relay", "relay-adaptive"),
     ("rotation", "rotation-robust"),
     ("wheel", "wheel-ekf"),
     ("spatial", "iss-manoeuvre"),
+    ("spacecraft", "earth-observer"),
 ];
 
 /// Runs that have what the others have not: other estimators, actuators and bodies.
-const OTHERS: [(&str, &str); 6] = [
+const OTHERS: [(&str, &str); 10] = [
     ("relay-sampled", "--set duration=1000"),
     ("rotation-thrusters", ""),
     ("rotation-nonlinear", ""),
     ("wheel-fast-mode", "--set duration=20"),
     ("iss-manoeuvre-off", "--set duration=60"),
     ("iss-mismatch", "--set duration=60"),
+    ("attitude-hold", "--set duration=40"),
+    ("slew-wheel-lqg", ""),
+    ("momentum-unloading", "--set duration=1400"),
+    ("thruster-phase-plane", "--set duration=60"),
 ];
 
 /// What a layout's panels show: paths and topics.

@@ -23,11 +23,11 @@ fn value(system: &System, start: &DVector<f64>, input: f64, at: f64) -> f64 {
     segment.arrive(at, &mut state);
     let again = (&system.output * flow.vector(&state))[0];
     assert!(
-        (again - seen.sights[0].angle).abs() < 1e-11 * again.abs().max(1e-5),
+        (again - seen.outputs[0].angle).abs() < 1e-11 * again.abs().max(1e-5),
         "{again} {}",
-        seen.sights[0].angle
+        seen.outputs[0].angle
     );
-    seen.sights[0].angle
+    seen.outputs[0].angle
 }
 
 /// An oscillator read through a low-pass of nearly its own pole.
@@ -159,18 +159,18 @@ fn bounds_are_never_exceeded() {
             let mut before: Option<Seen> = None;
             for step in 0..=400 {
                 segment.at(from + span * f64::from(step) / 400.0, &mut then);
-                for (j, sight) in then.sights.iter().enumerate() {
+                for (j, sensed) in then.outputs.iter().enumerate() {
                     let (m, jerk) = (now.curvature[j], now.jerk[j]);
                     // Squares of what has long died away underflow.
                     let room = 1e-12 * m + 1e-100;
                     assert!(
-                        sight.acceleration.abs() <= m + room,
+                        sensed.acceleration.abs() <= m + room,
                         "plant {plant}: {} {m}",
-                        sight.acceleration
+                        sensed.acceleration
                     );
-                    nearest = nearest.max(sight.acceleration.abs() / m.max(1e-100));
+                    nearest = nearest.max(sensed.acceleration.abs() / m.max(1e-100));
                     if let Some(before) = &before {
-                        let slope = (sight.acceleration - before.sights[j].acceleration) / (span / 400.0);
+                        let slope = (sensed.acceleration - before.outputs[j].acceleration) / (span / 400.0);
                         assert!(
                             slope.abs() <= jerk * (1.0 + 1e-9) + 1e-9 * m + 1e-100,
                             "plant {plant}: {slope} {jerk}"
@@ -219,9 +219,12 @@ fn waveforms_as_more_states() {
         segment.depart(&flow.modal(&start), &[0.0]);
         let mut seen = Seen::default();
         segment.at(h, &mut seen);
-        let sight = seen.sights[0];
-        let (value, bound) =
-            if harmonic.is_some() { (sight.acceleration, 1e-19) } else { (sight.angle, 3e-15 * exact.abs()) };
+        let sensed = seen.outputs[0];
+        let (value, bound) = if harmonic.is_some() {
+            (sensed.acceleration, 1e-19)
+        } else {
+            (sensed.angle, 3e-15 * exact.abs())
+        };
         assert!((value - exact).abs() < bound, "{row:?}: {:e}", (value - exact).abs());
     }
 }

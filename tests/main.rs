@@ -3,6 +3,7 @@
 mod active_damping;
 mod adaptation;
 mod adaptive;
+mod axes;
 mod bad_files;
 mod bad_manoeuvres;
 mod bad_scenarios;
@@ -11,23 +12,30 @@ mod bad_structures;
 mod campaign_figures;
 mod campaigns;
 mod cli;
+mod combinations;
 mod convergence;
 #[cfg(target_os = "linux")]
 mod costs;
 mod coupled;
+mod craft;
 mod cycles;
 mod damping;
 mod damping_relay;
 mod determinism;
 mod documented;
 mod drawing;
+mod earth_observer;
+mod environment;
 mod events;
 mod exact;
+mod extending;
 mod filters;
 mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
 mod layout;
+#[cfg(not(feature = "full"))]
+mod light;
 mod linear;
 mod linear_poles;
 #[cfg(feature = "live")]
@@ -35,7 +43,9 @@ mod live;
 mod live_limits;
 mod logs;
 mod loops;
+mod lqg;
 mod manoeuvres;
+mod own_parts;
 mod plan;
 mod plan_figures;
 mod plants;
@@ -45,13 +55,18 @@ mod reproduce;
 mod rivals;
 mod rotation;
 mod scene;
+mod several_sensors;
 mod spacecraft;
 mod spatial;
 mod station;
 mod stops;
+#[cfg(unix)]
+mod stops_soon;
 mod structure;
 mod study;
 mod tuning;
+mod unloading;
+mod unwatched;
 mod util;
 #[cfg(feature = "live")]
 mod viewer;

@@ -1,6 +1,6 @@
 //! The figures of a plan: there, in both forms, with a curve for each command and the right values on them.
 
-use resvg::usvg::roxmltree::Document;
+use roxmltree::Document;
 
 use crate::util::Dir;
 
@@ -32,6 +32,7 @@ fn low_and_high(curve: &[f64]) -> (f64, f64) {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn a_series_is_drawn_with_each_number_of_modes() {
     let dir = Dir::with(&["rotation-sine"]);
     let set = "--set manoeuvre.command.sine.suppress=3";

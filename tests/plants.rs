@@ -71,7 +71,7 @@ pub struct Counted<'a>(pub &'a Segment, pub &'a Cell<u32>);
 impl Approach for Counted<'_> {
     type Guard = Level;
     type State = Seen;
-    type Sight = ();
+    type Sensed = ();
 
     fn begin(&self, seen: &mut Seen) {
         self.1.set(self.1.get() + 1);

@@ -1,7 +1,7 @@
 //! The figures of a log: there, in both forms, readable, and with every switching.
 
 use flexsc_core::record::Log;
-use resvg::usvg::roxmltree::{Document, Node};
+use roxmltree::{Document, Node};
 
 use crate::util::Dir;
 
@@ -31,6 +31,7 @@ fn size(png: &[u8]) -> [u32; 2] {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn every_figure_is_drawn_in_both_forms() {
     let dir = simulated("--set duration=2000 --log full");
     dir.run("plot relay-adaptive.mcap -o figures").exits(0).says(&["relay-adaptive-gain.svg"]);
@@ -84,6 +85,7 @@ fn an_events_log_and_a_full_one_give_the_same_figures() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn runs_without_a_switching_can_be_drawn() {
     for duration in ["0.01", "1", "3"] {
         let dir = simulated(&format!("--set duration={duration}"));
@@ -94,6 +96,7 @@ fn runs_without_a_switching_can_be_drawn() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn a_figure_that_is_not_there_is_bad_input() {
     let dir = simulated("--set duration=100");
     dir.run("plot relay-adaptive.mcap -o figures --what nonsense").exits(2).says(&["phase-plane"]);
@@ -137,6 +140,7 @@ fn rotations_have_figures_of_their_own() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn a_file_holds_one_figure_or_a_sheet_of_all() {
     let dir = simulated("--set duration=2000");
     dir.run("plot relay-adaptive.mcap -o figures").exits(0);
@@ -168,6 +172,10 @@ fn a_file_holds_one_figure_or_a_sheet_of_all() {
     dir.run("plot relay-adaptive.mcap -o all.png").exits(0);
     assert_eq!(size(&dir.read("all.png")), ["width", "height"].map(|name| 2 * number(&root, name)));
     dir.run("plot relay-adaptive.mcap -o all.png --format svg").exits(2).says(&["--format", "all.png"]);
+    for other in ["all.pdf", "figures/all.JPG"] {
+        dir.run(&format!("plot relay-adaptive.mcap -o {other}")).exits(2).says(&[other, ".svg or .png"]);
+        assert!(!dir.has(other));
+    }
     dir.run("plot relay-adaptive.mcap --metric duty").exits(2).says(&["no directory of a campaign"]);
 }
 

@@ -1,11 +1,11 @@
 //! The relay law and its envelope against numbers that were computed without flexsc.
 //!
 //! `golden/relay_oracle.py` made the switchings (40 digits). The window means were computed in quadruple arithmetic from
-//! the equations of seed paper 1.
+//! the equations of \[Silaev\].
 
+use flexsc_core::Simulation;
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::time::{Instant, Span};
-use flexsc_core::{PlanarRun, Simulation};
 
 use crate::study::{close, metrics, numbers, scenario};
 
@@ -91,9 +91,9 @@ fn states_at_switchings_are_those_of_40_digit_arithmetic() {
 #[test]
 fn state_at_1000_s() {
     let scenario = scenario("relay-quiet", &[]);
-    let mut simulation = PlanarRun::new(&scenario, 0);
+    let mut simulation = Simulation::new(&scenario, 0);
     simulation.run_until(Instant::START + Span::from_seconds(1000.0), &mut ()).expect("a run");
-    let state = simulation.state();
+    let state = simulation.state().expect("one angle");
     let [first, second] = state.modes[..] else { panic!("two modes") };
     let pairs = [
         (state.rigid_angle, 4.993_324_144_762_067e-4),

@@ -33,6 +33,7 @@ fn reproduced(paper: &str, number: u32) -> String {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn rotations_are_as_the_documentation_says() {
     let page = reproduced("rotation", 2);
     assert!(page.contains("<b class=\"no\">no</b>: it rounds to 7.398"), "the misprint is a verdict");
@@ -44,6 +45,7 @@ fn rotations_are_as_the_documentation_says() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn the_station_is_as_the_documentation_says() {
     stands_alone(&reproduced("station", 4));
 }
@@ -64,6 +66,7 @@ fn stands_alone(page: &str) {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn papers_that_there_are_not_are_told() {
     Dir::new().run("reproduce satellite -o page").exits(2).says(&["satellite", "relay", "rotation"]);
     let dir = Dir::holding("page", "a file");
@@ -72,6 +75,7 @@ fn papers_that_there_are_not_are_told() {
 
 #[cfg(unix)]
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn room_is_looked_for_before_anything_is_computed() {
     let dir = Dir::new();
     // Files of 512 kB at most stand for a full disk: the page of a paper would fit.

@@ -5,9 +5,10 @@
 
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
-use flexsc_core::manoeuvre::{Common, Row, Shape, compare};
+use flexsc_core::manoeuvre::{Common, Row, compare};
 use flexsc_core::quantity::Positive;
 use flexsc_core::time::Span;
+use flexsc_core::waveform::Shape;
 
 use crate::spacecraft::{INERTIA, body, plan, quarter_turn, report, scenario, text};
 use crate::study::close;
@@ -218,7 +219,7 @@ fn every_command_keeps_the_rates_before_and_after() {
                 let errors = (report.angle_error, report.rate_error);
                 assert!(errors.0.abs() < 1e-12 && errors.1.abs() < 1e-12, "{command} {shaper}: {errors:?}");
                 if command.contains("bang") && shaper.is_empty() {
-                    let amplitude = |term: &flexsc_core::manoeuvre::Term| match &term.shape {
+                    let amplitude = |term: &flexsc_core::waveform::Term| match &term.shape {
                         Shape::Polynomial(c) => c[0].abs(),
                         _ => f64::NAN,
                     };

@@ -1,4 +1,4 @@
-//! The spacecraft of the finite rotation: a hub with two panels of four sections (seed paper 2, section 4), by its modes.
+//! The spacecraft of the finite rotation: a hub with two panels of four sections (\[Rotation\], section 4), by its modes.
 //!
 //! Frequencies, gains J X_n[0]² and weights P_4n/X_n[0] come from the eigenproblem in 40-digit arithmetic.
 

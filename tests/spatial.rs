@@ -79,7 +79,9 @@ fn a_tumbling_body_is_where_thirty_digits_put_it() {
     for (torque, [w, x, y, z], rate) in exact {
         let mut turn = SpatialState::start(body(&scenario), &rigid).turn;
         for k in 0..400 {
-            rigid.advance(&mut turn, &Vector::from(torque), (0.1 * f64::from(k), 0.1), go_on).expect("done");
+            rigid
+                .advance(&mut turn, &Vector::from(torque), None, None, (0.1 * f64::from(k), 0.1), go_on)
+                .expect("done");
         }
         let q = turn.attitude;
         for (found, exact) in [q.w, q.i, q.j, q.k].into_iter().zip([w, x, y, z]) {
@@ -112,7 +114,9 @@ fn momentum_and_energy_last() {
         let (momentum, energy, fixed) = (Rigid::momentum(&turn).norm(), rigid.energy(&turn), inertial(&turn));
         let (mut worst, mut longest) = (0.0_f64, 0.0_f64);
         for k in 0..(time / step) as u64 {
-            rigid.advance(&mut turn, &Vector::zeros(), (step * k as f64, step), go_on).expect("done");
+            rigid
+                .advance(&mut turn, &Vector::zeros(), None, None, (step * k as f64, step), go_on)
+                .expect("done");
             worst = worst.max((Rigid::momentum(&turn).norm() / momentum - 1.0).abs());
             worst = worst.max((rigid.energy(&turn) / energy - 1.0).abs());
             longest = longest.max((turn.attitude.norm() - 1.0).abs());

@@ -1,10 +1,11 @@
-//! Structures: matrices and panels become the planar body with modes (seed paper 2, the example of two panels).
+//! Structures: matrices and panels become the planar body with modes (\[Rotation\], the example of two panels).
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use flexsc_core::body::{Body, Planar};
 use flexsc_core::campaign::{Campaign, Grid, Run};
+use flexsc_core::record::Detail;
 use flexsc_core::{Document, Scenario};
 
 use crate::study::close;
@@ -150,6 +151,7 @@ fn a_long_chain_has_its_frequencies() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn matrices_are_read_from_every_kind_of_file() {
     let dir = Dir::new();
     let csv = |matrix: &[[f64; 5]]| {
@@ -275,6 +277,7 @@ fn modes_with_the_hub_free_tell_those_with_the_hub_held() {
 /// A chain of equal masses m between walls that turn with the hub: w_n = 2 sqrt(k/m) sin(n pi/(2 N + 2)). Of order 60 it is
 /// solved by nalgebra, of order 400 by faer.
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn large_structures_have_the_modes_of_a_uniform_chain() {
     let dir = Dir::new();
     let (mass, k) = (2.0, 3000.0);
@@ -340,7 +343,8 @@ fn modes_are_solved_once_and_kept_in_the_log() {
     let error = study(Some(damping)).expect_err("solved again").to_string();
     assert!(error.contains("`body.matrices.mass` cannot be used") && error.contains("m.csv"), "{error}");
     // What the log holds repeats alone, to the same bytes.
-    let toml = Campaign::provenance(&Run { number: 0, scenario: scenario.clone(), drawn: Vec::new() }).toml;
+    let run = Run { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
+    let toml = Campaign::provenance(&run, Detail::Events).toml;
     let again = Scenario::from_document(&Document::parse("log", toml).expect("TOML")).expect("valid");
     assert_eq!(again.model, scenario.model);
     assert!(matches!(again.body, Body::Planar(_)));

@@ -1,7 +1,7 @@
 //! Waveforms: the exact response of a mode against fine quadrature of its definition.
 
-use flexsc_core::manoeuvre::{Shape, Term, Waveform};
-use flexsc_core::phasor::Phasor;
+use flexsc_core::numerics::phasor::Phasor;
+use flexsc_core::waveform::{Shape, Term, Waveform};
 
 /// The integral of exp(pole (to - t)) u(t), and of (to - t) u(t), by Gauss's rule of three nodes on many panels between
 /// the breaks.
@@ -19,7 +19,8 @@ fn quadrature(waveform: &Waveform, pole: Phasor, from: f64, to: f64) -> (Phasor,
             {
                 let t = centre + half * x;
                 let u = waveform.at(t) * weight * half;
-                driven += flexsc_core::phasor::polar((pole.re * (to - t)).exp(), pole.im * (to - t)) * u;
+                driven +=
+                    flexsc_core::numerics::phasor::polar((pole.re * (to - t)).exp(), pole.im * (to - t)) * u;
                 travel += (to - t) * u;
             }
         }

@@ -201,20 +201,24 @@ fn what_does_not_go_with_a_wheel_is_refused() {
     let cases = [
         (
             "relay-fixed",
-            "actuator.wheel.gain=1.0",
-            "`actuator` must be `ideal` with an `[estimator.envelope]`",
+            "actuator.wheel={gain=1.0,back_emf=1e-4}",
+            "`actuator.wheel.back_emf` must be 0 with an `[estimator.envelope]`",
         ),
         (
             "relay-wheel",
             "drift.common.ramp={time=1.0,to=0.5}",
-            "`law.relay` finds its crossings in closed form: with a drift the sensor is `sampled`",
+            "`law.relay` finds its crossings in closed form: with a drift it needs a `[sensor.sampled]`",
         ),
         (
             "relay-wheel",
             "actuator.wheel.rotor.speed_limit=100.0",
-            "`actuator.wheel.rotor.speed_limit` is watched at the law's commands",
+            "`actuator.wheel.rotor.speed_limit` is checked at the law's commands",
         ),
-        ("rotation-sine", "actuator.wheel.gain=1.0", "`actuator.wheel` executes a law's samples"),
+        (
+            "rotation-sine",
+            "actuator.wheel.gain=1.0",
+            "`actuator.wheel` executes a `[manoeuvre]` sample by sample",
+        ),
         ("rotation-sine", "drift.common.ramp={time=1.0,to=0.5}", "`drift` leaves no closed form"),
         ("wheel-fixed-gain", "drift={each=[]}", "must have a profile for each of 4 modes, got 0"),
         (

@@ -139,6 +139,7 @@ fn a_wheel_is_drawn_with_its_limits() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn tuned_gains_are_drawn() {
     let dir = Dir::with(&["wheel-scheduled-gain"]);
     let options = "--frequency 0.2:0.3:2 --gain -2:4:0.05 --robust 0.1 --figures figures --format svg --json";
@@ -170,6 +171,7 @@ fn tuned_gains_are_drawn() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn the_map_is_drawn_with_the_limit_of_stability() {
     let dir = Dir::with(&["wheel-fast-mode"]);
     let grid = "--frequency 0.05:0.35:31 --period 0.1:2:39";

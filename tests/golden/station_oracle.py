@@ -78,16 +78,17 @@ class Lines:
         self.slope, self.limit = 0.05, law["rate_limit"]
         self.on, self.off = law["switch_on"], law["switch_off"]
         self.brake = 0.5 * min(strength)
-        self.least = max(strength) * max(jets["minimum_on"], jets["quantum"])
-        self.least = min(max(self.least, self.on / 1000), self.on)
+        self.least = max(max(strength) * max(jets["minimum_on"], jets["quantum"]), self.on / 1000)
+        self.on, self.limit = max(self.on, self.least), max(self.limit, 2 * self.least)
+        self.slow = max(self.off, 2 * self.least)
         zone = law["dead_zone"]
-        self.edge = max(zone - max(self.least, self.off) / self.slope, zone / 2)
-        self.steep = max(self.slope, self.least / (zone - self.edge))
+        self.edge = max(zone - self.slow / self.slope, zone / 2)
+        self.steep = max(self.slope, 2 * self.least / (zone - self.edge))
 
     def back(self, beyond):
         if beyond <= 0:
             return 0.0
-        slow = min(max(self.off, self.least), self.steep * beyond, np.sqrt(2 * self.brake * beyond))
+        slow = min(self.slow, self.steep * beyond, np.sqrt(2 * self.brake * beyond))
         return min(self.limit, max(min(self.slope, self.brake / self.limit) * beyond, slow))
 
     def wanted(self, angle):
@@ -141,7 +142,8 @@ def station():
         return 0.5 * times(q, np.r_[0, w]), turn
 
     q, w, bending = rest.copy(), np.zeros(3), np.zeros((len(flows), 2))
-    estimate, executed, queued, firing = np.zeros(3), np.zeros(3), np.zeros(3), [False] * 3
+    estimate, drift, executed, queued = (np.zeros(3) for _ in range(4))
+    firing = [False] * 3
     part = study["estimator"]["rigid_rate"]["correction"]
     pulses, fuel, peak, first = 0, 0.0, 0.0, []
 
@@ -153,8 +155,10 @@ def station():
         target = goal if k * cycle >= begins - 1e-9 else rest
         error = times(target * [1, -1, -1, -1], q)
         error = 2 * np.sign(error[0]) * error[1:]
-        predicted = estimate + changes(executed)
-        estimate = predicted + part * (w + seen.T @ bending[:, 0] - predicted)
+        predicted = estimate + changes(executed) + drift
+        innovation = w + seen.T @ bending[:, 0] - predicted
+        estimate = predicted + part * innovation
+        drift = drift + part**2 / 4 * innovation
         command = np.zeros(3)
         for a in range(3):
             excess = estimate[a] + changes(queued)[a] - lines[a].wanted(error[a])

@@ -1,4 +1,4 @@
-"""The example structure of seed paper 2 (two panels of four sections) as NumPy and SciPy write it.
+"""The example structure of [Rotation] (two panels of four sections) as NumPy and SciPy write it.
 
 Run as `python structure_oracle.py`; writes structure-dense.npz and structure-{csr,csc,coo,dia}.npz beside
 itself, and prints what tests/structure.rs compares with: frequencies and couplings by 40-digit arithmetic.

@@ -5,7 +5,7 @@ import pytest
 from conftest import shipped
 from scipy.integrate import solve_ivp
 
-# The matrices of seed paper 2's example, from its data in exact decimals: q = [theta, v1, v2, v3, v4].
+# The matrices of [Rotation]'s example, from its data in exact decimals: q = [theta, v1, v2, v3, v4].
 M = np.array(
     [
         [4616.67, 75.0, 137.5, 200.0, 177.5],

@@ -175,7 +175,7 @@ def test_scenarios_go_to_other_processes(fixed: Scenario) -> None:
         ("body.planar.modes[7].gain", 0.1, "there is no element 7: the array has 2"),
         ("law..k_t", 0.3, "not the path of a key"),
         ("seed", -1, "`seed`: found integer `-1`, expected a whole number"),
-        ("name", "a/b", "`name` names files"),
+        ("name", "a/b", "`name` is used for file names"),
         ("name", "\ud800", "`name`: found a str that is not Unicode"),
         ("epoch", "2026-03-20", "expected a date and time without quotes"),
         ("adaptation.random_search.bounds", [0.32, 0.4], "must lie within the adaptation's bounds"),

@@ -1,4 +1,4 @@
-//! Running a campaign: what is told of each run, and its statistics.
+//! Running a campaign: the row of each run, and the statistics.
 
 mod kept;
 
@@ -72,9 +72,10 @@ pub fn run(
     bar.finish_and_clear();
     let Telling { all, failed, .. } = telling;
     if let Err(failure) = done {
-        let (Failure::Interrupted(at), Some(table)) = (&failure, table) else { return Err(failure) };
-        let Some(path) = table.interrupt(study) else { return Err(failure) };
-        return Err(Failure::Interrupted(format!("{at}; {} holds those before", path.display())));
+        return Err(match (&failure, table) {
+            (Failure::Interrupted(_) | Failure::Write { .. }, Some(table)) => table.interrupt(study, failure),
+            _ => failure,
+        });
     }
     let table = table.map(|table| table.finish(study)).transpose()?;
     let statistics = statistics(&all);
@@ -108,13 +109,13 @@ impl Job<'_> {
     }
 }
 
-/// What is told of each run, in order.
+/// The rows of the runs, in order.
 struct Telling<'a> {
     study: &'a Campaign,
     json: bool,
     table: Option<&'a mut Table>,
     all: Vec<Metrics>,
-    /// The run that is told next.
+    /// The run whose row is next.
     next: u64,
     /// How many runs failed, and the first of them.
     failed: Option<(u64, u64, String)>,
@@ -157,7 +158,7 @@ impl Telling<'_> {
     }
 }
 
-/// What machines are told of a run, with the value of each key that varies.
+/// A run as JSON, with the value of each key that varies.
 pub fn object(
     study: &Campaign,
     number: u64,

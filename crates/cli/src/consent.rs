@@ -7,7 +7,7 @@ use crate::failure::Failure;
 /// Whether long work is wanted.
 #[derive(clap::Args, Copy, Clone)]
 pub struct Consent {
-    /// Do what is estimated to take more than 10 h on one core, 4 GB of memory or 20 GB of logs
+    /// Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs
     #[arg(long)]
     yes: bool,
 }

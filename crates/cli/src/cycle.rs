@@ -13,7 +13,7 @@ use crate::results::{Results, show};
 use crate::say;
 use crate::scenario::Args;
 
-/// So many resonances of each mode are told to people.
+/// So many resonances of each mode are printed.
 const NEAREST: usize = 3;
 
 /// The limit cycles of a scenario's relay law, and their resonances.

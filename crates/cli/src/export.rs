@@ -18,7 +18,7 @@ pub struct Args {
     /// Topic, such as /command; left out, the topics of the log are listed
     #[arg(long, value_name = "TOPIC")]
     topic: Option<String>,
-    /// Form of the table
+    /// Format of the table
     #[arg(long, value_enum, default_value = "csv")]
     format: Format,
     /// File to write, instead of stdout

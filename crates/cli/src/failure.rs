@@ -1,4 +1,4 @@
-//! What can go wrong, and the exit code that says so.
+//! What can go wrong, and its exit code.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -39,9 +39,11 @@ pub enum Failure {
     #[error("cannot draw {}: {why}", path.display())]
     Draw { path: PathBuf, why: String },
     /// A page could not be filled.
+    #[cfg(feature = "papers")]
     #[error("{0}")]
     Page(String),
-    /// What the papers say came out otherwise than it did.
+    /// A verdict of the papers' page changed.
+    #[cfg(feature = "papers")]
     #[error("{} not as expected: {}", if .0.len() == 1 { "a verdict is" } else { "verdicts are" }, .0.join("; "))]
     Verdicts(Vec<String>),
     /// Stdout is closed.
@@ -56,6 +58,9 @@ pub enum Failure {
     /// There is no thread to work on.
     #[error("cannot start a thread: {0}")]
     Thread(io::Error),
+    /// A campaign was stopped, and the rows before are kept.
+    #[error("{failure}; {} holds the runs before", path.display())]
+    Kept { failure: Box<Failure>, path: PathBuf },
     /// The user asked to stop.
     #[error("interrupted{0}")]
     Interrupted(String),
@@ -87,7 +92,7 @@ impl Failure {
         }
     }
 
-    /// Says what went wrong, and returns the exit code.
+    /// Prints what went wrong, and returns the exit code.
     pub fn tell(&self) -> u8 {
         // A reader that has enough, such as `head`, is no failure.
         if let Self::Stdout(error) = self
@@ -97,8 +102,12 @@ impl Failure {
         }
         // Colours go to terminals that have them only, and never where NO_COLOR is set.
         let _ = anstream::stderr().lock().write_all(coloured(&shown(&self.to_string())).as_bytes());
+        self.code()
+    }
+
+    fn code(&self) -> u8 {
         match self {
-            Self::Log(LogError::Unwritable { source, .. }) if !is_busy(source) => 1,
+            Self::Kept { failure, .. } => failure.code(),
             Self::Scenario(_) | Self::Arguments(_) | Self::Log(_) | Self::Busy { .. } => 2,
             Self::Interrupted(_) => 130,
             _ => 1,

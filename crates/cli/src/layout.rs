@@ -16,7 +16,7 @@ const LARGEST: f64 = 2e9;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// The log, or a scenario: then for a log with a scene, or a live run
+    /// A log, or a scenario: then the layout is for a log with a scene, or a live run
     #[arg(value_name = "LOG|SCENARIO")]
     path: PathBuf,
     /// Set a key of the scenario, such as law.relay.k_t=0.34
@@ -43,7 +43,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The layout of the log with a scene that a scenario will have. A run tells how large its values become.
+/// The layout of the log with a scene that a scenario will have. A run shows how large its values become.
 fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, Failure> {
     let layout = Layout::of(&scenario).of_detail(Detail::Scene);
     let cost = scenario.cost(Some(Detail::Full), true);

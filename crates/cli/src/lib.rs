@@ -5,13 +5,15 @@ mod check;
 mod consent;
 mod cycle;
 mod damping;
+mod drawing;
 mod export;
 mod failure;
-mod figure;
 mod files;
 mod grid;
 mod identify;
 mod layout;
+#[cfg(not(all(feature = "papers", feature = "png")))]
+mod left_out;
 #[cfg(feature = "live")]
 mod live;
 mod log;
@@ -23,6 +25,7 @@ mod observer;
 mod plan;
 mod plot;
 mod progress;
+#[cfg_attr(not(feature = "papers"), path = "reproduce/left_out.rs")]
 mod reproduce;
 mod results;
 mod sampled;
@@ -57,9 +60,9 @@ enum Verb {
     Simulate(simulate::Args),
     /// Simulate a scenario once for each value of a key
     Sweep(sweep::Args),
-    /// Tell the elastic modes of a scenario's body
+    /// Print the elastic modes of a scenario's body
     Modes(scenario::Args),
-    /// Tell the limit cycles of a scenario's relay law on a rigid body, and its resonances
+    /// Print the limit cycles of a scenario's relay law on a rigid body, and its resonances
     Cycle(scenario::Args),
     /// Plan the manoeuvre of a scenario, or compare it with every other command
     Plan(plan::Args),
@@ -67,21 +70,21 @@ enum Verb {
     Tune(tune::Args),
     /// Map the stability of a sampled loop over the dominant mode's frequency and the sampling period
     Map(map::Args),
-    /// Tell what a relay of thrusters does to elastic modes: what it damps, how fast, and where a delay makes it swing
+    /// Analyse active damping by a relay of thrusters: which modes it damps, how fast, and its limit cycle with a delay
     Damping(damping::Args),
-    /// Tell how often and how fast an adaptive observer finds elastic modes, over many runs
+    /// Measure how often and how fast an adaptive observer identifies elastic modes, over many runs
     Identify(identify::Args),
-    /// Tell with which weights the recurrence observer of an elastic mode converges
+    /// Find the weights for which the recurrence observer of an elastic mode converges
     Observer(observer::Args),
     /// Draw the figures of a log
     Plot(plot::Args),
-    /// Reproduce the papers that the studies come from: every figure and number, on one HTML page
+    /// Reproduce the papers behind the studies: every figure and number, on one HTML page
     Reproduce(reproduce::Args),
     /// Print a topic of a log as a table
     Export(export::Args),
-    /// Look into logs, and save torn ones
+    /// Inspect logs, and recover incomplete ones
     Log(log::Args),
-    /// Write a layout for viewers that shows a log, or the logs of a scenario
+    /// Write a viewer layout for a log, or for the logs of a scenario
     Layout(layout::Args),
     /// Check scenario files
     Check(check::Args),
@@ -94,19 +97,19 @@ enum Verb {
     },
 }
 
-/// The command's arguments, as what goes through all of them needs them.
+/// The parser of the command line, for completions and tests.
 pub fn command() -> clap::Command {
     Cli::command()
 }
 
-/// Runs the command with these arguments, the program's name first, and tells its exit code: 0 done, 1 a run
+/// Runs the command with these arguments, the program's name first, and returns its exit code: 0 done, 1 a run
 /// failed or a file could not be written, 2 bad input, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     terminal::settle_colours();
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
         Err(error) => {
-            // What cannot be printed has nobody to read it.
+            // Nothing is left to do if stderr cannot be written.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
@@ -153,7 +156,7 @@ fn print(data: &[u8]) -> Result<(), Failure> {
 /// Writes a line of text to stderr.
 macro_rules! say {
     ($($text:tt)*) => {
-        // Nobody may be listening; what matters goes to stdout and to files.
+        // stderr may be closed; results go to stdout and to files.
         { let _ = writeln!(std::io::stderr().lock(), $($text)*); }
     };
 }

@@ -8,7 +8,7 @@ use flexsc_core::record::{Log, recover};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::{print, say, stop};
+use crate::{files, print, say};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -18,11 +18,11 @@ pub struct Args {
 
 #[derive(Subcommand)]
 enum Verb {
-    /// Save what is whole in the log of a killed run
+    /// Recover the complete part of the log of a killed run
     Recover {
-        /// The torn log, such as relay.mcap.partial
+        /// The incomplete log, such as relay.mcap.partial
         torn: PathBuf,
-        /// The log to write [default: the torn log's name with -recovered.mcap]
+        /// The log to write [default: the incomplete log's name with -recovered.mcap]
         #[arg(short, long, value_name = "FILE")]
         out: Option<PathBuf>,
         /// Print one JSON object on stdout
@@ -45,9 +45,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             if whole == *torn {
                 return Err(Failure::Arguments(format!("{name}: a log cannot be recovered into itself")));
             }
-            let writing = stop::writing();
-            let saved = recover(torn, &whole)?;
-            drop(writing);
+            let (log, saved) = recover(torn)?;
+            files::write(&whole, &log)?;
             if *json {
                 let object = json!({"file": whole.display().to_string(), "messages": saved});
                 return print(format!("{object}\n").as_bytes());

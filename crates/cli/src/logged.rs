@@ -19,7 +19,7 @@ pub fn logged(scenario: Scenario, path: &Path, detail: Detail) -> Result<Log, Fa
 }
 
 fn bytes(run: &Run, detail: Detail) -> Result<Vec<u8>, SimulationError> {
-    let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(run), detail)?;
+    let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(run, detail), detail)?;
     let metrics = Campaign::simulate(run, (&mut log, Stop))?;
     Ok(log.finish(&metrics, RunEnd::Complete)?.into_inner())
 }

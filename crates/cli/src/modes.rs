@@ -1,10 +1,13 @@
 //! `flexsc modes`: a body's elastic modes, whichever way the scenario describes the body.
 
+mod spacecraft;
+
 use std::io::Write;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
+use flexsc_core::analysis::parts::Parts;
 use flexsc_core::body::Drive;
 use flexsc_core::body::spatial::AXES;
 use serde_json::{Value as Json, json};
@@ -24,18 +27,27 @@ struct Planar {
     modal: Modal,
 }
 
-/// The modes of a spatial body, and what its jets do to them.
+/// The modes of a spatial body, and what its actuator does to them.
 struct Spatial {
     /// Name of the scenario.
     name: String,
     modes: Influences,
+    /// Whether the actuator is jets; of others a torque of 1 N m is told.
+    jets: bool,
 }
 
 /// The modes of a scenario's body.
 pub fn results(scenario: &Scenario) -> Box<dyn Results> {
     let name = scenario.name.clone();
-    match &scenario.spatial {
-        Some(of) => Box::new(Spatial { name, modes: Influences::of(of) }),
+    if let Some(craft) = scenario.body.craft() {
+        let (parts, jets) = (Parts::of(scenario, craft), scenario.study.groups.is_some());
+        return Box::new(spacecraft::Spacecraft { name, parts, jets });
+    }
+    match scenario.body.spatial() {
+        Some(body) => {
+            let (modes, jets) = (Influences::of(scenario, body), scenario.study.groups.is_some());
+            Box::new(Spatial { name, modes, jets })
+        }
         None => Box::new(Planar { name, modal: Modal::of(&scenario.model) }),
     }
 }
@@ -44,39 +56,43 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     show(&*results(&args.load()?), None, args.json)
 }
 
+/// Prints what the actuator of a body with three axes does to its modes.
+fn tell_influences(modes: &Influences, jets: bool) {
+    let (of, giver) = if jets { ("jets", "the jets give") } else { ("1 N m", "a torque gives") };
+    for (axis, [plus, minus]) in AXES.iter().zip(modes.accelerations_rad_s2) {
+        say!("  {of}, {axis:<8} {plus:+.4e} {:+.4e} rad/s²", -minus);
+    }
+    say!("  influence: elastic rate at the gyro for each rigid rate that {giver} about the same axis");
+    say!(
+        "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>12}{:>12}",
+        "mode",
+        "rad/s",
+        "s",
+        "damping",
+        AXES[0],
+        AXES[1],
+        AXES[2]
+    );
+    for index in 0..modes.dampings.len() {
+        let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| modes.influences[axis][index]);
+        say!(
+            "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{roll:>12.5}{pitch:>12.5}{yaw:>12.5}",
+            modes.frequencies_rad_s[index],
+            modes.periods_s[index],
+            modes.dampings[index],
+        );
+    }
+}
+
 impl Results for Spatial {
     fn json(&self) -> Vec<Json> {
         vec![of_scenario(&self.name, json!(self.modes))]
     }
 
     fn tell(&self) -> Result<(), Failure> {
-        let Self { name, modes } = self;
+        let Self { name, modes, jets } = self;
         say!("{name}   {} modes", modes.dampings.len());
-        for (axis, [plus, minus]) in AXES.iter().zip(modes.accelerations_rad_s2) {
-            say!("  jets, {axis:<8} {plus:+.4e} {:+.4e} rad/s²", -minus);
-        }
-        say!(
-            "  influence: elastic rate at the gyro for each rigid rate that the jets give about the same axis"
-        );
-        say!(
-            "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>12}{:>12}",
-            "mode",
-            "rad/s",
-            "s",
-            "damping",
-            AXES[0],
-            AXES[1],
-            AXES[2]
-        );
-        for index in 0..modes.dampings.len() {
-            let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| modes.influences[axis][index]);
-            say!(
-                "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{roll:>12.5}{pitch:>12.5}{yaw:>12.5}",
-                modes.frequencies_rad_s[index],
-                modes.periods_s[index],
-                modes.dampings[index],
-            );
-        }
+        tell_influences(modes, *jets);
         Ok(())
     }
 }

@@ -19,7 +19,8 @@ pub fn bar(steps: u64, unit: &str) -> ProgressBar {
     ProgressBar::new(steps).with_style(style)
 }
 
-/// A line on the terminal that says what is being done; invisible where a bar is.
+/// A line on the terminal with the current activity; invisible where a bar is.
+#[cfg(feature = "papers")]
 pub fn spinner() -> ProgressBar {
     if is_plain() { ProgressBar::hidden() } else { ProgressBar::new_spinner() }
 }

@@ -1,9 +1,10 @@
 //! What an analysis comes to: the same numbers and figures for people, for machines and for the pages of `reproduce`.
 
+use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
+use crate::drawing::Drawing;
 use crate::failure::Failure;
-use crate::figure::{Drawing, Named};
 use crate::print;
 
 /// What an analysis comes to.
@@ -16,11 +17,11 @@ pub trait Results {
         Vec::new()
     }
 
-    /// Tells people.
+    /// Prints text.
     fn tell(&self) -> Result<(), Failure>;
 }
 
-/// Draws what the arguments ask for, and tells people or machines.
+/// Draws what the arguments ask for, and prints text or JSON.
 pub fn show(results: &dyn Results, drawing: Option<&Drawing>, as_json: bool) -> Result<(), Failure> {
     if let Some(drawing) = drawing {
         drawing.save(|| results.figures())?;

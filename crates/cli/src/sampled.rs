@@ -1,6 +1,7 @@
 //! A scenario's sampled loop, and what counts as settled in it: what `tune` and `map` share.
 
 use flexsc_core::analysis::sampled_loop::{Loop, Scaling, Window};
+use flexsc_core::document::Fault;
 use flexsc_core::law::Pd;
 use flexsc_core::{Scenario, ScenarioError};
 
@@ -13,10 +14,10 @@ pub struct Settled {
     /// Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the start
     #[arg(long, value_name = "ANGLE")]
     band: Option<f64>,
-    /// How long each loop is watched (s)
+    /// How long each loop is simulated (s)
     #[arg(long, value_name = "TIME", default_value_t = 2000.0)]
     horizon: f64,
-    /// The dominant mode alone changes its frequency, not all by one ratio
+    /// Change the frequency of the dominant mode alone, not of all modes by one ratio
     #[arg(long)]
     dominant_alone: bool,
     #[command(flatten)]
@@ -49,8 +50,8 @@ pub fn sampled(scenario: &Scenario) -> Result<(Loop, &Pd), Failure> {
     Ok(Loop::of(scenario).map_err(refused(&scenario.name))?)
 }
 
-fn refused(name: &str) -> impl FnOnce((String, String)) -> ScenarioError + '_ {
-    move |(key, why)| ScenarioError::Key { origin: name.to_owned(), key, why }
+fn refused(name: &str) -> impl FnOnce(Fault) -> ScenarioError + '_ {
+    move |Fault { key, why }| ScenarioError::Key { origin: name.to_owned(), key, why }
 }
 
 /// Accepts positive numbers only.

@@ -6,10 +6,10 @@ use flexsc_core::{Document, Scenario};
 
 use crate::failure::Failure;
 
-/// TOML knows no larger whole number.
+/// The largest integer of TOML.
 pub const LARGEST_SEED: u64 = i64::MAX as u64;
 
-/// One scenario to tell of.
+/// One scenario to analyse.
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario file

@@ -27,7 +27,7 @@ pub struct Args {
     /// Scenario files
     #[arg(required = true, value_name = "SCENARIO")]
     pub scenarios: Vec<PathBuf>,
-    /// Directory for logs and tables, made if it is not there [default: this one, for logs only]
+    /// Directory for logs and tables, created if missing [default: this one, for logs only]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Set a key of the scenario, such as law.relay.k_t=0.34
@@ -42,7 +42,7 @@ pub struct Args {
     /// Threads [default: one for each core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// What logs hold [default: events; none in a campaign]
+    /// Detail of the logs [default: events; none in a campaign]
     #[arg(long, value_name = "DETAIL")]
     log: Option<LogDetail>,
     /// Replace logs of other settings and tables of other campaigns
@@ -266,7 +266,7 @@ fn interrupted(log: Option<LogDetail>, path: &Path) -> String {
     }
 }
 
-/// Simulates a run into a log file, and tells its size. An interrupted run leaves a finished log, a failed one
+/// Simulates a run into a log file, and returns its size. An interrupted run leaves a finished log, a failed one
 /// too, and one that cannot be written none.
 fn logged(
     run: &Run,
@@ -274,7 +274,7 @@ fn logged(
     (detail, force): (Detail, bool),
     record: impl flexsc_core::record::Record,
 ) -> Result<(Metrics, u64), SimulationError> {
-    let provenance = Campaign::provenance(run);
+    let provenance = Campaign::provenance(run, detail);
     let mut log = LogFile::create(path, &provenance, detail)?;
     // Nobody else writes it now.
     if let (There::Other(what), false) = (there(path, &provenance), force) {

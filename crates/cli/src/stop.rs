@@ -21,10 +21,12 @@ const LOOK: Duration = Duration::from_millis(20);
 const PATIENCE: Duration = Duration::from_millis(50);
 /// The same while files are written.
 const PATIENCE_OF_FILES: Duration = Duration::from_secs(2);
+/// How long the last message may take: whoever should read it may not.
+const PATIENCE_OF_READERS: Duration = Duration::from_secs(1);
 /// What the main thread of a program has on most systems (bytes).
 const STACK: usize = 8 << 20;
 
-/// Who writes files: how many do, and whether nobody may begin to because the program ends.
+/// How many threads write files, and whether none may begin to because the program ends.
 static FILES: Mutex<(u32, bool)> = Mutex::new((0, false));
 
 /// Files are being written as long as this lives: the program does not end then, but for work that cannot be stopped.
@@ -83,12 +85,20 @@ pub fn watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
                 if waited >= PATIENCE && (files.0 == 0 || waited >= PATIENCE_OF_FILES) {
                     files.1 = true;
                     drop(files);
-                    return Failure::Interrupted(String::new()).tell();
+                    return tell_interrupted();
                 }
             }
             Err(RecvTimeoutError::Timeout) => {}
         }
     }
+}
+
+/// Tells that the user asked to stop, and returns the exit code. What waits to be read, such as in a pager, holds nothing up.
+fn tell_interrupted() -> u8 {
+    let (told, wait) = channel();
+    // Without a thread the exit code says it.
+    let _ = thread::Builder::new().spawn(move || told.send(Failure::Interrupted(String::new()).tell()));
+    wait.recv_timeout(PATIENCE_OF_READERS).unwrap_or(130)
 }
 
 #[cfg(unix)]

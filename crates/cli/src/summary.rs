@@ -8,18 +8,18 @@ use flexsc_core::metrics::{Metrics, Value};
 
 use crate::say;
 
-/// Tells what a run came to; it took so many seconds of the wall's clock.
+/// Prints the result of a run, which took so many seconds of real time.
 pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     let (duration, modes) = (scenario.duration.seconds(), scenario.mode_count());
     let head = format!("{}   {duration} s, {modes} modes", scenario.name);
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
-    if scenario.spatial.is_some() {
+    if scenario.axis_count() == 3 {
         say!("{head}, {:.1} ms", took * 1e3);
         spatial(metrics);
     } else if scenario.law.switches() {
         say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
         switchings(scenario, metrics);
-        goal(metrics);
+        goal(metrics, outside);
     } else {
         say!("{head}, {:.1} ms", took * 1e3);
         rotation(scenario, metrics);
@@ -29,27 +29,40 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
 /// Propellant, elastic energy and pointing of a spatial body.
 fn spatial(metrics: &Metrics) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
-    say!(
-        "  jets           {:.3} kg of propellant, {} pulses in {} cycles",
-        number("fuel_kg"),
-        number("firings"),
-        number("firing_cycles"),
-    );
+    // Other actuators use none.
+    if number("fuel_kg").is_finite() {
+        say!(
+            "  jets           {:.3} kg of propellant, {} pulses in {} cycles",
+            number("fuel_kg"),
+            number("firings"),
+            number("firing_cycles"),
+        );
+    }
     let below = |name: &str, part: &str| match number(name) {
         time if time.is_finite() => format!(", below {part} of the first at {time:.1} s"),
         _ => String::new(),
     };
     say!(
-        "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end, {:.3e} J of it in modes that the gyro sees",
+        "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end, {:.3e} J of it in modes that the sensor sees",
         number("elastic_energy_peak_j"),
         below("energy_below_10pct_at_s", "10 %"),
         below("energy_below_1pct_at_s", "1 %"),
         number("elastic_energy_end_j"),
         number("visible_energy_end_j"),
     );
-    say!("  at the gyro    {:.3e} rad/s rms over the last 200 s", number("elastic_rate_rms_rad_s"));
-    say!("  pointing       {:.3e} rad from the target at the end", number("pointing_error_end_rad"));
-    goal(metrics);
+    say!("  at the sensor  {:.3e} rad/s rms over the last 200 s", number("elastic_rate_rms_rad_s"));
+    if number("attitude_estimate_error_rms_rad").is_finite() {
+        say!(
+            "  filter         off by {:.3e} rad rms; NEES {:.2}, NIS {:.2} of what it expects",
+            number("attitude_estimate_error_rms_rad"),
+            number("nees_mean"),
+            number("nis_mean"),
+        );
+    }
+    let error = number("pointing_error_end_rad");
+    say!("  pointing       {error:.3e} rad from the target at the end, the root sum of squares of the axes");
+    // Each axis has a band of its own: their root sum of squares may be more.
+    goal(metrics, |band| format!("an axis outside its band of up to {band:.3e} rad"));
     if let Some(Value::Numbers(frequencies)) = metrics.get("frequency_estimates_hz") {
         let found: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.4}")).collect();
         say!(
@@ -61,14 +74,18 @@ fn spatial(metrics: &Metrics) {
     }
 }
 
-/// Whether the run meets its goal.
-fn goal(metrics: &Metrics) {
+/// What is outside a band about the goal: the angle.
+fn outside(band: f64) -> String {
+    format!("outside {band:.3e} rad of it")
+}
+
+/// Whether the run meets its goal; `outside` says what may be outside a band.
+fn goal(metrics: &Metrics, outside: impl FnOnce(f64) -> String) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     let Some(Value::Word(word)) = metrics.get("goal") else { return };
     let band = number("goal_band_rad");
     if band.is_finite() {
-        let outside = number("time_outside_s");
-        say!("  goal           {word}: outside {band:.3e} rad of it for {outside:.6} s");
+        say!("  goal           {word}: {} for {:.6} s", outside(band), number("time_outside_s"));
     } else {
         say!("  goal           {word}");
     }
@@ -123,7 +140,7 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
         number("angle_error_peak_rad"),
         number("angle_error_late_rad"),
     );
-    goal(metrics);
+    goal(metrics, outside);
     let settling = number("settling_time_s");
     if settling.is_finite() {
         say!("  settling time  {settling} s");

@@ -23,7 +23,7 @@ pub struct Args {
     /// combination with the values of another key
     #[arg(long, required = true, value_name = "KEY=START:END:COUNT", value_parser = varied)]
     vary: Vec<Varied>,
-    /// Directory for the tables, made if it is not there
+    /// Directory for the tables, created if missing
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Set a key of the scenario, such as duration=1e4
@@ -59,11 +59,11 @@ fn varied(text: &str) -> Result<Varied, String> {
     let (key, range) = text.split_once('=').ok_or_else(form)?;
     let [start, end, count] = range.split(':').collect::<Vec<_>>()[..] else { return Err(form()) };
     let bound = |text: &str| text.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(form);
-    let count: u32 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
-    if count > MOST_VALUES {
+    let count: u64 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
+    if count > u64::from(MOST_VALUES) {
         return Err(format!("a sweep has at most {MOST_VALUES} values, got {count}"));
     }
-    Ok(Varied { key: key.to_owned(), first: bound(start)?, last: bound(end)?, count })
+    Ok(Varied { key: key.to_owned(), first: bound(start)?, last: bound(end)?, count: count as u32 })
 }
 
 impl Args {

@@ -1,5 +1,7 @@
 //! The table of a campaign, `runs.csv`: a row a run.
 
+use std::fs;
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -12,10 +14,19 @@ use crate::failure::Failure;
 /// How long finished rows stay in memory: what a killed campaign loses.
 const FLUSH: Duration = Duration::from_millis(500);
 
+/// More than this does not stay in memory (bytes).
+const BUFFER: usize = 8 << 10;
+
 /// The table of a campaign, under a `.partial` name until it is finished. Dropped before, it is removed.
 pub struct Table {
     path: PathBuf,
-    writer: csv::Writer<Partial>,
+    partial: Partial,
+    /// Lines that are yet to be written.
+    lines: Vec<u8>,
+    /// Bytes of the lines that are written.
+    written: u64,
+    /// Whether a row is among them, beside the header.
+    any: bool,
     /// Names of the metrics, known with the first run that has any; the rows before it wait.
     metrics: Option<Vec<&'static str>>,
     waiting: Vec<Vec<String>>,
@@ -24,17 +35,28 @@ pub struct Table {
 
 impl Table {
     pub fn create(path: &Path) -> Result<Self, Failure> {
-        let writer = csv::Writer::from_writer(Partial::create(path).map_err(Failure::write(path))?);
-        let (path, flushed) = (path.to_owned(), Instant::now());
-        Ok(Self { path, writer, metrics: None, waiting: Vec::new(), flushed })
+        let partial = Partial::create(path).map_err(Failure::write(path))?;
+        let (path, lines, waiting) = (path.to_owned(), Vec::new(), Vec::new());
+        let flushed = Instant::now();
+        Ok(Self { path, partial, lines, written: 0, any: false, metrics: None, waiting, flushed })
     }
 
     /// Hands the rows so far to the system, unless that was done just now.
     pub fn flush_in_time(&mut self) -> Result<(), Failure> {
         if self.flushed.elapsed() >= FLUSH {
             self.flushed = Instant::now();
-            self.writer.flush().map_err(Failure::write(&self.path))?;
+            self.flush()?;
         }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        // Over what a write that failed left of a line.
+        let at = self.partial.seek(SeekFrom::Start(self.written));
+        at.and_then(|_| self.partial.write_all(&self.lines)).map_err(Failure::write(&self.path))?;
+        self.written += self.lines.len() as u64;
+        self.any |= self.metrics.is_some() && !self.lines.is_empty();
+        self.lines.clear();
         Ok(())
     }
 
@@ -82,35 +104,49 @@ impl Table {
     }
 
     fn write(&mut self, cells: Vec<String>) -> Result<(), Failure> {
-        let written = self.writer.write_record(cells).map_err(std::io::Error::from);
-        written.map_err(Failure::write(&self.path))
+        let mut writer = csv::Writer::from_writer(&mut self.lines);
+        let written = writer.write_record(cells).map_err(io::Error::from).and_then(|()| writer.flush());
+        drop(writer);
+        written.map_err(Failure::write(&self.path))?;
+        if self.lines.len() < BUFFER { Ok(()) } else { self.flush() }
     }
 
     /// Gives the table its name, which is returned.
-    pub fn finish(self, study: &Campaign) -> Result<PathBuf, Failure> {
-        let interrupted = interrupted(&self.path);
-        let path = self.path.clone();
-        self.finish_as(study, &path)?;
+    pub fn finish(mut self, study: &Campaign) -> Result<PathBuf, Failure> {
+        if let Err(failure) = self.complete(study) {
+            return Err(self.keep(failure));
+        }
+        self.partial.finish().map_err(Failure::write(&self.path))?;
         // The rows of a campaign that was stopped before are among those of the whole one.
-        let _ = std::fs::remove_file(interrupted);
-        Ok(path)
+        let _ = fs::remove_file(interrupted(&self.path));
+        Ok(self.path)
     }
 
-    /// Keeps the rows of a campaign that was stopped, under a name that says so; nothing if there are none.
-    pub fn interrupt(self, study: &Campaign) -> Option<PathBuf> {
-        let path = interrupted(&self.path);
-        let any = self.metrics.is_some() || !self.waiting.is_empty();
-        (any && self.finish_as(study, &path).is_ok()).then_some(path)
+    /// Keeps the rows of a campaign that was stopped by a failure, under a name that says so, if there are any. The failure
+    /// then tells where.
+    pub fn interrupt(mut self, study: &Campaign, failure: Failure) -> Failure {
+        if self.metrics.is_some() || !self.waiting.is_empty() {
+            // On a full disk, what was written before is kept.
+            let _ = self.complete(study);
+        }
+        self.keep(failure)
     }
 
-    fn finish_as(mut self, study: &Campaign, path: &Path) -> Result<(), Failure> {
+    /// Writes what waits.
+    fn complete(&mut self, study: &Campaign) -> Result<(), Failure> {
         // All runs failed: there are rows without metrics only.
         if self.metrics.is_none() {
             self.header(study, &Metrics::default())?;
         }
-        let partial = self.writer.into_inner().map_err(csv::IntoInnerError::into_error);
-        let finished = partial.and_then(|partial| partial.finish_as(path));
-        finished.map_err(Failure::write(path)).map(|_| ())
+        self.flush()
+    }
+
+    fn keep(self, failure: Failure) -> Failure {
+        let path = interrupted(&self.path);
+        // Of the line that found the disk full there may be a part.
+        let kept =
+            self.any && self.partial.truncate(self.written).is_ok() && self.partial.finish_as(&path).is_ok();
+        if kept { Failure::Kept { failure: Box::new(failure), path } } else { failure }
     }
 }
 

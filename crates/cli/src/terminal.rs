@@ -1,4 +1,4 @@
-//! Whether a terminal wants escape sequences.
+//! Whether a terminal takes escape sequences.
 
 use std::env::var_os;
 

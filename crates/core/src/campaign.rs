@@ -11,8 +11,7 @@ use crate::document::{Document, ScenarioError, key};
 use crate::layout::Layout;
 use crate::metrics::{Gather, Metrics};
 use crate::random::Seed;
-use crate::record::Detail;
-use crate::record::{OutputName, Provenance, Record};
+use crate::record::{Attachment, Detail, OutputName, Provenance, Record};
 use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
 
@@ -90,10 +89,12 @@ impl Campaign {
         let mut table = scenario.to_table();
         // What was drawn is said by the keys themselves.
         table.remove("uncertain");
+        // Parts of a program's own have no text: runs take them over.
+        table.retain(|_, part| part.get("own").is_none());
         let grids = grids.into_iter().collect();
         let campaign = Self { scenario, table, origin: origin.to_owned(), grids };
         for grid in &campaign.grids {
-            // A key that does not exist, or a range that is not accepted, fails all runs: say so at once.
+            // A key that does not exist, or a range that is not accepted, fails all runs: report it at once.
             for value in grid.values.first().into_iter().chain(grid.values.last()) {
                 campaign.scenario_with(&[(&grid.key, campaign.like(&grid.key, *value))])?;
             }
@@ -187,8 +188,9 @@ impl Campaign {
         &self.grids
     }
 
-    /// What the log of a run says about where it comes from.
-    pub fn provenance(run: &Run) -> Provenance {
+    /// The provenance in the log of a run in this detail, with a layout for viewers.
+    pub fn provenance(run: &Run, detail: Detail) -> Provenance {
+        let layout = Layout::of(&run.scenario).of_detail(detail).to_json();
         Provenance {
             scenario: run.scenario.name.clone(),
             toml: run.scenario.self_contained().to_toml(),
@@ -202,7 +204,11 @@ impl Campaign {
                 .iter()
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),
-            layout: Some(Layout::of(&run.scenario)),
+            attachments: vec![Attachment {
+                name: "layout.json",
+                media_type: "application/json",
+                data: layout.into_bytes(),
+            }],
         }
     }
 

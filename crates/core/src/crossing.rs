@@ -3,14 +3,14 @@
 //! It strides only as far as the bounds on the motion prove that no guard can trip, so that no crossing is missed, however
 //! brief, and no tolerance exists. `docs/events.md` derives the stride.
 
-use crate::body::{Arc, Sight, State};
+use crate::body::{Segment, Sensed, State};
 use crate::guard::Guard;
 use crate::record::{Record, RecordError};
 use crate::time::Span;
 
 /// A guard that tripped.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Trip<S = Sight> {
+pub struct Trip<S = Sensed> {
     /// The span since departure.
     pub after: Span,
     /// The index of the guard.
@@ -26,25 +26,25 @@ pub trait Approach {
     /// Where the motion is at one instant.
     type State;
     /// What is seen of it.
-    type Sight: Copy;
+    type Sensed: Copy;
 
     /// What is seen at departure.
-    fn begin(&self, state: &mut Self::State) -> Self::Sight;
+    fn begin(&self, state: &mut Self::State) -> Self::Sensed;
     /// The state `h` seconds after it, and what is seen.
-    fn go(&self, h: f64, state: &mut Self::State) -> Self::Sight;
+    fn go(&self, h: f64, state: &mut Self::State) -> Self::Sensed;
     /// Whether it is a number.
-    fn is_finite(state: &Self::State, sight: Self::Sight) -> bool;
+    fn is_finite(state: &Self::State, sensed: Self::Sensed) -> bool;
     /// Whether a guard holds.
-    fn holds(guard: Self::Guard, state: &Self::State, sight: Self::Sight) -> bool;
+    fn holds(guard: Self::Guard, state: &Self::State, sensed: Self::Sensed) -> bool;
     /// For how long the bounds hold that are in use now (s).
     fn window(state: &Self::State) -> f64;
     /// A time after departure (s) before which the guard cannot trip, of a motion that lasts so long (s); 0 if it is not
     /// known at once.
     fn earliest(&self, guard: Self::Guard, horizon: Span, state: &Self::State) -> f64;
     /// A time (s) for which the guard cannot trip, given what is seen now.
-    fn stride(&self, guard: Self::Guard, state: &Self::State, sight: Self::Sight) -> f64;
+    fn stride(&self, guard: Self::Guard, state: &Self::State, sensed: Self::Sensed) -> f64;
     /// Whether the guard cannot trip within a time (s), given what is seen now.
-    fn is_clear(&self, guard: Self::Guard, state: &Self::State, sight: Self::Sight, time: f64) -> bool;
+    fn is_clear(&self, guard: Self::Guard, state: &Self::State, sensed: Self::Sensed, time: f64) -> bool;
 }
 
 /// Strides after which a search asks whether it may go on.
@@ -61,14 +61,14 @@ pub fn locate<M: Approach>(
     horizon: Span,
     state: &mut M::State,
     record: &mut impl Record,
-) -> Result<Option<Trip<M::Sight>>, RecordError> {
-    let mut sight = motion.begin(state);
-    if let Some(guard) = guards.iter().position(|guard| M::holds(*guard, state, sight)) {
+) -> Result<Option<Trip<M::Sensed>>, RecordError> {
+    let mut sensed = motion.begin(state);
+    if let Some(guard) = guards.iter().position(|guard| M::holds(*guard, state, sensed)) {
         motion.go(0.0, state);
-        return Ok(Some(Trip { after: Span::ZERO, guard, sight }));
+        return Ok(Some(Trip { after: Span::ZERO, guard, sight: sensed }));
     }
     let first = |&guard| match motion.earliest(guard, horizon, state) {
-        0.0 => motion.stride(guard, state, sight),
+        0.0 => motion.stride(guard, state, sensed),
         jump => jump,
     };
     let mut stride = guards.iter().map(first).fold(f64::INFINITY, f64::min);
@@ -78,56 +78,56 @@ pub fn locate<M: Approach>(
     loop {
         let (base_s, last) = (base.seconds(), horizon.minus(base).leading_femtoseconds());
         let mut ticks = 0;
-        while ticks < last && M::is_finite(state, sight) {
+        while ticks < last && M::is_finite(state, sensed) {
             strides = strides.wrapping_add(1);
             if strides.is_multiple_of(STRIDES) {
                 record.poll()?;
             }
             // The tick before the stride's end is certain not to trip: the next one is the first that can.
             ticks = ticks.saturating_add((stride * 1e15) as i64).saturating_add(1).min(last);
-            sight = motion.go(base_s + ticks as f64 / 1e15, state);
+            sensed = motion.go(base_s + ticks as f64 / 1e15, state);
             stride = M::window(state);
             for (index, &guard) in guards.iter().enumerate() {
-                if M::holds(guard, state, sight) {
+                if M::holds(guard, state, sensed) {
                     let after = base + Span::from_femtoseconds(ticks);
-                    return Ok(Some(Trip { after, guard: index, sight }));
+                    return Ok(Some(Trip { after, guard: index, sight: sensed }));
                 }
-                if !motion.is_clear(guard, state, sight, stride) {
-                    stride = stride.min(motion.stride(guard, state, sight));
+                if !motion.is_clear(guard, state, sensed, stride) {
+                    stride = stride.min(motion.stride(guard, state, sensed));
                 }
             }
         }
         base = base + Span::from_femtoseconds(last);
-        if base >= horizon || !M::is_finite(state, sight) {
+        if base >= horizon || !M::is_finite(state, sensed) {
             return Ok(None);
         }
     }
 }
 
-impl Approach for Arc {
+impl Approach for Segment {
     type Guard = Guard;
     type State = State;
-    type Sight = Sight;
+    type Sensed = Sensed;
 
     #[inline]
-    fn begin(&self, _: &mut State) -> Sight {
+    fn begin(&self, _: &mut State) -> Sensed {
         self.origin()
     }
 
     #[allow(clippy::inline_always, reason = "the search calls it")]
     #[inline(always)]
-    fn go(&self, h: f64, state: &mut State) -> Sight {
+    fn go(&self, h: f64, state: &mut State) -> Sensed {
         self.at(h, state)
     }
 
     #[inline]
-    fn is_finite(_: &State, sight: Sight) -> bool {
-        sight.angle.is_finite()
+    fn is_finite(_: &State, sensed: Sensed) -> bool {
+        sensed.angle.is_finite()
     }
 
     #[inline]
-    fn holds(guard: Guard, _: &State, sight: Sight) -> bool {
-        guard.holds(sight.angle)
+    fn holds(guard: Guard, _: &State, sensed: Sensed) -> bool {
+        guard.holds(sensed.angle)
     }
 
     #[inline]
@@ -141,13 +141,13 @@ impl Approach for Arc {
     }
 
     #[inline]
-    fn stride(&self, guard: Guard, _: &State, sight: Sight) -> f64 {
-        Self::stride(self, guard, sight)
+    fn stride(&self, guard: Guard, _: &State, sensed: Sensed) -> f64 {
+        Self::stride(self, guard, sensed)
     }
 
     #[inline]
-    fn is_clear(&self, guard: Guard, _: &State, sight: Sight, time: f64) -> bool {
-        Self::is_clear(self, guard, sight, time)
+    fn is_clear(&self, guard: Guard, _: &State, sensed: Sensed, time: f64) -> bool {
+        Self::is_clear(self, guard, sensed, time)
     }
 }
 

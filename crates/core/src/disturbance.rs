@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::axes::Axis;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Stream;
 use crate::time::{Instant, Span};
@@ -11,6 +12,9 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
+    /// The axis about which it acts, of a body with three.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub about: Option<Axis>,
     /// Torque (N m).
     #[serde(default)]
     pub torque: Finite,
@@ -55,6 +59,11 @@ impl Disturbing {
     pub fn new(disturbance: &Disturbance, draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
         Self { next: noisy.then(|| at(disturbance.from)), what: disturbance.clone(), draws, drawn: 0.0 }
+    }
+
+    /// The axis about which it acts: the first of a body with one angle.
+    pub fn axis(&self) -> usize {
+        self.what.about.map_or(0, Axis::index)
     }
 
     /// When the next draw is due.

@@ -1,14 +1,20 @@
 //! The engine of flexsc: attitude control of flexible spacecraft, simulated exactly.
 //!
+//! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
+//!
 //! A [`Scenario`] is what the user wrote; a [`Simulation`] is what moves; a [`record::Record`] is the only way
 //! out. Within a run data goes one way round:
 //!
 //! ```text
-//! body --truth--> sensor --measurement--> estimator --belief--> law --hold--> actuator --torque--> body
-//!                                             |                  ^                ^
-//!                                             +--> adaptation ---+                |
-//!                                     manoeuvre --goal-----------+--waveform------+
+//! body --truth--> sensor --reading--> estimator --belief--> law --hold--> actuator --wrench--> body
+//!                                                            ^                ^
+//!                        envelope --mean--> adaptation ------+                |
+//!                   manoeuvre or target --goal---------------+--waveform------+
 //! ```
+//!
+//! One loop runs bodies with one angle and with three axes; about each axis there are a belief, a law and a goal. Each role is a
+//! trait: [`sensor::Sense`], [`estimator::Estimate`], [`law::Control`], [`actuator::Actuate`]. `docs/extending.md` tells how to add
+//! a kind.
 //!
 //! ```
 //! use flexsc_core::{Scenario, Simulation, record::{Detail, Trace}};
@@ -35,24 +41,25 @@
 pub mod actuator;
 pub mod adaptation;
 pub mod analysis;
+pub mod axes;
 pub mod belief;
 pub mod body;
 pub mod campaign;
+pub mod craft;
 pub mod crossing;
 pub mod disturbance;
 pub mod document;
+pub mod environment;
 pub mod estimator;
 pub mod guard;
-mod integrate;
 mod label;
 pub mod law;
 pub mod layout;
 pub mod manoeuvre;
 pub mod metrics;
 pub mod motion;
-mod one_of;
-pub mod phasor;
-mod polynomial;
+pub mod numerics;
+pub mod own;
 pub mod quantity;
 pub mod random;
 pub mod record;
@@ -64,8 +71,9 @@ pub mod statistics;
 pub mod structure;
 pub mod time;
 pub mod uncertain;
+pub mod waveform;
 pub mod whole;
 
 pub use document::{Document, ScenarioError};
 pub use scenario::Scenario;
-pub use sim::{PlanarRun, Simulation, SimulationError, SpatialRun};
+pub use sim::{Simulation, SimulationError};

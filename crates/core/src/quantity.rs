@@ -92,7 +92,12 @@ impl Tolerance {
 /// The zero that a key left out stands for.
 macro_rules! zero_by_default {
     ($($name:ident),*) => {
-        $(impl Default for $name {
+        $(impl $name {
+            /// Exactly zero.
+            pub const ZERO: Self = Self(0.0);
+        }
+
+        impl Default for $name {
             fn default() -> Self {
                 Self(0.0)
             }

@@ -2,7 +2,7 @@
 
 use crate::metrics::{Metrics, Value, goal};
 
-/// The quantiles that are told.
+/// The quantiles that are reported.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// The statistics of one metric over the runs that have a value of it.

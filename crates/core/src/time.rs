@@ -92,6 +92,12 @@ impl Instant {
         self.0.whole as u64 * 1_000_000_000 + self.0.part as u64 / 1_000_000
     }
 
+    /// The instant a span before.
+    #[must_use]
+    pub fn before(self, span: Span) -> Self {
+        Self(self.0.minus(span.0))
+    }
+
     /// The span since an earlier instant.
     #[inline]
     pub fn since(self, earlier: Self) -> Span {

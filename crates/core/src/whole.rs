@@ -13,7 +13,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 
 /// A file on its way, whose name is that of its place with `.partial` more.
 ///
-/// The name is made anew, so that no link, pipe or file of somebody else's is written to, and it is locked as long as the
+/// The name is made anew, so that no existing link, pipe or file is written to, and it is locked as long as the
 /// process lives. What a killed process left is not locked: the next one removes it. Dropped before it is
 /// [`finish`](Self::finish)ed, the file is removed.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ impl Partial {
     ///
     /// # Errors
     /// [`io::ErrorKind::ResourceBusy`] if another process writes it now; a place that is no file, or a read-only one; what
-    /// the file system says.
+    /// the file system reports.
     pub fn create(path: &Path) -> io::Result<Self> {
         let place = place(path)?;
         let mut partial = place.as_os_str().to_owned();
@@ -56,7 +56,12 @@ impl Partial {
         }
     }
 
-    /// Puts the file into its place, and tells its size in bytes.
+    /// Drops what is beyond so many bytes, which needs no room.
+    pub fn truncate(&self, bytes: u64) -> io::Result<()> {
+        self.file.set_len(bytes)
+    }
+
+    /// Puts the file into its place, and returns its size in bytes.
     pub fn finish(mut self) -> io::Result<u64> {
         let bytes = self.file.metadata()?.len();
         fs::rename(&self.beside, &self.place)?;
@@ -148,7 +153,7 @@ fn place(path: &Path) -> io::Result<PathBuf> {
     Ok(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()))
 }
 
-/// Makes a name and holds it, if nobody has it; what a dead process left there is removed for the next attempt.
+/// Creates a file and locks it, unless it is locked; what a dead process left there is removed for the next attempt.
 fn claim(partial: &Path) -> io::Result<Option<File>> {
     match OpenOptions::new().write(true).create_new(true).open(partial) {
         Ok(file) => {
@@ -189,7 +194,11 @@ fn open_itself(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.write(true);
     #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NOFOLLOW | libc::O_NONBLOCK);
+    {
+        use rustix::fs::OFlags;
+        let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed();
+        std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, flags);
+    }
     options.open(path)
 }
 

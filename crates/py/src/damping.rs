@@ -1,6 +1,7 @@
 //! Active damping by relays, and the observer that it needs.
 
-use flexsc_core::analysis::damping::{Convergence, Relay, Study, persistence as least_eigenvalue};
+use flexsc_core::actuator::PulseTiming;
+use flexsc_core::analysis::damping::{Convergence, Study, persistence as least_eigenvalue};
 use flexsc_core::analysis::identification::Trial;
 use flexsc_core::quantity::NonNegative;
 use numpy::PyReadonlyArray2;
@@ -35,8 +36,8 @@ pub fn relay_damping_json(
 ) -> PyResult<String> {
     let (period, delay, on_time) = relay;
     let ((damping, acceleration), (amplitude, threshold)) = (mode, amplitudes);
-    let relay = Relay { period, delay, on_time };
-    let study = Study { relay, damping, acceleration, amplitude, threshold };
+    let timing = PulseTiming { period, delay, on_time };
+    let study = Study { timing, damping, acceleration, amplitude, threshold };
     refused(study.inconsistency())?;
     all_positive("frequencies", &frequencies)?;
     Ok(json!(study.table(&frequencies)).to_string())

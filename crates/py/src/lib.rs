@@ -156,13 +156,13 @@ impl Scenario {
 
     #[getter]
     fn spatial(&self) -> bool {
-        self.inner.spatial.is_some()
+        self.inner.axis_count() == 3
     }
 
     fn modes_json(&self) -> String {
-        match &self.inner.spatial {
+        match self.inner.body.spatial() {
             None => json!(Modal::of(&self.inner.model)).to_string(),
-            Some(spatial) => json!(Influences::of(spatial)).to_string(),
+            Some(body) => json!(Influences::of(&self.inner, body)).to_string(),
         }
     }
 
@@ -214,7 +214,7 @@ fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathB
     let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
     let place = path.clone();
     let written = aside(py, move |stop| {
-        let mut file = LogFile::create(&place, &Campaign::provenance(&run), detail)?;
+        let mut file = LogFile::create(&place, &Campaign::provenance(&run, detail), detail)?;
         let metrics = Campaign::simulate(&run, (&mut file, stop))?;
         Ok(file.finish(&metrics, RunEnd::Complete)?)
     })?;

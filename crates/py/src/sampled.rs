@@ -3,6 +3,7 @@
 use flexsc_core::analysis::sampled_loop::{
     Doubt, Gains, Goal, Loop, Scaling, Search, Window, map, regions, robust,
 };
+use flexsc_core::document::Fault;
 use flexsc_core::law::Pd;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -24,7 +25,7 @@ fn allow(of: &Loop, times: usize, shortest: f64, delay: f64, (_, horizon, _, yes
 }
 
 fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(Loop, &Pd, Window, Scaling)> {
-    let refused = |(key, why): (String, String)| {
+    let refused = |Fault { key, why }: Fault| {
         let origin = scenario.inner.name.clone();
         scenario_error(flexsc_core::ScenarioError::Key { origin, key, why })
     };

@@ -2,6 +2,7 @@
 //!
 //!     cargo run --release -p flexsc-fuzz                         12 s on each of five surfaces
 //!     cargo run --release -p flexsc-fuzz -- --seconds 3600       an hour on each
+//!     cargo run --release -p flexsc-fuzz -- --surface logs --inputs 900       the same 900 inputs on any machine
 //!
 //! Inputs follow from a seed, a surface and a number. Each runs in a process of its own kind under limits of memory and time;
 //! what panics, aborts, hangs or leaves half a file is kept, made small, and told with the command that repeats it.
@@ -23,11 +24,12 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Parser, Subcommand, ValueEnum};
 
+use case::Case;
 use findings::{Findings, Found};
 use surface::{Maker, Surface};
 use tally::Tally;
@@ -36,6 +38,9 @@ use worker::Work;
 
 /// A worker runs so many inputs: what one leaves behind in its process does not reach far.
 const BATCH: u64 = 250;
+
+/// Longer than a number of inputs takes.
+const A_DAY: Duration = Duration::from_secs(86_400);
 
 /// A mutation fuzzer of flexsc: exits with 1 if it finds anything
 #[derive(Parser)]
@@ -48,6 +53,9 @@ struct Args {
     /// How long each surface is fuzzed (s)
     #[arg(long, default_value_t = 12.0)]
     seconds: f64,
+    /// How many inputs each surface gets, however long they take
+    #[arg(long, conflicts_with = "seconds")]
+    inputs: Option<u64>,
     /// What inputs follow from
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -55,10 +63,10 @@ struct Args {
     #[arg(long, default_value_t = 0)]
     first: u64,
     /// Only this input: run it, and keep it
-    #[arg(long, conflicts_with_all = ["seconds", "first"])]
+    #[arg(long, conflicts_with_all = ["seconds", "inputs", "first"])]
     case: Option<u64>,
     /// Only this input, which was kept: a directory
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["seconds", "first", "surface", "case"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["seconds", "inputs", "first", "surface", "case"])]
     replay: Option<PathBuf>,
     /// Processes at a time
     #[arg(long, default_value_t = 2)]
@@ -136,16 +144,23 @@ pub fn name(surface: Surface) -> String {
 /// Fuzzes one surface, and tells whether nothing was found.
 fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io::Result<bool> {
     let began = Instant::now();
-    let deadline = began + Duration::from_secs_f64(args.seconds);
+    let deadline = began + args.inputs.map_or(Duration::from_secs_f64(args.seconds), |_| A_DAY);
+    let end = args.inputs.map_or(u64::MAX, |inputs| args.first.saturating_add(inputs));
     let maker = Maker::new(surface, args.seed)?;
     let (tally, findings) = (Mutex::new(Tally::default()), Mutex::new(findings));
     let next = AtomicU64::new(args.first);
+    // Where one job fails, the others do not go on for an hour.
+    let failed = AtomicBool::new(false);
+    let goes_on = || Instant::now() < deadline && !failed.load(Ordering::Relaxed);
     let job = |job: usize| -> io::Result<()> {
         let directory = scratch.join(format!("{}-{job}", name(surface)));
-        while Instant::now() < deadline {
+        while goes_on() {
             let from = next.fetch_add(BATCH, Ordering::Relaxed);
-            let (mut at, to) = (from, from + BATCH);
-            while at < to && Instant::now() < deadline {
+            if from >= end {
+                break;
+            }
+            let (mut at, to) = (from, end.min(from + BATCH));
+            while at < to && goes_on() {
                 let (seed, mut broken) = (args.seed.to_string(), Vec::new());
                 let arguments = ["worker".to_owned(), name(surface), seed, at.to_string(), to.to_string()];
                 let was = at;
@@ -160,7 +175,8 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
                     let known =
                         findings.lock().unwrap_or_else(std::sync::PoisonError::into_inner).is_known(&found);
                     if !known {
-                        let case = maker.make(number);
+                        let made = !found.why.starts_with(watch::BETWEEN);
+                        let case = if made { maker.make(number) } else { Case::default() };
                         let (case, alone) =
                             smaller::smaller(&case, &found, &directory.with_extension("again"))?;
                         findings
@@ -176,16 +192,22 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
         }
         Ok(())
     };
-    std::thread::scope(|scope| {
+    let job = |number: usize| {
+        let done = job(number);
+        failed.fetch_or(done.is_err(), Ordering::Relaxed);
+        done
+    };
+    let done = std::thread::scope(|scope| {
         // Viewers and their run wait for each other most of the time.
         let several = if surface == Surface::Live { 4 } else { 1 };
         let jobs: Vec<_> = (0..several * args.jobs.max(1)).map(|n| scope.spawn(move || job(n))).collect();
         jobs.into_iter()
             .try_for_each(|job| job.join().unwrap_or_else(|_| Err(io::Error::other("a thread panicked"))))
-    })?;
+    });
     let findings = findings.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     let tally = tally.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     say!("{}", tally.summary(surface, args.seed, began.elapsed(), &findings));
+    done?;
     Ok(findings.none())
 }
 

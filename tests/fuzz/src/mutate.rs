@@ -4,11 +4,14 @@ use crate::chance::Chance;
 use crate::nasty;
 use crate::node::Node;
 
+/// What is grown stays smaller than this (nodes): what is grown again and again would fill the memory.
+const MOST_GROWN: usize = 100_000;
+
 /// Changes a tree in one place; `others` are trees to take parts from.
 pub fn tree(node: &mut Node, others: &[Node], chance: &mut Chance) {
-    let paths = node.paths();
-    let path = &paths[chance.below(paths.len())];
-    let other = &paths[chance.below(paths.len())];
+    let count = node.count();
+    let path = &node.path(chance.below(count));
+    let other = &node.path(chance.below(count));
     match chance.below(14) {
         0..4 => put(node, path, Node::Leaf(nasty::leaf(chance))),
         4..6 => scale(node, path, chance),
@@ -72,6 +75,7 @@ fn grow(node: &mut Node, path: &[usize], chance: &mut Chance) {
         && let Some(last) = of.last().cloned()
     {
         let times = [1, 1, 2, 5, 12, 40, 300][chance.below(7)];
+        let times = times.min(MOST_GROWN / last.count());
         of.extend(std::iter::repeat_n(last, times));
     }
 }

@@ -36,16 +36,31 @@ impl From<&serde_json::Value> for Node {
 }
 
 impl Node {
-    /// Itself and all nodes within, as paths of places.
-    pub fn paths(&self) -> Vec<Vec<usize>> {
-        let mut paths = vec![Vec::new()];
-        for (place, node) in self.children().enumerate() {
-            for mut path in node.paths() {
-                path.insert(0, place);
-                paths.push(path);
-            }
+    /// How many nodes there are: itself, and all within.
+    pub fn count(&self) -> usize {
+        1 + self.children().map(Self::count).sum::<usize>()
+    }
+
+    /// The path of places to one of them, counted with each before what is within it.
+    pub fn path(&self, mut index: usize) -> Vec<usize> {
+        let mut path = Vec::new();
+        self.seek(&mut index, &mut path);
+        path
+    }
+
+    fn seek(&self, left: &mut usize, path: &mut Vec<usize>) -> bool {
+        if *left == 0 {
+            return true;
         }
-        paths
+        *left -= 1;
+        for (place, node) in self.children().enumerate() {
+            path.push(place);
+            if node.seek(left, path) {
+                return true;
+            }
+            path.pop();
+        }
+        false
     }
 
     fn children(&self) -> Box<dyn Iterator<Item = &Self> + '_> {
@@ -88,14 +103,16 @@ impl Node {
 
     fn sections(&self, path: &str, text: &mut String) {
         let Self::Table(of) = self else {
-            let _ = writeln!(text, "{}", self.inline(" = "));
-            return;
+            self.inline(" = ", text);
+            return text.push('\n');
         };
         // Tables become sections down to the second level, after the keys that stand before any.
         let deep = path.contains('.');
         for (key, node) in of {
             if deep || !matches!(node, Self::Table(_)) {
-                let _ = writeln!(text, "{} = {}", quoted(key, true), node.inline(" = "));
+                let _ = write!(text, "{} = ", quoted(key, true));
+                node.inline(" = ", text);
+                text.push('\n');
             }
         }
         for (key, node) in of {
@@ -110,19 +127,30 @@ impl Node {
 
     /// As JSON.
     pub fn json(&self) -> String {
-        self.inline(": ")
+        let mut text = String::new();
+        self.inline(": ", &mut text);
+        text
     }
 
-    fn inline(&self, equals: &str) -> String {
-        let joined = |parts: Vec<String>| parts.join(", ");
+    fn inline(&self, equals: &str, text: &mut String) {
+        let comma = |place| if place > 0 { ", " } else { "" };
         match self {
-            Self::Leaf(text) => text.clone(),
-            Self::Array(of) => format!("[{}]", joined(of.iter().map(|node| node.inline(equals)).collect())),
+            Self::Leaf(leaf) => text.push_str(leaf),
+            Self::Array(of) => {
+                text.push('[');
+                for (place, node) in of.iter().enumerate() {
+                    text.push_str(comma(place));
+                    node.inline(equals, text);
+                }
+                text.push(']');
+            }
             Self::Table(of) => {
-                let pair = |(key, node): &(String, Self)| {
-                    format!("{}{equals}{}", quoted(key, equals == " = "), node.inline(equals))
-                };
-                format!("{{{}}}", joined(of.iter().map(pair).collect()))
+                text.push('{');
+                for (place, (key, node)) in of.iter().enumerate() {
+                    let _ = write!(text, "{}{}{equals}", comma(place), quoted(key, equals == " = "));
+                    node.inline(equals, text);
+                }
+                text.push('}');
             }
         }
     }

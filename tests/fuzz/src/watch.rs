@@ -34,6 +34,11 @@ pub enum News {
     Broken { number: u64, why: String },
 }
 
+/// What is wrong with an input that is not there yet begins so: the fuzzer itself, or what goes on between inputs.
+pub const BETWEEN: &str = "before it ran: ";
+/// How an input is stopped that is being made: not at all.
+const MAKING: &str = "make";
+
 /// The input that runs.
 struct Running {
     number: u64,
@@ -43,6 +48,25 @@ struct Running {
     used: Duration,
     /// When it was asked to stop, and the processor's time then.
     asked: Option<(Instant, Duration)>,
+}
+
+impl Running {
+    /// One of this number that begins now, in a process.
+    fn new(number: &str, stop: &str, id: u32) -> Self {
+        Self {
+            number: number.parse().unwrap_or(0),
+            stop: stop.to_owned(),
+            began: Instant::now(),
+            used: processor(id),
+            asked: None,
+        }
+    }
+
+    /// Why it is broken.
+    fn broken(&self, why: String) -> News {
+        let why = if self.stop == MAKING { format!("{BETWEEN}{why}") } else { why };
+        News::Broken { number: self.number, why }
+    }
 }
 
 /// Runs a worker with these arguments in a directory until it ends or the deadline comes, and tells the news.
@@ -79,17 +103,8 @@ pub fn watch(
             Ok(line) => {
                 let words: Vec<&str> = line.splitn(6, ' ').collect();
                 match words[..] {
-                    ["run", number, stop] => {
-                        let used = processor(child.id());
-                        let number = number.parse().unwrap_or(0);
-                        running = Some(Running {
-                            number,
-                            stop: stop.to_owned(),
-                            began: Instant::now(),
-                            used,
-                            asked: None,
-                        });
-                    }
+                    ["make", number] => running = Some(Running::new(number, MAKING, child.id())),
+                    ["run", number, stop] => running = Some(Running::new(number, stop, child.id())),
                     ["done", number, code, memory, micros, wrong] => {
                         running = None;
                         tell(News::Done {
@@ -123,7 +138,7 @@ pub fn watch(
                 return kill(&mut child);
             }
             Late::Hangs(why) => {
-                tell(News::Broken { number: now.number, why });
+                tell(now.broken(why));
                 return kill(&mut child);
             }
         }
@@ -147,7 +162,8 @@ fn late(now: &mut Running, id: u32) -> Late {
         |wall: Duration, used: Duration, limit: Duration| wall > limit && used > limit || wall > WALL;
     match (&*now.stop, now.asked) {
         ("ended", _) if used > ENOUGH || wall > WALL => Late::Ended,
-        ("asked", None) if used > ENOUGH => {
+        // A run that waits for viewers needs the processor for next to nothing.
+        ("asked", None) if used > ENOUGH || wall > TIME => {
             // Not SIGINT, which what is started in the background ignores.
             let _ = Command::new("kill").args(["-TERM", &id.to_string()]).status();
             now.asked = Some((Instant::now(), used));
@@ -188,22 +204,26 @@ fn end(
     mut tell: impl FnMut(News),
 ) -> io::Result<()> {
     let said = String::from_utf8_lossy(&fs::read(messages).unwrap_or_default()).into_owned();
-    let Some(&Running { number, asked, .. }) = running else {
+    let Some(running) = running else {
         return if status.success() {
             Ok(())
         } else {
             Err(io::Error::other(format!("a worker failed, {status}: {said}")))
         };
     };
-    if asked.is_some() && (status.signal() == Some(15) || status.code() == Some(130)) {
-        tell(News::Ended { number });
+    if running.stop == MAKING && status.code().is_some() {
+        // It said what it lacks.
+        return Err(io::Error::other(format!("a worker failed, {status}: {said}")));
+    }
+    if running.asked.is_some() && (status.signal() == Some(15) || status.code() == Some(130)) {
+        tell(News::Ended { number: running.number });
         return Ok(());
     }
     // What the system says as it gives up: of memory, of the stack.
     let last =
         said.lines().rev().find(|line| line.contains("memory allocation") || line.contains("overflow"));
     let why = panic.unwrap_or_else(|| format!("{status}: {}", last.unwrap_or_default()));
-    tell(News::Broken { number, why });
+    tell(running.broken(why));
     Ok(())
 }
 

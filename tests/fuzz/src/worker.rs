@@ -52,6 +52,7 @@ pub fn work(work: &Work<'_>) -> io::Result<()> {
         Work::Numbers(surface, seed, numbers) => {
             let maker = Maker::new(*surface, *seed)?;
             for number in numbers.clone() {
+                writeln!(worker.parent, "make {number}")?;
                 if !worker.run(number, &maker.make(number))? {
                     break;
                 }

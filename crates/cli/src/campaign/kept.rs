@@ -1,4 +1,4 @@
-//! The scenario beside a campaign's tables: any run can be repeated from it, and it tells whose the tables are.
+//! The scenario beside a campaign's tables: any run can be repeated from it, and it identifies the tables.
 
 use std::fs;
 use std::io::Write;
@@ -24,7 +24,7 @@ pub struct Kept<'a> {
     /// What all names begin with.
     prefix: String,
     job: &'a Job<'a>,
-    /// What the file says.
+    /// The content of the file.
     text: String,
 }
 
@@ -94,9 +94,7 @@ impl<'a> Kept<'a> {
             return Ok(false);
         }
         match tables.first() {
-            Some(table) if there.is_empty() => {
-                refused(table, "is there, and nothing tells of which campaign", HINT)
-            }
+            Some(table) if there.is_empty() => refused(table, "exists, and its campaign is unknown", HINT),
             _ if there.is_empty() => Ok(true),
             _ => {
                 let why = format!("what is there is of another campaign{}", other(&there, &self.text));

@@ -2,8 +2,7 @@
 //! cycle the delay leaves.
 
 use flexsc_core::analysis::damping::Damped;
-
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 /// The figure; `limit` is the frequency (rad/s) above which the relay drives the modes.
 pub fn figure(rows: &[Damped], limit: f64) -> Figure {

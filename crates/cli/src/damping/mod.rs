@@ -5,11 +5,13 @@ mod figures;
 use std::f64::consts::PI;
 use std::io::Write;
 
-use flexsc_core::analysis::damping::{Damped, Relay, Study};
+use flexsc_core::actuator::PulseTiming;
+use flexsc_core::analysis::damping::{Damped, Study};
+use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
+use crate::drawing::Drawing;
 use crate::failure::Failure;
-use crate::figure::{Drawing, Named};
 use crate::grid::Even;
 use crate::number::or_none;
 use crate::results::{Results, show};
@@ -24,10 +26,10 @@ pub struct Args {
     /// Elastic acceleration of a push: the thrusters' rigid one times their influence on the mode (rad/s²)
     #[arg(long, value_name = "ACCELERATION")]
     acceleration: f64,
-    /// Time from one sample to the next (s); 0 for a relay that reads and pushes all the time
+    /// Sampling period (s); 0 for a continuous relay
     #[arg(long, value_name = "TIME", default_value_t = 0.2)]
     period: f64,
-    /// Time from a sample to the push that it decides (s)
+    /// Delay from a sample to its push (s)
     #[arg(long, value_name = "TIME", default_value_t = 0.0)]
     delay: f64,
     /// How long a push lasts (s); left out, the whole period
@@ -36,7 +38,7 @@ pub struct Args {
     /// Damping ratio of the modes
     #[arg(long, value_name = "RATIO", default_value_t = 0.005)]
     damping: f64,
-    /// Amplitude of the elastic rate at the start, to tell how long its decay takes (rad/s)
+    /// Amplitude of the elastic rate at the start, for the time of its decay (rad/s)
     #[arg(long, value_name = "RATE")]
     amplitude: Option<f64>,
     /// Amplitude below which no thruster fires (rad/s)
@@ -51,7 +53,7 @@ pub struct Args {
 
 /// What a relay does.
 pub struct Effect {
-    relay: Relay,
+    timing: PulseTiming,
     /// The frequency above which it drives the modes (rad/s).
     limit: f64,
     rows: Vec<Damped>,
@@ -60,10 +62,13 @@ pub struct Effect {
 impl Args {
     /// What the relay does.
     pub fn results(&self) -> Result<Effect, Failure> {
-        let relay =
-            Relay { period: self.period, delay: self.delay, on_time: self.on_time.unwrap_or(self.period) };
+        let timing = PulseTiming {
+            period: self.period,
+            delay: self.delay,
+            on_time: self.on_time.unwrap_or(self.period),
+        };
         let study = Study {
-            relay,
+            timing,
             damping: self.damping,
             acceleration: self.acceleration,
             amplitude: self.amplitude.unwrap_or(0.0),
@@ -79,7 +84,7 @@ impl Args {
                 (row.decay_s, row.thrust_s) = (None, None);
             }
         }
-        Ok(Effect { relay, limit: relay.frequency_limit(), rows })
+        Ok(Effect { timing, limit: timing.frequency_limit(), rows })
     }
 }
 
@@ -98,7 +103,7 @@ impl Results for Effect {
     }
 
     fn tell(&self) -> Result<(), Failure> {
-        let Relay { period, delay, on_time } = self.relay;
+        let PulseTiming { period, delay, on_time } = self.timing;
         let damps = if self.limit.is_finite() {
             format!("damps below {:.4} rad/s, {:.4} Hz", self.limit, self.limit / (2.0 * PI))
         } else {

@@ -1,10 +1,9 @@
 //! The figure of an adaptive observer's trials: how many runs have found their modes by when, a panel for each set.
 
 use flexsc_core::analysis::identification::Row;
-use plotters::style::RGBColor;
+use flexsc_figure::{Axis, Figure, Layer, Panel, RGBColor, Shape, colour, steps};
 
 use super::Set;
-use crate::figure::{Axis, Figure, Layer, Panel, Shape, colour, steps};
 
 /// Colours of the parts by which the frequencies are off at the start, in turn.
 const COLOURS: [RGBColor; 5] =

@@ -8,16 +8,17 @@ use std::str::FromStr;
 
 use flexsc_core::analysis::identification::{CYCLE, Row, Trial};
 use flexsc_core::quantity::NonNegative;
+use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use crate::consent::Consent;
+use crate::drawing::Drawing;
 use crate::failure::Failure;
-use crate::figure::{Drawing, Named};
 use crate::number::{fixed, or_none};
 use crate::results::{Results, show};
 use crate::{progress, say};
 
-/// The sets of the study behind seed paper 4's scenarios, in hertz, and the rate at which each is identified.
+/// The sets of the study behind \[Timakov14\]'s scenarios, in hertz, and the rate at which each is identified.
 const SETS: [(&[(f64, f64)], f64); 6] = [
     (&[(0.2476, 2.89)], 0.02),
     (&[(0.2476, 2.89), (0.6, 3.0)], 0.02),
@@ -34,10 +35,10 @@ pub struct Args {
     /// the space station's study
     #[arg(long, value_name = "W:MU,...")]
     modes: Vec<Modes>,
-    /// Parts by which the frequencies are off at the start
+    /// Relative errors of the frequencies at the start
     #[arg(long, value_delimiter = ',', default_value = "0.05,0.1,0.2,0.3", value_name = "PARTS")]
     off: Vec<f64>,
-    /// Part by which the influences are
+    /// Relative error of the influences at the start
     #[arg(long, default_value_t = 0.4, value_name = "PART")]
     influence_off: f64,
     /// Runs of each row

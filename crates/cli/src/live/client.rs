@@ -17,13 +17,13 @@ use super::state::Frame;
 use super::wire::{Wire, is_silence};
 
 const SUBPROTOCOL: &str = "sec-websocket-protocol";
-/// How long a client may take to say what it wants, and to say farewell.
+/// How long a client may take for its request, and to close.
 const GREETING: Duration = Duration::from_secs(5);
 const FAREWELL: Duration = Duration::from_secs(1);
 /// Clients only ask: no message of theirs is larger (bytes).
 const LARGEST: usize = 64 << 10;
 
-/// Greets a client, and tells its connection and its seat.
+/// Accepts a client, and returns its connection and its seat.
 pub fn greet(hub: &Hub, gate: &Gate, stream: TcpStream) -> Option<(WebSocket<Wire>, Seat)> {
     let wire = Wire::new(stream, GREETING).ok()?;
     let config = WebSocketConfig::default().max_message_size(Some(LARGEST)).max_frame_size(Some(LARGEST));
@@ -113,6 +113,8 @@ fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Wire>) -> Result<(), Erro
 
 /// Sends frames; those that are left wait for their turn.
 fn send(socket: &mut WebSocket<Wire>, frames: &mut VecDeque<Frame>) -> Result<(), Error> {
+    // First what the connection took over before: it would take over ever more, without a limit.
+    socket.flush()?;
     // A frame is taken over even where the connection has no room for it.
     while let Some(frame) = frames.pop_front() {
         socket.write(frame)?;
@@ -120,7 +122,7 @@ fn send(socket: &mut WebSocket<Wire>, frames: &mut VecDeque<Frame>) -> Result<()
     socket.flush()
 }
 
-/// Says farewell, and waits for the client's: a connection that is cut while something is on its way may lose it.
+/// Closes the connection, and waits for the client: a connection that is cut while something is on its way may lose it.
 fn part(socket: &mut WebSocket<Wire>, why: Option<CloseFrame>) -> Result<(), Error> {
     let began = WallInstant::now();
     let silent = |result: Result<(), Error>| match result {
@@ -132,4 +134,31 @@ fn part(socket: &mut WebSocket<Wire>, why: Option<CloseFrame>) -> Result<(), Err
         silent(socket.read().map(drop))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::TcpListener;
+
+    use tungstenite::protocol::Role;
+
+    use super::*;
+
+    #[test]
+    fn a_client_that_takes_nothing_is_handed_no_more() {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let _silent = TcpStream::connect(listener.local_addr().expect("bound")).expect("connected");
+        let mut wire = Wire::new(listener.accept().expect("a client").0, GREETING).expect("set");
+        wire.greeted().expect("set");
+        let mut socket = WebSocket::from_raw_socket(wire, Role::Server, None);
+        // More than the system holds between the two.
+        let mut frames: VecDeque<_> = (0..256).map(|_| Frame::binary(vec![0; 1 << 16])).collect();
+        let is_full = |sent: Result<(), Error>| matches!(sent, Err(Error::Io(error)) if is_silence(&error));
+        assert!(is_full(send(&mut socket, &mut frames)));
+        let left = frames.len();
+        for _ in 0..3 {
+            assert!(is_full(send(&mut socket, &mut frames)));
+        }
+        assert!(left > 0 && frames.len() == left, "{} of {left} frames left", frames.len());
+    }
 }

@@ -1,6 +1,6 @@
 //! Who may connect: pages of viewers that are known or named, and programs that are no pages.
 //!
-//! Any page that a browser shows may try to connect to this machine, and the browser says which it is: its origin. A page whose
+//! Any page that a browser shows may try to connect to this machine, and the browser sends its origin. A page whose
 //! name was made to lead here (DNS rebinding) is known by the host that it asks for.
 
 use std::collections::BTreeSet;
@@ -13,23 +13,23 @@ use tungstenite::http::header::{HOST, ORIGIN};
 
 use crate::say;
 
-/// Where viewers are hosted, and what those that are installed say.
+/// Origins of hosted viewers, and of installed ones.
 const KNOWN: [&str; 4] = [
     "https://app.foxglove.dev",
     "https://studio.foxglove.dev",
     "https://lichtblick-suite.github.io",
     "file://",
 ];
-/// So many refused origins are told on the terminal.
+/// So many refused origins are printed on the terminal.
 const MOST_TOLD: usize = 8;
 
 /// Who may connect.
 pub struct Gate {
-    /// The name that the server was told to serve at.
+    /// The name at which the server serves.
     own: String,
     /// The origins that the user lets in.
     allowed: Vec<String>,
-    /// The refused origins that were told.
+    /// The refused origins that were printed.
     told: Mutex<BTreeSet<String>>,
 }
 
@@ -59,7 +59,7 @@ impl Gate {
         }
     }
 
-    /// Whether a host can only be this one, and is no name that somebody else could lead here.
+    /// Whether a host can only be this one, and not a name that others could point here.
     fn is_own(&self, host: &str) -> bool {
         address(host).is_some() || is_localhost(host) || host.eq_ignore_ascii_case(&self.own)
     }

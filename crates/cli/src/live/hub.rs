@@ -84,7 +84,7 @@ impl Hub {
         Ok(())
     }
 
-    /// Changes the clock, tells the clients who follow it, and returns it.
+    /// Changes the clock, notifies the clients who follow it, and returns it.
     pub fn change(&self, change: impl FnOnce(&mut Clock)) -> Clock {
         let mut state = self.lock();
         state.change(change);

@@ -93,7 +93,7 @@ impl Args {
         if !self.wait {
             clock.begin(wall);
         }
-        let provenance = Campaign::provenance(run);
+        let provenance = Campaign::provenance(run, Detail::Scene);
         let state = State::new(clock, topics::expected(run, &provenance));
         let hub = Arc::new(Hub::new(&run.scenario.name, state));
         let messages = Encode::new(Publisher(hub.clone()), &provenance, Detail::Scene);
@@ -111,7 +111,7 @@ impl Args {
 }
 
 impl Live {
-    /// Tells the metrics, and serves on as long as there are viewers.
+    /// Sends the metrics, and continues to serve as long as there are viewers.
     pub fn finish(mut self, metrics: &Metrics) {
         if let Some(messages) = self.messages.take() {
             // Viewers take what they are given.

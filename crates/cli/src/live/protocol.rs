@@ -1,4 +1,4 @@
-//! The words of the Foxglove WebSocket protocol, version 1: what the server tells and what clients ask.
+//! The words of the Foxglove WebSocket protocol, version 1: what the server sends and what clients ask.
 
 use data_encoding::BASE64;
 use flexsc_core::record::row::Topic;
@@ -16,23 +16,23 @@ pub const PARAMETERS: [&str; 2] = ["/paused", "/speed"];
 
 /// A request names at most so many things.
 const MOST_NAMED: usize = 256;
-/// Of what is not understood so many characters are told.
+/// So many characters of a message that is not understood are repeated.
 const MOST_TOLD: usize = 200;
 
 /// What a client asks.
 #[derive(Debug, PartialEq)]
 pub enum Request {
-    /// To be told of channels: the number of the subscription and that of the channel.
+    /// To subscribe to channels: the number of the subscription and that of the channel.
     Subscribe(Vec<(u32, u32)>),
-    /// To be told of these subscriptions no more.
+    /// To end these subscriptions.
     Unsubscribe(Vec<u32>),
     /// The values of parameters, all if none is named.
     GetParameters(Vec<String>, Option<Json>),
     /// To set parameters.
     SetParameters(Vec<(String, Json)>, Option<Json>),
-    /// To be told when these parameters change.
+    /// To subscribe to changes of these parameters.
     Follow(Vec<String>),
-    /// To be told so no more.
+    /// To end that.
     Unfollow(Vec<String>),
     /// A service: its number and that of the call.
     Call(u32, u32),

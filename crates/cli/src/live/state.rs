@@ -24,7 +24,7 @@ pub struct State {
     pub clock: Clock,
     /// The topics, in the order of [`TOPICS`].
     topics: Vec<Topic>,
-    /// The time that was told last (ns).
+    /// The time that was sent last (ns).
     time_ns: u64,
     /// The clients by their numbers.
     pub clients: BTreeMap<u64, Client>,
@@ -51,7 +51,7 @@ pub struct Client {
     pub outbox: Outbox,
     /// The subscription of each channel.
     subscriptions: BTreeMap<u32, u32>,
-    /// The parameters of whose changes it is told.
+    /// The parameters whose changes it subscribes to.
     follows: BTreeSet<String>,
 }
 
@@ -83,7 +83,7 @@ impl State {
         self.joined
     }
 
-    /// Changes the clock, and tells the clients who follow it.
+    /// Changes the clock, and notifies the clients who follow it.
     pub fn change(&mut self, change: impl FnOnce(&mut Clock)) {
         let before = (self.clock.paused(), self.clock.speed());
         change(&mut self.clock);
@@ -108,7 +108,7 @@ impl State {
             let frame = protocol::advertise([(index, &TOPICS[index])].into_iter());
             self.clients.values_mut().for_each(|client| client.outbox.push(frame.clone()));
         }
-        // Viewers give a message the time that they were told last: it must come first.
+        // Viewers give a message the time that they received last: it must come first.
         let moved = std::mem::replace(&mut self.time_ns, time_ns) != time_ns;
         for client in self.clients.values_mut() {
             if moved {

@@ -13,7 +13,7 @@ use flexsc_core::{Scenario, Simulation};
 pub fn expected(run: &Run, from: &Provenance) -> BTreeSet<usize> {
     let mut topics = Topics::default();
     if let Ok(mut messages) = Encode::new(&mut topics, from, Detail::Scene) {
-        // A run that fails at its start says so when it is made.
+        // A run that fails at its start reports it when it is made.
         let mut simulation = Simulation::new(&run.scenario, run.number);
         simulation.draw(&run.scenario);
         let _ = simulation.run_until(Instant::START, &mut messages);
@@ -27,11 +27,11 @@ pub fn expected(run: &Run, from: &Provenance) -> BTreeSet<usize> {
 fn later(scenario: &Scenario) -> Vec<&'static str> {
     let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
     let topics = [
-        ("/command", !matches!(scenario.law, Law::Open(_) | Law::PhasePlane(_))),
+        ("/command", scenario.axis_count() == 1 && !matches!(scenario.law, Law::Open(_))),
         ("/envelope_mean", envelope.is_some()),
         ("/adaptation", scenario.adaptation.is_some()),
         ("/arrival", scenario.plan.is_some()),
-        ("/jets", scenario.spatial.is_some()),
+        ("/jets", scenario.study.fires()),
         ("/summary", true),
         ("/metrics", true),
     ];
@@ -66,7 +66,7 @@ mod tests {
             }
             let scenario = Scenario::load(&file.path()).expect("a scenario");
             let run = Run { number: 0, scenario, drawn: Vec::new() };
-            let from = Campaign::provenance(&run);
+            let from = Campaign::provenance(&run, Detail::Scene);
             let (expected, mut seen) = (expected(&run, &from), Topics::default());
             let mut messages = Encode::new(&mut seen, &from, Detail::Scene).expect("messages");
             // Long enough for an arrival, and for the windows of an adaptation.

@@ -1,9 +1,7 @@
 //! The map of the spectral radius over the frequency of the dominant mode and the period of the samples.
 
 use flexsc_core::analysis::sampled_loop::Cell;
-use plotters::style::RGBColor;
-
-use crate::figure::{Axis, Bar, Field, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Axis, Bar, Field, Figure, Layer, Panel, Point, RGBColor, Shape, colour};
 
 /// The values between the classes: finest near 1, where stability ends.
 const EDGES: [f64; 13] = [0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1.0, 1.001, 1.003, 1.01, 1.03, 1.1, 1.3];

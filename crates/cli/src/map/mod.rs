@@ -7,10 +7,11 @@ use std::path::PathBuf;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{Cell, map};
+use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
 
+use crate::drawing::Drawing;
 use crate::failure::Failure;
-use crate::figure::{Drawing, Named, Point};
 use crate::grid::Even;
 use crate::results::{Results, show};
 use crate::sampled::{Settled, sampled};

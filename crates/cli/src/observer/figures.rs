@@ -1,10 +1,9 @@
-//! The figure of the recurrence observer's convergence: the regions of its weights with a frozen regressor (seed paper 4,
+//! The figure of the recurrence observer's convergence: the regions of its weights with a frozen regressor (\[Timakov14\],
 //! figure 2), and what a sample leaves of an error over the gain of the identification.
 
 use flexsc_core::analysis::damping::{Convergence, Margin};
-use plotters::style::RGBColor;
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, RGBColor, Shape, band, colour};
 
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 use crate::grid::Even;
 
 /// The least and the largest gain of the second panel, and how many there are.

@@ -6,11 +6,12 @@ use std::f64::consts::TAU;
 use std::io::Write;
 
 use flexsc_core::analysis::damping::{Convergence, Margin};
+use flexsc_figure::Named;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
+use crate::drawing::Drawing;
 use crate::failure::Failure;
-use crate::figure::{Drawing, Named};
 use crate::results::{Results, show};
 use crate::say;
 
@@ -26,7 +27,7 @@ pub struct Args {
     /// Time from one sample to the next (s)
     #[arg(long, value_name = "TIME", default_value_t = 0.2)]
     period: f64,
-    /// What of an innovation the rigid rate takes, what the elastic rate, and what is taken off the next one
+    /// Weights of an innovation: on the rigid rate, on the elastic rate, and on the next elastic rate (W1, W2, W3)
     #[arg(
         long,
         value_name = "W1,W2,W3",

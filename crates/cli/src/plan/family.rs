@@ -6,9 +6,7 @@ use std::borrow::Cow;
 use flexsc_core::body::Planar;
 use flexsc_core::manoeuvre::{BangBang, Command, Manoeuvre, Plan, Suppression};
 use flexsc_core::time::Span;
-use plotters::style::RGBColor;
-
-use crate::figure::colour;
+use flexsc_figure::{RGBColor, colour};
 
 /// So many commands at most.
 const MOST: usize = 5;

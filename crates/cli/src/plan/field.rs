@@ -68,7 +68,7 @@ impl Results for Field {
         );
         for row in rows {
             match &row.outcome {
-                Err((_, why)) => say!("  {:<28}{why}", row.name),
+                Err(fault) => say!("  {:<28}{}", row.name, fault.why),
                 Ok(outcome) => {
                     let (own, hub) = (&outcome.residuals[*shown], &outcome.residuals[0]);
                     say!(

@@ -1,14 +1,14 @@
 //! The figures of a plan: torque, hub angle and an output over time, and what is left over the error of the frequencies
-//! (seed paper 2, figures 3 to 8 and beyond).
+//! (\[Rotation\], figures 3 to 8 and beyond).
 
 use std::f64::consts::TAU;
 use std::sync::Arc as Shared;
 
-use flexsc_core::body::{Arc, Drive, Forced, Input, Planar};
+use flexsc_core::body::{Drive, Forced, Input, Planar, Segment};
 use flexsc_core::manoeuvre::Plan;
+use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, colour, name_and_unit};
 
 use super::family::{Family, Member};
-use crate::figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, colour, name_and_unit};
 
 /// Points of a line, at least and at most.
 const FEWEST: f64 = 1500.0;
@@ -125,12 +125,12 @@ impl Family<'_> {
     fn motion(&self, plan: &Plan) -> Vec<(f64, [f64; 2])> {
         let end = self.end();
         let count = (end / self.step(end)).ceil();
-        let mut arc = Arc::new(self.body);
+        let mut segment = Segment::new(self.body);
         let mut state = self.body.start();
         let waveform = Some(Forced::new(Shared::new(plan.waveform.clone()), 0.0));
-        arc.depart(&state.clone(), &Input { constant: 0.0, waveform });
+        segment.depart(&state.clone(), &Input { constant: 0.0, waveform });
         let mut at = |t: f64| {
-            let angle = arc.at(t, &mut state).angle;
+            let angle = segment.at(t, &mut state).angle;
             let output = self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index));
             (t, [angle, output.map_or(angle, |output| output.of(&state))])
         };

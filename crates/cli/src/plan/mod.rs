@@ -8,12 +8,13 @@ mod planned;
 use std::path::PathBuf;
 
 use flexsc_core::body::Planar;
+use flexsc_core::document::Fault;
 use flexsc_core::manoeuvre::{Common, Manoeuvre, Report, compare};
 use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::{Scenario, ScenarioError};
 
+use crate::drawing::{Drawing, Format};
 use crate::failure::Failure;
-use crate::figure::{Drawing, Format};
 use crate::results::{Results, show};
 use crate::scenario;
 use field::Field;
@@ -26,7 +27,7 @@ pub struct Args {
     /// Compare with every other command on the same body; JSON lines with --json
     #[arg(long, group = "views")]
     compare: bool,
-    /// How far off the frequencies may be, relative to them
+    /// Largest relative error of the frequencies
     #[arg(long, default_value_t = 0.1, value_name = "PART")]
     band: f64,
     /// Plan for this peak torque (N m), each command in its own time, instead of the scenario's time
@@ -66,10 +67,10 @@ impl Args {
         }
         let plan = if limit.is_some() {
             let slower = Manoeuvre { time: None, peak_torque: limit, ..manoeuvre.clone() };
-            let refused = |(_, why): (String, String)| ScenarioError::Key {
+            let refused = |fault: Fault| ScenarioError::Key {
                 origin: name.clone(),
                 key: "--peak-torque".to_owned(),
-                why,
+                why: fault.why,
             };
             slower.plan(&model).map_err(refused)?
         } else {

@@ -4,12 +4,12 @@ use std::io::Write;
 
 use flexsc_core::body::Planar;
 use flexsc_core::manoeuvre::{Manoeuvre, Plan, Report};
+use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use super::family::Family;
 use super::{figures, percent};
 use crate::failure::Failure;
-use crate::figure::Named;
 use crate::results::{Results, of_scenario};
 use crate::say;
 

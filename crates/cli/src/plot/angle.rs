@@ -1,9 +1,10 @@
 //! Figure `angle`: the hub's angle over the run with its goal, how far it is from it, and when it has settled.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+
 use super::motion::Motion;
 use super::story::Story;
 use super::{arrival, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 
 /// Less than this part of the goal is rounding, and shown as nothing on an axis that ends here (rad).
 const ROUNDING: f64 = 1e-13;
@@ -54,7 +55,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     Figure { title: title(story, "angle"), panels, panel_height: 220 }
 }
 
-/// How the distance from the goal dies away, as the metric `settling_time_s` tells it.
+/// How the distance from the goal dies away, as the metric `settling_time_s` has it.
 struct Settled {
     /// What counts as settled (rad).
     band: f64,

@@ -1,10 +1,11 @@
-//! Figure `consistency`: whether a filter knows how large its errors are. The normalised innovation squared, over the number
+//! Figure `consistency`: whether a filter's covariance fits its errors. The normalised innovation squared, over the number
 //! of measurements, and the normalised estimation error squared, over the number of states, are both about 1 if it does.
+
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 
 use super::motion::{Estimate, Motion};
 use super::story::Story;
 use super::{lock, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 
 /// So many samples are averaged, as by the filter itself when it judges whether it follows the body.
 const WINDOW: usize = 50;
@@ -15,7 +16,7 @@ const FAR: f64 = 10.0;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let scenario = &story.scenario;
-    let measurements = 1 + usize::from(scenario.sensor.rate_noise().is_some());
+    let measurements = 1 + usize::from(scenario.sensor.rate_noise(0).is_some());
     let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.model.modes.len()));
     let window = WINDOW.min(motion.estimates.len()).max(1);
     let panel = |name: &str, ratio: fn(&Estimate) -> f64, degrees: usize, averaged: usize, named: bool| {

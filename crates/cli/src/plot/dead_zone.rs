@@ -1,11 +1,11 @@
 //! Figure `angle` under a law that switches: the angle at the end of the run, with the dead zone and where the law switched.
 
 use flexsc_core::law::{Law, Sides};
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 use super::motion::Motion;
 use super::story::Story;
 use super::{time, title, torque};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let shown = torque::shown(story);
@@ -20,7 +20,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
             Sides::Two => vec![relay.dead_zone.get(), -relay.dead_zone.get()],
             Sides::One => vec![relay.dead_zone.get()],
         },
-        Law::Pd(_) | Law::Open(_) | Law::PhasePlane(_) => Vec::new(),
+        _ => Vec::new(),
     };
     let y = Axis::around("angle x", "rad", line.iter().map(|point| point.1).chain(borders.iter().copied()));
     let border = |(index, height): (usize, &f64)| {

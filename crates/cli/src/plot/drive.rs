@@ -1,11 +1,11 @@
 //! Figure `torque` of a rotation: what was planned, what the actuator made of it, the law's part and disturbances.
 
 use flexsc_core::actuator::Actuator;
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 use super::motion::Motion;
 use super::story::Story;
 use super::{arrival, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let [planned, feedback, applied, disturbance] = &motion.torques;
@@ -16,7 +16,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let x = time(0.0..story.end);
     let executed = applied.iter().zip(planned.iter().zip(feedback)).any(|(a, (p, f))| *a != p + f);
     let panel =
-        |x: Axis, name: &str, unit: &'static str, series: &[(&str, plotters::style::RGBColor, &[f64])]| {
+        |x: Axis, name: &str, unit: &'static str, series: &[(&str, flexsc_figure::RGBColor, &[f64])]| {
             let all = series.iter().flat_map(|(.., values)| values.iter().copied());
             let y = Axis::around(name, unit, all);
             let lines = series

@@ -1,10 +1,11 @@
 //! Figure `envelope`: the envelope of the elastic modes over the run with its window means, and the elastic angle
-//! within it at the end (figures 5v and 5g of seed paper 1).
+//! within it at the end (figures 5v and 5g of \[Silaev\]).
+
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 use super::motion::Motion;
 use super::story::{Mean, Story};
 use super::{swings, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let all = motion.envelope.iter().map(|(_, value)| *value);

@@ -1,10 +1,11 @@
 //! Figure `estimate`: the displacement of the dominant mode as the law reads it from a filter, what it really is, and how
 //! far apart they are.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
 use super::motion::Motion;
 use super::story::Story;
 use super::{lock, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let samples = &motion.estimates;

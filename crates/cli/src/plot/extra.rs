@@ -2,17 +2,17 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::law::{Extra, Law};
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 use super::motion::Motion;
 use super::story::Story;
 use super::{lock, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 /// The extra loop of a scenario, if it has one.
 pub fn of(story: &Story) -> Option<&Extra> {
     match &story.scenario.law {
         Law::Pd(pd) => pd.extra.as_ref(),
-        Law::Relay(_) | Law::Open(_) | Law::PhasePlane(_) => None,
+        _ => None,
     }
 }
 
@@ -36,7 +36,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     Figure { title: title(story, "extra loop"), panels, panel_height: 200 }
 }
 
-/// The natural frequency of the dominant mode (rad/s) that an ideal observer tells the law.
+/// The natural frequency of the dominant mode (rad/s) that an ideal observer gives the law.
 fn frequency(scenario: &Scenario, t: f64) -> f64 {
     let ratio = |mode: usize| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
     let modes = scenario.model.modes.iter().enumerate();

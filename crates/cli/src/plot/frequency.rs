@@ -1,10 +1,11 @@
 //! Figure `frequency`: the natural frequency of the dominant mode as a filter estimates it, what it really is, and how far
 //! apart they are, with two standard deviations to each side.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+
 use super::motion::{Estimate, Motion};
 use super::story::Story;
 use super::{lock, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 
 /// The axis reaches up to so many times the largest frequency, however unsure the filter is.
 const BEYOND: f64 = 1.5;

@@ -1,9 +1,10 @@
 //! Figure `gain`: the gain and what the adaptation decided, and the window means that it learnt from.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
+
 use super::envelope::means;
 use super::story::Story;
 use super::{time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
 
 pub fn figure(story: &Story) -> Figure {
     let x = time(0.0..story.end);

@@ -1,7 +1,8 @@
 //! Spans in which a filter learns no frequency because too little moves, or has lost the body, as shaded areas.
 
+use flexsc_figure::{Axis, Layer, Point, Shape, band, colour};
+
 use super::motion::{Estimate, Motion};
-use crate::figure::{Axis, Layer, Point, Shape, band, colour};
 
 /// The areas, over the whole height of a panel, in its legend or not.
 pub fn spans(motion: &Motion, y: &Axis, named: bool) -> Vec<Layer> {

@@ -1,6 +1,7 @@
 //! `flexsc plot`: the figures of a log or of a campaign, as SVG and PNG.
 
 mod angle;
+mod attitude_filter;
 mod campaign;
 mod consistency;
 mod dead_zone;
@@ -20,15 +21,18 @@ mod story;
 mod torque;
 mod what;
 mod wheel;
+mod wheels;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "papers")]
 use clap::ValueEnum;
 use flexsc_core::record::Log;
+use flexsc_figure::{Axis, Figure, Layer, Shape, colour, round_to_nice};
 
+use crate::drawing::{Format, Target};
 use crate::failure::Failure;
-use crate::figure::{Axis, Figure, Format, Layer, Shape, Target, colour, round_to_nice};
 use motion::Motion;
 use spatial::Cycles;
 use story::Story;
@@ -39,14 +43,14 @@ pub struct Args {
     /// Log file, or directory of a campaign
     #[arg(value_name = "LOG|DIR")]
     path: PathBuf,
-    /// Directory for the figures, made if it is not there, or one FILE.svg or FILE.png for all of them [default: where the
+    /// Directory for the figures, created if missing, or one FILE.svg or FILE.png for all of them [default: where the
     /// log or the campaign is]
     #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
     /// Figures to draw [default: all that the log has; the natural ones of a campaign]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
     what: Vec<What>,
-    /// Form of the figures [default: both, or what FILE says]
+    /// Format of the figures [default: both, or by the extension of FILE]
     #[arg(long, value_enum)]
     format: Option<Format>,
     /// Of a campaign: metrics to draw, and to list the worst runs of [default: the main ones that vary]
@@ -64,6 +68,7 @@ pub struct Args {
 ///
 /// # Errors
 /// See [`figures`].
+#[cfg(feature = "papers")]
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> {
     let what = What::from_str(name, false).map_err(Failure::Arguments)?;
     let drawn = drawn(log, path, &[what])?.into_iter().next();
@@ -107,7 +112,7 @@ fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, 
     let any = |of: &[What]| of.iter().any(|what| chosen.contains(what));
     let moving = any(&[What::PhasePlane, What::Envelope, What::Modes, What::Angle]);
     let all = any(&[What::Wheel, What::Frequency, What::Estimate, What::Consistency, What::Extra]);
-    let is_spatial = story.scenario.spatial.is_some();
+    let is_spatial = story.scenario.axis_count() == 3;
     let cycles = if is_spatial { Cycles::read(&story, log, path)? } else { Cycles::default() };
     let motion = if is_spatial {
         Motion::default()

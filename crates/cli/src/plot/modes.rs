@@ -1,9 +1,10 @@
 //! Figure `modes`: the displacement of each elastic mode at the end of the run.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
 use super::motion::Motion;
 use super::story::Story;
 use super::{swings, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 /// So many modes have a panel, at most.
 const PANELS: usize = 6;

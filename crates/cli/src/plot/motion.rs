@@ -17,7 +17,7 @@ pub struct Motion {
     /// Displacements of each mode, and their rates.
     pub modes: Vec<Vec<f64>>,
     pub mode_rates: Vec<Vec<f64>>,
-    /// Where the hub shall be; empty without a manoeuvre or a PD law.
+    /// The target of the hub; empty without a manoeuvre or a PD law.
     pub goal: Vec<f64>,
     /// Torques: planned, of the law, of the actuator, disturbing; each empty without a manoeuvre or a PD law.
     pub torques: [Vec<f64>; 4],
@@ -80,7 +80,7 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Keeps the instants that every topic tells: the last one of a log that was torn may not be of them.
+    /// Keeps the instants that every topic has: the last one of a log that was torn may not be of them.
     fn keep_whole_rows(&mut self) {
         let needed = [self.time.len(), self.angle.len(), self.rate.len(), self.elastic.len()];
         let Self { time, angle, rate, elastic, modes, mode_rates, goal, torques, wheel, outputs, .. } = self;

@@ -1,9 +1,10 @@
 //! Figure `outputs`: each observed coordinate over the run.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, name_and_unit};
+
 use super::motion::Motion;
 use super::story::Story;
 use super::{arrival, time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, name_and_unit};
 
 /// So many coordinates have a panel, at most: the last ones, the outermost of a panel.
 const PANELS: usize = 6;

@@ -1,11 +1,11 @@
 //! Figure `phase-plane`: rate against angle, the law's switching lines, and where the law switched.
 
 use flexsc_core::law::{Law, Relay, Sides};
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 use super::motion::Motion;
 use super::story::{Story, Switching};
 use super::title;
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 /// So many cycles are shown at the start of a run, and as many at its end.
 const CYCLES: usize = 10;
@@ -36,7 +36,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     };
     let relay = match &story.scenario.law {
         Law::Relay(relay) => Some(relay),
-        Law::Pd(_) | Law::Open(_) | Law::PhasePlane(_) => None,
+        _ => None,
     };
     let zone = relay.into_iter().flat_map(|relay| [-relay.dead_zone.get(), relay.dead_zone.get()]);
     let all = || first.iter().chain(&last).copied();

@@ -5,20 +5,30 @@ use std::path::Path;
 
 use flexsc_core::Simulation;
 use flexsc_core::body::spatial::AXES;
-use flexsc_core::record::{ChannelState, Cycle, Log, Record, RecordError, Sample, TrackedMode, Tracking};
+use flexsc_core::record::{
+    AttitudeEstimate, ChannelState, Cycle, Log, Record, RecordError, Sample, SpatialMotion, TrackedMode,
+    Tracking, Wheels,
+};
 use flexsc_core::time::{Instant, Span};
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
 
 use super::story::{Story, unusable};
 use super::{time, title};
 use crate::failure::Failure;
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
 
 /// More marks than these are small.
 const MANY: usize = 100;
 
 /// The cycles of a run.
 #[derive(Default)]
-pub struct Cycles(Vec<(f64, Cycle)>, Vec<(f64, Tracking)>);
+pub struct Cycles {
+    all: Vec<(f64, Cycle)>,
+    tracking: Vec<(f64, Tracking)>,
+    /// What an attitude filter made of each sample.
+    pub attitude: Vec<(f64, AttitudeEstimate)>,
+    /// The wheels, at each period of the log.
+    pub wheels: Vec<(f64, Wheels)>,
+}
 
 impl Cycles {
     /// The run of a log, repeated.
@@ -31,7 +41,7 @@ impl Cycles {
             .map_err(|source| Failure::Run { name: story.scenario.name.clone(), source })?;
         let jets = log.tables(&["/jets"])?.pop().flatten().unwrap_or_default();
         let logged = jets.numbers("fuel_kg").unwrap_or_default();
-        let fired = cycles.0.iter().filter(|(_, cycle)| cycle.pulses > 0);
+        let fired = cycles.all.iter().filter(|(_, cycle)| cycle.pulses > 0);
         if !fired.map(|(_, cycle)| cycle.jets.fuel_kg).take(logged.len()).eq(logged.iter().copied()) {
             let version = log.metadata().get("version").map_or("another", String::as_str);
             let own = env!("CARGO_PKG_VERSION");
@@ -42,15 +52,23 @@ impl Cycles {
     }
 
     pub fn over_time(&self, of: impl Fn(&Cycle) -> f64) -> Vec<Point> {
-        self.0.iter().map(|(time, cycle)| (*time, of(cycle))).collect()
+        self.all.iter().map(|(time, cycle)| (*time, of(cycle))).collect()
     }
 }
 
 impl Record for Cycles {
+    fn dense(&self) -> bool {
+        true
+    }
+
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
-            Sample::Cycle(cycle) => self.0.push((now.seconds(), cycle.clone())),
-            Sample::Tracking(tracking) => self.1.push((now.seconds(), tracking.clone())),
+            Sample::Cycle(cycle) => self.all.push((now.seconds(), cycle.clone())),
+            Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
+            Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
+            Sample::SpatialMotion(SpatialMotion { wheels: Some(wheels), .. }) => {
+                self.wheels.push((now.seconds(), wheels.clone()));
+            }
             _ => {}
         }
         Ok(())
@@ -58,7 +76,7 @@ impl Record for Cycles {
 }
 
 /// A panel for each axis: its lines, by their names and colours.
-fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
+pub fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
     let panel = |(axis, name): (usize, &&str)| {
         let (x, layers) = (time(0.0..story.end), lines(axis));
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
@@ -118,11 +136,11 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
 pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
     let on =
         |cycle: &Cycle, axis: usize| [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis];
-    let period = cycles.0.get(1).map_or(0.0, |(time, _)| time - cycles.0[0].0);
+    let period = cycles.all.get(1).map_or(0.0, |(time, _)| time - cycles.all[0].0);
     let line = |axis: usize| {
         // The outline of each row of cycles with pulses, and nothing between them.
         let mut points = Vec::new();
-        for row in cycles.0.chunk_by(|a, b| (on(&a.1, axis) == 0.0) == (on(&b.1, axis) == 0.0)) {
+        for row in cycles.all.chunk_by(|a, b| (on(&a.1, axis) == 0.0) == (on(&b.1, axis) == 0.0)) {
             let Some((first, _)) = row.first().filter(|(_, cycle)| on(cycle, axis) != 0.0) else { continue };
             let last = row.last().map_or(*first, |(time, _)| time + period);
             points.push((*first, 0.0));
@@ -136,7 +154,7 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
         ]
     };
     // One scale for all axes: one whose jets do not fire has none of its own.
-    let longest = cycles.0.iter().flat_map(|(_, cycle)| (0..3).map(|axis| on(cycle, axis).abs()));
+    let longest = cycles.all.iter().flat_map(|(_, cycle)| (0..3).map(|axis| on(cycle, axis).abs()));
     let longest = 1.1 * longest.fold(0.0, f64::max);
     let mut panels = panels(story, "s", line);
     for panel in &mut panels {
@@ -155,13 +173,14 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
         points.first().into_iter().chain(points.last()).copied().collect()
     };
     let lines = |axis: usize| {
-        let count = cycles.1.first().map_or(0, |(_, tracking)| tracking.trackers.len());
+        let count = cycles.tracking.first().map_or(0, |(_, tracking)| tracking.trackers.len());
         let of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
             let hertz = |tracking: &Tracking| value(&tracking.trackers[mode]) / std::f64::consts::TAU;
-            cycles.1.iter().map(|(time, tracking)| (*time, hertz(tracking))).collect()
+            cycles.tracking.iter().map(|(time, tracking)| (*time, hertz(tracking))).collect()
         };
-        let mine =
-            |mode: &usize| cycles.1.first().is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64);
+        let mine = |mode: &usize| {
+            cycles.tracking.first().is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64)
+        };
         let mut layers = Vec::new();
         for mode in (0..count).filter(mine) {
             let name = |name| if axis == 0 && layers.is_empty() { name } else { "" };
@@ -192,11 +211,12 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
 pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
     let lines = |axis: usize| {
         let of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
-            cycles.1.iter().map(|(time, tracking)| (*time, value(&tracking.channels[axis]))).collect()
+            cycles.tracking.iter().map(|(time, tracking)| (*time, value(&tracking.channels[axis]))).collect()
         };
         let name = |name| if axis == 0 { name } else { "" };
         let fires = |(_, tracking): &&(f64, Tracking)| tracking.channels[axis].damping_on_s != 0.0;
-        let fired = cycles.1.iter().filter(fires).map(|(time, t)| (*time, t.channels[axis].acted_on_rad_s));
+        let fired =
+            cycles.tracking.iter().filter(fires).map(|(time, t)| (*time, t.channels[axis].acted_on_rad_s));
         let fired: Vec<Point> = fired.collect();
         let mark = if fired.len() > MANY { Shape::Dot } else { Shape::Disc };
         vec![

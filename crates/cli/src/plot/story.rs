@@ -1,4 +1,4 @@
-//! The story of a run that figures tell: the events of its log, and its motion, by running the scenario within the log
+//! The story of a run for its figures: the events of its log, and its motion, by running the scenario within the log
 //! again where the log has none.
 
 use std::path::Path;
@@ -10,7 +10,7 @@ use flexsc_core::{Scenario, Simulation};
 use super::motion::{Motion, Repeat};
 use crate::failure::Failure;
 
-/// A run as its log tells it.
+/// A run by its log.
 pub struct Story {
     /// What was run.
     pub scenario: Scenario,
@@ -65,7 +65,7 @@ impl Story {
         let [law, command, means, adaptation] =
             topics(log, ["/law", "/command", "/envelope_mean", "/adaptation"])?;
         let first = |name: &str| law.numbers(name).and_then(|column| column.first().copied());
-        let start = (first("torque_nm").unwrap_or(f64::NAN), first("gain").unwrap_or(scenario.law.gain()));
+        let start = (first("torque_nm").unwrap_or(f64::NAN), first("gain").unwrap_or(scenario.law.tuned()));
         let switchings = switchings(&command);
         let means = rows(&means, ["from_s", "to_s", "mean_rad"]);
         let means: Vec<_> = means.map(|[from, to, value]| Mean { from, to, value }).collect();

@@ -1,8 +1,9 @@
 //! Figure `torque`: the commanded torque at the end of the run, strong and weak.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_nice, steps};
+
 use super::story::Story;
 use super::{time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_nice, steps};
 
 /// So many switchings are shown, about: five cycles of a two-sided relay.
 const SWITCHINGS: usize = 30;

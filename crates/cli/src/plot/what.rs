@@ -2,16 +2,15 @@
 
 use clap::ValueEnum;
 use flexsc_core::estimator::Estimator;
-use flexsc_core::law::Law;
+use flexsc_figure::Figure;
 
 use super::motion::Motion;
 use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
-    angle, consistency, dead_zone, drive, envelope, estimate, extra, frequency, gain, modes, outputs,
-    phase_plane, torque, wheel,
+    angle, attitude_filter, consistency, dead_zone, drive, envelope, estimate, extra, frequency, gain, modes,
+    outputs, phase_plane, torque, wheel, wheels,
 };
-use crate::figure::Figure;
 
 /// A figure.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
@@ -32,7 +31,7 @@ pub enum What {
     Modes,
     /// Of a spatial body: angles beyond the target
     Pointing,
-    /// Of a spatial body: rates, rigid and at the gyro
+    /// Of a spatial body: rates, rigid and at the sensor
     Rates,
     /// Of a spatial body: energy of the elastic modes, and propellant
     Energy,
@@ -42,13 +41,13 @@ pub enum What {
     Tracking,
     /// Of a spatial body: elastic rates that active damping acts on, its thresholds, and its pulses
     Damping,
-    /// Speed and momentum of the flywheel, with its limits
+    /// Speed and momentum of the flywheel, or speed and torque of each wheel of a spatial body, with their limits
     Wheel,
     /// Frequency of the dominant mode as a filter estimates it, and what it really is
     Frequency,
     /// Displacement of the dominant mode as a filter estimates it, and what it really is
     Estimate,
-    /// Whether a filter knows how large its errors are: NIS and NEES with their 95 % bands
+    /// Consistency of a filter: NIS and NEES with their 95 % bands; of an attitude filter its errors and NEES
     Consistency,
     /// Gain of the extra loop, and the frequency that it follows
     Extra,
@@ -72,9 +71,9 @@ impl What {
 
     /// Whether a log has what the figure shows.
     fn is_in(self, story: &Story) -> bool {
-        let spatial = story.scenario.spatial.is_some();
+        let spatial = story.scenario.axis_count() == 3;
         match self {
-            Self::PhasePlane => story.switches(),
+            Self::PhasePlane => story.switches() && !spatial,
             Self::Torque | Self::Angle => !spatial,
             Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
             Self::Envelope => {
@@ -82,14 +81,18 @@ impl What {
             }
             Self::Gain => !story.steps.is_empty(),
             Self::Modes => !story.scenario.model.modes.is_empty(),
-            Self::Pointing | Self::Rates | Self::Energy | Self::Jets => spatial,
-            Self::Tracking => matches!(story.scenario.estimator, Some(Estimator::Adaptive(_))),
+            Self::Pointing | Self::Rates | Self::Energy => spatial,
+            Self::Jets => story.scenario.study.fires(),
+            Self::Tracking => story.scenario.study.adaptive.is_some() && spatial,
             Self::Damping => {
-                matches!(&story.scenario.law, Law::PhasePlane(law) if law.damping.is_some())
+                spatial && story.scenario.study.authorities.iter().any(|authority| authority.threshold > 0.0)
             }
-            Self::Wheel => wheel::rotor(story).is_some(),
+            Self::Wheel => wheel::rotor(story).is_some() && !spatial || wheels::of(story).is_some(),
+            Self::Consistency if spatial => {
+                story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())
+            }
             Self::Frequency | Self::Estimate | Self::Consistency => {
-                story.scenario.estimator.as_ref().is_some_and(Estimator::filters)
+                !spatial && story.scenario.estimator.as_ref().is_some_and(Estimator::filters)
             }
             Self::Extra => extra::of(story).is_some(),
             Self::Distribution | Self::Scatter | Self::Fan | Self::Curve | Self::Region => false,
@@ -114,9 +117,11 @@ impl What {
             Self::Jets => spatial::jets(story, cycles),
             Self::Tracking => spatial::tracking(story, cycles),
             Self::Damping => spatial::damping(story, cycles),
+            Self::Wheel if wheels::of(story).is_some() => wheels::figure(story, cycles),
             Self::Wheel => wheel::figure(story, motion),
             Self::Frequency => frequency::figure(story, motion),
             Self::Estimate => estimate::figure(story, motion),
+            Self::Consistency if !cycles.attitude.is_empty() => attitude_filter::figure(story, cycles),
             Self::Consistency => consistency::figure(story, motion),
             Self::Extra => extra::figure(story, motion),
             Self::Distribution | Self::Scatter | Self::Fan | Self::Curve | Self::Region => return None,

@@ -1,17 +1,17 @@
 //! Figure `wheel`: speed and momentum of the flywheel with its limits.
 
 use flexsc_core::actuator::{Actuator, Rotor};
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 use super::motion::Motion;
 use super::story::Story;
 use super::{time, title};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 /// The wheel of a scenario, if it has one that stores momentum.
 pub fn rotor(story: &Story) -> Option<&Rotor> {
     match &story.scenario.actuator {
         Actuator::Wheel(wheel) => wheel.rotor.as_ref(),
-        Actuator::Ideal | Actuator::Hold(_) | Actuator::Thrusters(_) | Actuator::Jets(_) => None,
+        _ => None,
     }
 }
 

@@ -1,10 +1,10 @@
 //! The figures that the commands of a page draw.
 
 use flexsc_core::record::{Detail, Log};
+use flexsc_figure::{Figure, Named};
 
 use super::command::Command;
 use crate::failure::Failure;
-use crate::figure::{Figure, Named};
 use crate::logged::logged;
 use crate::{Verb, plot, simulate};
 
@@ -23,7 +23,7 @@ impl Command {
     /// A figure of a run's log, with the motion of a planar body by running it again, as `flexsc plot` does.
     fn plot(&self, args: &simulate::Args, what: &str) -> Result<(Figure, String), Failure> {
         let (scenario, path) = self.simulated(args)?;
-        let spatial = scenario.spatial.is_some();
+        let spatial = scenario.axis_count() == 3;
         let (detail, option) = if spatial { (Detail::Full, " --log full") } else { (Detail::Events, "") };
         let figure = plot::figure_of(&self.log(detail)?, path, what)?;
         let (text, name) = (&self.text, &scenario.name);

@@ -1,35 +1,26 @@
 //! `flexsc reproduce`: every figure and number of the papers, on one HTML page, and in docs/papers.md.
 
-mod chart;
 mod command;
-mod computed;
 mod draw;
-mod html;
-mod number;
-mod page;
-mod paper;
+mod laboratory;
 #[cfg(test)]
 mod prose;
 mod shipped;
 mod tell;
-mod verdict;
 
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use clap::ValueEnum;
+use flexsc_papers::{Computed, Drawn, Filled, Paper, Section, Verdict, documentation, html};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use crate::failure::Failure;
 use crate::{files, progress, say, stop};
-use computed::Computed;
-use html::Section;
-use page::{Drawn, Form, Outcome};
-use paper::Paper;
+use laboratory::Programme;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -42,12 +33,6 @@ pub struct Args {
     /// Also write the same as papers.md of the documentation, with its figures images/NAME.svg, into this directory
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
-}
-
-/// A paper's section in both forms.
-struct Filled {
-    section: Section,
-    markdown: String,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -75,10 +60,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (sections, markdown): (Vec<Section>, Vec<String>) =
         filled?.into_iter().map(|filled| (filled.section, filled.markdown)).unzip();
     let took = began.elapsed().as_secs_f64();
-    let mut pages = vec![(args.out.join("papers.html"), html::page(&sections, took).into_bytes())];
+    let page = html::page(&sections, took, rayon::current_num_threads());
+    let mut pages = vec![(args.out.join("papers.html"), page.into_bytes())];
     if let Some(docs) = &args.docs {
-        let text = format!("{HEAD}\n{}", markdown.join("\n"));
-        pages.push((docs.join("papers.md"), text.into_bytes()));
+        pages.push((docs.join("papers.md"), documentation(&markdown).into_bytes()));
         let images = docs.join("images");
         files::make_directory(&images)?;
         let drawn = sections.iter().flat_map(|section| &section.outcome.figures);
@@ -94,7 +79,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let all = || sections.iter().flat_map(|section| &section.outcome.verdicts);
     say!("{} verdicts in {took:.1} s", all().count());
-    let told = |verdict: &verdict::Verdict| {
+    let told = |verdict: &Verdict| {
         let known = if verdict.expected { "yes" } else { "no" };
         format!("{}: {}, known as {known}", verdict.name, verdict.word())
     };
@@ -102,25 +87,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if unexpected.is_empty() { Ok(()) } else { Err(Failure::Verdicts(unexpected)) }
 }
 
-const HEAD: &str = "# What the papers say, and what we measure\n\n\
-    <!-- Written by `flexsc reproduce -o . --docs docs` from crates/cli/src/reproduce/papers: change it there. -->\n";
-
 /// Computes a paper's section.
 fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
     let (bar, name) = (bar.clone(), paper.name());
-    let computed = Arc::new(Computed::new(move |command: &str| {
+    let computed = Computed::new(Programme, move |command: &str| {
         bar.set_message(format!("{name}: {command}"));
         bar.tick();
-    }));
-    let form = |form: Form| -> Result<(String, Outcome), Failure> {
-        page::fill(&computed, paper.template(), form).map_err(|failure| match failure {
-            Failure::Page(why) => Failure::Page(format!("{}.md: {why}", paper.name())),
-            other => other,
-        })
-    };
-    let (text, outcome) = form(Form::Html)?;
-    let (markdown, _) = form(Form::Markdown)?;
-    Ok(Filled { section: Section { name: paper.name(), text, outcome, times: computed.times() }, markdown })
+    });
+    flexsc_papers::fill(paper, computed).map_err(Failure::Page)
 }
 
 /// Room that a page with its figures takes (bytes); it is some 2 MB.

@@ -14,11 +14,13 @@
 use std::fmt::Write as _;
 use std::sync::{Arc, LazyLock};
 
-use super::computed::Computed;
-use super::page::{environment, explained};
+use flexsc_papers::Computed;
+use flexsc_papers::page::{environment, explained};
+
+use super::laboratory::Programme;
 
 /// What was computed, for all pages.
-static COMPUTED: LazyLock<Arc<Computed>> = LazyLock::new(|| Arc::new(Computed::new(|_| {})));
+static COMPUTED: LazyLock<Arc<Computed>> = LazyLock::new(|| Arc::new(Computed::new(Programme, |_| {})));
 
 /// Parts the values of marks from the empty lines between them.
 const PARTING: char = '\u{1}';
@@ -88,7 +90,7 @@ fn faults(page: &str) -> Result<Vec<String>, String> {
         let passed = &page[page.len() - follows.len()..page.len() - rest.len()];
         template.extend(passed.chars().filter(|c| *c == '\n'));
     }
-    let environment = environment(&COMPUTED).map_err(|failure| failure.to_string())?;
+    let environment = environment(&COMPUTED)?;
     let filled = environment.render_str(&template, ()).map_err(|error| explained(&error))?;
     let values = filled.split(PARTING).skip(1).step_by(2);
     Ok(marks.iter().zip(values).filter_map(|(mark, value)| mark.fault(value)).collect())

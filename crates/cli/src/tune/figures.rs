@@ -1,11 +1,11 @@
-//! The figures of tuned gains over the frequency of the dominant mode: where they may lie (seed papers 3 and 5, figure 5),
+//! The figures of tuned gains over the frequency of the dominant mode: where they may lie (\[Wheel11, Sukhanov\], figure 5),
 //! and how soon the loop settles with them.
 
 use flexsc_core::analysis::sampled_loop::{Region, Robust};
 use flexsc_core::law::Extra;
+use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, band, colour};
 
 use super::study::Study;
-use crate::figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, band, colour};
 
 /// Settling times beyond so many limits are not shown.
 const BEYOND: f64 = 3.0;
@@ -46,7 +46,7 @@ impl Drawn<'_> {
             Layer::new("", colour::SKY, Shape::Line(1.0), upper),
         ];
         let highest = self.study.gains.values().last().copied().unwrap_or(self.study.gains.high);
-        // Where the region ends only because no higher gain was tried, its middle tells little.
+        // Where the region ends only because no higher gain was tried, its middle means little.
         if self.regions.iter().any(|region| region.gain.is_some_and(|gain| gain.1 >= highest)) {
             let level = vec![(x.range.start, highest), (x.range.end, highest)];
             layers.push(Layer::new("highest gain tried", colour::GREY, Shape::Dashes, level));

@@ -8,8 +8,8 @@ mod tuned;
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{Doubt, Goal, Search, robust};
 
+use crate::drawing::Drawing;
 use crate::failure::Failure;
-use crate::figure::Drawing;
 use crate::grid::{Even, Stepped};
 use crate::results::{Results, show};
 use crate::sampled::{Settled, positive, sampled};
@@ -26,7 +26,7 @@ pub struct Args {
     /// Frequencies of the dominant mode (rad/s); left out, 36 from a sixth of its own to four thirds
     #[arg(long, value_name = "LO:HI:N")]
     frequency: Option<Even>,
-    /// Gains that are tried
+    /// Gains to try
     #[arg(long, value_name = "LO:HI:STEP", default_value = "-2:6:0.05", allow_hyphen_values = true)]
     gain: Stepped,
     /// The longest settling time of the region (s)
@@ -36,10 +36,10 @@ pub struct Args {
     /// to this part, such as 0.1
     #[arg(long, value_name = "PART")]
     robust: Option<f64>,
-    /// By how much more the command may be delayed (s)
+    /// Additional delay of the command to allow for (s)
     #[arg(long, value_name = "TIME", default_value_t = 0.0, requires = "robust")]
     delay: f64,
-    /// By how much every spectral radius shall stay below 1
+    /// Margin by which every spectral radius stays below 1
     #[arg(long, value_name = "PART", default_value_t = 0.0, requires = "robust")]
     margin: f64,
     /// The quantile of the perturbed loops that counts; 1 is the worst
@@ -127,8 +127,10 @@ impl Args {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let tuned = args.results(&args.scenario.load()?)?;
     if args.schedule {
+        // Where there is none, nothing is drawn.
+        let schedule = tuned.extra()?;
         args.drawing.save(|| tuned.figures())?;
-        return print(tuned.extra()?.as_bytes());
+        return print(schedule.as_bytes());
     }
     show(&tuned, Some(&args.drawing), args.scenario.json)
 }

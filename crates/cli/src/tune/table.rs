@@ -7,7 +7,7 @@ use flexsc_core::analysis::sampled_loop::{Gains, Region, Robust};
 use crate::number::fixed;
 use crate::say;
 
-/// Tells the region.
+/// Prints the region.
 pub fn tell(name: &str, limit: f64, gains: Gains, found: &[Region]) {
     let Gains { low, high, step } = gains;
     say!(
@@ -38,7 +38,7 @@ pub fn tell(name: &str, limit: f64, gains: Gains, found: &[Region]) {
     }
 }
 
-/// Tells the robust gains.
+/// Prints the robust gains.
 pub fn tell_robust(name: &str, off: f64, found: &[Robust]) {
     say!("{name}   gains of the extra loop that settle soonest with the model off by {} %", off * 100.0);
     say!(

@@ -1,12 +1,12 @@
 //! What tuning comes to: the region of the gains or the robust ones, and the schedule that they make.
 
 use flexsc_core::analysis::sampled_loop::{Region, Robust, midpoints};
+use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use super::study::Study;
 use super::{figures, table};
 use crate::failure::Failure;
-use crate::figure::Named;
 use crate::results::Results;
 
 /// What was found.

@@ -3,14 +3,16 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::PulseWidth;
 use crate::body::spatial::{AXES, Spatial, Vector, vector};
+use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Positive};
-use crate::structure::Fault;
+use crate::time::Span;
 
 /// Standard acceleration of free fall (m/s²), by which the specific impulse counts.
 const G_0: f64 = 9.806_65;
 
-/// Thrusters that are either on or off (seed paper 4).
+/// Thrusters that are either on or off (\[Timakov14\]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Jets {
@@ -20,9 +22,12 @@ pub struct Jets {
     /// Quantum of a pulse's length (s); 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
+    /// Period of the pulses (s); left out, that of the law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<Span>,
     /// Specific impulse (s).
     pub specific_impulse: Positive,
-    /// Whole cycles of the law from a command to its pulses: 0, or 1 where computing it takes a cycle.
+    /// Whole cycles from a command to its pulses: 0, or 1 where computing it takes a cycle.
     #[serde(default)]
     pub delay: u32,
     /// The thrusters.
@@ -90,7 +95,7 @@ impl Jets {
     /// A key within the jets, and why.
     pub fn groups_on(&self, body: &Spatial) -> Result<[[Group; 2]; 3], Fault> {
         for (index, thruster) in self.thrusters.iter().enumerate() {
-            let refused = |key: &str, why: String| Err((format!("thrusters[{index}].{key}"), why));
+            let refused = |key: &str, why: String| Err(Fault::new(format!("thrusters[{index}].{key}"), why));
             let length = vector(&thruster.direction).norm();
             if (length - 1.0).abs() > 1e-6 {
                 return refused("direction", format!("must have length 1, got {length}"));
@@ -115,7 +120,7 @@ impl Jets {
                 self.group(body, axis, "minus", -1.0, &pair.minus)?,
             ]);
         }
-        groups.try_into().map_err(|_| ("groups".to_owned(), "must be those of three axes".to_owned()))
+        groups.try_into().map_err(|_| Fault::new("groups", "must be those of three axes"))
     }
 
     fn group(
@@ -134,7 +139,7 @@ impl Jets {
             let Some(thruster) = self.thrusters.iter().find(|thruster| thruster.name == *name) else {
                 let known: Vec<_> = self.thrusters.iter().map(|t| format!("`{}`", t.name)).collect();
                 let why = format!("must name thrusters, {}, got `{name}`", known.join(", "));
-                return Err((key, why));
+                return Err(Fault::new(key, why));
             };
             let force = vector(&thruster.direction).normalize() * thruster.thrust.get();
             let moment = vector(&thruster.offset).cross(&force);
@@ -147,27 +152,15 @@ impl Jets {
         if sense * torque[axis] <= 0.0 {
             let (turns, [x, y, z]) = (AXES[axis], [torque.x, torque.y, torque.z]);
             let why = format!("must give a torque to {sign} {turns}, got [{x}, {y}, {z}] N m");
-            return Err((key, why));
+            return Err(Fault::new(key, why));
         }
         let acceleration = torque[axis].abs() / body.tensor()[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
         Ok(Group { torque, forces, flow, acceleration })
     }
 
-    /// The length of the pulse that comes of a command (s): at most `most`, a multiple of the quantum, nothing of a
-    /// short one.
-    pub fn on_time(&self, command: f64, most: f64) -> f64 {
-        let (minimum, quantum) = (self.minimum_on.get(), self.quantum.get());
-        let mut on = command.min(most);
-        if quantum > 0.0 {
-            on = libm::round(on / quantum) * quantum;
-        }
-        if on > most {
-            most
-        } else if on < minimum {
-            0.0
-        } else {
-            on
-        }
+    /// What becomes of a wanted pulse.
+    pub fn width(&self) -> PulseWidth {
+        PulseWidth { minimum: self.minimum_on, quantum: self.quantum }
     }
 }

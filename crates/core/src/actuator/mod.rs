@@ -1,16 +1,44 @@
-//! How a commanded torque is executed: as it is, through a zero-order hold, or by pulses of thrusters.
+//! Actuators: how commands are executed, as they are, through a hold, by a wheel, or by pulses of thrusters.
 
+mod allocation;
+mod hold;
+mod ideal;
 mod jets;
+mod pulse_timing;
+mod pulse_width;
+mod pulsing;
+mod spinning;
+mod thrusters;
+mod torquers;
+mod unloading;
+mod wheel;
+mod wheels;
+
+use std::fmt;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{Finite, NonNegative, Positive, Time};
+use crate::body::Wrench;
+use crate::estimator::adaptive::Pulse;
+use crate::own::Own;
+use crate::record::{self, WheelMotion};
 use crate::time::{Instant, Span};
 
+pub use allocation::{Allocation, Choice};
+pub use hold::ZeroOrderHold;
 pub use jets::{Group, Groups, Jets, Pair, Thruster};
+pub use pulse_timing::PulseTiming;
+pub use pulse_width::PulseWidth;
+pub use pulsing::Pulsing;
+pub use spinning::Spinning;
+pub use thrusters::Thrusters;
+pub use torquers::{AxisActuate, Setting, Torquers};
+pub use unloading::{Unloaded, Unloading};
+pub use wheel::{Opposes, Rotor, Wheel};
+pub use wheels::{Arrangement, SpeedBias, Wheels};
 
-/// The kinds of actuator.
+/// The kinds of actuator. Those of one angle act on a body with three axes about each.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Actuator {
@@ -18,147 +46,182 @@ pub enum Actuator {
     #[default]
     Ideal,
     /// In each period the mean of what the manoeuvre commands over it, and the feedback at its start.
-    Hold(Hold),
+    Hold(ZeroOrderHold),
     /// In each period one pulse of full torque, centred in it, with the impulse that a hold would have.
     Thrusters(Thrusters),
     /// A flywheel on a motor with back-EMF.
     Wheel(Wheel),
-    /// Thrusters of a spatial body.
+    /// Reaction wheels about axes of their own.
+    Wheels(Wheels),
+    /// Thrusters at points of a spatial body.
     Jets(Jets),
+    /// An actuator from outside of this crate, which no scenario file can name.
+    Own(Own<dyn Effector>),
 }
 
-/// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Wheel {
-    /// Torque for each unit of the law's command (N m; k'_u of seed papers 3 and 5 times the body's inertia).
-    pub gain: Positive,
-    /// Torque for each unit of the rate (N m s; k'_omega times the body's inertia).
-    #[serde(default)]
-    pub back_emf: NonNegative,
-    /// The rate that the back-EMF opposes.
-    #[serde(default)]
-    pub opposes: Opposes,
-    /// The wheel.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rotor: Option<Rotor>,
-    /// Commands of less than this are not executed.
-    #[serde(default)]
-    pub dead_zone: NonNegative,
-    /// Quantum of the command; 0 for none.
-    #[serde(default)]
-    pub quantum: NonNegative,
-    /// Largest command; left out, there is no limit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limit: Option<Positive>,
-    /// Time from a sample to the command that is computed from it (s).
-    #[serde(default)]
-    pub delay: Time,
+/// What is demanded of an actuator about an axis.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Demand {
+    /// A torque (N m), or reduced moment (rad/s²) on a body without inertia; of a wheel, units of its command.
+    Torque(f64),
+    /// A change of the rigid rate within the law's period (rad/s): the actuator makes a pulse of it.
+    Change(f64),
 }
 
-/// The rate that the back-EMF opposes.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Opposes {
-    /// The measured rate, elastic part included: so in the papers, which overstates the damping of the modes.
-    #[default]
-    BodyRate,
-    /// The rigid rate: the momentum of the wheel is that which the body's torque gave it, exactly.
-    RigidRate,
+/// What an actuator from outside tells of itself before a run.
+pub trait Effector: Send + Sync {
+    /// The actuator at work, in the setting of each axis.
+    fn start(&self, settings: &[Setting]) -> Box<dyn Actuate>;
+
+    /// Its largest torque about an axis (N m); none without a limit.
+    fn limit(&self, _axis: usize) -> Option<f64> {
+        None
+    }
 }
 
-/// A wheel that stores momentum.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Rotor {
-    /// Moment of inertia (kg m²).
-    pub inertia: Positive,
-    /// Speed at the start (rad/s).
-    #[serde(default)]
-    pub speed: Finite,
-    /// Largest speed (rad/s), at which no torque drives it further; left out, there is no limit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub speed_limit: Option<Positive>,
+/// An actuator at work.
+pub trait Actuate: fmt::Debug + Send + Sync {
+    /// Takes over what is demanded from now on about each axis, of a body that turns at these rigid rates (rad/s).
+    fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]);
+
+    /// The next instant at which what it exerts changes by itself.
+    fn due(&self) -> Option<Instant> {
+        None
+    }
+
+    /// Does what is due now, after the laws have decided.
+    fn serve(&mut self, _now: Instant, _rigid: [f64; 3]) {}
+
+    /// Adds what it exerts from now on.
+    fn exert(&self, now: Instant, onto: &mut Wrench);
+
+    /// The torque that is asked for about an axis (N m).
+    fn asked(&self, axis: usize) -> f64;
+
+    /// The torque that it holds about an axis (N m), without a waveform and without back-EMF.
+    fn torque(&self, axis: usize) -> f64;
+
+    /// The torque that it gives about an axis (N m), of a body that turns at this rate and this rigid rate (rad/s).
+    fn applied(&self, _now: Instant, axis: usize, _rates: [f64; 2]) -> f64 {
+        self.torque(axis)
+    }
+
+    /// The reduced moment about an axis (rad/s²) that it holds, without what a rate takes from it.
+    fn moment(&self, axis: usize) -> f64;
+
+    /// What its waveform adds to the rate about the first axis from one time to another (s), in rad/s.
+    fn waveform_impulse(&self, _from: f64, _to: f64) -> f64 {
+        0.0
+    }
+
+    /// Back-EMF for each unit of the rate about the first axis (N m s), and whether it is that of the elastic body.
+    fn back_emf(&self) -> (f64, bool) {
+        (0.0, false)
+    }
+
+    /// The wheel about an axis, if there is one that stores momentum, of a body that turns at this rigid rate (rad/s).
+    fn wheel(&self, _axis: usize, _rigid_rate: f64) -> Option<WheelMotion> {
+        None
+    }
+
+    /// Wheels about axes of their own, of a body that turns at this rate (rad/s).
+    fn wheels(&self, _now: Instant, _rate: [f64; 3]) -> Vec<record::Wheel> {
+        Vec::new()
+    }
+
+    /// The angular momentum that its rotors store now, in the body's axes (N m s).
+    fn stored(&self, _now: Instant) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    /// Of jets, the cycle of pulses that has begun.
+    fn cycle(&self) -> Option<Cycle> {
+        None
+    }
+
+    /// Of jets, the pulses of the cycle that has begun.
+    fn executed(&self) -> Option<Vec<Pulse>> {
+        None
+    }
+
+    /// Changes of the rigid rates by commands that are not yet executed (rad/s).
+    fn queued(&self) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    /// The pulses that wait for the cycle that begins.
+    fn waiting(&self) -> Vec<Pulse> {
+        Vec::new()
+    }
+
+    /// A copy in the same state.
+    fn copy(&self) -> Box<dyn Actuate>;
 }
 
-/// A zero-order hold.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Hold {
-    /// Period (s).
-    pub period: Span,
+impl Clone for Box<dyn Actuate> {
+    fn clone(&self) -> Self {
+        self.copy()
+    }
 }
 
-/// A pair of thrusters for each direction, modulated by the width of its pulses.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Thrusters {
-    /// Torque of a pulse (N m).
-    pub torque: Positive,
-    /// Period of the pulses (s).
-    pub period: Span,
-    /// Shortest pulse (s).
-    #[serde(default)]
-    pub minimum_on: NonNegative,
-    /// Quantum of a pulse's length (s); 0 for none.
-    #[serde(default)]
-    pub quantum: NonNegative,
+/// What jets do in a cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// Signed on-times about each axis (s).
+    pub on: [f64; 3],
+    /// Propellant until their end (kg).
+    pub fuel: f64,
+    /// Pulses so far, of all axes together.
+    pub pulses: u64,
+    /// The signs of those that burn now, 0 for none.
+    pub burning: [f64; 3],
 }
 
 impl Actuator {
-    /// The period in which the command is executed; none for an ideal actuator.
+    /// The kind, as a scenario names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Ideal => "ideal",
+            Self::Hold(_) => "hold",
+            Self::Thrusters(_) => "thrusters",
+            Self::Wheel(_) => "wheel",
+            Self::Wheels(_) => "wheels",
+            Self::Jets(_) => "jets",
+            Self::Own(_) => "own",
+        }
+    }
+
+    /// The jets that there are, laws act by them or not, and their key.
+    pub fn jets(&self) -> Option<(&Jets, &'static str)> {
+        match self {
+            Self::Jets(jets) => Some((jets, "actuator.jets")),
+            Self::Wheels(Wheels { unloading: Some(unloading), .. }) => {
+                Some((&unloading.jets, "actuator.wheels.unloading.jets"))
+            }
+            _ => None,
+        }
+    }
+
+    /// The period in which the command is executed; none for one that executes it at once.
     pub fn period(&self) -> Option<Span> {
         match self {
-            Self::Ideal | Self::Wheel(_) | Self::Jets(_) => None,
+            Self::Ideal | Self::Wheel(_) | Self::Wheels(_) | Self::Own(_) => None,
             Self::Hold(hold) => Some(hold.period),
             Self::Thrusters(thrusters) => Some(thrusters.period),
+            Self::Jets(jets) => jets.period,
         }
     }
-}
 
-impl Wheel {
-    /// What is executed of a command: limited, quantised, nothing of a small one.
-    pub fn shaped(&self, command: f64) -> f64 {
-        let limit = self.limit.map_or(f64::INFINITY, Positive::get);
-        let (dead_zone, quantum) = (self.dead_zone.get(), self.quantum.get());
-        let command = command.clamp(-limit, limit);
-        if command.abs() < dead_zone {
-            0.0
-        } else if quantum > 0.0 {
-            libm::round(command / quantum) * quantum
-        } else {
-            command
+    /// The actuator of a single axis at work in a setting. Jets, wheels of three axes and one from outside act about all axes,
+    /// and are not asked.
+    pub fn about_an_axis(&self, setting: &Setting) -> Box<dyn AxisActuate> {
+        match self {
+            Self::Ideal | Self::Jets(_) | Self::Wheels(_) | Self::Own(_) => {
+                Box::new(ideal::Ideal::new(setting))
+            }
+            Self::Hold(hold) => Box::new(hold.start(setting)),
+            Self::Thrusters(thrusters) => Box::new(thrusters.start(setting)),
+            Self::Wheel(wheel) => Box::new(wheel.start(setting)),
         }
-    }
-}
-
-/// A pulse: this torque from one instant to another.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Pulse {
-    /// Torque (N m).
-    pub torque: f64,
-    /// When it begins.
-    pub from: Instant,
-    /// When it ends.
-    pub to: Instant,
-}
-
-impl Thrusters {
-    /// The pulse of a period that begins now and shall give this impulse (N m s), and what it leaves undone (N m s).
-    /// The rest is asked of the next period; it is at most what one period can give.
-    pub fn pulse(&self, now: Instant, impulse: f64) -> (Pulse, f64) {
-        let (torque, period, quantum) = (self.torque.get(), self.period.seconds(), self.quantum.get());
-        let mut on = (impulse.abs() / torque).min(period);
-        if quantum > 0.0 {
-            on = libm::round(on / quantum) * quantum;
-        }
-        if on < self.minimum_on.get() || on > period {
-            on = if on > period { period } else { 0.0 };
-        }
-        let torque = torque.copysign(impulse);
-        let most = self.torque.get() * period;
-        let from = now + Span::from_seconds(0.5 * (period - on));
-        let pulse = Pulse { torque, from, to: from + Span::from_seconds(on) };
-        (pulse, (impulse - torque * on).clamp(-most, most))
     }
 }

@@ -1,4 +1,4 @@
-//! Adaptation loops: they improve what the law is told, and never call it.
+//! Adaptation loops: they improve a parameter of the law, and never call it.
 
 mod random_search;
 

@@ -1,4 +1,4 @@
-//! Random search with learning: a law's gain follows the falling mean envelope (seed paper 1, steps 1-6).
+//! Random search with learning: a law's gain follows the falling mean envelope (\[Silaev\], steps 1-6).
 //!
 //! After each window the gain moves by a random part of `step`. The sign of the move is kept while the mean
 //! falls and turned when it rises, except for one rise after `memory` falls. From `earliest_freeze` on, the gain
@@ -15,6 +15,9 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSearch {
+    /// The number of the law that is tuned: `k_t` of a relay, `k_p` or `k_d` of a PD law.
+    #[serde(default = "k_t", skip_serializing_if = "is_k_t")]
+    pub tunes: String,
     /// Largest move of the gain in one window, delta `k_t`.
     pub step: Positive,
     /// The gain stays between these two.
@@ -36,6 +39,12 @@ pub struct RandomSearch {
     pub freeze: bool,
 }
 
+fn k_t() -> String {
+    "k_t".to_owned()
+}
+fn is_k_t(tunes: &str) -> bool {
+    tunes == "k_t"
+}
 fn five_percent() -> Positive {
     Positive::new(0.05).unwrap_or(Positive::ONE)
 }

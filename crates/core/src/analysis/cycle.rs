@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, RowDVector, Schur};
 
-use crate::body::{Arc, Input, Planar, State};
+use crate::body::{Input, Planar, Segment, State};
 use crate::law::Phase;
 use crate::record::{Command, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
@@ -68,7 +68,7 @@ impl Kind {
 /// Watches a run for its limit cycle.
 #[derive(Clone, Debug)]
 pub struct CycleWatch {
-    arc: Arc,
+    segment: Segment,
     excitations: usize,
     smooth: bool,
     switchings: VecDeque<Switching>,
@@ -88,7 +88,12 @@ impl CycleWatch {
     /// A watch over a body whose angle is measured continuously (`smooth`) or not.
     pub fn new(body: &Planar, smooth: bool) -> Self {
         let excitations = body.modes.len();
-        Self { arc: Arc::new(body), excitations, smooth, switchings: VecDeque::with_capacity(KEPT + 1) }
+        Self {
+            segment: Segment::new(body),
+            excitations,
+            smooth,
+            switchings: VecDeque::with_capacity(KEPT + 1),
+        }
     }
 
     /// The cycle that the run ended in, if it did.
@@ -124,7 +129,7 @@ impl CycleWatch {
             duty: pairs().filter(|pair| pair[0].phase.is_strong()).map(span).sum::<f64>() / period,
             impulse: pairs().map(|pair| pair[0].torque.abs() * span(pair)).sum(),
             multipliers: if self.smooth && self.excitations <= MOST_MODES {
-                multipliers(&mut self.arc, one)
+                multipliers(&mut self.segment, one)
             } else {
                 Vec::new()
             },
@@ -188,7 +193,7 @@ fn symmetric(one: &[Switching]) -> bool {
 }
 
 /// The eigenvalues of the cycle's fundamental matrix on the section, largest first.
-fn multipliers(arc: &mut Arc, one: &[Switching]) -> Vec<(f64, f64)> {
+fn multipliers(segment: &mut Segment, one: &[Switching]) -> Vec<(f64, f64)> {
     let size = 2 + 2 * one[0].state.modes.len();
     let mut fundamental = DMatrix::<f64>::identity(size, size);
     // How the duration of the last push moves with the state on the section.
@@ -197,10 +202,10 @@ fn multipliers(arc: &mut Arc, one: &[Switching]) -> Vec<(f64, f64)> {
     for pair in one.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
         let h = to.at.since(from.at).seconds();
-        arc.depart(&from.state, &Input::constant(from.torque));
-        let sight = arc.at(h, &mut end);
+        segment.depart(&from.state, &Input::constant(from.torque));
+        let sensed = segment.at(h, &mut end);
         for mut column in fundamental.column_iter_mut() {
-            arc.carry(h, column.as_mut_slice());
+            segment.carry(h, column.as_mut_slice());
         }
         let duration = match to.trigger {
             Trigger::Timeout => &push * from.gain,
@@ -210,20 +215,20 @@ fn multipliers(arc: &mut Arc, one: &[Switching]) -> Vec<(f64, f64)> {
                 for component in (0..size).step_by(2) {
                     angle += fundamental.row(component);
                 }
-                angle * (-1.0 / sight.rate)
+                angle * (-1.0 / sensed.rate)
             }
         };
-        fundamental += arc.velocity(&end) * &duration;
+        fundamental += segment.velocity(&end) * &duration;
         push = duration;
     }
     let Some(schur) = Schur::try_new(fundamental, f64::EPSILON, 10_000) else { return Vec::new() };
     let mut eigenvalues: Vec<(f64, f64)> = schur
         .complex_eigenvalues()
         .iter()
-        .map(|z| (crate::phasor::abs(*z), crate::phasor::arg(*z)))
+        .map(|z| (crate::numerics::phasor::abs(*z), crate::numerics::phasor::arg(*z)))
         .collect();
     eigenvalues.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
-    // Off the section nothing is left after a cycle: one eigenvalue is zero, and says nothing.
+    // Off the section nothing is left after a cycle: one eigenvalue is zero, and has no meaning.
     eigenvalues.pop();
     eigenvalues
 }

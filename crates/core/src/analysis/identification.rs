@@ -1,6 +1,6 @@
 //! How often and how fast an adaptive observer finds the modes of a channel: many runs under random bursts of thrusters.
 //!
-//! The channel is a rigid rate and modes that are exact (seed paper 4, page 46, tells of such an example); the gyro has noise
+//! The channel is a rigid rate and modes that are exact (\[Timakov14\], page 46, has such an example); the gyro has noise
 //! and a resolution. At the start each natural frequency is off by a part, up or down, and each influence by another.
 
 use rayon::prelude::*;
@@ -69,14 +69,14 @@ pub struct Row {
     pub frequency_error: Option<f64>,
     /// See `frequency_error`.
     pub influence_error: Option<f64>,
-    /// The median persistence of excitation over a run: near 0, what was seen does not tell the modes apart.
+    /// The median persistence of excitation over a run: near 0, the measurements do not distinguish the modes.
     pub persistence: Option<f64>,
     /// When each run that converged did (s), from the first to the last.
     pub times_s: Vec<f64>,
 }
 
 impl Trial {
-    /// The channel of the study behind seed paper 4's scenarios: yaw of the station, 300 s.
+    /// The channel of the study behind \[Timakov14\]'s scenarios: yaw of the station, 300 s.
     pub fn of(modes: Vec<(f64, f64)>, off: f64) -> Self {
         Self {
             modes,

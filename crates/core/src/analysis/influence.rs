@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::scenario::SpatialLoop;
+use crate::body::Spatial;
+use crate::scenario::Scenario;
 
 /// A spatial body's modes, column by column in the order of the modes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,26 +25,30 @@ pub struct Influences {
 }
 
 impl Influences {
-    /// The modes of a loop's body.
-    pub fn of(spatial: &SpatialLoop) -> Self {
-        let modes = &spatial.body.modes;
-        let seen = spatial.body.shapes(&spatial.gyro.point);
+    /// The modes of a scenario's body with three axes. Actuators that are no jets give a torque of 1 N m.
+    pub fn of(scenario: &Scenario, body: &Spatial) -> Self {
+        let study = &scenario.study;
+        let measured = study.measured(body);
         let per_axis = |of: &dyn Fn(usize, usize, f64) -> f64| {
             [0, 1, 2].map(|axis| {
-                let forces = spatial.groups[axis][0].forces.iter().enumerate();
+                let forces = measured.inputs[axis].forces.iter().enumerate();
                 forces.map(|(mode, force)| of(axis, mode, *force)).collect()
             })
         };
-        let frequency = |mode: &crate::body::spatial::SpatialMode| mode.frequency.get();
-        let signed = |axis: usize| spatial.groups[axis][0].acceleration;
+        let frequencies: Vec<f64> = measured.frequencies.iter().map(|frequency| frequency.get()).collect();
+        let own = |axis: usize| measured.inputs[axis].acceleration;
         Self {
-            frequencies_rad_s: modes.iter().map(frequency).collect(),
-            periods_s: modes.iter().map(|mode| 2.0 * std::f64::consts::PI / frequency(mode)).collect(),
-            dampings: modes.iter().map(|mode| mode.damping.get()).collect(),
-            influences: per_axis(&|axis, mode, force| seen[mode].1[axis] * force / signed(axis)),
+            periods_s: frequencies.iter().map(|frequency| 2.0 * std::f64::consts::PI / frequency).collect(),
+            frequencies_rad_s: frequencies,
+            dampings: body.modes.iter().map(|mode| mode.damping.get()).collect(),
+            influences: per_axis(&|axis, mode, force| measured.seen[axis][mode] * force / own(axis)),
             energies_j_s2: per_axis(&|_, _, force| 0.5 * force * force),
-            accelerations_rad_s2: [0, 1, 2]
-                .map(|axis| [0, 1].map(|sign| spatial.groups[axis][sign].acceleration)),
+            accelerations_rad_s2: [0, 1, 2].map(|axis| {
+                study
+                    .groups
+                    .as_ref()
+                    .map_or([own(axis); 2], |groups| [0, 1].map(|sign| groups[axis][sign].acceleration))
+            }),
         }
     }
 }

@@ -2,10 +2,9 @@
 
 pub mod cycle;
 pub mod damping;
-pub mod elliptic;
 pub mod identification;
 pub mod influence;
 pub mod modal;
+pub mod parts;
 pub mod rigid_cycle;
 pub mod sampled_loop;
-pub mod swing_integral;

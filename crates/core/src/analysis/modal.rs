@@ -1,4 +1,4 @@
-//! The modes of a body as a table: what `flexsc modes` and Python's `Scenario.modes` tell.
+//! The modes of a body as a table: the content of `flexsc modes` and of Python's `Scenario.modes`.
 
 use serde::Serialize;
 

@@ -2,7 +2,7 @@
 //!
 //! With q = sqrt(2 m_u gamma), r = m_eps/m_u and v0 the speed at which a boundary is reached, z =
 //! (v0 + sqrt(v0² + q²))/q describes the cycle; beta = k_t (1 - k_t)(1 - r). Derived from the corrected law (2) of
-//! seed paper 1, which refers to relations published elsewhere.
+//! \[Silaev\], which refers to relations published elsewhere.
 
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -13,9 +13,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::forced::{Forced, Input};
 use super::stretch::{Expansion, REACH};
-use super::{Mode, Planar, Sight, State};
-use crate::integrate::{Field, Trajectory};
-use crate::polynomial::{Series, TERMS};
+use super::{Mode, Planar, Sensed, State};
+use crate::numerics::extrapolation::{Field, Trajectory};
+use crate::numerics::polynomial::{Series, TERMS};
 use crate::structure::Structure;
 
 /// The equations of a chain.
@@ -164,12 +164,12 @@ impl Flight {
     }
 
     /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor at the hub sees.
-    pub fn at(&mut self, h: f64, state: &mut State) -> Sight {
+    pub fn at(&mut self, h: f64, state: &mut State) -> Sensed {
         self.trajectory.at(&Driven { chain: &self.chain, input: &self.input }, h);
         self.see(h, state)
     }
 
-    fn see(&self, h: f64, state: &mut State) -> Sight {
+    fn see(&self, h: f64, state: &mut State) -> Sensed {
         let n = self.chain.inertia.nrows();
         let (angle, rate) = self.trajectory.here().split_at(n);
         let modal = &self.chain.modal * DVector::from_column_slice(angle);
@@ -179,7 +179,7 @@ impl Flight {
             (phase.displacement, phase.quadrature) = (modal[index + 1], modal_rate[index + 1] / w);
         }
         let driven = Driven { chain: &self.chain, input: &self.input };
-        Sight {
+        Sensed {
             angle: angle[0],
             rate: rate[0],
             acceleration: driven.acceleration(h, self.trajectory.here())[0],
@@ -191,6 +191,11 @@ impl Flight {
         let n = self.chain.inertia.nrows();
         let y = self.trajectory.here();
         (1..n).map(move |k| (y[k] - y[0], y[n + k] - y[n]))
+    }
+
+    /// How many angles it has, which may be more than the modes that are kept.
+    pub fn coordinates(&self) -> usize {
+        self.chain.inertia.nrows()
     }
 
     /// The motion from its departure on.
@@ -231,7 +236,7 @@ pub struct Flown<'a> {
 
 impl Flown<'_> {
     /// Finds the series of all coordinates `h` seconds after departure, not before an earlier time, with a waveform that has
-    /// no break until twice `middle` seconds after it, and tells how far they reach (s).
+    /// no break until twice `middle` seconds after it, and returns how far they reach (s).
     pub fn expand(&mut self, h: f64, middle: f64, into: &mut Expansion) -> f64 {
         let after = h - self.begins;
         for angle in &mut self.angles {
@@ -306,7 +311,7 @@ impl Flown<'_> {
 }
 
 /// How far series reach (s) before what they leave out shows: so many radians of the fastest mode or command, and where
-/// large angles make them faster, a part of the radius that their last terms tell, as of bodies whose frequencies drift.
+/// large angles make them faster, a part of the radius by their last terms, as of bodies whose frequencies drift.
 fn reach(angles: &[Series], fastest: f64) -> f64 {
     const SAFETY: f64 = 7.389_056_098_930_65;
     let largest = |n: usize| angles.iter().map(|c| c[n].abs()).fold(0.0, f64::max);

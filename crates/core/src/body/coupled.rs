@@ -1,12 +1,13 @@
 //! The planar body as one linear system, z' = A z + g m: what its motion is where a wheel's back-EMF or damping couples modes.
 //!
 //! z = (x_r, x_r', x_1, x_1', x_2, x_2', ...); x_r'' = m - a r z, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i (m - a r z), where
-//! r picks the rate that the wheel feels (seed papers 3 and 5, equations (4) and (6), corrected).
+//! r picks the rate that the wheel feels (\[Wheel11, Sukhanov\], equations (4) and (6), corrected).
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::{Phase, Planar, State};
 use crate::motion::linear::{Linear, System};
+use crate::numerics::exponential::exponential;
 
 /// The matrices of a body at constant frequencies.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,31 +93,6 @@ impl State {
             *mode = Phase { displacement: z[2 + 2 * i], quadrature: z[3 + 2 * i] / w };
         }
     }
-}
-
-/// exp(M), by scaling, Taylor's series and squaring. Every sum has a fixed order: the same bits on every machine.
-pub fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let order = matrix.nrows();
-    let norm = matrix.row_iter().map(|row| row.iter().map(|m| m.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let mut squarings = 0;
-    let mut scale = 1.0;
-    // What is not finite stays so, and needs no scaling.
-    while norm * scale > 0.5 && squarings < 60 {
-        squarings += 1;
-        scale *= 0.5;
-    }
-    let small = matrix * scale;
-    let mut term = DMatrix::identity(order, order);
-    let mut sum = term.clone();
-    // 0.5^15/15! is below the last bit of 1.
-    for n in 1..=15 {
-        term = &term * &small / f64::from(n);
-        sum += &term;
-    }
-    for _ in 0..squarings {
-        sum = &sum * &sum;
-    }
-    sum
 }
 
 #[cfg(test)]

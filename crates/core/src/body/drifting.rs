@@ -5,7 +5,7 @@
 //! out at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
 
 use super::{Drift, Planar, SERIES};
-use crate::polynomial::Series;
+use crate::numerics::polynomial::Series;
 
 /// e²: the step over the radius of convergence at which the series of this order leaves out the last bit of a double.
 const SAFETY: f64 = 7.389_056_098_930_65;
@@ -128,7 +128,7 @@ impl Drifting {
         again
     }
 
-    /// Puts the series of all coordinates `h` seconds after departure, not before they begin, and tells how far they reach
+    /// Puts the series of all coordinates `h` seconds after departure, not before they begin, and returns how far they reach
     /// (s).
     pub fn unfold(&mut self, h: f64, coordinates: &mut [Series]) -> f64 {
         if h > self.begins {
@@ -205,7 +205,7 @@ impl Drifting {
         self.reach = self.radius() / SAFETY;
     }
 
-    /// The radius of convergence, as the last two terms tell it (s); infinite of a body at rest.
+    /// The radius of convergence by the last two terms (s); infinite of a body at rest.
     fn radius(&self) -> f64 {
         let largest = |n: usize| self.coordinates.iter().map(|c| c.series[n].abs()).fold(0.0, f64::max);
         let size = largest(0).max(self.unit * largest(1)).max(self.unit * self.unit * largest(2));

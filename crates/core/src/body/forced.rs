@@ -3,9 +3,11 @@
 use std::sync::Arc as Shared;
 
 use super::mode::Flow;
-use crate::manoeuvre::Waveform;
-use crate::phasor::Phasor;
-use crate::polynomial::Series;
+use super::spatial::Vector;
+use crate::motion::turning::Rotor;
+use crate::numerics::phasor::Phasor;
+use crate::numerics::polynomial::Series;
+use crate::waveform::Waveform;
 
 /// What drives a body from an instant on.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +22,31 @@ impl Input {
     /// A constant alone (N m).
     pub fn constant(constant: f64) -> Self {
         Self { constant, waveform: None }
+    }
+}
+
+/// All that acts on a body from an instant on.
+#[derive(Clone, Debug, Default)]
+pub struct Wrench {
+    /// Torques about the axes at the hub (N m): on a body with one angle the first alone, rad/s² where the hub's motion is
+    /// commanded; on one with three axes at the point that its actuators name.
+    pub hub: [f64; 3],
+    /// Torque of jets about the centre of mass (N m).
+    pub torque: Vector,
+    /// Modal forces of jets (N/sqrt(kg)); none at all if no jet is on.
+    pub forces: Vec<f64>,
+    /// Rotors that store momentum, each with the torque on it.
+    pub rotors: Vec<Rotor>,
+    /// A waveform about the first axis, and the time on it at that instant.
+    pub waveform: Option<Forced>,
+}
+
+impl Wrench {
+    /// Nothing acts any more; what was allocated stays so.
+    pub fn clear(&mut self) {
+        let mut forces = std::mem::take(&mut self.forces);
+        forces.clear();
+        *self = Self { forces, ..Self::default() };
     }
 }
 

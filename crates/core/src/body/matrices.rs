@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::output::radians;
 use super::reduction::{Observed, Reduction};
 use super::{Damping, Drive, Planar, Weights};
+use crate::document::Fault;
 use crate::quantity::Finite;
-use crate::structure::{Fault, Matrix, Structure};
+use crate::structure::{Matrix, Structure};
 
 /// A body by its matrices: M q'' + C q' + K q = Q, where one coordinate is the hub's angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -80,7 +81,7 @@ impl Matrices {
         let names = self.names(structure.mass().nrows())?;
         let observed = |(index, sum): (usize, &Sum)| {
             let weights = sum.weights.of(&names);
-            let weights = weights.map_err(|why| (format!("outputs[{index}].weights"), why))?;
+            let weights = weights.map_err(|why| Fault::new(format!("outputs[{index}].weights"), why))?;
             Ok(Observed { name: sum.name.clone(), unit: sum.unit.clone(), weights })
         };
         let Self { drive, damping, keep, angle, rate, .. } = self;
@@ -99,17 +100,17 @@ impl Matrices {
         let found = self.coordinates.len();
         if found != order {
             let why = format!("must have one name for each of {order} coordinates, got {found}");
-            return Err(("coordinates".to_owned(), why));
+            return Err(Fault::new("coordinates", why));
         }
         let again = (1..order).find(|i| self.coordinates[..*i].contains(&self.coordinates[*i]));
         if let Some(index) = again {
             let why = format!("must differ from the other names, got `{}` again", self.coordinates[index]);
-            return Err((format!("coordinates[{index}]"), why));
+            return Err(Fault::new(format!("coordinates[{index}]"), why));
         }
         Ok(self.coordinates.clone())
     }
 }
 
 fn read(key: &str, matrix: &Matrix) -> Result<DMatrix<f64>, Fault> {
-    matrix.read().map_err(|(at, why)| (format!("{key}{at}"), why))
+    matrix.read().map_err(|fault| fault.within(key))
 }

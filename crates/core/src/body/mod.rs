@@ -13,6 +13,7 @@ mod output;
 mod panels;
 mod planar;
 mod reduction;
+mod segment;
 pub mod spatial;
 mod stretch;
 mod weights;
@@ -23,20 +24,23 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::structure::Fault;
+use crate::craft::Craft;
+use crate::document::Fault;
+use crate::motion::turning::Flexible;
 
 pub use chain::{Chain, Flight, Flown};
-pub use coupled::{Coupled, exponential};
+pub use coupled::Coupled;
 pub use damping::Damping;
 pub use drift::{Drift, Point, Profile, Ramp, SERIES, Sinusoid};
 pub use drifting::Drifting;
-pub use forced::{Forced, Input};
+pub use forced::{Forced, Input, Wrench};
 pub use matrices::{Matrices, Sum};
 pub(crate) use mode::Flow;
 pub use mode::Mode;
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
-pub use planar::{Arc, Drive, Planar};
+pub use planar::{Drive, Planar};
+pub use segment::Segment;
 pub use spatial::Spatial;
 pub use stretch::{Expansion, Linear, Stretch};
 pub use weights::Weights;
@@ -54,6 +58,16 @@ pub enum Body {
     Panels(Panels),
     /// Three axes, and modes with shapes at points of the structure.
     Spatial(Spatial),
+    /// What `[spacecraft]` and `[[appendage]]` come to, which are not written here.
+    #[serde(skip)]
+    Spacecraft(Box<Craft>),
+}
+
+impl Default for Body {
+    /// A spacecraft that is still to be put together.
+    fn default() -> Self {
+        Self::Spacecraft(Box::default())
+    }
 }
 
 impl Body {
@@ -64,7 +78,18 @@ impl Body {
             Self::Matrices(_) => "matrices",
             Self::Panels(_) => "panels",
             Self::Spatial(_) => "spatial",
+            Self::Spacecraft(_) => "spacecraft",
         }
+    }
+
+    /// The key of its table.
+    pub fn key(&self) -> String {
+        if self.is_spacecraft() { self.kind().to_owned() } else { format!("body.{}", self.kind()) }
+    }
+
+    /// Whether it is put together from `[spacecraft]`.
+    pub fn is_spacecraft(&self) -> bool {
+        matches!(self, Self::Spacecraft(_))
     }
 
     /// Makes the paths of files absolute: relative ones begin at a directory.
@@ -78,7 +103,7 @@ impl Body {
                 }
             }
             Self::Spatial(spatial) => spatial.modes.locate(directory),
-            Self::Planar(_) | Self::Panels(_) => {}
+            Self::Planar(_) | Self::Panels(_) | Self::Spacecraft(_) => {}
         }
     }
 
@@ -88,13 +113,28 @@ impl Body {
     /// What is wrong with the file: a key within the body, and why.
     pub fn read(&mut self, other: Option<&Self>) -> Result<(), Fault> {
         let Self::Spatial(spatial) = self else { return Ok(()) };
-        let other = other.and_then(Self::spatial).map(|other| &other.modes);
-        spatial.modes.read(other).map_err(|why| ("modes".to_owned(), why))
+        let other =
+            other.and_then(|other| if let Self::Spatial(other) = other { Some(&other.modes) } else { None });
+        spatial.modes.read(other).map_err(|why| Fault::new("modes", why))
     }
 
-    /// The body, if it is a spatial one.
+    /// The body in free modes, if it has three axes.
     pub fn spatial(&self) -> Option<&Spatial> {
-        if let Self::Spatial(spatial) = self { Some(spatial) } else { None }
+        match self {
+            Self::Spatial(spatial) => Some(spatial),
+            Self::Spacecraft(craft) => Some(&craft.spatial),
+            Self::Planar(_) | Self::Matrices(_) | Self::Panels(_) => None,
+        }
+    }
+
+    /// The spacecraft, if it is put together from parts.
+    pub fn craft(&self) -> Option<&Craft> {
+        if let Self::Spacecraft(craft) = self { Some(craft) } else { None }
+    }
+
+    /// The coupling of rotation and modes in both directions, where the body has it: of a spacecraft.
+    pub fn flexible(&self) -> Option<&Flexible> {
+        self.craft().map(|craft| &craft.flexible)
     }
 
     /// The planar body that moves; of a spatial body, which is checked alone, one without modes.
@@ -107,6 +147,7 @@ impl Body {
             Self::Matrices(matrices) => matrices.solve()?,
             Self::Panels(panels) => panels.solve()?,
             Self::Spatial(spatial) => spatial.check().map(|()| Planar::default())?,
+            Self::Spacecraft(_) => Planar::default(),
         };
         model.inconsistency().map_or(Ok(model), Err)
     }
@@ -115,7 +156,7 @@ impl Body {
     pub fn chain(&self, model: &Planar) -> Option<Chain> {
         match self {
             Self::Panels(panels) => panels.chain(model),
-            Self::Planar(_) | Self::Matrices(_) | Self::Spatial(_) => None,
+            Self::Planar(_) | Self::Matrices(_) | Self::Spatial(_) | Self::Spacecraft(_) => None,
         }
     }
 }
@@ -156,7 +197,7 @@ impl State {
 
 /// What is measurable at one instant.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Sight {
+pub struct Sensed {
     /// Angle, elastic part included (rad).
     pub angle: f64,
     /// Rate, elastic part included (rad/s).

@@ -3,11 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Phase, Sight};
-use crate::phasor::Phasor;
+use super::{Phase, Sensed};
+use crate::numerics::phasor::Phasor;
 use crate::quantity::{Finite, Frequency, NonNegative};
 
-/// An elastic mode as a scenario describes it (seed paper 1, equation (1), with damping added).
+/// An elastic mode as a scenario describes it (\[Silaev\], equation (1), with damping added).
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mode {
@@ -47,7 +47,7 @@ impl Mode {
     }
 
     /// Energy of motion and deformation (J) on a body of this inertia (kg m²). A mode without gain, which no torque
-    /// of the hub moves, has none that could be told.
+    /// of the hub moves, has none that is known.
     pub fn energy(&self, phase: Phase, inertia: f64) -> f64 {
         let (w, gain) = (self.frequency.get(), self.gain.get().abs());
         let Phase { displacement: x, quadrature: y } = phase;
@@ -128,11 +128,11 @@ impl Flow {
 
     /// Adds the mode's part to what a sensor sees, for a deviation from equilibrium.
     #[inline]
-    pub fn add_sight(&self, equilibrium: f64, displacement: f64, quadrature: f64, sight: &mut Sight) {
+    pub fn add_to(&self, equilibrium: f64, displacement: f64, quadrature: f64, sensed: &mut Sensed) {
         let [rate, quadrature_rate] = self.velocity(displacement, quadrature);
-        sight.angle += equilibrium + displacement;
-        sight.rate += rate;
-        sight.acceleration += self.frequency * quadrature_rate;
+        sensed.angle += equilibrium + displacement;
+        sensed.rate += rate;
+        sensed.acceleration += self.frequency * quadrature_rate;
     }
 
     /// The derivative with time of the deviation from equilibrium (displacement, rate / w).

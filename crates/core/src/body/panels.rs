@@ -1,4 +1,4 @@
-//! A body of a hub and equal solar panels, each a chain of rigid sections in elastic hinges (seed paper 2, the example).
+//! A body of a hub and equal solar panels, each a chain of rigid sections in elastic hinges (\[Rotation\], the example).
 //!
 //! The panels swing alike: antisymmetrically, where there are two. The coordinates are the hub's angle theta and the
 //! displacement v_k of each section's outer end from where the hub's rotation carries it, with x_k its distance from the
@@ -15,8 +15,9 @@ use serde::{Deserialize, Serialize};
 use super::output::radians;
 use super::reduction::{Observed, Reduction};
 use super::{Chain, Damping, Drive, Planar};
+use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Positive, Tolerance};
-use crate::structure::{Fault, Structure};
+use crate::structure::Structure;
 
 /// No panel has more sections.
 const MOST_SECTIONS: usize = 99;
@@ -99,10 +100,10 @@ impl Panels {
     pub fn structure(&self) -> Result<Structure, Fault> {
         let s = self.sections.len();
         if !(1..=MOST_SECTIONS).contains(&s) {
-            return Err(("sections".to_owned(), format!("must be 1 to {MOST_SECTIONS}, got {s}")));
+            return Err(Fault::new("sections", format!("must be 1 to {MOST_SECTIONS}, got {s}")));
         }
         if self.count == 0 {
-            return Err(("count".to_owned(), "must be 1 or more, got 0".to_owned()));
+            return Err(Fault::new("count", "must be 1 or more, got 0"));
         }
         let count = f64::from(self.count);
         let mut mass = DMatrix::zeros(s + 1, s + 1);
@@ -142,7 +143,7 @@ impl Panels {
             }
             inner = outer;
         }
-        Structure::new(mass, stiffness, 0, None).map_err(|(_, why)| too_far_apart(&why))
+        Structure::new(mass, stiffness, 0, None).map_err(|fault| too_far_apart(&fault.why))
     }
 
     /// The exact chain, if the sections turn by any angles.
@@ -175,14 +176,14 @@ impl Panels {
             rate: *rate,
             outputs,
         };
-        reduction.planar(&structure).map_err(|(key, why)| match key.as_str() {
-            "damping" | "keep" => (key, why),
-            _ => too_far_apart(&why),
+        reduction.planar(&structure).map_err(|fault| match fault.key.as_str() {
+            "damping" | "keep" => fault,
+            _ => too_far_apart(&fault.why),
         })
     }
 }
 
 /// Every panel has modes, unless its numbers are so far apart that rounding takes them.
 fn too_far_apart(why: &str) -> Fault {
-    ("sections".to_owned(), format!("hold numbers too far apart: the matrix {why}"))
+    Fault::new("sections", format!("hold numbers too far apart: the matrix {why}"))
 }

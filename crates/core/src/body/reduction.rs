@@ -8,8 +8,9 @@ use nalgebra::DMatrix;
 
 use super::planar::HUB_FREE;
 use super::{Damping, Drive, Mode, Output, Planar};
+use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, Positive};
-use crate::structure::{Fault, Structure, TOO_FAR_APART, eigenvalues};
+use crate::structure::{Hub, Structure, TOO_FAR_APART, eigenvalues};
 
 /// What is kept of a structure, and how it starts.
 pub struct Reduction<'a> {
@@ -35,14 +36,18 @@ impl Reduction<'_> {
         let mut weights: Vec<_> = self.outputs.iter().map(|output| output.weights.clone()).collect();
         if let Some(damping) = &self.damping_matrix {
             if self.drive == Drive::Motion {
-                return Err(("damping_matrix".to_owned(), HUB_FREE.to_owned()));
+                return Err(Fault::new("damping_matrix", HUB_FREE));
             }
             // Every coordinate is observed, and so the whole of each mode.
             let order = damping.nrows();
             let unit = |i: usize| (0..order).map(|j| f64::from(u8::from(i == j))).collect();
             weights.extend((0..order).map(unit));
         }
-        let solved = structure.modes(self.drive, &weights)?;
+        let hub = match self.drive {
+            Drive::Torque => Hub::Free,
+            Drive::Motion => Hub::Held,
+        };
+        let solved = structure.modes(hub, &weights)?;
         let within = |w: &&f64| **w <= Frequency::LARGEST;
         let resolved = solved.frequencies.iter().take_while(within).count();
         let kept = self.keep.map_or(resolved, |keep| keep as usize);
@@ -51,9 +56,9 @@ impl Reduction<'_> {
                 "must be at most {resolved}, the number of modes up to {:e} rad/s, got {kept}",
                 Frequency::LARGEST
             );
-            return Err(("keep".to_owned(), why));
+            return Err(Fault::new("keep", why));
         }
-        let damping = self.damping.of(kept).map_err(|why| ("damping".to_owned(), why))?;
+        let damping = self.damping.of(kept).map_err(|why| Fault::new("damping", why))?;
         let inertia = solved.inertia;
         // What one unit of modal displacement f_n is of the body's x_n.
         let scale = |n: usize| match self.drive {
@@ -65,7 +70,7 @@ impl Reduction<'_> {
             let w = solved.frequencies[n];
             let frequency = Frequency::new(w).ok_or_else(|| {
                 let why = format!("gives an elastic mode of {w:e} rad/s, and the lowest accepted has 1e-4");
-                ("stiffness".to_owned(), why)
+                Fault::new("stiffness", why)
             })?;
             let gain = finite(inertia * scale(n) * scale(n))?;
             modes.push(Mode::at_rest(frequency, gain, damping));
@@ -109,7 +114,7 @@ fn coupled(
     kept: usize,
     scale: &dyn Fn(usize) -> f64,
 ) -> Result<Vec<Vec<Finite>>, Fault> {
-    let at = |why: String| ("damping_matrix".to_owned(), why);
+    let at = |why: String| Fault::new("damping_matrix", why);
     let modes = DMatrix::from_fn(shapes.len(), kept, |i, n| shapes[i][n]);
     let damping = modes.tr_mul(&(matrix * &modes));
     let largest = damping.amax();
@@ -139,5 +144,5 @@ fn finite(value: f64) -> Result<Finite, Fault> {
 }
 
 fn too_large() -> Fault {
-    ("mass".to_owned(), TOO_FAR_APART.to_owned())
+    Fault::new("mass", TOO_FAR_APART)
 }

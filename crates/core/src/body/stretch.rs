@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::polynomial::{Polynomial, Series, TERMS};
+use crate::numerics::polynomial::{Polynomial, Series, TERMS};
 
 /// A stretch is so many radians of the fastest motion long: what its series leave out is 1.5^22/22!, 7e-18.
 pub const REACH: f64 = 1.5;
@@ -67,7 +67,7 @@ impl Linear {
         linear
     }
 
-    /// Expands about a time (s), not before an earlier one; tells how far the series reach (s).
+    /// Expands about a time (s), not before an earlier one; returns how far the series reach (s).
     pub fn expand(&mut self, h: f64) -> f64 {
         if h > self.begins {
             let after = h - self.begins;

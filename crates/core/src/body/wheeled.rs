@@ -8,11 +8,11 @@ use std::sync::Arc as Shared;
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::stretch::{self, Expansion};
-use super::{Coupled, Drift, Drifting, Planar, Sight, State};
+use super::{Coupled, Drift, Drifting, Planar, Sensed, State};
 use crate::crossing::{Trip, locate};
 use crate::guard::Guard;
 use crate::motion::linear::{Level, Linear, Modal, Seen, Segment};
-use crate::phasor::abs;
+use crate::numerics::phasor::abs;
 use crate::record::{Record, RecordError};
 use crate::time::Span;
 
@@ -142,29 +142,29 @@ impl Coupling {
     }
 
     /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor sees.
-    pub fn at(&mut self, h: f64, state: &mut State) -> Sight {
-        let sight = match &mut self.flow {
+    pub fn at(&mut self, h: f64, state: &mut State) -> Sensed {
+        let sensed = match &mut self.flow {
             Flow::Constant(constant) => constant.go(h, &mut self.here),
             Flow::Linear(poles) => {
                 poles.segment.at(h, &mut poles.seen);
                 poles.segment.arrive(h, &mut poles.here);
                 self.here = poles.flow.vector(&poles.here);
-                poles.seen.sights[0]
+                poles.seen.outputs[0]
             }
             Flow::Drifting(drifting) => {
                 drifting.go(h);
-                let mut sight = Sight::default();
+                let mut sensed = Sensed::default();
                 for (index, [angle, rate, acceleration]) in drifting.motion().enumerate() {
                     (self.here[2 * index], self.here[2 * index + 1]) = (angle, rate);
-                    sight.angle += angle;
-                    sight.rate += rate;
-                    sight.acceleration += acceleration;
+                    sensed.angle += angle;
+                    sensed.rate += rate;
+                    sensed.acceleration += acceleration;
                 }
-                sight
+                sensed
             }
         };
         state.set_vector(&self.here, &self.frequencies);
-        sight
+        sensed
     }
 
     /// The first guard of the angle that trips on this motion within a span; none is found but in closed form, which a law
@@ -218,7 +218,7 @@ impl Coupling {
 }
 
 impl Unfolding {
-    /// Finds the series of all coordinates `h` seconds after departure, not before an earlier time, and tells how far they
+    /// Finds the series of all coordinates `h` seconds after departure, not before an earlier time, and returns how far they
     /// reach (s).
     pub fn expand(&mut self, h: f64, into: &mut Expansion) -> f64 {
         match self {
@@ -237,7 +237,7 @@ impl Unfolding {
 
 impl Constant {
     /// Moves by the transition over `h` seconds.
-    fn go(&mut self, h: f64, here: &mut DVector<f64>) -> Sight {
+    fn go(&mut self, h: f64, here: &mut DVector<f64>) -> Sensed {
         let kept = self.transitions.iter().position(|(span, ..)| *span == h);
         let index = kept.unwrap_or_else(|| {
             let (transition, input) = self.system.discrete(h);
@@ -251,7 +251,7 @@ impl Constant {
         here.gemv(1.0, transition, &self.from, 0.0);
         here.axpy(self.moment, input, 1.0);
         let dot = |row: &RowDVector<f64>| row.iter().zip(here.iter()).map(|(a, z)| a * z).sum::<f64>();
-        Sight {
+        Sensed {
             angle: dot(&self.system.angle),
             rate: dot(&self.system.rate),
             acceleration: dot(&self.acceleration.0) + self.acceleration.1 * self.moment,

@@ -1,4 +1,4 @@
-//! The runs of a campaign on several threads, told in order.
+//! The runs of a campaign on several threads, reported in order.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,14 +10,14 @@ use std::time::{Duration, Instant};
 use super::{Campaign, Outcome, Run, RunError};
 use crate::metrics::Metrics;
 
-/// No run begins that is so many runs ahead of the one told next: those between wait in memory.
+/// No run begins that is so many runs ahead of the one reported next: those between wait in memory.
 const AHEAD: u64 = 4096;
-/// How long nothing is told at most.
+/// The longest time without a report.
 const LOOK: Duration = Duration::from_millis(20);
 /// How long a campaign that was stopped waits for the runs under way, which are stopped too.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// What the threads share: which run is next, and which one is told next.
+/// What the threads share: which run is next, and which one is reported next.
 struct Crew {
     state: Mutex<State>,
     told: Condvar,
@@ -71,7 +71,7 @@ impl Drop for Worker {
 }
 
 impl Campaign {
-    /// Makes runs on so many threads, or with 0 on one for each core, and tells of each, in order of their numbers.
+    /// Makes runs on so many threads, or with 0 on one for each core, and reports each, in order of their numbers.
     ///
     /// `work` simulates one run, on any thread. `tell` may stop the campaign with an error; it is called without an outcome
     /// now and then while no run ends. A run that does not stop then is left behind.

@@ -43,7 +43,7 @@ pub fn why(text: &str, place: &Range<usize>) -> String {
     format!("`{}` {WHY}", shortened(&key))
 }
 
-/// Where the first line begins with which the text is nested too deep: the parser does not tell.
+/// Where the first line begins with which the text is nested too deep: the parser does not report it.
 fn first_deep(text: &str) -> usize {
     let ends: Vec<usize> =
         text.match_indices('\n').map(|(at, _)| at + 1).chain(std::iter::once(text.len())).collect();

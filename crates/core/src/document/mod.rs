@@ -1,7 +1,9 @@
 //! A scenario's TOML text: keys addressed by their paths, and errors that point at the very value.
 
 mod deep;
+mod fault;
 pub mod key;
+mod parts;
 mod words;
 
 use std::fs;
@@ -10,6 +12,9 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::de::DeTable;
 use toml::{Table, Value};
+
+pub use fault::Fault;
+pub use parts::Parts;
 
 use key::{bare_or_quoted, span_of};
 use words::{explained, point, pointed, shortened, told};
@@ -28,7 +33,7 @@ pub enum ScenarioError {
         /// Why.
         why: String,
     },
-    /// The document says something that is not accepted.
+    /// The document has something that is not accepted.
     #[error("{0}")]
     Invalid(String),
     /// A key given beside the document is not accepted.
@@ -145,19 +150,20 @@ impl Document {
     /// An error at the first value of which a part was left unread: what was read of it is in `understood`.
     pub fn unread(&self, understood: &Table) -> Option<ScenarioError> {
         let mut pairs = self.table.iter().filter_map(|(key, value)| Some((key, value, understood.get(key)?)));
-        let (key, why) = pairs.find_map(|(key, given, read)| unread(&bare_or_quoted(key), given, read))?;
-        Some(self.inconsistent(&key, &why))
+        let fault = pairs.find_map(|(key, given, read)| unread(&bare_or_quoted(key), given, read))?;
+        Some(self.inconsistent(&fault))
     }
 
-    /// An error at a key, pointed at its value if the text has it.
-    pub fn inconsistent(&self, key: &str, why: &str) -> ScenarioError {
+    /// An error at a fault's key, pointed at its value if the text has it.
+    pub fn inconsistent(&self, fault: &Fault) -> ScenarioError {
+        let key = &fault.key;
         if let Some(text) = self.text.as_ref().filter(|_| !self.changed.iter().any(|k| k == key)) {
             let table = DeTable::parse(text).ok();
             if let Some(span) = table.and_then(|table| span_of(table.get_ref(), key)) {
-                return ScenarioError::Invalid(point(&self.origin, text, span, &format!("`{key}` {why}")));
+                return ScenarioError::Invalid(point(&self.origin, text, span, &fault.to_string()));
             }
         }
-        ScenarioError::Invalid(format!("{}: `{key}` {why}", self.origin))
+        ScenarioError::Invalid(format!("{}: {fault}", self.origin))
     }
 
     fn key_error(&self, key: &str, why: String) -> ScenarioError {
@@ -165,24 +171,22 @@ impl Document {
     }
 }
 
-/// The first part of a value that is not in what was read of it: the key, and why.
-fn unread(key: &str, given: &Value, read: &Value) -> Option<(String, String)> {
+/// The first part of a value that is not in what was read of it.
+fn unread(key: &str, given: &Value, read: &Value) -> Option<Fault> {
     match (given, read) {
         (Value::Table(given), Value::Table(read)) => given.iter().find_map(|(name, value)| {
             unread(&format!("{key}.{}", bare_or_quoted(name)), value, read.get(name)?)
         }),
         (Value::Array(given), Value::Array(read)) if given.len() > read.len() => {
             let why = format!("has {} values, expected {}", given.len(), read.len());
-            Some((key.to_owned(), why))
+            Some(Fault::new(key, why))
         }
         (Value::Array(given), Value::Array(read)) => given
             .iter()
             .zip(read)
             .enumerate()
             .find_map(|(index, (given, read))| unread(&format!("{key}[{index}]"), given, read)),
-        (Value::Array(_), Value::Table(_)) => {
-            Some((key.to_owned(), "is an array, expected a table".to_owned()))
-        }
+        (Value::Array(_), Value::Table(_)) => Some(Fault::new(key, "is an array, expected a table")),
         _ => None,
     }
 }

@@ -110,7 +110,7 @@ pub fn explained(message: &str, found: Option<&str>) -> String {
         "string values must be quoted, expected literal string" => {
             "found no TOML value; a text stands in quotes".to_owned()
         }
-        "invalid float, expected nothing" => "found no number that TOML knows".to_owned(),
+        "invalid float, expected nothing" => "found no valid TOML number".to_owned(),
         "integer number overflowed" => "found no whole number that fits 64 bits".to_owned(),
         "floating-point number overflowed" => "found a number that is too large for a double".to_owned(),
         _ => message.to_owned(),

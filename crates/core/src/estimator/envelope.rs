@@ -1,18 +1,18 @@
 //! The envelope of the elastic modes, a = sum a_i, and its mean over consecutive windows.
 //!
 //! Each mode is a phasor Z = x + i (x' + s x)/w_d with s = zeta w and w_d its damped frequency; a_i = abs(Z).
-//! Without damping that is the paper's a_i² = x_i² + (x_i'/w_i)² (seed paper 1, equation (4)). While the torque
+//! Without damping that is the paper's a_i² = x_i² + (x_i'/w_i)² (\[Silaev\], equation (4)). While the torque
 //! is constant, Z turns about its equilibrium c: Z = c + W exp(-(s + i w_d) h).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::swing_integral;
 use crate::body::{Mode, State};
-use crate::phasor::{Complex, Phasor, abs, polar};
+use crate::numerics::phasor::{Complex, Phasor, abs, polar};
+use crate::numerics::swing_integral;
 use crate::time::{Instant, Span};
 
-/// An envelope observer as a scenario describes it.
+/// An envelope monitor as a scenario describes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Envelope {
@@ -21,7 +21,7 @@ pub struct Envelope {
     pub form: Form,
     /// Length of the windows over which the envelope is averaged (s).
     pub window: Span,
-    /// The modes as the observer knows them; left out, they are the body's own.
+    /// The modes of the monitor's model; left out, they are the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
 }
@@ -39,9 +39,9 @@ pub enum Form {
     Truth,
 }
 
-/// The observer at work.
+/// The monitor at work.
 #[derive(Clone, Debug)]
-pub struct Observer {
+pub struct EnvelopeMonitor {
     form: Form,
     mobility: f64,
     tracks: Vec<Track>,
@@ -67,7 +67,7 @@ struct Track {
     axis: Phasor,
 }
 
-impl Observer {
+impl EnvelopeMonitor {
     /// An observer of a body whose modes the scenario describes, with the inertia that turns torque to moment.
     pub fn new(spec: &Envelope, body_modes: &[Mode], inertia: f64) -> Self {
         let modes = spec.modes.as_deref().unwrap_or(body_modes);

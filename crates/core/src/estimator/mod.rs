@@ -1,20 +1,40 @@
 //! Estimators: they turn what was commanded and measured into beliefs.
 
 pub mod adaptive;
+pub mod attitude;
+mod direct;
 mod envelope;
+mod given;
 pub mod kalman;
+mod monitor;
 mod rigid_rate;
+mod sampled;
+
+use std::borrow::Cow;
+use std::fmt;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::body::Mode;
+use crate::actuator::Actuate;
+use crate::belief::Belief;
+use crate::body::{Mode, State};
+use crate::law::Damped;
+use crate::own::Own;
 use crate::quantity::{NonNegative, Positive};
+use crate::random::Seed;
+use crate::record;
+use crate::scenario::Scenario;
+use crate::sensor::{Orientation, Reading};
+use crate::time::Instant;
 
 pub use adaptive::Adaptive;
-pub use envelope::{Envelope, Form, Observer};
-pub use kalman::{Drifting, Kalman};
-pub use rigid_rate::{RateFilter, RigidRate};
+pub use attitude::AttitudeFilter;
+pub use envelope::{Envelope, EnvelopeMonitor, Form};
+pub use given::Given;
+pub use kalman::{FrequencyTracking, Kalman};
+pub use monitor::{Closed, Monitor};
+pub use rigid_rate::RigidRate;
 
 /// The kinds of estimator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -22,26 +42,148 @@ pub use rigid_rate::{RateFilter, RigidRate};
 pub enum Estimator {
     /// The envelope of the elastic modes and its window means.
     Envelope(Envelope),
-    /// The dominant mode as it is: what an ideal observer knows.
+    /// The true dominant mode, as an ideal observer gives it.
     Truth(Truth),
     /// The motion, by a Kalman filter with constant natural frequencies.
     Kalman(Kalman),
     /// The motion and the natural frequencies, by an extended Kalman filter.
-    ExtendedKalman(Drifting),
+    ExtendedKalman(FrequencyTracking),
     /// The same by an unscented Kalman filter.
-    UnscentedKalman(Drifting),
+    UnscentedKalman(FrequencyTracking),
+    /// Attitude and gyro bias of a spatial body, by a multiplicative extended Kalman filter.
+    Attitude(AttitudeFilter),
     /// The rigid rates of a spatial body.
     RigidRate(RigidRate),
     /// The rigid rates and elastic modes of a spatial body, by adaptive observers.
     Adaptive(Box<Adaptive>),
+    /// An estimator from outside of this crate, which no scenario file can name.
+    Own(Own<dyn Observe>),
 }
 
-/// An ideal observer has nothing to set.
+/// What an estimator from outside tells of itself before a run. It acts at samples.
+pub trait Observe: Send + Sync {
+    /// The estimator of a scenario at work.
+    fn start(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Estimate>;
+}
+
+/// What an ideal observer knows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Truth {}
+pub struct Truth {
+    /// What the law reads of it beside the dominant mode: `modes` for angle and rate as measured, `hub`, or `rigid`; left
+    /// out, `modes` for a law that reads the dominant mode, else `hub`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub feeds: Option<Feeds>,
+}
+
+/// A sample of the sensor, and what is around it.
+pub struct Taken<'a> {
+    /// When.
+    pub now: Instant,
+    /// Angle (rad) and rate (rad/s) about each axis; none of a sensor that is silent.
+    pub measured: Option<&'a [[f64; 2]]>,
+    /// What each sensor measured now, in the order of the scenario; nothing of one that was not due, or silent.
+    pub readings: &'a [Option<Reading>],
+    /// From where angles count.
+    pub origin: &'a Orientation,
+    /// The true motion about an axis, for ideal observers.
+    pub truth: &'a dyn Fn(usize) -> Cow<'a, State>,
+    /// The actuator.
+    pub actuator: &'a dyn Actuate,
+    /// How far ahead laws want to know elastic rates (s).
+    pub ahead: f64,
+}
+
+/// An estimator at work: it writes the whole belief.
+pub trait Estimate: fmt::Debug + Send + Sync {
+    /// Takes over the reduced moments about each axis (rad/s²) that the actuator gives from now on.
+    fn given(&mut self, _now: Instant, _moments: [f64; 3]) {}
+
+    /// Takes over what a waveform has added to the rate about the first axis (rad/s).
+    fn pushed(&mut self, _impulse: f64) {}
+
+    /// Takes a sample.
+    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]);
+
+    /// Carries the belief on from the last sample to now, with angles that count from an origin.
+    fn carry(&self, _now: Instant, _origin: &Orientation, _beliefs: &mut [Belief]) {}
+
+    /// Takes over that angles count from other targets: by so much more about each axis (rad).
+    fn shift(&mut self, _by: [f64; 3]) {}
+
+    /// Whether it has lost the body, about each axis.
+    fn lost(&self) -> [bool; 3] {
+        [false; 3]
+    }
+
+    /// What a filter made of the last sample about an axis, beside the true motion.
+    fn estimate(&self, _axis: usize, _now: Instant, _truth: &State) -> Option<record::Estimate> {
+        None
+    }
+
+    /// What an attitude filter knows, beside the true orientation and the true bias of its gyro (rad/s).
+    fn attitude(
+        &self,
+        _now: Instant,
+        _truth: &Orientation,
+        _bias: [f64; 3],
+    ) -> Option<record::AttitudeEstimate> {
+        None
+    }
+
+    /// What adaptive observers know, beside the true rates of the body's modes, and what damping makes of it.
+    fn tracking(
+        &self,
+        _modal_rates: &dyn Fn() -> Vec<f64>,
+        _damped: &dyn Fn() -> Vec<Damped>,
+    ) -> Option<record::Tracking> {
+        None
+    }
+
+    /// A copy in the same state.
+    fn copy(&self) -> Box<dyn Estimate>;
+}
+
+impl Clone for Box<dyn Estimate> {
+    fn clone(&self) -> Self {
+        self.copy()
+    }
+}
+
+/// The estimator of a scenario at work.
+pub fn start(scenario: &Scenario, seed: Seed) -> Box<dyn Estimate> {
+    if let Some(sampled) = sampled::AtSamples::new(scenario, seed) {
+        return Box::new(sampled);
+    }
+    match (&scenario.estimator, &scenario.study.adaptive) {
+        (Some(Estimator::Own(own)), _) => own.start(scenario, seed),
+        (Some(Estimator::Attitude(spec)), _) if scenario.study.attitude.is_some() => {
+            let setting = scenario.study.attitude.clone().unwrap_or_default();
+            Box::new(attitude::Tracking::new(spec, setting, seed.stream("prior")))
+        }
+        (Some(Estimator::RigidRate(spec)), _) => Box::new(spec.start(scenario.study.axes.len())),
+        (Some(Estimator::Adaptive(_)), Some(plan)) => Box::new(adaptive::Observers::new(plan)),
+        _ => Box::new(direct::Direct),
+    }
+}
+
+/// What a filter writes into the belief beside the dominant mode.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Feeds {
+    /// Nothing: angle and rate are as measured.
+    Modes,
+    /// Angle and rate of the hub, elastic part included.
+    Hub,
+    /// Angle and rate of the body as if it were rigid.
+    Rigid,
+}
 
 impl Estimator {
+    /// Why one that acts at samples needs some.
+    pub const AT_SAMPLES: &str = "acts at each sample of a `[sensor.sampled]` or a `[sensor.gyro]`, or of a law with a period, and \
+                                  there is none";
+
     /// The kind, as a scenario names it.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -50,14 +192,31 @@ impl Estimator {
             Self::Kalman(_) => "kalman",
             Self::ExtendedKalman(_) => "extended_kalman",
             Self::UnscentedKalman(_) => "unscented_kalman",
+            Self::Attitude(_) => "attitude",
             Self::RigidRate(_) => "rigid_rate",
             Self::Adaptive(_) => "adaptive",
+            Self::Own(_) => "own",
         }
+    }
+
+    /// The attitude filter, if it is one.
+    pub fn attitude(&self) -> Option<&AttitudeFilter> {
+        if let Self::Attitude(filter) = self { Some(filter) } else { None }
     }
 
     /// The envelope's observer, if it is one.
     pub fn envelope(&self) -> Option<&Envelope> {
         if let Self::Envelope(envelope) = self { Some(envelope) } else { None }
+    }
+
+    /// Whether it makes one belief of several sensors.
+    pub fn combines(&self) -> bool {
+        matches!(self, Self::Attitude(_) | Self::Own(_))
+    }
+
+    /// Whether it leaves angles as they are measured.
+    pub fn reads_rates_alone(&self) -> bool {
+        matches!(self, Self::RigidRate(_) | Self::Adaptive(_))
     }
 
     /// Whether it filters measurements.
@@ -70,7 +229,27 @@ impl Estimator {
         match self {
             Self::Kalman(filter) => filter.watch_only,
             Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => filter.watch_only,
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => false,
+            Self::Attitude(filter) => filter.watch_only,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
+                false
+            }
+        }
+    }
+
+    /// What it writes into the belief, under a law that reads the dominant mode or one that does not.
+    pub fn feeds(&self, dominant: bool) -> Feeds {
+        let given = match self {
+            Self::Kalman(filter) => filter.feeds,
+            Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => filter.feeds,
+            Self::Truth(truth) => truth.feeds,
+            Self::Envelope(_) | Self::Attitude(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
+                Some(Feeds::Modes)
+            }
+        };
+        if self.watches_only() {
+            Feeds::Modes
+        } else {
+            given.unwrap_or(if dominant { Feeds::Modes } else { Feeds::Hub })
         }
     }
 
@@ -79,9 +258,11 @@ impl Estimator {
         match self {
             Self::Envelope(Envelope { modes, .. })
             | Self::Kalman(Kalman { modes, .. })
-            | Self::ExtendedKalman(Drifting { modes, .. })
-            | Self::UnscentedKalman(Drifting { modes, .. }) => modes.as_deref(),
-            Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
+            | Self::ExtendedKalman(FrequencyTracking { modes, .. })
+            | Self::UnscentedKalman(FrequencyTracking { modes, .. }) => modes.as_deref(),
+            Self::Truth(_) | Self::Attitude(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
+                None
+            }
         }
     }
 
@@ -89,16 +270,22 @@ impl Estimator {
     pub fn angle_noise(&self) -> Option<f64> {
         match self {
             Self::Kalman(Kalman { angle_noise, .. })
-            | Self::ExtendedKalman(Drifting { angle_noise, .. })
-            | Self::UnscentedKalman(Drifting { angle_noise, .. }) => angle_noise.map(Positive::get),
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
+            | Self::ExtendedKalman(FrequencyTracking { angle_noise, .. })
+            | Self::UnscentedKalman(FrequencyTracking { angle_noise, .. }) => angle_noise.map(Positive::get),
+            Self::Envelope(_)
+            | Self::Truth(_)
+            | Self::Attitude(_)
+            | Self::RigidRate(_)
+            | Self::Adaptive(_)
+            | Self::Own(_) => None,
         }
     }
 
     /// How many states it estimates of a body with so many modes.
     pub fn states(&self, modes: usize) -> usize {
         match self {
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => 0,
+            Self::Attitude(_) => 6,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => 0,
             Self::Kalman(_) => 2 + 2 * modes,
             Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => {
                 2 + 2 * modes + 2 * filter.ratios.count(modes)
@@ -110,9 +297,12 @@ impl Estimator {
     pub fn assess(&self) -> [f64; 2] {
         let window = match self {
             Self::Kalman(Kalman { assess, .. })
-            | Self::ExtendedKalman(Drifting { assess, .. })
-            | Self::UnscentedKalman(Drifting { assess, .. }) => *assess,
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) => None,
+            | Self::ExtendedKalman(FrequencyTracking { assess, .. })
+            | Self::UnscentedKalman(FrequencyTracking { assess, .. })
+            | Self::Attitude(AttitudeFilter { assess, .. }) => *assess,
+            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
+                None
+            }
         };
         window.map_or([0.0, f64::INFINITY], |window| window.map(NonNegative::get))
     }

@@ -1,12 +1,18 @@
-//! The rigid rates of a spatial body: predicted by the jets' pulses, corrected a little by the gyro.
+//! The rigid rates: predicted by the actuator's pulses and a steady torque, corrected a little by the measured rates.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::{Estimate, Given, Taken};
+use crate::axes::Each;
+use crate::belief::Belief;
 use crate::quantity::{Finite, Fraction};
+use crate::time::Instant;
 
-/// w^(n) = w^- + l (y - w^-), w^- = w^(n-1) + du: for what is no pulse a low pass of T/l seconds, so that the elastic part
-/// of the gyro's rates is mostly left out. It is the observer of seed paper 4 with its modes left out.
+/// w^(n) = w^- + l (y - w^-), w^- = w^(n-1) + du + c^(n-1), c^(n) = c^(n-1) + l²/4 (y - w^-): for what is no pulse a low pass of
+/// T/l seconds, so that the elastic part of the measured rates is mostly left out. It is the observer of \[Timakov14\] with its
+/// modes left out, and with c, what a steady torque changes in a cycle: without it the rate would stay c (1 - l)/l behind. The
+/// two poles are near 1 - l/2 both, those of an alpha-beta filter that is critically damped (\[Brookner98\]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidRate {
@@ -14,31 +20,81 @@ pub struct RigidRate {
     pub correction: Fraction,
     /// What the rates are believed to be before the first sample (rad/s).
     #[serde(default)]
-    pub rate: [Finite; 3],
+    pub rate: Each<Finite>,
 }
 
 /// The estimator at work.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct RateFilter {
     correction: f64,
-    rate: [f64; 3],
+    rates: Vec<f64>,
+    /// What a steady torque changes from sample to sample (rad/s).
+    drifts: Vec<f64>,
+    given: Given,
 }
 
 impl RigidRate {
-    /// The estimator at the start of a run.
-    pub fn filter(&self) -> RateFilter {
-        RateFilter { correction: self.correction.get(), rate: self.rate.map(Finite::get) }
+    /// The estimator at the start of a run of a body with so many axes.
+    pub fn start(&self, axes: usize) -> RateFilter {
+        RateFilter {
+            correction: self.correction.get(),
+            rates: (0..axes).map(|axis| self.rate.about(axis).get()).collect(),
+            drifts: vec![0.0; axes],
+            given: Given::default(),
+        }
     }
 }
 
 impl RateFilter {
-    /// Takes the measured rates (rad/s), and the changes of the rigid rates that the pulses since the last sample have
-    /// made (rad/s); returns the estimated rigid rates.
-    pub fn step(&mut self, measured: [f64; 3], pushed: [f64; 3]) -> [f64; 3] {
-        for axis in 0..3 {
-            let predicted = self.rate[axis] + pushed[axis];
-            self.rate[axis] = predicted + self.correction * (measured[axis] - predicted);
+    /// Takes a measured rate about an axis (rad/s), if there is one, and the change of the rigid rate that the pulses since
+    /// the last sample have made (rad/s); returns the estimated rigid rate.
+    fn step(&mut self, axis: usize, measured: Option<f64>, pushed: f64) -> f64 {
+        let predicted = self.rates[axis] + pushed + self.drifts[axis];
+        let innovation = measured.map_or(0.0, |measured| measured - predicted);
+        self.rates[axis] = predicted + self.correction * innovation;
+        self.drifts[axis] += 0.25 * self.correction * self.correction * innovation;
+        self.rates[axis]
+    }
+}
+
+impl Estimate for RateFilter {
+    fn given(&mut self, now: Instant, moments: [f64; 3]) {
+        self.given.change(now, moments);
+    }
+
+    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]) {
+        let pulses = self.given.take(taken.now, taken.actuator);
+        for (axis, belief) in beliefs.iter_mut().enumerate() {
+            let own = pulses.iter().filter(|pulse| pulse.input == axis);
+            let pushed = own.map(|pulse| pulse.acceleration * pulse.duration).sum();
+            belief.rate = self.step(axis, taken.measured.map(|measured| measured[axis][1]), pushed);
+            if let Some(measured) = taken.measured {
+                belief.angle = measured[axis][0];
+            }
         }
-        self.rate
+    }
+
+    fn copy(&self) -> Box<dyn Estimate> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without the drift the rates would stay (1 - l)/l = 99 cycles behind.
+    #[test]
+    fn rates_do_not_stay_behind_a_steady_torque() {
+        let correction = Fraction::new(0.01).expect("a fraction");
+        for change in [1e-6, 0.0, -2e-6] {
+            let mut filter = RigidRate { correction, rate: Each::default() }.start(1);
+            let (mut rate, mut behind) = (0.0, 0.0_f64);
+            for _ in 0..3000 {
+                rate += change;
+                behind = rate - filter.step(0, Some(rate), 0.0);
+            }
+            assert!(behind.abs() <= 2e-3 * change.abs(), "{behind:e} after {change:e} a cycle");
+        }
     }
 }

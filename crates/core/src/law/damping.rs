@@ -1,15 +1,16 @@
 //! Active damping beside the phase-plane law: where the rigid motion needs no jets, they push against the elastic rate.
 //!
-//! Seed paper 4 (pages 37 and 48) tells that a relay on the estimated elastic rate acts in the dead zone of the attitude law.
+//! In \[Timakov14\] (pages 37 and 48) a relay on the estimated elastic rate acts in the dead zone of the attitude law.
 //! Threshold, hysteresis and guards are ours.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Authority;
 use super::phase_plane::is_beyond;
-use crate::actuator::Jets;
-use crate::analysis::damping::{Relay, partition};
-use crate::belief::ElasticRate;
+use crate::actuator::PulseTiming;
+use crate::belief::{Belief, ElasticRate};
+use crate::numerics::delay_margin::delay_margin;
 use crate::quantity::{Fraction, Positive};
 
 /// From this phase factor on a late push is worth its propellant.
@@ -27,7 +28,7 @@ const CYCLES: f64 = 2.0;
 /// Active damping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct Damping {
+pub struct ActiveDamping {
     /// Elastic rates beyond which the jets push, about each axis (rad/s); left out, 1.5 times the amplitude of the limit
     /// cycle that the delay makes, and at least what two whole cycles change, of the mode that a long burn excites most.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -57,7 +58,7 @@ pub struct DampingGuards {
     pub watchdog: bool,
 }
 
-impl Default for Damping {
+impl Default for ActiveDamping {
     fn default() -> Self {
         let guards = DampingGuards::default();
         Self { threshold: None, release: Fraction::HALF, pulse_width: true, predictor: true, guards }
@@ -70,7 +71,7 @@ impl Default for DampingGuards {
     }
 }
 
-impl Damping {
+impl ActiveDamping {
     /// The threshold about an axis (rad/s) for modes of these frequencies (rad/s) and elastic accelerations a (rad/s²), in
     /// cycles of a period (s), with a delay (s) and a damping ratio: of the mode that a long burn excites most.
     pub fn threshold(&self, axis: usize, modes: &[[f64; 2]], period: f64, delay: f64, damping: f64) -> f64 {
@@ -78,8 +79,8 @@ impl Damping {
             return given[axis].get();
         }
         let of = |[frequency, acceleration]: &[f64; 2]| {
-            let border = partition(*frequency, delay, damping);
-            let cycle = border.map_or(0.0, |border| border.limit_cycle(*acceleration));
+            let margin = delay_margin(*frequency, delay, damping);
+            let cycle = margin.map_or(0.0, |margin| margin.limit_cycle(*acceleration));
             (LIMIT_CYCLES * cycle).max(CYCLES * acceleration * period)
         };
         let excited = |[frequency, acceleration]: &[f64; 2]| acceleration / frequency;
@@ -100,15 +101,16 @@ pub struct Damped {
     pub resting: bool,
     /// Signed on-time of its pulse (s).
     pub on: f64,
+    /// Change of the rigid rate that the pulse makes (rad/s).
+    pub change: f64,
 }
 
 /// Active damping about one axis at work.
 #[derive(Clone, Debug)]
 pub struct DampingRelay {
-    spec: Damping,
-    jets: Jets,
+    spec: ActiveDamping,
+    authority: Authority,
     period: f64,
-    threshold: f64,
     latched: bool,
     /// Cycles for which the watchdog still keeps it quiet.
     rest: u32,
@@ -117,59 +119,51 @@ pub struct DampingRelay {
 }
 
 impl DampingRelay {
-    /// It at the start, with a threshold (rad/s).
-    pub fn new(spec: &Damping, jets: &Jets, period: f64, threshold: f64) -> Self {
-        let (spec, jets) = (spec.clone(), jets.clone());
-        Self { spec, jets, period, threshold, latched: false, rest: 0, window: (0.0, 0, None) }
+    /// It at the start, in cycles of a period (s).
+    pub fn new(spec: &ActiveDamping, period: f64, authority: &Authority) -> Self {
+        let (spec, authority) = (spec.clone(), *authority);
+        Self { spec, authority, period, latched: false, rest: 0, window: (0.0, 0, None) }
     }
 
-    /// How far ahead of a sample it wants to know the elastic rate (s).
+    /// How far ahead of a sample it needs the elastic rate (s).
     pub fn ahead(&self) -> f64 {
-        if self.spec.predictor { self.delay() + 0.5 * self.period } else { 0.0 }
-    }
-
-    fn delay(&self) -> f64 {
-        f64::from(self.jets.delay) * self.period
+        if self.spec.predictor { self.authority.delay + 0.5 * self.period } else { 0.0 }
     }
 
     fn acts_on(&self, mode: &ElasticRate) -> bool {
-        let relay = Relay { period: self.period, delay: self.delay(), on_time: self.period };
+        let timing = PulseTiming { period: self.period, delay: self.authority.delay, on_time: self.period };
         let late = !self.spec.predictor && self.spec.guards.eligibility;
-        mode.influence > 0.0 && (!late || relay.phase_factor(mode.frequency) >= ELIGIBLE)
+        mode.influence > 0.0 && (!late || timing.phase_factor(mode.frequency) >= ELIGIBLE)
     }
 
-    /// What to do in a cycle: `free` tells whether the rigid motion leaves the jets free, `trusted` whether the observer
-    /// follows, `rigid` how far the rigid rate is from where it should be, and how far it may be above and below (rad/s); the accelerations
-    /// are those of plus and minus (rad/s²).
-    pub fn decide(
-        &mut self,
-        modes: &[ElasticRate],
-        [free, trusted]: [bool; 2],
-        (excess, allowed): (f64, [f64; 2]),
-        accelerations: [f64; 2],
-    ) -> Damped {
+    /// What to do in a cycle: `free` tells whether the rigid motion leaves the jets free; then how far the rigid rate is from
+    /// where it should be, and how far it may be above and below (rad/s).
+    pub fn decide(&mut self, belief: &Belief, free: bool, (excess, allowed): (f64, [f64; 2])) -> Damped {
+        let Belief { elastic: modes, trusted, .. } = belief;
+        let threshold = self.authority.threshold;
         let acted = || modes.iter().filter(|mode| self.acts_on(mode));
         let (rate, influence) =
             acted().fold((0.0, 0.0), |(rate, sum), mode| (rate + mode.rate, sum + mode.influence));
-        if rate.abs() > self.threshold {
+        if rate.abs() > threshold {
             self.latched = true;
-        } else if rate.abs() < self.spec.release.get() * self.threshold {
+        } else if rate.abs() < self.spec.release.get() * threshold {
             self.latched = false;
         }
         let resting = self.rest > 0;
         self.rest = self.rest.saturating_sub(1);
-        let mut damped = Damped { rate, threshold: self.threshold, latched: self.latched, resting, on: 0.0 };
-        if !free || !self.latched || resting || (self.spec.guards.residual && !trusted) || influence <= 0.0 {
+        let mut damped = Damped { rate, threshold, latched: self.latched, resting, on: 0.0, change: 0.0 };
+        if !free || !self.latched || resting || (self.spec.guards.residual && !*trusted) || influence <= 0.0 {
             return damped;
         }
-        let [plus, minus] = accelerations;
+        let [plus, minus] = self.authority.accelerations;
         let (sign, acceleration) = if rate > 0.0 { (-1.0, minus) } else { (1.0, plus) };
         let wanted =
             if self.spec.pulse_width { rate.abs() / (acceleration * influence) } else { self.period };
-        let on = self.jets.on_time(wanted, self.period);
+        let on = self.authority.width.on_time(wanted, self.period);
         let kicked = is_beyond(excess + sign * acceleration * on, allowed);
         if on > 0.0 && !(kicked && self.spec.guards.dead_zone) {
             damped.on = sign * on;
+            damped.change = sign * acceleration * on;
             self.watch(rate.abs());
         }
         damped

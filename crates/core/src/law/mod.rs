@@ -1,50 +1,77 @@
-//! Control laws: state machines that answer every event with a hold.
+//! Control laws: state machines that answer every event about an axis with a hold.
 
+mod attitude;
+mod controls;
 mod damping;
+mod distribution;
+mod filter;
+mod itinerary;
 mod open;
 mod pd;
+mod per_axis;
 mod phase_plane;
 mod relay;
+#[cfg(test)]
+mod slew_tests;
 mod switching_lines;
 
+use std::fmt;
+use std::ops::Deref;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::actuator::PulseWidth;
 use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::label::labels;
-use crate::one_of::one_of;
-use crate::time::Instant;
+use crate::own::Own;
+use crate::time::{Instant, Span};
 
-pub use damping::{Damped, Damping, DampingGuards, DampingRelay};
+pub use attitude::{AttitudeLaw, Integral};
+pub use controls::{Controls, Event};
+pub use damping::{ActiveDamping, Damped, DampingGuards, DampingRelay};
+pub use distribution::Distribution;
+pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
+pub use itinerary::Itinerary;
 pub use open::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
-pub use phase_plane::{PhasePlane, PhasePlaneLaw, Target};
+pub use per_axis::PerAxis;
+pub use phase_plane::{PhasePlane, Target, targeted};
 pub use relay::{Relay, Sides};
 pub use switching_lines::{SwitchingLines, band};
 
-one_of! {
-    /// The kinds of law.
-    Law: Control {
-        /// Relay with dead zone, hysteresis and a timed brake.
-        Relay(Relay),
-        /// Sampled proportional and derivative feedback of the angle.
-        Pd(Pd),
-        /// None: what a scenario with a manoeuvre has by default.
-        Open(Open),
-        /// Relays in the phase planes of three axes, with pulses of jets.
-        PhasePlane(PhasePlane),
-    }
+/// The kinds of law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Law {
+    /// Relay with dead zone, hysteresis and a timed brake.
+    Relay(Relay),
+    /// Sampled proportional and derivative feedback of the angle.
+    Pd(Pd),
+    /// Sampled feedback of the attitude, as an acceleration.
+    Attitude(AttitudeLaw),
+    /// None: what a scenario with a manoeuvre has by default.
+    Open(Open),
+    /// A relay in the phase plane, with pulses of measured length.
+    PhasePlane(PhasePlane),
+    /// A law of its own about each of three axes.
+    PerAxis(Box<PerAxis>),
+    /// A law from outside of this crate, which no scenario file can name.
+    Own(Own<dyn Rule + Send + Sync>),
 }
 
-/// What every law does.
-pub trait Control {
-    /// Answers an event. A law of three axes leaves a body with one angle alone.
-    fn decide(&mut self, _now: Instant, _cause: Cause, _goal: &Goal, _belief: &Belief) -> Hold {
-        Hold::NONE
+/// What every kind of law tells of itself before a run. It acts about one axis; on a body with three, one about each.
+pub trait Rule {
+    /// The law at work about an axis on which an actuator has this authority.
+    fn start(&self, authority: &Authority) -> Box<dyn Control>;
+
+    /// Its own period, at which it samples and commands; none if events make it decide.
+    fn period(&self) -> Option<Span> {
+        None
     }
 
-    /// The state that the law is in.
-    fn state(&self) -> Phase;
-
-    /// Whether the law's switchings tell all that it does: its torque changes with its state alone.
+    /// Whether the law's switchings are all that it does: its torque changes with its state alone.
     fn switches(&self) -> bool {
         false
     }
@@ -54,9 +81,121 @@ pub trait Control {
         Promise::Nothing
     }
 
-    /// The value that the law's tunable parameter starts with; NaN if it has none.
-    fn gain(&self) -> f64 {
+    /// What it reads of an estimator.
+    fn reads(&self) -> Reads {
+        Reads::Motion
+    }
+
+    /// The numbers that an adaptation may tune, by their keys.
+    fn tunable(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}
+
+/// What a law reads of an estimator.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Reads {
+    /// Nothing.
+    Nothing,
+    /// Angle and rate.
+    Motion,
+    /// Angle and rate as measured, and the dominant mode.
+    DominantMode,
+    /// Rates, and all elastic modes.
+    ElasticRates,
+}
+
+/// A law at work about one axis.
+pub trait Control: fmt::Debug + Send + Sync {
+    /// Answers an event.
+    fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold;
+
+    /// The state that the law is in.
+    fn state(&self) -> Phase;
+
+    /// A copy in the same state.
+    fn copy(&self) -> Box<dyn Control>;
+
+    /// The value of its tunable number; NaN if it has none.
+    fn tuned(&self) -> f64 {
         f64::NAN
+    }
+
+    /// Takes a number of [`Rule::tunable`] over.
+    fn tune(&mut self, _key: &str, _value: f64) {}
+
+    /// Whether it follows a manoeuvre while it lasts, and not only from its end on.
+    fn tracks(&self) -> bool {
+        false
+    }
+
+    /// How far ahead of a sample it wants to know the elastic rates (s).
+    fn ahead(&self) -> f64 {
+        0.0
+    }
+
+    /// What its active damping did in the last cycle, if it has any.
+    fn damped(&self) -> Option<&Damped> {
+        None
+    }
+}
+
+impl Clone for Box<dyn Control> {
+    fn clone(&self) -> Self {
+        self.copy()
+    }
+}
+
+/// What an actuator can do about an axis, as laws know it.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Authority {
+    /// Accelerations of plus and minus (rad/s²); endless without a limit.
+    pub accelerations: [f64; 2],
+    /// What it makes of a wanted pulse.
+    pub width: PulseWidth,
+    /// Time from a command to its execution (s).
+    pub delay: f64,
+    /// The elastic rate beyond which active damping acts (rad/s).
+    pub threshold: f64,
+}
+
+impl Deref for Law {
+    type Target = dyn Rule;
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Relay(law) => law,
+            Self::Pd(law) => law,
+            Self::Attitude(law) => law,
+            Self::Open(law) => law,
+            Self::PhasePlane(law) => law,
+            Self::PerAxis(laws) => laws.as_ref(),
+            Self::Own(law) => &**law,
+        }
+    }
+}
+
+impl Law {
+    /// The law about an axis: 0, or 0 to 2 for roll, pitch and yaw.
+    pub fn about(&self, axis: usize) -> &Self {
+        if let Self::PerAxis(laws) = self { laws.about(axis) } else { self }
+    }
+
+    /// The number that an adaptation tunes unless it names another; NaN of a law without any.
+    pub fn tuned(&self) -> f64 {
+        self.tunable().first().map_or(f64::NAN, |(_, value)| *value)
+    }
+
+    /// The kind, as a scenario names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Relay(_) => "relay",
+            Self::Pd(_) => "pd",
+            Self::Attitude(_) => "attitude",
+            Self::Open(_) => "open",
+            Self::PhasePlane(_) => "phase_plane",
+            Self::PerAxis(_) => "per_axis",
+            Self::Own(_) => "own",
+        }
     }
 }
 
@@ -75,6 +214,8 @@ pub struct Goal {
     pub angle: f64,
     /// Rate from there on (rad/s).
     pub rate: f64,
+    /// Acceleration there (rad/s²), of a target that the body is led to.
+    pub acceleration: f64,
 }
 
 impl Goal {
@@ -127,6 +268,10 @@ labels! {
         LeftBrake = "LBRK",
         /// Relay: weak push to the left, while coasting inside the dead zone.
         WeakLeft = "W-",
+        /// Phase plane: the rate is within what is allowed.
+        Coasting = "COAST",
+        /// Phase plane: pulses bring the rate back.
+        Firing = "FIRE",
     }
 }
 
@@ -148,20 +293,31 @@ pub enum Cause {
     Timeout,
 }
 
-/// A law's answer: the torque from now on, and when to be asked again.
+/// A law's answer: the command from now on, and when to be asked again.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Hold {
-    /// Torque command (N m), or reduced moment (rad/s²) on a body without inertia.
-    pub torque: f64,
+    /// What the actuator shall do.
+    pub command: Command,
     /// Ask again at this instant.
     pub until: Option<Instant>,
     /// Ask again when one of these trips.
     pub guards: Guards,
 }
 
+/// A command about one axis.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Command {
+    /// A torque (N m), or reduced moment (rad/s²) on a body without inertia; of a wheel, units of its command.
+    Torque(f64),
+    /// A change of the rigid rate within the law's period (rad/s): the actuator makes a pulse of it.
+    Change(f64),
+    /// An angular acceleration (rad/s²): the inertia makes a torque of those about all axes.
+    Acceleration(f64),
+}
+
 impl Hold {
     /// No torque, for good.
-    pub const NONE: Self = Self { torque: 0.0, until: None, guards: Guards::NONE };
+    pub const NONE: Self = Self { command: Command::Torque(0.0), until: None, guards: Guards::NONE };
 }
 
 /// At most two guards.

@@ -1,17 +1,17 @@
 //! The sampled PD law, u = -k_p (y - y_goal) - k_d (y' - y'_goal), held between its samples.
 //!
 //! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the dominant
-//! mode (seed papers 3 and 5, equations (5), (7) and (8)).
+//! mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cause, Control, Goal, Guards, Hold, Phase, Promise};
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule};
 use crate::belief::Belief;
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::{Instant, Span};
 
-/// The PD law. It takes over when the goal's manoeuvre ends.
+/// The PD law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pd {
@@ -30,8 +30,14 @@ pub struct Pd {
     /// Largest torque (N m); left out, there is no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
+    /// Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub track: bool,
     #[serde(skip)]
     active: bool,
+    /// The gains as an adaptation has tuned them.
+    #[serde(skip)]
+    tuned: [Option<f64>; 2],
     /// What was fed back at the last sample.
     #[serde(skip)]
     last: Option<f64>,
@@ -93,11 +99,34 @@ impl Extra {
     }
 }
 
+impl Rule for Pd {
+    fn start(&self, _: &Authority) -> Box<dyn Control> {
+        self.copy()
+    }
+
+    fn period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    /// The usual 5 % of a step.
+    fn promise(&self) -> Promise {
+        Promise::Part(0.05)
+    }
+
+    fn reads(&self) -> Reads {
+        if self.extra.is_some() { Reads::DominantMode } else { Reads::Motion }
+    }
+
+    fn tunable(&self) -> Vec<(&'static str, f64)> {
+        vec![("k_p", self.k_p.get()), ("k_d", self.k_d.get())]
+    }
+}
+
 impl Control for Pd {
     fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
         self.active = now >= goal.from;
         if !self.active {
-            return Hold { torque: 0.0, until: Some(goal.from), guards: Guards::NONE };
+            return Hold { until: Some(goal.from), ..Hold::NONE };
         }
         let (angle, rate) = goal.at(now);
         let gain = self.extra.as_ref().map_or(0.0, |extra| extra.gain(belief.dominant.frequency));
@@ -110,16 +139,36 @@ impl Control for Pd {
         };
         self.last = Some(error);
         let limit = self.limit.map_or(f64::INFINITY, Positive::get);
-        let torque = -self.k_p.get() * error - self.k_d.get() * derivative;
-        Hold { torque: torque.clamp(-limit, limit), until: Some(now + self.period), guards: Guards::NONE }
-    }
-
-    /// The usual 5 % of a step.
-    fn promise(&self) -> Promise {
-        Promise::Part(0.05)
+        let [k_p, k_d] = [self.k_p, self.k_d].map(NonNegative::get);
+        let torque = -self.tuned[0].unwrap_or(k_p) * error - self.tuned[1].unwrap_or(k_d) * derivative;
+        let command = Command::Torque(torque.clamp(-limit, limit));
+        Hold { command, until: Some(now + self.period), guards: Guards::NONE }
     }
 
     fn state(&self) -> Phase {
         if self.active { Phase::Feedback } else { Phase::Open }
     }
+
+    fn tracks(&self) -> bool {
+        self.track
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(self.clone())
+    }
+
+    fn tuned(&self) -> f64 {
+        self.tuned.into_iter().flatten().next().unwrap_or(f64::NAN)
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        if let Some(gain) = ["k_p", "k_d"].iter().position(|known| *known == key) {
+            self.tuned[gain] = Some(value);
+        }
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_false(value: &bool) -> bool {
+    !value
 }

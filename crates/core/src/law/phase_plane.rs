@@ -1,6 +1,6 @@
-//! The phase-plane law of a spatial body: for each axis a relay with hysteresis on the rate, and pulses of measured length.
+//! The phase-plane law: about each axis a relay with hysteresis on the rate, and pulses of measured length.
 //!
-//! Seed paper 4 tells that the station's jets follow a relay law with pulse-width modulation in the phase plane; its switching
+//! In \[Timakov14\] the station's jets follow a relay law with pulse-width modulation in the phase plane; its switching
 //! lines are not known. Here, about each axis, s is how far the rigid rate, what is on its way included, is from the rate that
 //! the [`SwitchingLines`] want at the angle beyond the goal. Where it is further than they allow the jets fire against s, for
 //! |s|/m or the whole cycle if that is longer, until it is within `switch_off` and half of what is allowed.
@@ -8,11 +8,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::damping::{Damped, Damping, DampingRelay};
-use super::{Control, Phase, SwitchingLines};
-use crate::actuator::Jets;
-use crate::belief::AxesBelief;
+use super::damping::{ActiveDamping, Damped, DampingRelay};
+use super::{
+    Authority, Cause, Command, Control, Goal, Guards, Hold, Itinerary, Phase, Reads, Rule, SwitchingLines,
+};
+use crate::belief::Belief;
 use crate::body::spatial::turned;
+use crate::document::Fault;
+use crate::manoeuvre::Profile;
 use crate::quantity::{Finite, Fraction, Positive, Time};
 use crate::time::{Instant, Span};
 
@@ -42,7 +45,7 @@ pub struct PhasePlane {
     pub targets: Vec<Target>,
     /// What the jets do against elastic motion while they have nothing else to do; left out, nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub damping: Option<Damping>,
+    pub damping: Option<ActiveDamping>,
 }
 
 fn slope() -> Positive {
@@ -68,120 +71,157 @@ pub struct Target {
     /// Yaw (rad).
     #[serde(default)]
     pub yaw: Finite,
+    /// Largest acceleration of a turn about one axis to it (rad/s²); left out, it is there at once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration: Option<Positive>,
+    /// Largest rate of that turn (rad/s); left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_limit: Option<Positive>,
+    /// How the rate of that turn rises and falls.
+    #[serde(default, skip_serializing_if = "is_trapezoid")]
+    pub profile: Profile,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_trapezoid(profile: &Profile) -> bool {
+    *profile == Profile::Trapezoid
+}
+
+/// The attitude to turn to at an instant, of targets in the order of their times.
+pub fn targeted(targets: &[Target], now: Instant) -> nalgebra::Quaternion<f64> {
+    let target = targets.iter().rev().find(|target| target.begins() <= now);
+    target.unwrap_or(&Target::INERTIAL).attitude()
+}
+
+impl Target {
+    /// The inertial attitude, from the start on.
+    pub const INERTIAL: Self = Self {
+        from: Time::ZERO,
+        roll: Finite::ZERO,
+        pitch: Finite::ZERO,
+        yaw: Finite::ZERO,
+        acceleration: None,
+        rate_limit: None,
+        profile: Profile::Trapezoid,
+    };
+
+    /// The attitude.
+    pub fn attitude(&self) -> nalgebra::Quaternion<f64> {
+        turned(self.roll.get(), self.pitch.get(), self.yaw.get())
+    }
+
+    /// When it begins.
+    pub fn begins(&self) -> Instant {
+        Instant::START + Span::from_seconds(self.from.get())
+    }
+
+    /// The first of some that is not later than the one before: its index, and why that is wrong.
+    pub fn disorder(targets: &[Self]) -> Option<(usize, String)> {
+        let late = targets.windows(2).position(|pair| pair[0].from >= pair[1].from)? + 1;
+        Some((late, format!("must be later than the one before, got {}", targets[late].from.get())))
+    }
 }
 
 impl PhasePlane {
-    /// The attitude to turn to at an instant.
-    pub fn target(&self, now: Instant) -> nalgebra::Quaternion<f64> {
-        let begun = |target: &&Target| Instant::START + Span::from_seconds(target.from.get()) <= now;
-        let target = self.targets.iter().rev().find(begun);
-        let angles = target.map_or([0.0; 3], |t| [t.roll, t.pitch, t.yaw].map(Finite::get));
-        turned(angles[0], angles[1], angles[2])
-    }
-
-    /// When the last target begins that does so before an instant; the start without one.
-    pub fn last_target(&self, before: Instant) -> Instant {
-        let begins = |target: &Target| Instant::START + Span::from_seconds(target.from.get());
-        self.targets.iter().rev().map(begins).find(|from| *from < before).unwrap_or(Instant::START)
-    }
-
     /// What single values cannot show to be wrong: a key within the law, and why.
-    pub fn inconsistency(&self) -> Option<(String, String)> {
+    pub fn inconsistency(&self) -> Option<Fault> {
         let (on, off) = (self.switch_on.get(), self.switch_off.get());
         if off >= on {
-            return Some(("switch_off".to_owned(), format!("must be below `switch_on`, {on}, got {off}")));
+            return Some(Fault::new("switch_off", format!("must be below `switch_on`, {on}, got {off}")));
         }
-        let late = self.targets.windows(2).position(|pair| pair[0].from >= pair[1].from)? + 1;
-        let why = format!("must be later than the one before, got {}", self.targets[late].from.get());
-        Some((format!("targets[{late}].from"), why))
-    }
-}
-
-impl Control for PhasePlane {
-    fn state(&self) -> Phase {
-        Phase::Open
-    }
-}
-
-/// The law at work on a body whose jets give these accelerations.
-#[derive(Clone, Debug)]
-pub struct PhasePlaneLaw {
-    spec: PhasePlane,
-    jets: Jets,
-    /// Of plus and minus, about each axis (rad/s²).
-    accelerations: [[f64; 2]; 3],
-    lines: [SwitchingLines; 3],
-    firing: [bool; 3],
-    damping: Option<[DampingRelay; 3]>,
-    damped: [Damped; 3],
-}
-
-impl PhasePlaneLaw {
-    /// The law before its first cycle, with the thresholds of active damping (rad/s).
-    pub fn new(spec: &PhasePlane, jets: &Jets, accelerations: [[f64; 2]; 3], thresholds: [f64; 3]) -> Self {
-        let period = spec.period.seconds();
-        let relay = |damping| thresholds.map(|threshold| DampingRelay::new(damping, jets, period, threshold));
-        Self {
-            damping: spec.damping.as_ref().map(relay),
-            lines: accelerations.map(|accelerations| SwitchingLines::new(spec, jets, accelerations)),
-            spec: spec.clone(),
-            jets: jets.clone(),
-            accelerations,
-            firing: [false; 3],
-            damped: [Damped::default(); 3],
+        if let Some((late, why)) = Target::disorder(&self.targets) {
+            return Some(Fault::new(format!("targets[{late}].from"), why));
         }
+        Itinerary::fault(&self.targets).map(|fault| fault.within("targets"))
     }
+}
 
-    /// The attitude to turn to at an instant.
-    pub fn target(&self, now: Instant) -> nalgebra::Quaternion<f64> {
-        self.spec.target(now)
-    }
-
-    /// How far ahead of a sample the law wants to know the elastic rates (s).
-    pub fn ahead(&self) -> f64 {
-        self.damping.as_ref().map_or(0.0, |[relay, ..]| relay.ahead())
-    }
-
-    /// What active damping did in the last cycle.
-    pub fn damped(&self) -> &[Damped; 3] {
-        &self.damped
-    }
-
-    /// How long the jets of each axis shall fire in a cycle (s), with the sign of the rate that they push to.
-    pub fn decide(&mut self, belief: &AxesBelief) -> [f64; 3] {
-        std::array::from_fn(|axis| {
-            let (lines, angle) = (&self.lines[axis], belief.angle[axis]);
-            let excess = belief.rate[axis] + belief.queued[axis] - lines.wanted(angle);
-            let allowed = lines.allowed(angle);
-            let on = self.relay(axis, excess, allowed);
-            let Some(damping) = &mut self.damping else { return on };
-            let free = !self.firing[axis] && !is_beyond(excess, allowed);
-            self.damped[axis] = damping[axis].decide(
-                &belief.elastic[axis],
-                [free, belief.trusted[axis]],
-                (excess, allowed),
-                self.accelerations[axis],
-            );
-            on + self.damped[axis].on
+impl Rule for PhasePlane {
+    fn start(&self, authority: &Authority) -> Box<dyn Control> {
+        Box::new(InPhasePlane {
+            damping: self
+                .damping
+                .as_ref()
+                .map(|damping| DampingRelay::new(damping, self.period.seconds(), authority)),
+            lines: SwitchingLines::new(self, authority),
+            spec: self.clone(),
+            authority: *authority,
+            firing: false,
+            damped: Damped::default(),
         })
     }
 
-    fn relay(&mut self, axis: usize, excess: f64, allowed: [f64; 2]) -> f64 {
-        let Self { spec, jets, accelerations, lines, firing, .. } = self;
-        if is_beyond(excess, allowed) {
-            firing[axis] = true;
-        } else if excess.abs() < lines[axis].release(allowed[usize::from(excess < 0.0)]) {
-            firing[axis] = false;
+    fn period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    fn reads(&self) -> Reads {
+        if self.damping.is_some() { Reads::ElasticRates } else { Reads::Motion }
+    }
+}
+
+/// The law at work about an axis.
+#[derive(Clone, Debug)]
+struct InPhasePlane {
+    spec: PhasePlane,
+    authority: Authority,
+    lines: SwitchingLines,
+    firing: bool,
+    damping: Option<DampingRelay>,
+    damped: Damped,
+}
+
+impl Control for InPhasePlane {
+    /// The change of the rate that the pulses of the cycle shall make.
+    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+        if now < goal.from {
+            return Hold { until: Some(goal.from), ..Hold::NONE };
         }
-        if !firing[axis] {
+        let (angle, rate) = goal.at(now);
+        let angle = belief.angle - angle;
+        let excess = belief.rate - rate + belief.queued - self.lines.wanted(angle);
+        let allowed = self.lines.allowed(angle);
+        let mut change = self.relay(excess, allowed);
+        if let Some(damping) = &mut self.damping {
+            let free = !self.firing && !is_beyond(excess, allowed);
+            self.damped = damping.decide(belief, free, (excess, allowed));
+            change += self.damped.change;
+        }
+        Hold { command: Command::Change(change), until: Some(now + self.spec.period), guards: Guards::NONE }
+    }
+
+    fn state(&self) -> Phase {
+        if self.firing { Phase::Firing } else { Phase::Coasting }
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(self.clone())
+    }
+
+    fn ahead(&self) -> f64 {
+        self.damping.as_ref().map_or(0.0, DampingRelay::ahead)
+    }
+
+    fn damped(&self) -> Option<&Damped> {
+        self.damping.as_ref().map(|_| &self.damped)
+    }
+}
+
+impl InPhasePlane {
+    fn relay(&mut self, excess: f64, allowed: [f64; 2]) -> f64 {
+        if is_beyond(excess, allowed) {
+            self.firing = true;
+        } else if excess.abs() < self.lines.release(allowed[usize::from(excess < 0.0)]) {
+            self.firing = false;
+        }
+        if !self.firing {
             return 0.0;
         }
-        let [plus, minus] = accelerations[axis];
-        let (sign, acceleration) = if excess > 0.0 { (-1.0, minus) } else { (1.0, plus) };
-        let on = jets.on_time(excess.abs() / acceleration, spec.period.seconds());
+        let acceleration = self.authority.accelerations[usize::from(excess > 0.0)];
         // What is too little for a pulse ends the firing.
-        firing[axis] = on > 0.0;
-        sign * on
+        self.firing =
+            self.authority.width.on_time(excess.abs() / acceleration, self.spec.period.seconds()) > 0.0;
+        if self.firing { -excess } else { 0.0 }
     }
 }
 

@@ -1,4 +1,4 @@
-//! The relay law with dead zone, hysteresis and a timed brake (seed paper 1, equation (2), corrected).
+//! The relay law with dead zone, hysteresis and a timed brake (\[Silaev\], equation (2), corrected).
 //!
 //! Beyond a boundary of the dead zone a strong torque pushes back until the angle has returned by the
 //! hysteresis; then a strong brake lasts `k_t` times as long as the push; then a weak torque opposes the
@@ -8,7 +8,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cause, Control, Goal, Guards, Hold, Phase, Promise};
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Rule};
 use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::quantity::{Fraction, NonNegative, Positive};
@@ -35,6 +35,9 @@ pub struct Relay {
     phase: Option<Phase>,
     #[serde(skip)]
     pushed_at: Instant,
+    /// k_t as an adaptation has tuned it.
+    #[serde(skip)]
+    tuned: Option<f64>,
 }
 
 /// Which boundaries of the dead zone push back.
@@ -48,18 +51,9 @@ pub enum Sides {
     One,
 }
 
-impl Control for Relay {
-    fn decide(&mut self, now: Instant, cause: Cause, _: &Goal, belief: &Belief) -> Hold {
-        let phase = self.next(cause, belief);
-        if matches!(phase, Phase::RightPush | Phase::LeftPush) {
-            self.pushed_at = now;
-        }
-        self.phase = Some(phase);
-        self.hold(phase, now, belief.gain)
-    }
-
-    fn state(&self) -> Phase {
-        self.phase.unwrap_or(Phase::Start)
+impl Rule for Relay {
+    fn start(&self, _: &Authority) -> Box<dyn Control> {
+        self.copy()
     }
 
     fn switches(&self) -> bool {
@@ -72,8 +66,37 @@ impl Control for Relay {
         Promise::Within(self.dead_zone.get() + self.hysteresis.get())
     }
 
-    fn gain(&self) -> f64 {
-        self.k_t.get()
+    fn tunable(&self) -> Vec<(&'static str, f64)> {
+        vec![("k_t", self.k_t.get())]
+    }
+}
+
+impl Control for Relay {
+    fn decide(&mut self, now: Instant, cause: Cause, _: &Goal, belief: &Belief) -> Hold {
+        let phase = self.next(cause, belief);
+        if matches!(phase, Phase::RightPush | Phase::LeftPush) {
+            self.pushed_at = now;
+        }
+        self.phase = Some(phase);
+        self.hold(phase, now, self.tuned())
+    }
+
+    fn state(&self) -> Phase {
+        self.phase.unwrap_or(Phase::Start)
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(self.clone())
+    }
+
+    fn tuned(&self) -> f64 {
+        self.tuned.unwrap_or(self.k_t.get())
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        if key == "k_t" {
+            self.tuned = Some(value);
+        }
     }
 }
 
@@ -100,11 +123,11 @@ impl Relay {
     fn hold(&self, phase: Phase, now: Instant, k_t: f64) -> Hold {
         let back = self.dead_zone.get() - self.hysteresis.get();
         let (strong, weak) = (self.strong.get(), self.weak.get());
-        let until_guards = |torque, guards| Hold { torque, until: None, guards };
+        let until_guards = |torque, guards| Hold { command: Command::Torque(torque), until: None, guards };
         let until_braked = |torque| {
             let push = now.since(self.pushed_at).seconds();
             let until = Some(now + Span::from_seconds(k_t * push));
-            Hold { torque, until, guards: Guards::NONE }
+            Hold { command: Command::Torque(torque), until, guards: Guards::NONE }
         };
         let boundaries = match self.sides {
             Sides::Two => Guards::two(self.right(), self.left()),

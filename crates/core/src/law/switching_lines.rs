@@ -5,16 +5,17 @@
 //!
 //! ```text
 //! r(d) = min(rate_limit, max(k d, min(slow, steep d, sqrt(2 b m d)))),   k = min(slope, b m/rate_limit)
+//! slow = max(switch_off, 2 least),   steep = max(slope, 2 least/(dead_zone - c))
 //! ```
 //!
-//! with b = `braking`: along k d it brakes in time from the largest rate; jets for which that line is flat do not wait on it,
-//! but return at the rate slow until sqrt(2 b m d), from which they can brake. That rate is `switch_off`, or what the smallest
-//! pulse changes if that is more, and steep is `slope`, or what makes that rate of the dead zone's end. Beyond the edge half of r is the least rate of
-//! return that is left alone. Within it a rate outwards is left alone as long as the jets can stop the body before the edge,
-//! and none above `switch_on` is. Parabolas are as in B. Wie, Space Vehicle Dynamics and Control; the rest is ours.
+//! with b = `braking` and least, what the smallest pulse changes: along k d it brakes in time from the largest rate; jets for
+//! which that line is flat do not wait on it, but return at the rate slow until sqrt(2 b m d), from which they can brake.
+//! Beyond the edge half of r is the least rate of return that is left alone: of slow, it is never less than a pulse can change,
+//! so that no body rests beyond the dead zone. Within it a rate outwards is left alone as long as the jets can stop the body
+//! before the edge, and none above `switch_on` is. Where a pulse changes more than `switch_on` or half of `rate_limit`, these are
+//! raised to it. Parabolas are as in \[Wie08\]; the rest is ours.
 
-use super::PhasePlane;
-use crate::actuator::Jets;
+use super::{Authority, PhasePlane};
 
 /// The switching lines of an axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -31,26 +32,32 @@ pub struct SwitchingLines {
     off: f64,
     /// What the smallest pulse changes (rad/s): less is not worth one.
     least: f64,
+    /// Rate of the return that is wanted however weak the jets are (rad/s).
+    slow: f64,
 }
 
 impl SwitchingLines {
-    /// The lines about an axis on which plus and minus jets give these accelerations (rad/s²).
-    pub fn new(spec: &PhasePlane, jets: &Jets, [plus, minus]: [f64; 2]) -> Self {
+    /// The lines about an axis on which an actuator has this authority.
+    pub fn new(spec: &PhasePlane, authority: &Authority) -> Self {
+        let [plus, minus] = authority.accelerations;
         let (on, off) = (spec.switch_on.get(), spec.switch_off.get());
         let (slope, zone) = (spec.slope.get(), spec.dead_zone.get());
         let braking = spec.braking.get() * plus.min(minus);
-        let least = smallest_change(jets, [plus, minus]).clamp(LEAST * on, on);
-        let edge = (zone - least.max(off) / slope).max(0.5 * zone);
+        let least = smallest_change(authority).max(LEAST * on);
+        let slow = off.max(2.0 * least);
+        let edge = (zone - slow / slope).max(0.5 * zone);
+        let rate_limit = spec.rate_limit.get().max(2.0 * least);
         Self {
             edge,
-            rate_limit: spec.rate_limit.get(),
-            // What the smallest pulse gives is worth a return from the end of the dead zone on.
-            slope: slope.max(least / (zone - edge)),
-            flat: slope.min(braking / spec.rate_limit.get()),
+            rate_limit,
+            // At the end of the dead zone the return is worth the smallest pulse.
+            slope: slope.max(2.0 * least / (zone - edge)),
+            flat: slope.min(braking / rate_limit),
             parabola: 2.0 * braking,
-            on,
+            on: on.max(least),
             off,
             least,
+            slow,
         }
     }
 
@@ -64,9 +71,8 @@ impl SwitchingLines {
         if beyond <= 0.0 {
             return 0.0;
         }
-        let slow = self.off.max(self.least);
-        let least = slow.min(self.slope * beyond).min(libm::sqrt(self.parabola * beyond));
-        (self.flat * beyond).max(least).min(self.rate_limit)
+        let slow = self.slow.min(self.slope * beyond).min(libm::sqrt(self.parabola * beyond));
+        (self.flat * beyond).max(slow).min(self.rate_limit)
     }
 
     /// How far the rate may be above, and below, the one that it shall have at an angle (rad/s).
@@ -88,14 +94,16 @@ impl SwitchingLines {
 /// No rate below this part of `switch_on` is worth a pulse, however short pulses may be.
 const LEAST: f64 = 1e-3;
 
-/// What the smallest pulse of the stronger jets changes (rad/s).
-fn smallest_change(jets: &Jets, [plus, minus]: [f64; 2]) -> f64 {
-    plus.max(minus) * jets.minimum_on.get().max(jets.quantum.get())
+/// What the smallest pulse of the stronger sign changes (rad/s).
+fn smallest_change(authority: &Authority) -> f64 {
+    let [plus, minus] = authority.accelerations;
+    plus.max(minus) * authority.width.shortest()
 }
 
 /// How near to its target the law keeps the body about an axis (rad): the dead zone, and what the smallest pulse turns it
 /// until the next one can act.
-pub fn band(spec: &PhasePlane, jets: &Jets, accelerations: [f64; 2]) -> f64 {
-    let cycles = f64::from(jets.delay) + 2.0;
-    spec.dead_zone.get() + smallest_change(jets, accelerations) * cycles * spec.period.seconds()
+pub fn band(spec: &PhasePlane, authority: &Authority) -> f64 {
+    let period = spec.period.seconds();
+    let cycles = libm::round(authority.delay / period) + 2.0;
+    spec.dead_zone.get() + smallest_change(authority) * cycles * period
 }

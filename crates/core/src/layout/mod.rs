@@ -41,9 +41,9 @@ struct Tab {
 impl Layout {
     /// The layout of a scenario's logs, with all that they can show.
     pub fn of(scenario: &Scenario) -> Self {
-        let tabs = match &scenario.spatial {
+        let tabs = match scenario.body.spatial() {
             None => planar::tabs(scenario),
-            Some(spatial) => spatial::tabs(scenario, spatial),
+            Some(body) => spatial::tabs(scenario, body),
         };
         Self { tabs, topics: topics(scenario) }
     }
@@ -110,8 +110,12 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         }
     };
     let estimator = scenario.estimator.as_ref();
-    if scenario.spatial.is_some() {
-        add(true, "/jets", Events);
+    if scenario.axis_count() == 3 {
+        add(scenario.study.fires(), "/jets", Events);
+        add(scenario.study.groups.is_none() || scenario.environment.is_some(), "/torques", Full);
+        add(planar::filters(scenario), "/estimators", Full);
+        add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
+        add(matches!(scenario.actuator, Actuator::Wheels(_)), "/wheels", Full);
         for topic in ["/pointing", "/rates", "/vibrations", "/energy"] {
             add(true, topic, Full);
         }

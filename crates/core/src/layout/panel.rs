@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::scene::Extent;
 
-/// Colours that people without full sight of colours can tell apart.
+/// Colours that colour-blind readers can distinguish.
 const COLORS: [&str; 7] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#8C8C8C"];
 /// No plot has more lines of one kind.
 pub const MOST_LINES: usize = 6;

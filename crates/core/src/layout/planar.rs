@@ -65,7 +65,7 @@ fn motion(scenario: &Scenario) -> Vec<Panel> {
 
 fn angles(scenario: &Scenario) -> Vec<Line> {
     let mut lines = vec![line("/attitude.angle_rad", "hub"), line("/attitude.rigid_rad", "rigid")];
-    if scenario.sensor.period().is_some() {
+    if scenario.study.sampling.is_some() {
         lines.push(line("/attitude.measured_rad", "measured"));
     }
     lines.push(line("/goal.angle_rad", "goal"));

@@ -2,30 +2,40 @@
 
 use super::panel::{Line, MOST_LINES, Panel, line};
 use super::{Tab, metrics};
+use crate::actuator::Actuator;
+use crate::body::Spatial;
 use crate::body::spatial::AXES;
-use crate::scenario::{AxesEstimator, Scenario, SpatialLoop};
+use crate::scenario::Scenario;
 use crate::scene::Extent;
 
 /// The tabs of a scenario.
-pub fn tabs(scenario: &Scenario, spatial: &SpatialLoop) -> Vec<Tab> {
-    let motion = vec![
+pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
+    let mut motion = vec![
         Panel::scene(Extent::of(scenario)),
-        Panel::plot("error", "Beyond the target (rad)", errors(spatial)),
+        Panel::plot("error", "Beyond the target (rad)", errors(scenario)),
         Panel::plot(
             "rigid",
             "Rigid rates (rad/s)",
             rates(&[("rigid_rad_s", ""), ("believed_rad_s", ", believed")]),
         ),
-        Panel::plot("elastic", "Elastic rates at the gyro (rad/s)", rates(&[("elastic_rad_s", "")])),
-        Panel::plot(
-            "jets",
-            "Pulses of the jets (s)",
-            AXES.iter().map(|axis| line(format!("/jets.{axis}_on_s"), *axis).dots()).collect(),
-        ),
-        Panel::plot("fuel", "Propellant (kg)", vec![line("/jets.fuel_kg", "used")]),
+        Panel::plot("elastic", "Elastic rates at the sensor (rad/s)", rates(&[("elastic_rad_s", "")])),
     ];
-    let mut elastic = vec![Panel::plot("energy", "Elastic energy (J)", energies(spatial))];
-    if let Some(AxesEstimator::Adaptive(plan)) = &spatial.estimator {
+    if scenario.study.groups.is_none() {
+        motion.push(Panel::plot("torques", "Torques of the actuator (N m)", torques("applied_nm")));
+    }
+    if scenario.study.fires() {
+        let pulses = AXES.iter().map(|axis| line(format!("/jets.{axis}_on_s"), *axis).dots());
+        motion.push(Panel::plot("jets", "Pulses of the jets (s)", pulses.collect()));
+        motion.push(Panel::plot("fuel", "Propellant (kg)", vec![line("/jets.fuel_kg", "used")]));
+    }
+    if scenario.environment.is_some() {
+        motion.push(Panel::plot("around", "Torques of the surroundings (N m)", torques("disturbance_nm")));
+    }
+    if let Actuator::Wheels(_) = &scenario.actuator {
+        motion.push(Panel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
+    }
+    let mut elastic = vec![Panel::plot("energy", "Elastic energy (J)", energies(scenario, body))];
+    if let Some(plan) = &scenario.study.adaptive {
         let tracked: Vec<usize> = plan.axes.iter().map(|design| design.modes.len()).collect();
         elastic.push(Panel::plot(
             "frequencies",
@@ -37,9 +47,10 @@ pub fn tabs(scenario: &Scenario, spatial: &SpatialLoop) -> Vec<Tab> {
         let channel = |(index, axis)| line(format!("/tracking.channels[{index}].{field}"), axis);
         AXES.into_iter().enumerate().map(channel).collect::<Vec<Line>>()
     };
-    if spatial.law.damping.is_some() {
+    if scenario.study.authorities.iter().any(|authority| authority.threshold > 0.0) {
         let mut lines = channels("acted_on_rad_s");
-        for (axis, threshold) in AXES.into_iter().zip(spatial.thresholds) {
+        for (axis, threshold) in AXES.into_iter().zip(&scenario.study.authorities) {
+            let threshold = threshold.threshold;
             for (sign, value) in [('+', threshold), ('-', -threshold)] {
                 lines.push(line(value.to_string(), format!("{sign} threshold of {axis}")));
             }
@@ -48,25 +59,65 @@ pub fn tabs(scenario: &Scenario, spatial: &SpatialLoop) -> Vec<Tab> {
         elastic.push(Panel::states("latched", "Active damping: the threshold", channels("latched")));
         elastic.push(Panel::states("resting", "Active damping: the watchdog", channels("resting")));
     }
-    elastic.push(Panel::states("trusted", "Observers", channels("trusted")));
+    if scenario.study.adaptive.is_some() {
+        elastic.push(Panel::states("trusted", "Observers", channels("trusted")));
+    }
     let mut log = vec![Panel::log()];
     log.extend(metrics(scenario));
+    let mut tabs = vec![Tab { title: "Motion", panels: motion }];
+    if scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some()) {
+        tabs.push(Tab { title: "Attitude filter", panels: filter() });
+    }
+    tabs.push(Tab { title: "Elastic modes", panels: elastic });
+    tabs.push(Tab { title: "Log", panels: log });
+    tabs
+}
+
+/// Errors of an attitude filter beside its own standard deviations, and whether they fit.
+fn filter() -> Vec<Panel> {
+    let beside = |field: &str, deviation: &str| {
+        let axis = |(index, axis): (usize, &str)| {
+            let at = |field: &str| format!("/attitude_filter.axes[{index}].{field}");
+            [
+                line(at(field), axis).color(index).thick(),
+                line(at(deviation), format!("{axis}, deviation")).color(index),
+            ]
+        };
+        AXES.into_iter().enumerate().flat_map(axis).collect::<Vec<_>>()
+    };
+    let consistency =
+        vec![line("/attitude_filter.nees", "NEES, about 6"), line("/attitude_filter.nis", "NIS, about 3")];
     vec![
-        Tab { title: "Motion", panels: motion },
-        Tab { title: "Elastic modes", panels: elastic },
-        Tab { title: "Log", panels: log },
+        Panel::plot("angles", "Errors of the attitude (rad)", beside("angle_error_rad", "angle_sd_rad")),
+        Panel::plot(
+            "biases",
+            "Errors of the gyro's bias (rad/s)",
+            beside("bias_error_rad_s", "bias_sd_rad_s"),
+        ),
+        Panel::plot("consistency", "Consistency", consistency),
     ]
 }
 
-fn errors(spatial: &SpatialLoop) -> Vec<Line> {
-    let zone = spatial.law.dead_zone.get();
-    let errors = AXES.iter().map(|axis| line(format!("/pointing.{axis}_error_rad"), *axis));
-    errors
-        .chain(
-            [("+ dead zone", zone), ("- dead zone", -zone)]
-                .map(|(label, value)| line(value.to_string(), label)),
-        )
+/// The speed of each wheel.
+fn wheels(scenario: &Scenario) -> Vec<Line> {
+    let Actuator::Wheels(wheels) = &scenario.actuator else { return Vec::new() };
+    let count = wheels.rotors().map_or(0, |rotors| rotors.len()).min(MOST_LINES);
+    (0..count)
+        .map(|wheel| line(format!("/wheels.wheels[{wheel}].speed_rad_s"), format!("wheel {}", wheel + 1)))
         .collect()
+}
+
+fn errors(scenario: &Scenario) -> Vec<Line> {
+    let zone = scenario.study.zones(scenario)[0];
+    let errors = AXES.iter().map(|axis| line(format!("/pointing.{axis}_error_rad"), *axis));
+    let ends =
+        [("+ dead zone", zone), ("- dead zone", -zone)].into_iter().filter(|(_, value)| value.is_finite());
+    errors.chain(ends.map(|(label, value)| line(value.to_string(), label))).collect()
+}
+
+fn torques(field: &str) -> Vec<Line> {
+    let axis = |(index, axis)| line(format!("/torques.axes[{index}].{field}"), axis);
+    AXES.into_iter().enumerate().map(axis).collect()
 }
 
 fn rates(fields: &[(&str, &str)]) -> Vec<Line> {
@@ -78,11 +129,11 @@ fn rates(fields: &[(&str, &str)]) -> Vec<Line> {
 }
 
 /// The energy of all modes, and of those that the jets excite most.
-fn energies(spatial: &SpatialLoop) -> Vec<Line> {
-    let groups = || spatial.groups.iter().flatten();
+fn energies(scenario: &Scenario, body: &Spatial) -> Vec<Line> {
+    let groups = || scenario.study.groups.iter().flatten().flatten();
     let push = |mode: usize| groups().map(|group| group.forces[mode].abs()).fold(0.0, f64::max);
-    let excited = |mode: &usize| push(*mode) / spatial.body.modes[*mode].frequency.get();
-    let mut modes: Vec<usize> = (0..spatial.body.modes.len()).collect();
+    let excited = |mode: &usize| push(*mode) / body.modes[*mode].frequency.get();
+    let mut modes: Vec<usize> = (0..body.modes.len()).collect();
     modes.sort_by(|a, b| excited(b).total_cmp(&excited(a)));
     modes.truncate(MOST_LINES - 1);
     modes.sort_unstable();

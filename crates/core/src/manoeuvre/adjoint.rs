@@ -6,11 +6,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::phi::{exp, moment};
 use super::suppression::Zero;
 use super::task::Task;
-use super::waveform::{Shape, Term, Waveform};
-use crate::phasor::Phasor;
+use crate::numerics::phasor::Phasor;
+use crate::numerics::phi::{exp, moment};
+use crate::waveform::{Shape, Term, Waveform};
 
 /// Re(exp(pole rho) sum c\[n\] rho^n).
 struct Function {

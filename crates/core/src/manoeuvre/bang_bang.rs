@@ -1,7 +1,7 @@
 //! The command that turns a rigid body with the least peak: full one way, then full the other.
 
 use super::task::Task;
-use super::waveform::{Shape, Term, Waveform};
+use crate::waveform::{Shape, Term, Waveform};
 
 /// The command: A until a switching, -A after it.
 ///

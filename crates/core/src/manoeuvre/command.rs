@@ -6,17 +6,18 @@ use serde::{Deserialize, Serialize};
 use super::series::{self, Coefficients, Family};
 use super::suppression::{self, Suppression, Zero};
 use super::task::Task;
-use super::waveform::Waveform;
-use super::{Refusal, bang_bang, minimum_energy, minimum_peak, polynomial};
+use super::{bang_bang, minimum_energy, minimum_peak, polynomial};
 use crate::body::Mode;
+use crate::document::Fault;
+use crate::waveform::Waveform;
 
 /// The kinds of command.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Command {
-    /// A series of sines (seed paper 2, equations (19) to (24)).
+    /// A series of sines (\[Rotation\], equations (19) to (24)).
     Sine(Suppression),
-    /// A series of cosines (seed paper 2, equations (25) to (30)).
+    /// A series of cosines (\[Rotation\], equations (25) to (30)).
     Cosine(Suppression),
     /// Full one way, then full the other: the least peak that turns the rigid body.
     BangBang(BangBang),
@@ -64,7 +65,7 @@ impl Command {
     }
 
     /// The zeros that it has, given a body's modes; what else is wrong with its parameters.
-    pub fn zeros(&self, modes: &[Mode]) -> Result<Vec<Zero>, Refusal> {
+    pub fn zeros(&self, modes: &[Mode]) -> Result<Vec<Zero>, Fault> {
         let place = format!("command.{}", self.kind());
         match self {
             Self::Sine(own) | Self::Cosine(own) | Self::MinimumEnergy(own) => own.zeros(modes, &place),
@@ -73,13 +74,13 @@ impl Command {
             Self::Polynomial(own) if polynomial::DEGREES.contains(&own.degree) => Ok(Vec::new()),
             Self::Polynomial(own) => {
                 let why = format!("must be 3, 5, 7, 9, 11 or 13, got {}", own.degree);
-                Err((format!("{place}.degree"), why))
+                Err(Fault::new(format!("{place}.degree"), why))
             }
         }
     }
 
     /// The command that does a task and has these zeros; its amplitudes if it is a series.
-    pub fn waveform(&self, task: &Task, zeros: &[Zero]) -> Result<(Waveform, Option<Coefficients>), Refusal> {
+    pub fn waveform(&self, task: &Task, zeros: &[Zero]) -> Result<(Waveform, Option<Coefficients>), Fault> {
         let series = |family| {
             let (waveform, coefficients) = series::plan(family, task, zeros);
             Ok((waveform, Some(coefficients)))

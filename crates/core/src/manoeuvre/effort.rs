@@ -4,8 +4,8 @@ use super::Plan;
 use super::extremum::Peak;
 use super::history::{History, torque};
 use super::plan::fastest;
-use super::quadrature::integral;
 use crate::body::{Drive, Planar};
+use crate::numerics::quadrature::integral;
 
 /// What a command or a torque costs, in its unit.
 #[derive(Copy, Clone, Debug, PartialEq)]

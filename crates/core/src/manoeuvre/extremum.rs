@@ -10,7 +10,7 @@ pub struct Peak {
 }
 
 /// The largest absolute value of `f(middle, t)` over the pieces between these breaks, `middle` being a time inside the
-/// piece that t belongs to: at the ends of a piece it tells which limit is meant. Samples are at most `step` apart, and
+/// piece that t belongs to: at the ends of a piece it selects the limit. Samples are at most `step` apart, and
 /// at least 32 in a piece; what may be the largest is refined to rounding.
 pub fn largest(breaks: &[f64], step: f64, f: impl Fn(f64, f64) -> f64) -> Peak {
     largest_of(1, breaks, step, |middle, t| vec![f(middle, t)]).pop().unwrap_or_default()

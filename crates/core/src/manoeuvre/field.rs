@@ -12,6 +12,7 @@ use super::shaper::{ExtraInsensitive, Shaped, Shaper};
 use super::suppression::{Suppression, Target};
 use super::{Manoeuvre, Plan};
 use crate::body::Planar;
+use crate::document::Fault;
 use crate::quantity::{Finite, Fraction, Positive};
 use crate::time::Span;
 
@@ -35,7 +36,7 @@ pub struct Row {
     /// What the command is called.
     pub name: String,
     /// The plan and what it comes to, or why there is none: the key, and what is wrong with it.
-    pub outcome: Result<Outcome, super::Refusal>,
+    pub outcome: Result<Outcome, Fault>,
 }
 
 /// A plan of the field, what it costs and what it leaves.
@@ -211,7 +212,7 @@ impl Row {
     /// The row as a JSON object whose keys end with their units.
     pub fn to_json(&self) -> Value {
         match &self.outcome {
-            Err((key, why)) => json!({"command": self.name, "refused": format!("`{key}` {why}")}),
+            Err(fault) => json!({"command": self.name, "refused": fault.to_string()}),
             Ok(Outcome { plan, torque, residuals }) => {
                 let mut object = json!({
                     "command": self.name,

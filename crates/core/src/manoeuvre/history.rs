@@ -1,9 +1,9 @@
 //! The modes of a body during a planned command, exactly.
 
 use super::suppression::Zero;
-use super::waveform::Waveform;
 use crate::body::{Drive, Planar};
-use crate::phasor::Phasor;
+use crate::numerics::phasor::Phasor;
+use crate::waveform::Waveform;
 
 /// Modes that rest at the start of a command.
 pub struct History<'a> {
@@ -53,8 +53,9 @@ impl<'a> History<'a> {
     /// The amplitude with which each mode goes on after a time (s), decaying from there: |x + i x'/w| of an undamped
     /// mode (rad).
     pub fn amplitudes(&self, t: f64) -> Vec<f64> {
-        let amplitude =
-            |mode: &Driven| (mode.gain * crate::phasor::abs(self.command.response(mode.pole, 0.0, t))).abs();
+        let amplitude = |mode: &Driven| {
+            (mode.gain * crate::numerics::phasor::abs(self.command.response(mode.pole, 0.0, t))).abs()
+        };
         self.modes.iter().map(amplitude).collect()
     }
 }

@@ -1,13 +1,13 @@
 //! The command of the least integral of its square.
 
-use super::Refusal;
 use super::adjoint::Adjoint;
 use super::suppression::Zero;
 use super::task::Task;
-use super::waveform::Waveform;
+use crate::document::Fault;
+use crate::waveform::Waveform;
 
 /// The command: the sum of adjoint functions that has the task's products with each.
-pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Refusal> {
+pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
     let adjoint = Adjoint::new(task.time, zeros);
     match adjoint.least(&adjoint.products(task)) {
         Some(weights) => Ok(adjoint.waveform(&weights)),
@@ -16,7 +16,7 @@ pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Refusal> {
 }
 
 /// Why a time is too short for the zeros.
-pub fn too_short(time: f64) -> Refusal {
+pub fn too_short(time: f64) -> Fault {
     let why = format!("must be longer for the modes that are to be at rest after it, got {time} s");
-    ("time".to_owned(), why)
+    Fault::new("time", why)
 }

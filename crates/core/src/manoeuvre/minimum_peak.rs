@@ -7,13 +7,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Refusal;
 use super::adjoint::Adjoint;
 use super::bang_bang::pieces;
 use super::minimum_energy::too_short;
 use super::suppression::Zero;
 use super::task::Task;
-use super::waveform::Waveform;
+use crate::document::Fault;
+use crate::waveform::Waveform;
 
 /// Newton's steps at most; some thirty are needed.
 const STEPS: usize = 400;
@@ -21,7 +21,7 @@ const STEPS: usize = 400;
 const SAMPLES: f64 = 64.0;
 
 /// The command.
-pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Refusal> {
+pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
     let search = Search::new(task, zeros);
     let size = search.products.norm();
     if size == 0.0 {
@@ -91,7 +91,7 @@ impl Search {
             damping *= 10.0;
             if let Some((next, next_weights)) = reached {
                 let (next_value, next_gradient) = (self.value(&next_weights, &next), self.gap(&next));
-                // Near the end the value no longer tells, but the gradient does.
+                // Near the end the value no longer decides, but the gradient does.
                 if next_value < value || next_gradient.norm() < 0.5 * gradient.norm() {
                     (weights, bang, value, gradient) = (next_weights, next, next_value, next_gradient);
                     damping = (damping * 1e-2).max(1e-15);
@@ -165,7 +165,7 @@ impl Search {
         curvature
     }
 
-    /// Moves amplitude and switchings by the last rounding errors of the weights, or says that they are not small.
+    /// Moves amplitude and switchings by the last rounding errors of the weights, or reports that they are not small.
     fn polished(&self, mut bang: Bang, gradient: &DVector<f64>) -> Option<Bang> {
         if gradient.amax() > 1e-8 {
             return None;

@@ -9,24 +9,23 @@ mod field;
 mod history;
 mod minimum_energy;
 mod minimum_peak;
-mod phi;
 mod plan;
 mod planner;
 mod polynomial;
-pub(crate) mod quadrature;
 mod report;
 mod residual;
 mod series;
 mod shaper;
+mod slew;
 mod suppression;
 mod task;
 mod timing;
-mod waveform;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Planar;
+use crate::document::Fault;
 use crate::quantity::{Finite, Positive};
 use crate::time::Span;
 
@@ -39,13 +38,10 @@ pub use report::{Report, Tuned};
 pub use residual::Residual;
 pub use series::Coefficients;
 pub use shaper::{ExtraInsensitive, Impulse, Shaped, Shaper};
+pub use slew::{Pose, Profile, Slew};
 pub use suppression::{Suppression, Target};
-pub use waveform::{Shape, Term, Waveform};
 
 use planner::Planner;
-
-/// Why a manoeuvre cannot be planned: the key, below that of the manoeuvre itself, and what is wrong with it.
-pub type Refusal = (String, String);
 
 /// A manoeuvre as a scenario describes it. The body's modes rest at its start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -71,22 +67,22 @@ pub struct Manoeuvre {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shaper: Option<Shaper>,
     /// The body that the plan is made for; left out, the body itself. A campaign that draws keys of the body puts the
-    /// body as it is written here: what is planned does not know what is drawn.
+    /// body as it is written here: the plan does not depend on what is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<Planar>,
 }
 
 impl Manoeuvre {
     /// The plan of the manoeuvre for a body.
-    pub fn plan(&self, body: &Planar) -> Result<Plan, Refusal> {
+    pub fn plan(&self, body: &Planar) -> Result<Plan, Fault> {
         if let Some(index) = body.modes.iter().position(|mode| mode.damping.get() >= 1.0) {
             let damping = body.modes[index].damping.get();
             let why = format!("needs modes that oscillate, and the damping of mode {index} is {damping}");
-            return Err(("command".to_owned(), why));
+            return Err(Fault::new("command", why));
         }
         let planner = Planner::new(self, body)?;
         match (self.time.map(Span::seconds), self.peak_torque.map(Positive::get)) {
-            (None, None) => Err((String::new(), "needs a `time`, a `peak_torque` or both".to_owned())),
+            (None, None) => Err(Fault::new("", "needs a `time`, a `peak_torque` or both")),
             (None, Some(limit)) => timing::shortest(&planner, limit),
             (Some(time), None) => planner.plan(time),
             (Some(time), Some(limit)) => {
@@ -102,7 +98,7 @@ impl Manoeuvre {
                 };
                 let why =
                     format!("must be at least {peak:.6} N m for a time of {time} s, got {limit}; {takes}");
-                Err(("peak_torque".to_owned(), why))
+                Err(Fault::new("peak_torque", why))
             }
         }
     }

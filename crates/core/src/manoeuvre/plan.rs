@@ -4,8 +4,8 @@ use super::extremum::{self, Peak};
 use super::history::{History, torque};
 use super::residual;
 use super::series::Coefficients;
-use super::waveform::Waveform;
 use crate::body::{Drive, Planar};
+use crate::waveform::Waveform;
 
 /// A planned manoeuvre of a body whose modes rest at its start.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Plan {
     }
 
     /// The largest torque on the hub (N m), and when: that of the command, or where the hub's motion is commanded, what
-    /// makes it move so against the modes (seed paper 2, equation (17)).
+    /// makes it move so against the modes (\[Rotation\], equation (17)).
     pub fn peak_torque(&self, body: &Planar) -> Peak {
         match body.drive {
             Drive::Torque => self.peak(),

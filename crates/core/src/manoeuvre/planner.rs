@@ -1,12 +1,13 @@
 //! Planning a manoeuvre for a time.
 
+use super::Manoeuvre;
 use super::command::Command;
 use super::plan::Plan;
 use super::shaper::{Impulse, shaped};
 use super::suppression::Zero;
 use super::task::Task;
-use super::{Manoeuvre, Refusal};
 use crate::body::Planar;
+use crate::document::Fault;
 
 /// A manoeuvre of a body, all of whose keys are good, for any time.
 pub struct Planner<'a> {
@@ -23,12 +24,12 @@ pub struct Planner<'a> {
 
 impl<'a> Planner<'a> {
     /// A planner, if the manoeuvre fits the body.
-    pub fn new(manoeuvre: &'a Manoeuvre, body: &'a Planar) -> Result<Self, Refusal> {
+    pub fn new(manoeuvre: &'a Manoeuvre, body: &'a Planar) -> Result<Self, Fault> {
         let (angle, start_rate, end_rate) =
             (manoeuvre.angle.get(), manoeuvre.start_rate.get(), manoeuvre.end_rate.get());
         if angle == 0.0 && start_rate == end_rate {
             let why = "must not be 0 where the rates before and after are the same, got 0";
-            return Err(("angle".to_owned(), why.to_owned()));
+            return Err(Fault::new("angle", why));
         }
         let zeros = manoeuvre.command.zeros(&body.modes)?;
         let impulses = match &manoeuvre.shaper {
@@ -46,11 +47,11 @@ impl<'a> Planner<'a> {
     }
 
     /// The plan for a time (s).
-    pub fn plan(&self, time: f64) -> Result<Plan, Refusal> {
+    pub fn plan(&self, time: f64) -> Result<Plan, Fault> {
         let shaper = self.shaper();
         if shaper >= time {
             let why = format!("must be longer than the shaper, which takes {shaper} s, got {time} s");
-            return Err(("time".to_owned(), why));
+            return Err(Fault::new("time", why));
         }
         let impulse = self.inertia * (self.end_rate - self.start_rate);
         let travel = self.inertia * (self.angle - self.start_rate * time);
@@ -73,7 +74,7 @@ impl<'a> Planner<'a> {
         if plan.waveform.is_finite() {
             return Ok(plan);
         }
-        Err(("time".to_owned(), format!("must be one for which the command is finite, got {time} s")))
+        Err(Fault::new("time", format!("must be one for which the command is finite, got {time} s")))
     }
 
     /// The time (s) below which no command of this peak torque (N m) turns the rigid body.

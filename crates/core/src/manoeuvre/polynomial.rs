@@ -1,7 +1,7 @@
 //! Commands whose angle is the smooth polynomial of an odd degree.
 
 use super::task::Task;
-use super::waveform::{Shape, Term, Waveform};
+use crate::waveform::{Shape, Term, Waveform};
 
 /// The degrees that the angle may have.
 pub const DEGREES: [u32; 6] = [3, 5, 7, 9, 11, 13];

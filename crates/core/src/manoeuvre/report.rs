@@ -9,8 +9,8 @@ use super::history::History;
 use super::plan::{fastest, sampling};
 use super::residual::{Residual, coordinates, residuals};
 use super::timing::{Single, tuned};
-use super::waveform::Shape;
 use crate::body::{Drive, Planar};
+use crate::waveform::Shape;
 
 /// Times are tuned to so many modes of the lowest frequencies.
 const TUNED: usize = 3;

@@ -5,7 +5,7 @@ use super::plan::sampling;
 use super::{Plan, extremum};
 use crate::body::{Drive, Planar};
 
-/// The band that is always told of.
+/// The band that is always reported.
 pub const NEAR: f64 = 0.05;
 
 /// What is left in a coordinate after the manoeuvre.

@@ -1,4 +1,4 @@
-//! Commands as series of sines or of cosines that leave chosen modes at rest (seed paper 2, equations (19) to (30)).
+//! Commands as series of sines or of cosines that leave chosen modes at rest (\[Rotation\], equations (19) to (30)).
 //!
 //! With T the time of the manoeuvre and sigma = 2 pi/T the command is a constant A0, a series with the harmonics
 //! kappa that carries the travel, and, where A0 is not zero, a series of k sigma that takes out what A0 does to the modes.
@@ -21,8 +21,8 @@ use std::f64::consts::PI;
 
 use super::suppression::Zero;
 use super::task::Task;
-use super::waveform::{Shape, Term, Waveform};
-use crate::phasor::Phasor;
+use crate::numerics::phasor::Phasor;
+use crate::waveform::{Shape, Term, Waveform};
 
 /// The amplitudes of a series, in units of the command.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,7 +44,7 @@ pub enum Family {
     Cosine,
 }
 
-/// The command, and the amplitudes that are told of it.
+/// The command, and the amplitudes to report.
 pub fn plan(family: Family, task: &Task, zeros: &[Zero]) -> (Waveform, Coefficients) {
     let sigma = 2.0 * PI / task.time;
     let constant = task.mean();

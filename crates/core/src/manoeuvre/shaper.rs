@@ -1,13 +1,13 @@
-//! Input shapers: a command convolved with a few impulses, which takes modes out of it.
+//! Input shapers: a command convolved with a few impulses, which takes modes out of it (\[SingerSeering90\]).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Refusal;
 use super::suppression::{Zero, index_beyond};
-use super::waveform::Waveform;
 use crate::body::Mode;
+use crate::document::Fault;
 use crate::quantity::Fraction;
+use crate::waveform::Waveform;
 
 /// The kinds of shaper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -63,7 +63,7 @@ pub struct Impulse {
 
 impl Shaper {
     /// The impulses for these modes of a body: a sequence for each, convolved. They are half a damped period apart.
-    pub fn impulses(&self, modes: &[Mode]) -> Result<Vec<Impulse>, Refusal> {
+    pub fn impulses(&self, modes: &[Mode]) -> Result<Vec<Impulse>, Fault> {
         let (name, indices, areas) = match self {
             Self::Zv(shaped) => ("zv", &shaped.modes, vec![1.0, 1.0]),
             Self::Zvd(shaped) => ("zvd", &shaped.modes, vec![1.0, 2.0, 1.0]),
@@ -75,19 +75,22 @@ impl Shaper {
         };
         let key = format!("shaper.{name}.modes");
         if indices.is_empty() {
-            return Err((key, "must hold the index of a mode, got none".to_owned()));
+            return Err(Fault::new(key, "must hold the index of a mode, got none"));
         }
         let mut impulses = vec![Impulse { delay: 0.0, area: 1.0 }];
         for (place, &index) in indices.iter().enumerate() {
             let Some(mode) = modes.get(index) else {
-                return Err((format!("{key}[{place}]"), index_beyond(index, modes)));
+                return Err(Fault::new(format!("{key}[{place}]"), index_beyond(index, modes)));
             };
             let own = sequence(&areas, &Zero::of(mode));
             let later =
                 |a: &Impulse, b: &Impulse| Impulse { delay: a.delay + b.delay, area: a.area * b.area };
             impulses = impulses.iter().flat_map(|a| own.iter().map(move |b| later(a, b))).collect();
             if impulses.len() > 4096 {
-                return Err((key, format!("must make at most 4096 impulses, got {} modes", indices.len())));
+                return Err(Fault::new(
+                    key,
+                    format!("must make at most 4096 impulses, got {} modes", indices.len()),
+                ));
             }
         }
         Ok(impulses)

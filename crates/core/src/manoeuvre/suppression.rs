@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Refusal;
 use crate::body::Mode;
-use crate::phasor::Phasor;
+use crate::document::Fault;
+use crate::numerics::phasor::Phasor;
 use crate::quantity::Finite;
 
 /// No command has more zeros.
@@ -65,7 +65,7 @@ impl Zero {
 
 impl Suppression {
     /// The zeros, by frequency. `place` is the key of the table.
-    pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Refusal> {
+    pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Fault> {
         let mut zeros = lowest(self.suppress, modes, place)?;
         let beside: usize = self.zeros.iter().map(|target| target.times as usize).sum();
         if zeros.len() + beside > MOST {
@@ -73,20 +73,20 @@ impl Suppression {
                 "must make at most {MOST} zeros together with `suppress`, got {}",
                 zeros.len() + beside
             );
-            return Err((format!("{place}.zeros"), why));
+            return Err(Fault::new(format!("{place}.zeros"), why));
         }
         for (index, target) in self.zeros.iter().enumerate() {
             let key = |name: &str| format!("{place}.zeros[{index}].{name}");
             let Some(mode) = modes.get(target.mode) else {
-                return Err((key("mode"), index_beyond(target.mode, modes)));
+                return Err(Fault::new(key("mode"), index_beyond(target.mode, modes)));
             };
             let factor = 1.0 + target.shift.get();
             if factor <= 0.0 {
                 let why = format!("must be above -1, for a frequency above 0, got {}", target.shift.get());
-                return Err((key("shift"), why));
+                return Err(Fault::new(key("shift"), why));
             }
             if target.times == 0 {
-                return Err((key("times"), "must be 1 or more, got 0".to_owned()));
+                return Err(Fault::new(key("times"), "must be 1 or more, got 0"));
             }
             let zero = Zero { frequency: factor * mode.frequency.get(), damping: mode.damping.get() };
             zeros.extend(std::iter::repeat_n(zero, target.times as usize));
@@ -97,14 +97,14 @@ impl Suppression {
 }
 
 /// The zeros at so many modes of the lowest frequencies. `place` is the key of the table that has the number.
-pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Refusal> {
+pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Fault> {
     let key = || format!("{place}.suppress");
     if count > modes.len() {
         let why = format!("must be at most the number of the body's modes, {}, got {count}", modes.len());
-        return Err((key(), why));
+        return Err(Fault::new(key(), why));
     }
     if count > MOST {
-        return Err((key(), format!("must be at most {MOST}, got {count}")));
+        return Err(Fault::new(key(), format!("must be at most {MOST}, got {count}")));
     }
     let mut zeros: Vec<Zero> = modes.iter().map(Zero::of).collect();
     zeros.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));

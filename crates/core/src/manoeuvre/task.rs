@@ -12,7 +12,7 @@ pub struct Task {
 }
 
 impl Task {
-    /// The mean of the command, A0 = J (Omega_T - Omega_0)/T (seed paper 2, equations (22) and (28); (22) has the sign
+    /// The mean of the command, A0 = J (Omega_T - Omega_0)/T (\[Rotation\], equations (22) and (28); (22) has the sign
     /// of the difference wrong).
     pub fn mean(&self) -> f64 {
         self.impulse / self.time

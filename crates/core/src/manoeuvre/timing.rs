@@ -1,8 +1,8 @@
 //! The shortest time of a manoeuvre whose peak torque is limited, and the times to which a single harmonic is tuned.
 
-use super::Refusal;
 use super::plan::Plan;
 use super::planner::Planner;
+use crate::document::Fault;
 
 /// The search goes up by this factor until the peak is low enough.
 const STRIDE: f64 = 1.02;
@@ -10,7 +10,7 @@ const STRIDE: f64 = 1.02;
 const STRIDES: usize = 480;
 
 /// The plan of the shortest time whose peak torque (N m) does not exceed a limit.
-pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Refusal> {
+pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Fault> {
     let bound = planner.rigid_bound(limit);
     let mut low = match planner.body.drive {
         crate::body::Drive::Torque => bound,
@@ -19,7 +19,7 @@ pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Refusal> {
     }
     .max(planner.shaper() * (1.0 + 1e-9));
     // Where the bound itself is the time, its rounding is forgiven.
-    let peak = |time: f64| -> Result<f64, Refusal> {
+    let peak = |time: f64| -> Result<f64, Fault> {
         let plan = planner.plan(time)?;
         Ok(plan.peak_torque(planner.body).value / limit - 1.0)
     };
@@ -42,8 +42,8 @@ pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Refusal> {
     Err(impossible(limit))
 }
 
-fn impossible(limit: f64) -> Refusal {
-    ("peak_torque".to_owned(), format!("must be enough for the command in some time, got {limit} N m"))
+fn impossible(limit: f64) -> Fault {
+    Fault::new("peak_torque", format!("must be enough for the command in some time, got {limit} N m"))
 }
 
 /// Where a function falls through zero, from above: a point at which it is not above, to 1e-13 of it.

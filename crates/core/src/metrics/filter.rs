@@ -1,4 +1,4 @@
-//! How well a Kalman filter does: errors, and whether it knows how large they are.
+//! How well a Kalman filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
 use super::{
     FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told,
@@ -35,8 +35,8 @@ impl Filter {
         let estimator = scenario.estimator.as_ref().filter(|estimator| estimator.filters())?;
         Some(Self {
             assess: estimator.assess(),
-            states: estimator.states(scenario.model.modes.len()) as f64,
-            measurements: 1 + usize::from(scenario.sensor.rate_noise().is_some()),
+            states: estimator.states(scenario.mode_count()) as f64,
+            measurements: 1 + usize::from(scenario.sensor.rate_noise(0).is_some()),
             count: (0, 0),
             nees: 0.0,
             nis: 0.0,
@@ -47,14 +47,20 @@ impl Filter {
         })
     }
 
-    /// Takes what the filter made of a sample.
-    pub fn see(&mut self, now: Instant, estimate: &Estimate) {
+    /// Takes what the filters of all axes made of a sample.
+    pub fn see(&mut self, now: Instant, estimates: &[Estimate]) {
         let t = now.seconds();
-        if estimate.lock == Lock::Lost {
+        if estimates.iter().any(|estimate| estimate.lock == Lock::Lost) {
             self.lost_at.get_or_insert(t);
         } else {
             self.lost_at = None;
         }
+        for estimate in estimates {
+            self.judge(t, estimate);
+        }
+    }
+
+    fn judge(&mut self, t: f64, estimate: &Estimate) {
         let [from, to] = self.assess;
         if t < from || t > to {
             return;

@@ -1,7 +1,7 @@
 //! Whether a run meets its goal: inside a band about it, without a break, up to the end.
 
 use super::{GOAL, GOAL_BAND, TIME_OUTSIDE, Told, Value};
-use crate::polynomial::Polynomial;
+use crate::numerics::polynomial::Polynomial;
 
 /// The goal is met if the run ends with so much of its time inside the band.
 const LAST: f64 = 0.1;

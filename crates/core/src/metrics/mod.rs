@@ -1,5 +1,6 @@
 //! Metrics: what a run comes to, as named numbers with units.
 
+mod attitude;
 mod filter;
 pub mod goal;
 mod rotation;
@@ -14,6 +15,7 @@ use crate::record::{self, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
+use attitude::Known;
 use filter::Filter;
 use rotation::Rotation;
 use spatial::Spatial;
@@ -141,6 +143,10 @@ metrics! {
     FREQUENCY_ERROR_RMS = "frequency_error_rms_rad_s", "rad/s",
         "Root mean square error of the dominant mode's frequency as the law reads it, over the assessed samples";
     FREQUENCY_ERROR_MAX = "frequency_error_max_rad_s", "rad/s", "Largest such error";
+    ATTITUDE_ERROR = "attitude_estimate_error_rms_rad", "rad",
+        "Root mean square of what the estimated attitude is off by, as a vector of three axes, over the assessed samples";
+    BIAS_ERROR = "bias_estimate_error_rms_rad_s", "rad/s",
+        "The same of the estimated bias of the gyro";
     LOCK_LOST = "lock_lost", "", "1 if the filter has lost the body at the end of the run, else 0";
     LOCK_LOST_AT = "lock_lost_at_s", "s", "When it lost it for good; null if it did not";
     FUEL = "fuel_kg", "kg", "Propellant that the jets used";
@@ -150,7 +156,7 @@ metrics! {
         "Largest energy of motion and deformation of the elastic modes, at the starts of the law's cycles";
     ELASTIC_END = "elastic_energy_end_j", "J", "The same at the last cycle";
     VISIBLE_PEAK = "visible_energy_peak_j", "J",
-        "Largest elastic energy of the modes that the gyro sees: those that turn it at least a tenth as much as the one that does most";
+        "Largest elastic energy of the modes that the sensor sees: those that turn it at least a tenth as much as the one that does most";
     VISIBLE_END = "visible_energy_end_j", "J", "The same at the last cycle";
     BELOW_10 = "energy_below_10pct_at_s", "s",
         "First cycle at which the elastic energy is below a tenth of that at the start; null if there is none";
@@ -282,6 +288,7 @@ impl Value {
 pub struct Gather {
     kind: Kind,
     filter: Option<Filter>,
+    known: Option<Known>,
     tracked: Tracked,
 }
 
@@ -299,14 +306,19 @@ enum Kind {
 impl Gather {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        let kind = if let Some(spatial) = &scenario.spatial {
-            Kind::Spatial(Box::new(Spatial::new(scenario, spatial)))
+        let kind = if scenario.axis_count() == 3 {
+            Kind::Spatial(Box::new(Spatial::new(scenario)))
         } else if scenario.law.switches() {
             Kind::Switchings(Box::new(Switchings::new(scenario)))
         } else {
             Kind::Rotation(Box::new(Rotation::new(scenario)))
         };
-        Self { kind, filter: Filter::new(scenario), tracked: Tracked::new(scenario) }
+        Self {
+            kind,
+            filter: Filter::new(scenario),
+            known: Known::new(scenario),
+            tracked: Tracked::new(scenario),
+        }
     }
 
     /// The metrics of the run that has ended.
@@ -318,13 +330,14 @@ impl Gather {
         };
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(Filter::finish));
+        metrics.extend(self.known.into_iter().flat_map(Known::finish));
         Metrics(metrics)
     }
 }
 
 impl Record for Gather {
     fn estimates(&self) -> bool {
-        self.filter.is_some()
+        self.filter.is_some() || self.known.is_some()
     }
 
     fn course(&self) -> record::Course {
@@ -344,8 +357,13 @@ impl Record for Gather {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        if let (Some(filter), Sample::Estimate(estimate)) = (&mut self.filter, sample) {
-            filter.see(now, estimate);
+        match (&mut self.filter, sample) {
+            (Some(filter), Sample::Estimate(estimate)) => filter.see(now, std::slice::from_ref(estimate)),
+            (Some(filter), Sample::Estimates(estimates)) => filter.see(now, &estimates.axes),
+            _ => {}
+        }
+        if let (Some(known), Sample::AttitudeEstimate(estimate)) = (&mut self.known, sample) {
+            known.see(now, estimate);
         }
         match &mut self.kind {
             Kind::Switchings(switchings) => switchings.record(now, sample),

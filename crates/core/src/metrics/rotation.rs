@@ -12,7 +12,7 @@ use super::{
 use crate::analysis::sampled_loop::{Held, Loop};
 use crate::body::Stretch;
 use crate::law::{Goal, Law, Promise};
-use crate::polynomial::Polynomial;
+use crate::numerics::polynomial::Polynomial;
 use crate::record::{Arrival, Course, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;

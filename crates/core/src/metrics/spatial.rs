@@ -7,7 +7,7 @@ use super::{
 };
 use crate::quantity::Positive;
 use crate::record::Cycle;
-use crate::scenario::{Scenario, SpatialLoop};
+use crate::scenario::Scenario;
 use crate::time::Instant;
 
 /// The elastic rates are judged over so much of the run's end (s).
@@ -18,6 +18,8 @@ const LATE: f64 = 200.0;
 pub struct Spatial {
     /// From when on a cycle is late (s).
     late: f64,
+    /// Whether there are jets, whose propellant and pulses count.
+    jets: bool,
     fuel: f64,
     /// Pulses, and cycles with any.
     firings: (u64, u64),
@@ -39,16 +41,19 @@ pub struct Spatial {
 
 impl Spatial {
     /// An empty gathering for runs of a scenario.
-    pub fn new(scenario: &Scenario, spatial: &SpatialLoop) -> Self {
+    pub fn new(scenario: &Scenario) -> Self {
         let end = Instant::START + scenario.duration;
-        let bands = scenario.reference.band.map_or(spatial.bands, |band| [Positive::get(band); 3]);
-        let from = spatial.law.last_target(end).seconds();
+        let own: [f64; 3] =
+            std::array::from_fn(|axis| scenario.study.bands.get(axis).copied().flatten().unwrap_or(f64::NAN));
+        let bands = scenario.reference.band.map_or(own, |band| [Positive::get(band); 3]);
+        let from = scenario.study.last_target(end).seconds();
         Self {
             verdict: Verdict::new(from, bands.into_iter().fold(0.0, f64::max)),
             bands,
             outside: None,
             end: end.seconds(),
             late: scenario.duration.seconds() - LATE,
+            jets: scenario.study.fires(),
             fuel: 0.0,
             firings: (0, 0),
             energy: (f64::NAN, 0.0, f64::NAN),
@@ -94,10 +99,12 @@ impl Spatial {
             self.verdict.outside(since, self.end);
         }
         let [tenth, hundredth] = self.below;
-        let metrics = [
+        let jets = [
             (&FUEL, Value::Number(self.fuel)),
             (&FIRINGS, Value::Count(self.firings.0)),
             (&FIRING_CYCLES, Value::Count(self.firings.1)),
+        ];
+        let metrics = [
             (&ELASTIC_PEAK, Value::Number(self.energy.1)),
             (&ELASTIC_END, Value::Number(self.energy.2)),
             (&VISIBLE_PEAK, Value::Number(self.visible.0)),
@@ -107,6 +114,7 @@ impl Spatial {
             (&ELASTIC_RATE, Value::Number(libm::sqrt(self.square.0 / self.square.1 as f64))),
             (&POINTING_END, Value::Number(self.error)),
         ];
-        metrics.into_iter().chain(self.verdict.finish(self.end)).collect()
+        let jets = jets.into_iter().filter(|_| self.jets);
+        jets.chain(metrics).chain(self.verdict.finish(self.end)).collect()
     }
 }

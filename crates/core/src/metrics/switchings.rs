@@ -43,7 +43,7 @@ impl Switchings {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         // The multipliers are those of modes that move on their own.
-        let smooth = scenario.sensor.period().is_none() && scenario.linear.is_none();
+        let smooth = scenario.study.sampling.is_none() && scenario.linear.is_none();
         Self {
             duration: scenario.duration.seconds(),
             reference: scenario.reference.envelope.map(crate::quantity::Positive::get),
@@ -162,7 +162,7 @@ fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<Told> {
 
 impl Record for Switchings {
     fn course(&self) -> Course {
-        // About a goal that is 0 from the start on, bounds of the angle tell most motions to be inside.
+        // About a goal that is 0 from the start on, bounds of the angle show most motions to be inside.
         if self.goal == Goal::default() { Course::Beyond(self.verdict.band()) } else { Course::All }
     }
 

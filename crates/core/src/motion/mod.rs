@@ -1,3 +1,4 @@
 //! How a body moves between events.
 
 pub mod linear;
+pub mod turning;

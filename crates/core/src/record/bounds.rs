@@ -1,4 +1,4 @@
-//! Reading MCAP records that nobody vouches for: every length is checked against what is there before it is used.
+//! Reading untrusted MCAP records: every length is checked against what is there before it is used.
 
 use std::ops::ControlFlow;
 

@@ -27,14 +27,6 @@ pub enum LogError {
         /// Why.
         source: std::io::Error,
     },
-    /// The file cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Unwritable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
     /// The file ends early: its run was killed.
     #[error(
         "{}: the log is torn (its run was killed, or still runs)\n\nhint: `flexsc log recover {}` saves \
@@ -121,7 +113,7 @@ impl Log {
 
     /// Reads a log that is in memory. `path` is what errors call it.
     ///
-    /// The summary at the end of a file tells where things are; it is not asked, as its offsets may lie.
+    /// The summary at the end of a file has an index; it is not used, as its offsets may be wrong.
     pub fn read(path: &Path, bytes: Vec<u8>) -> Result<Self, LogError> {
         let damaged = |source| LogError::Damaged { path: path.to_owned(), source };
         if !bytes.starts_with(mcap::MAGIC) {
@@ -165,7 +157,7 @@ impl Log {
         &self.topics
     }
 
-    /// What the log says about its run: `scenario`, `seed`, `run`, `version`, `end`, ...
+    /// The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ...
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.metadata
     }

@@ -5,10 +5,10 @@ use std::io::{self, BufWriter, Seek, Write};
 use std::path::Path;
 
 use mcap::records::{MessageHeader, Metadata};
-use mcap::{Attachment, McapError, WriteOptions, Writer};
+use mcap::{McapError, WriteOptions, Writer};
 
 use super::message::{Encode, Message, Messages};
-use super::{Detail, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
+use super::{Attachment, Detail, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
 use crate::metrics::Metrics;
 use crate::time::Instant;
 use crate::whole::Partial;
@@ -27,10 +27,9 @@ impl<W: Write + Seek> McapLog<W> {
         let options =
             WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
         let mut writer = Writer::with_options(writer, options).map_err(failure)?;
-        attach(&mut writer, "scenario.toml", "application/toml", &from.toml)?;
-        if let Some(layout) = &from.layout {
-            let layout = layout.of_detail(detail).to_json();
-            attach(&mut writer, "layout.json", "application/json", &layout)?;
+        attach(&mut writer, "scenario.toml", "application/toml", from.toml.as_bytes())?;
+        for Attachment { name, media_type, data } in &from.attachments {
+            attach(&mut writer, name, media_type, data)?;
         }
         let metadata = [
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
@@ -127,7 +126,7 @@ impl LogFile {
         Ok(Self { log: McapLog::new(file, from, detail)? })
     }
 
-    /// Finishes the log, gives it its final name, and tells its size in bytes. A log that cannot be finished is
+    /// Finishes the log, gives it its final name, and returns its size in bytes. A log that cannot be finished is
     /// removed.
     pub fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<u64, RecordError> {
         let file = self.log.finish(metrics, end)?;
@@ -154,14 +153,14 @@ fn attach<W: Write + Seek>(
     writer: &mut Writer<W>,
     name: &str,
     media_type: &str,
-    text: &str,
+    data: &[u8],
 ) -> Result<(), RecordError> {
-    let attachment = Attachment {
+    let attachment = mcap::Attachment {
         log_time: 0,
         create_time: 0,
         name: name.to_owned(),
         media_type: media_type.to_owned(),
-        data: text.as_bytes().into(),
+        data: data.into(),
     };
     writer.attach(&attachment).map_err(failure)
 }

@@ -5,11 +5,10 @@ use super::proto::Encoder;
 use super::row::{Stamp, TopicRow};
 use super::topics::index_of;
 use super::{Detail, OutputName, Params, Record, RecordError, Sample, Summary, TakeRow};
-use crate::layout::Layout;
 use crate::metrics::Metrics;
 use crate::time::Instant;
 
-/// What a log says about where it comes from.
+/// The provenance of a log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// Name of the scenario.
@@ -24,8 +23,19 @@ pub struct Provenance {
     pub epoch_ns: u64,
     /// The observed coordinates, in the order in which they are logged.
     pub outputs: Vec<OutputName>,
-    /// A viewer layout for the run.
-    pub layout: Option<Layout>,
+    /// What lies in the log beside its messages and its scenario.
+    pub attachments: Vec<Attachment>,
+}
+
+/// A file within a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Attachment {
+    /// Its name, such as `layout.json`.
+    pub name: &'static str,
+    /// Its media type, such as `application/json`.
+    pub media_type: &'static str,
+    /// What it holds.
+    pub data: Vec<u8>,
 }
 
 /// How a run ended.

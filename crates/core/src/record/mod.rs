@@ -28,19 +28,20 @@ use crate::time::Instant;
 pub use columns::{Column, Columns};
 pub use log::{Log, LogError};
 pub use mcap::{LogFile, McapLog};
-pub use message::{Encode, Message, Messages, Provenance, RunEnd};
+pub use message::{Attachment, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;
 pub use states::{Gate, Latch, Lock, Trust, Use, Watch};
 pub use topics::{
-    Adaptation, Arrival, Attitude, AxisRate, ChannelState, Command, Energy, Envelope, Estimate, GoalMotion,
-    Jets, Law, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes,
-    OutputMotion, OutputName, Outputs, Params, Pointing, Rate, Rates, Residual, Summary, TOPICS, Torque,
-    TrackedMode, Tracking, Trigger, Vibration, Vibrations, WheelMotion, WindowMean,
+    Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, ChannelState, Command, Energy,
+    Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Metric, MetricLine, MetricPage, Metrics,
+    ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Pointing, Rate,
+    Rates, Residual, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
+    Wheel, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
-/// What a simulation tells while it runs.
+/// What a simulation reports while it runs.
 #[derive(Copy, Clone, Debug)]
 pub enum Sample<'a> {
     /// The run begins with the law in this state.
@@ -59,7 +60,11 @@ pub enum Sample<'a> {
     Arrival(&'a Arrival),
     /// A filter took a sample.
     Estimate(&'a Estimate),
-    /// A cycle of a spatial loop began.
+    /// Filters of three axes took a sample.
+    Estimates(&'a Estimates),
+    /// An attitude filter took a sample.
+    AttitudeEstimate(&'a AttitudeEstimate),
+    /// A cycle of a body with three axes began.
     Cycle(&'a Cycle),
     /// What adaptive observers know after a cycle's sample.
     Tracking(&'a Tracking),
@@ -82,6 +87,8 @@ impl Sample<'_> {
             Self::Motion(_)
             | Self::Law(_)
             | Self::Estimate(_)
+            | Self::Estimates(_)
+            | Self::AttitudeEstimate(_)
             | Self::Tracking(_)
             | Self::SpatialMotion(_) => Detail::Full,
             Self::Scene(_) | Self::Frames(_) | Self::Plumes(_) => Detail::Scene,
@@ -139,6 +146,10 @@ pub struct SpatialMotion {
     pub vibrations: Vibrations,
     /// Energies.
     pub energy: Energy,
+    /// Torques of actuators that are no jets.
+    pub torques: Option<Torques>,
+    /// Wheels about axes of their own.
+    pub wheels: Option<Wheels>,
 }
 
 /// Which motions a record wants whole, stretch by stretch.
@@ -171,7 +182,7 @@ pub trait Record {
         false
     }
 
-    /// Whether the record wants what a filter makes of each sample.
+    /// Whether the record takes a filter's estimate at each sample.
     fn estimates(&self) -> bool {
         self.dense()
     }
@@ -342,6 +353,8 @@ trait TakeRow {
             Sample::Adaptation(step) => self.take(now, step),
             Sample::Arrival(arrival) => self.take(now, arrival),
             Sample::Estimate(estimate) => self.take(now, estimate),
+            Sample::Estimates(estimates) => self.take(now, estimates),
+            Sample::AttitudeEstimate(estimate) => self.take(now, estimate),
             Sample::Tracking(tracking) => self.take(now, tracking),
             Sample::Log(line) => self.take(now, line),
             Sample::Scene(scene) => self.take(now, scene),
@@ -353,7 +366,11 @@ trait TakeRow {
                 self.take(now, &motion.pointing)?;
                 self.take(now, &motion.rates)?;
                 self.take(now, &motion.vibrations)?;
-                self.take(now, &motion.energy)
+                self.take(now, &motion.energy)?;
+                if let Some(torques) = &motion.torques {
+                    self.take(now, torques)?;
+                }
+                motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
             }
             Sample::Motion(motion) => {
                 self.take(now, &motion.attitude)?;

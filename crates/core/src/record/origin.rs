@@ -72,7 +72,7 @@ fn first_difference<'a>(within: &str, there: &'a Table, here: &'a Table) -> Opti
     })
 }
 
-/// Where a log comes from, as it says itself.
+/// Where a log comes from, by its own metadata.
 struct Origin {
     toml: String,
     version: String,
@@ -81,7 +81,7 @@ struct Origin {
 }
 
 impl Origin {
-    /// Reads a log up to what it says about its run, which stands before all messages.
+    /// Reads a log up to the metadata of its run, which stands before all messages.
     fn read(mut file: impl Read) -> Option<Self> {
         let options = LinearReaderOptions::default().with_record_length_limit(LARGEST);
         let mut reader = LinearReader::new_with_options(options);

@@ -12,10 +12,9 @@ use mcap::{McapError, WriteOptions, Writer};
 use super::LogError;
 use super::bounds::walk;
 use super::log::read_file;
-use crate::whole;
 
-/// Copies what is whole in a torn log into a new one, and tells how many messages it saved.
-pub fn recover(torn: &Path, path: &Path) -> Result<u64, LogError> {
+/// A log of what is whole in a torn one, and how many messages were saved.
+pub fn recover(torn: &Path) -> Result<(Vec<u8>, u64), LogError> {
     let bytes = read_file(torn)?;
     let damaged = |source| LogError::Damaged { path: torn.to_owned(), source };
     // In memory, where the torn log is too: what cannot be recovered leaves no file.
@@ -24,9 +23,7 @@ pub fn recover(torn: &Path, path: &Path) -> Result<u64, LogError> {
     let mut writer = Writer::with_options(Cursor::new(Vec::new()), options).map_err(damaged)?;
     let saved = copy_records(&bytes, &mut writer).map_err(damaged)?;
     writer.finish().map_err(damaged)?;
-    let unwritable = |source| LogError::Unwritable { path: path.to_owned(), source };
-    whole::write(path, writer.into_inner().get_ref()).map_err(unwritable)?;
-    Ok(saved)
+    Ok((writer.into_inner().into_inner(), saved))
 }
 
 /// Copies records up to the first one that cannot be read, which is where the log was torn.

@@ -1,6 +1,6 @@
 //! Where the fields of a protobuf message go: the columns of a schema, and messages put into them.
 //!
-//! A schema comes from a file that nobody vouches for. Its fields are counted before there are columns, and messages are read
+//! A schema comes from an untrusted file. Its fields are counted before there are columns, and messages are read
 //! straight into columns, so that nothing takes more memory than what is kept of it.
 
 use prost_reflect::{DescriptorPool, EnumDescriptor, FieldDescriptor, Kind, MessageDescriptor};
@@ -134,7 +134,7 @@ fn another(columns: &mut Columns, place: usize) -> &mut Columns {
     inner
 }
 
-/// Begins a row: every field has the value that it has where a message does not tell it.
+/// Begins a row: every field has its default value.
 pub fn begin(columns: &mut Columns, budget: &mut Budget) -> Result<(), String> {
     budget.spend(size_of::<String>() * columns.columns.len())?;
     for (_, column) in &mut columns.columns {

@@ -3,7 +3,7 @@
 use super::{MetricLine, MetricPage, Summary};
 use crate::metrics::{Metrics, Told, Value};
 
-/// Of a longer list no more values are told.
+/// Of a longer list no more values are written.
 const MOST_VALUES: usize = 6;
 
 impl Summary {

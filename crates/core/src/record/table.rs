@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::shape::{Shape, begin};
 use super::{Column, Columns};
 
-/// How messages are encoded, as a log says.
+/// How the messages of a log are encoded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schema {
     /// Full name of the message.

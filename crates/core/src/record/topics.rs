@@ -247,6 +247,64 @@ rows! {
         /// About x, y and z.
         axes: Vec<AxisRate>,
     }
+    /// The torques on a spatial body whose actuators are no jets, or that something is around.
+    Torques = "/torques" {
+        /// About x, y and z.
+        axes: Vec<Torque>,
+    }
+    /// What Kalman filters make of a sample about each of three axes.
+    Estimates = "/estimators" {
+        /// About x, y and z: angles count from the target.
+        axes: Vec<Estimate>,
+    }
+    /// What an attitude filter makes of a sample about one axis of the body.
+    AxisEstimate {
+        /// Estimated angle beyond the true one (rad).
+        angle_error_rad: f64,
+        /// Standard deviation of the angle (rad).
+        angle_sd_rad: f64,
+        /// Estimated bias of the gyro (rad/s).
+        bias_rad_s: f64,
+        /// What it exceeds the true one by (rad/s).
+        bias_error_rad_s: f64,
+        /// Standard deviation of the bias (rad/s).
+        bias_sd_rad_s: f64,
+        /// The measured angle beyond the predicted one, when it was taken (rad); 0 without a measurement.
+        innovation_rad: f64,
+    }
+    /// What an attitude filter makes of a sample.
+    AttitudeEstimate = "/attitude_filter" {
+        /// Real part of the quaternion that is estimated to turn vectors of the body into inertial ones.
+        q_w: f64,
+        /// Its part along x.
+        q_x: f64,
+        /// Its part along y.
+        q_y: f64,
+        /// Its part along z.
+        q_z: f64,
+        /// About x, y and z.
+        axes: Vec<AxisEstimate>,
+        /// Normalised estimation error squared, over 6 numbers.
+        nees: f64,
+        /// Normalised innovation squared, over 3 numbers; 0 without a measurement.
+        nis: f64,
+        /// Whether an attitude was measured.
+        measured: Use,
+    }
+    /// The wheels of a spatial body.
+    Wheels = "/wheels" {
+        /// Each wheel, in the order of the scenario.
+        wheels: Vec<Wheel>,
+    }
+    /// A wheel about an axis of its own.
+    Wheel {
+        /// Speed relative to the body (rad/s).
+        speed_rad_s: f64,
+        /// Absolute angular momentum about its axis (N m s).
+        momentum_nm_s: f64,
+        /// Torque of its motor (N m).
+        torque_nm: f64,
+    }
     /// The attitude of a spatial body.
     Pointing = "/pointing" {
         /// Real part of the quaternion that turns vectors of the body into inertial ones.

@@ -3,21 +3,23 @@
 use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
 use crate::actuator::{Actuator, Wheel};
-use crate::adaptation::Adaptation;
-use crate::body::{Body, Drift, Drive, Planar, Profile};
+use crate::body::spatial::vector;
+use crate::body::{Drift, Drive, Planar, Profile};
+use crate::craft::Limit;
 use crate::disturbance::Disturbance;
+use crate::document::Fault;
 use crate::document::key;
-use crate::estimator::{Estimator, Form};
-use crate::law::{Extra, Law};
-use crate::quantity::{Finite, Positive, Time};
+use crate::estimator::Estimator;
+use crate::law::{Extra, Law, Target};
+use crate::quantity::{Positive, Time};
 use crate::sensor::Outage;
 
 impl Scenario {
     /// The first key that does not fit the others, and what is wrong with it.
-    pub(super) fn inconsistency(&self) -> Option<(String, String)> {
-        let at = |key: &str, why: String| Some((key.to_owned(), why));
+    pub(super) fn inconsistency(&self) -> Option<Fault> {
+        let at = |key: &str, why: String| Some(Fault::new(key, why));
         if self.name.contains(['/', '\\']) || self.name.contains(char::is_control) || self.name.len() > 200 {
-            let why = "names files: it has at most 200 bytes, no slash and no control character";
+            let why = "is used for file names: at most 200 bytes, no slash, no control character";
             return at("name", why.to_owned());
         }
         if self.epoch.is_some_and(|epoch| nanoseconds_since_1970(&epoch).is_none()) {
@@ -36,11 +38,12 @@ impl Scenario {
         if let Some(impossible) = self.impossible() {
             return Some(impossible);
         }
-        if let Some((key, why)) = self.log.scene.inconsistency() {
-            return at(key, why);
+        if let Some(fault) = self.log.scene.inconsistency() {
+            return Some(fault.within("log.scene"));
         }
         // The parts of a spatial loop were found to fit each other when it was put together.
-        let parts = if self.spatial.is_some() { None } else { self.planar_inconsistency() };
+        let parts =
+            if self.axis_count() == 3 { self.spatial_inconsistency() } else { self.planar_inconsistency() };
         parts.or_else(|| {
             if self.uncertain.is_empty() {
                 return None;
@@ -49,45 +52,68 @@ impl Scenario {
             table.remove("uncertain");
             self.uncertain.iter().find_map(|(key, distribution)| {
                 let why = distribution.problem(key::get(&table, key))?;
-                Some((format!("uncertain.\"{key}\""), why))
+                Some(Fault::new(format!("uncertain.\"{key}\""), why))
             })
         })
     }
 
-    fn planar_inconsistency(&self) -> Option<(String, String)> {
+    fn spatial_inconsistency(&self) -> Option<Fault> {
+        let estimator = self.estimator.as_ref();
+        self.schedule_inconsistency()
+            .or_else(|| self.timing_inconsistency())
+            .or_else(|| self.rate_inconsistency())
+            .or_else(|| self.filter_inconsistency(estimator?))
+            .or_else(|| self.adaptation_inconsistency())
+    }
+
+    /// A spacecraft that turns faster than its modes tell how it bends.
+    fn rate_inconsistency(&self) -> Option<Fault> {
+        let craft = self.body.craft()?;
+        let Limit { rate: limit, why } = craft.rate_limit()?;
+        let start = vector(&craft.spatial.rate).norm();
+        if start > limit {
+            let why = format!("must be below {limit:.3e} rad/s together, {why}, got {start:.3e}");
+            return Some(Fault::new("spacecraft.rate", why));
+        }
+        let own = matches!(&self.law, Law::PhasePlane(law) if !law.targets.is_empty());
+        let key = if own { "law.phase_plane.targets" } else { "target" };
+        let fast = |target: &Target| target.rate_limit.is_some_and(|rate| rate.get() > limit);
+        let index = self.targets().iter().position(fast)?;
+        let rate = self.targets()[index].rate_limit.map_or(f64::NAN, Positive::get);
+        let why = format!("must be below {limit:.3e} rad/s, {why}, got {rate}");
+        Some(Fault::new(format!("{key}[{index}].rate_limit"), why))
+    }
+
+    fn planar_inconsistency(&self) -> Option<Fault> {
         self.law_inconsistency()
             .or_else(|| self.damping_inconsistency())
+            .or_else(|| self.schedule_inconsistency())
             .or_else(|| self.coupling_inconsistency())
+            .or_else(|| self.timing_inconsistency())
             .or_else(|| self.drive_inconsistency())
             .or_else(|| self.estimator_inconsistency())
             .or_else(|| self.adaptation_inconsistency())
     }
 
-    fn law_inconsistency(&self) -> Option<(String, String)> {
-        let Law::Relay(relay) = &self.law else { return None };
-        let (eps, gamma) = (relay.dead_zone.get(), relay.hysteresis.get());
-        let at = |key: &str, why: String| Some((key.to_owned(), why));
-        if gamma >= 2.0 * eps {
-            let width = 2.0 * eps;
-            let why = format!("must be less than the dead zone's width of {width}, got {gamma}");
-            return at("law.relay.hysteresis", why);
-        }
+    fn law_inconsistency(&self) -> Option<Fault> {
+        let Law::Relay(_) = &self.law else { return None };
+        let at = |key: &str, why: String| Some(Fault::new(key, why));
         if self.manoeuvre.is_some() {
-            let why = "holds the angle at 0: with a `[manoeuvre]` the law is `pd` or left out";
+            let why = "holds the angle at 0: with a `[manoeuvre]` use the law `pd`, or none";
             return at("law.relay", why.to_owned());
         }
-        let continuous = self.sensor.period().is_none();
+        let continuous = self.study.sampling.is_none();
         if self.chain.is_some() && continuous {
             let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form, or the sensor `sampled`";
             return at("body.panels.kinematics", why.to_owned());
         }
         if self.drift.is_some() && continuous {
-            let why = "finds its crossings in closed form: with a drift the sensor is `sampled`";
+            let why = "finds its crossings in closed form: with a drift it needs a `[sensor.sampled]`";
             return at("law.relay", why.to_owned());
         }
         let limited = |wheel: &Wheel| wheel.rotor.as_ref().is_some_and(|rotor| rotor.speed_limit.is_some());
         if matches!(&self.actuator, Actuator::Wheel(wheel) if limited(wheel)) && continuous {
-            let why = "is watched at the law's commands: with a law `relay` the sensor is `sampled`";
+            let why = "is checked at the law's commands: with a law `relay` it needs a `[sensor.sampled]`";
             return at("actuator.wheel.rotor.speed_limit", why.to_owned());
         }
         None
@@ -98,11 +124,11 @@ impl Scenario {
         format!("body.{}.damping_matrix", self.body.kind())
     }
 
-    fn damping_inconsistency(&self) -> Option<(String, String)> {
+    fn damping_inconsistency(&self) -> Option<Fault> {
         let couples = |body: &Planar| !body.damping_matrix.is_empty();
         if self.manoeuvre.is_some() && couples(self.planned_for()) {
             let why = "couples modes, which a `[manoeuvre]` takes each on its own: give it a `model` without";
-            return Some((self.damping_key(), why.to_owned()));
+            return Some(Fault::new(self.damping_key(), why));
         }
         if !couples(&self.model) {
             return None;
@@ -110,22 +136,22 @@ impl Scenario {
         let why = match &self.estimator {
             _ if self.drift.is_some() => "leaves no closed form of modes that drift",
             _ if self.manoeuvre.is_some() && self.actuator == Actuator::Ideal => {
-                "moves in closed form under torques that are constant for a while: a `[manoeuvre]` is then executed by \
-                 an `[actuator.hold]` or thrusters"
+                "needs torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]` or \
+                 thrusters"
             }
             Some(Estimator::Envelope(_)) => {
                 "couples modes, which an `[estimator.envelope]` follows each on its own"
             }
             Some(Estimator::ExtendedKalman(_) | Estimator::UnscentedKalman(_)) => {
-                "couples modes, which a filter of their frequencies predicts each on its own: `kalman` knows it"
+                "couples modes, which a filter of their frequencies predicts each on its own: use `kalman`"
             }
             _ => return None,
         };
-        Some((self.damping_key(), why.to_owned()))
+        Some(Fault::new(self.damping_key(), why))
     }
 
-    fn coupling_inconsistency(&self) -> Option<(String, String)> {
-        let at = |key: &str, why: String| Some((key.to_owned(), why));
+    fn coupling_inconsistency(&self) -> Option<Fault> {
+        let at = |key: &str, why: String| Some(Fault::new(key, why));
         if let Some(drift) = &self.drift {
             let modes = self.model.modes.len();
             let profiles: Vec<(String, &Profile)> = match drift {
@@ -169,34 +195,17 @@ impl Scenario {
                 }
             }
         }
-        let blind = self.estimator.as_ref().is_none_or(|estimator| estimator.envelope().is_some());
-        if matches!(&self.law, Law::Pd(pd) if pd.extra.is_some()) && blind {
-            let why = "feeds back the dominant mode, which an `[estimator]` that acts at samples (`truth`, `kalman`, \
-                       `extended_kalman`, `unscented_kalman`) tells, and there is none";
-            return at("law.pd.extra", why.to_owned());
-        }
-        if let Law::Pd(pd) = &self.law
-            && let Some(Extra::Schedule(points)) = &pd.extra
-        {
-            if points.is_empty() {
-                return at("law.pd.extra.schedule", "must have at least one point".to_owned());
-            }
-            if let Some(index) = points.windows(2).position(|pair| pair[0].frequency >= pair[1].frequency) {
-                let frequency = points[index + 1].frequency.get();
-                let key = format!("law.pd.extra.schedule[{}].frequency", index + 1);
-                return at(&key, format!("must be above the one before, got {frequency}"));
-            }
-        }
         let wheel = matches!(self.actuator, Actuator::Wheel(_));
         let key = if wheel { "actuator.wheel" } else { "drift" };
         if !wheel && self.drift.is_none() {
             return None;
         }
-        if wheel && self.manoeuvre.is_some() {
-            return at(key, "executes a law's samples, not a `[manoeuvre]`".to_owned());
+        if wheel && self.manoeuvre.is_some() && self.law.period().is_none() {
+            let why = "executes a `[manoeuvre]` sample by sample of a law, and the law has no period: give it a `[law.pd]`";
+            return at(key, why.to_owned());
         }
         if self.manoeuvre.is_some() && self.actuator == Actuator::Ideal {
-            let why = "leaves no closed form: a `[manoeuvre]` is then executed by an `[actuator.hold]` or thrusters";
+            let why = "leaves no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters";
             return at(key, why.to_owned());
         }
         if self.chain.is_some() || self.model.drive == Drive::Motion {
@@ -206,13 +215,29 @@ impl Scenario {
         None
     }
 
-    fn drive_inconsistency(&self) -> Option<(String, String)> {
-        let at = |key: &str, why: String| Some((key.to_owned(), why));
-        let estimates = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
-        if let (Some(_), Some(estimator)) = (&self.manoeuvre, &self.estimator) {
-            let why = "follows torques that are constant between switchings, not a `[manoeuvre]`";
-            return at(&format!("estimator.{}", estimator.kind()), why.to_owned());
-        }
+    /// A schedule of gains that is out of order.
+    fn schedule_inconsistency(&self) -> Option<Fault> {
+        (0..self.axis_count()).find_map(|axis| {
+            let Law::Pd(pd) = self.law.about(axis) else { return None };
+            let Some(Extra::Schedule(points)) = &pd.extra else { return None };
+            let at = |key: &str, why: String| {
+                Some(Fault::new(format!("{}.extra.schedule{key}", self.law_key(axis)), why))
+            };
+            if points.is_empty() {
+                return at("", "must have at least one point".to_owned());
+            }
+            let index = points.windows(2).position(|pair| pair[0].frequency >= pair[1].frequency)?;
+            let frequency = points[index + 1].frequency.get();
+            at(
+                &format!("[{}].frequency", index + 1),
+                format!("must be above the one before, got {frequency}"),
+            )
+        })
+    }
+
+    /// Times that are out of order, or do not fit a period.
+    fn timing_inconsistency(&self) -> Option<Fault> {
+        let at = |key: &str, why: String| Some(Fault::new(key, why));
         let ordered = |d: &Disturbance| d.to.is_none_or(|to| d.from < to);
         if let Some(index) = self.disturbance.iter().position(|d| !ordered(d)) {
             let Disturbance { from, to, .. } = &self.disturbance[index];
@@ -228,9 +253,11 @@ impl Scenario {
             return at(&format!("disturbance[{index}].period"), why);
         }
         let unordered = |outage: Outage| outage.to.is_some_and(|to| outage.from >= to);
-        if let Some(index) = self.sensor.faults().iter().position(|fault| unordered(fault.outage())) {
-            let why = "must have `from` before `to`".to_owned();
-            return at(&format!("sensor.sampled.faults[{index}]"), why);
+        for (number, sensor) in self.sensor.iter().enumerate() {
+            if let Some(index) = sensor.faults().iter().position(|fault| unordered(fault.outage())) {
+                let why = "must have `from` before `to`".to_owned();
+                return at(&format!("{}.faults[{index}]", self.sensor_key(number)), why);
+            }
         }
         if let Actuator::Thrusters(thrusters) = &self.actuator {
             let (period, minimum) = (thrusters.period.seconds(), thrusters.minimum_on.get());
@@ -244,9 +271,20 @@ impl Scenario {
                 return at("actuator.thrusters.quantum", why);
             }
         }
-        if estimates && self.actuator != Actuator::Ideal {
-            let why = "must be `ideal` with an `[estimator.envelope]`, which knows the commanded torque only";
-            return at("actuator", why.to_owned());
+        None
+    }
+
+    fn drive_inconsistency(&self) -> Option<Fault> {
+        let at = |key: &str, why: String| Some(Fault::new(key, why));
+        let estimates = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
+        if estimates && self.manoeuvre.is_some() && self.actuator == Actuator::Ideal {
+            let why = "follows torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]`, \
+                       thrusters or a wheel";
+            return at("estimator.envelope", why.to_owned());
+        }
+        if estimates && matches!(&self.actuator, Actuator::Wheel(wheel) if wheel.back_emf.get() > 0.0) {
+            let why = "must be 0 with an `[estimator.envelope]`, which follows each mode on its own";
+            return at("actuator.wheel.back_emf", why.to_owned());
         }
         if self.model.drive == Drive::Motion {
             let moves =
@@ -264,114 +302,6 @@ impl Scenario {
                 let why = "must be \"linear\" where the hub's motion is given";
                 return at("body.panels.kinematics", why.to_owned());
             }
-        }
-        None
-    }
-
-    fn estimator_inconsistency(&self) -> Option<(String, String)> {
-        let envelope = match self.estimator.as_ref()? {
-            Estimator::Envelope(envelope) => envelope,
-            estimator => return self.filter_inconsistency(estimator),
-        };
-        if envelope.form == Form::Truth && envelope.modes.is_some() {
-            let why = "of its own have no use for the form `truth`, which reads the body's".to_owned();
-            return Some(("estimator.envelope.modes".to_owned(), why));
-        }
-        let own = envelope.modes.as_ref().map(|modes| ("estimator.envelope", modes.as_slice()));
-        let (place, modes) = own.unwrap_or(("body.planar", &self.model.modes));
-        modes.iter().enumerate().find(|(_, mode)| mode.damping.get() >= 1.0).map(|(index, mode)| {
-            let why = format!("must be below 1 for a mode to have an envelope, got {}", mode.damping.get());
-            match (&self.body, own) {
-                (Body::Matrices(_) | Body::Panels(_) | Body::Spatial(_), None) => {
-                    (format!("body.{}.damping", self.body.kind()), why)
-                }
-                _ => (format!("{place}.modes[{index}].damping"), why),
-            }
-        })
-    }
-
-    /// What is wrong with an estimator that acts at each sample.
-    fn filter_inconsistency(&self, estimator: &Estimator) -> Option<(String, String)> {
-        let kind = estimator.kind();
-        let at = |key: &str, why: String| Some((format!("estimator.{kind}{key}"), why));
-        if self.sensor.period().is_none() {
-            return at("", "acts at each sample of a `[sensor.sampled]`, and there is none".to_owned());
-        }
-        if self.model.modes.is_empty() {
-            return at("", "has no modes to estimate: the body has none".to_owned());
-        }
-        if self.model.drive == Drive::Motion {
-            let why = "sees the modes in the hub's angle, and with `drive = \"motion\"` they do not show";
-            return at("", why.to_owned());
-        }
-        if self.chain.is_some() {
-            let why = "must be \"linear\" for an estimator of modes";
-            return Some(("body.panels.kinematics".to_owned(), why.to_owned()));
-        }
-        if let Some(modes) = estimator.modes().filter(|modes| modes.len() != self.model.modes.len()) {
-            let (found, own) = (modes.len(), self.model.modes.len());
-            return at(".modes", format!("must be as many as the body's, {own}, got {found}"));
-        }
-        let silent = estimator.angle_noise().is_none() && self.sensor.angle_noise() == 0.0;
-        if estimator.filters() && silent {
-            let why = "must be given where the sensor has neither noise nor a resolution".to_owned();
-            return at(".angle_noise", why);
-        }
-        let [from, to] = estimator.assess();
-        if from >= to {
-            return at(".assess", format!("must be [from, to] in this order, got [{from}, {to}]"));
-        }
-        let read = matches!(&self.law, Law::Pd(pd) if pd.extra.is_some());
-        if read && estimator.watches_only() {
-            return at(".watch_only", "must be left out where `law.pd.extra` reads the filter".to_owned());
-        }
-        if !read && !estimator.watches_only() {
-            let instead = if estimator.filters() {
-                "or with `watch_only = true` the filter is assessed and changes nothing"
-            } else {
-                "and without one the estimator is left out"
-            };
-            let why =
-                format!("is read by nothing: what reads it is an `extra` loop of `[law.pd]`, {instead}");
-            return at("", why);
-        }
-        let (Estimator::ExtendedKalman(filter) | Estimator::UnscentedKalman(filter)) = estimator else {
-            return None;
-        };
-        let [low, high] = filter.bounds.map(Positive::get);
-        if low >= high {
-            return at(".bounds", format!("must be [low, high] in this order, got [{low}, {high}]"));
-        }
-        let ratio = filter.ratio.get();
-        if !(low..=high).contains(&ratio) {
-            return at(".ratio", format!("must lie within the bounds [{low}, {high}], got {ratio}"));
-        }
-        None
-    }
-
-    fn adaptation_inconsistency(&self) -> Option<(String, String)> {
-        let Some(Adaptation::RandomSearch(search)) = &self.adaptation else { return None };
-        let [low, high] = search.bounds.map(Finite::get);
-        let Law::Relay(relay) = &self.law else {
-            let why = "adapts the gain k_t of a law `relay`, and there is none".to_owned();
-            return Some(("adaptation.random_search".to_owned(), why));
-        };
-        let gain = relay.k_t.get();
-        let bounds = "adaptation.random_search.bounds".to_owned();
-        if self.estimator.as_ref().is_none_or(|estimator| estimator.envelope().is_none()) {
-            let why = "needs the window means of an `[estimator.envelope]`, and there is none";
-            return Some(("adaptation.random_search".to_owned(), why.to_owned()));
-        }
-        if low >= high {
-            return Some((bounds, format!("must be [low, high] in this order, got [{low}, {high}]")));
-        }
-        if low <= 0.0 || high >= 1.0 {
-            let why = format!("must lie between 0 and 1, as k_t itself, got [{low}, {high}]");
-            return Some((bounds, why));
-        }
-        if !(low..=high).contains(&gain) {
-            let why = format!("must lie within the adaptation's bounds [{low}, {high}], got {gain}");
-            return Some(("law.relay.k_t".to_owned(), why));
         }
         None
     }

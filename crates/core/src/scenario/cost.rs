@@ -2,12 +2,15 @@
 //! yes.
 
 use super::Scenario;
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Jets};
+use crate::body::Spatial;
+use crate::body::spatial::{LONGEST_TURN, Periodic, vector};
+use crate::document::Fault;
 use crate::estimator::Estimator;
 use crate::law::Law;
-use crate::quantity::NonNegative;
+use crate::motion::turning::Surroundings;
+use crate::quantity::{NonNegative, Positive};
 use crate::record::Detail;
-use crate::structure::Fault;
 use crate::time::Span;
 
 /// No run takes more steps of one kind: it would take days.
@@ -30,6 +33,10 @@ const MUCH_DISK: f64 = 2e10;
 
 /// Time of a step (s), and what each mode adds. A rough figure, of an ordinary core.
 const STEP_S: (f64, f64) = (3e-7, 4e-8);
+/// A step of a rotation about three axes, with its passes over the stages, takes as long as so many others.
+const PASSES: f64 = 20.0;
+/// What the steps of a rotation are told by.
+const TURNS: &str = "duration";
 /// Time of an operation with numbers of a matrix (s).
 const PRODUCT_S: f64 = 1e-9;
 /// What is kept of a run of a campaign (bytes).
@@ -123,6 +130,7 @@ impl Scenario {
         let modes = self.mode_count() as f64;
         let step = STEP_S.0 + modes * STEP_S.1;
         let own = |(key, steps): &(String, f64)| match &self.estimator {
+            _ if *key == TURNS && self.axis_count() == 3 => steps * PASSES * step,
             // A filter takes every sample, with matrices of the order of its state.
             Some(filter) if key.starts_with("sensor") && filter.filters() => {
                 steps * (step + filter_work(filter, modes) * PRODUCT_S)
@@ -156,7 +164,7 @@ impl Scenario {
         {
             if applies && modes > most {
                 let why = format!("gives {modes} modes, and at most {most} {why} are computed");
-                return Some((format!("body.{}", self.body.kind()), why));
+                return Some(Fault::new(self.body.key(), why));
             }
         }
         if let (Actuator::Wheel(wheel), Some(period)) = (&self.actuator, self.decided_every()) {
@@ -168,21 +176,21 @@ impl Scenario {
                     period.seconds(),
                     told(MOST_WAITING)
                 );
-                return Some(("actuator.wheel.delay".to_owned(), why));
+                return Some(Fault::new("actuator.wheel.delay", why));
             }
         }
         let messages = self.messages(Some(Detail::Scene));
         let (key, steps) = self.steps().into_iter().chain(messages).find(|(_, steps)| *steps > MOST_STEPS)?;
         let (duration, most) = (self.duration.seconds(), told(MOST_STEPS));
-        Some((key, format!("makes {} steps in the run's {duration} s: at most {most} are done", told(steps))))
+        Some(Fault::new(
+            key,
+            format!("makes {} steps in the run's {duration} s: at most {most} are done", told(steps)),
+        ))
     }
 
     /// How often the law of a wheel decides, if at fixed times.
     fn decided_every(&self) -> Option<Span> {
-        match &self.law {
-            Law::Pd(law) => Some(law.period),
-            _ => self.sensor.period(),
-        }
+        self.study.cycle.or(self.study.sampling)
     }
 
     /// What happens again and again in a run: its key, and how often.
@@ -192,20 +200,29 @@ impl Scenario {
         let mut each = |key: String, span: f64, period: Span| {
             steps.push((key, span.max(0.0) / period.seconds()));
         };
-        if let Some(period) = self.sensor.period() {
-            each("sensor.sampled.period".to_owned(), duration, period);
+        for (index, sensor) in self.sensor.iter().enumerate() {
+            if let Some(period) = sensor.period(None) {
+                each(format!("{}.period", self.sensor_key(index)), duration, period);
+            }
         }
-        match &self.law {
-            Law::Pd(law) => each("law.pd.period".to_owned(), duration, law.period),
-            Law::PhasePlane(law) => each("law.phase_plane.period".to_owned(), duration, law.period),
-            Law::Relay(_) | Law::Open(_) => {}
+        for axis in 0..self.axis_count() {
+            if let Some(period) = self.law.about(axis).period() {
+                each(format!("{}.period", self.law_key(axis)), duration, period);
+            }
+        }
+        if let Some((Jets { period: Some(period), .. }, key)) = self.actuator.jets() {
+            each(format!("{key}.period"), duration, *period);
         }
         match &self.actuator {
             Actuator::Hold(hold) => each("actuator.hold.period".to_owned(), duration, hold.period),
             Actuator::Thrusters(thrusters) => {
                 each("actuator.thrusters.period".to_owned(), duration, thrusters.period);
             }
-            Actuator::Ideal | Actuator::Wheel(_) | Actuator::Jets(_) => {}
+            Actuator::Ideal
+            | Actuator::Wheel(_)
+            | Actuator::Wheels(_)
+            | Actuator::Jets(_)
+            | Actuator::Own(_) => {}
         }
         if let Some(envelope) = self.estimator.as_ref().and_then(Estimator::envelope) {
             each("estimator.envelope.window".to_owned(), duration, envelope.window);
@@ -219,20 +236,36 @@ impl Scenario {
         // Crossings are searched, and exact panels integrated, by strides within a vibration.
         let strides = match &self.law {
             _ if self.chain.is_some() => 20.0,
-            Law::Relay(_) if self.sensor.period().is_none() => 1.0,
+            Law::Relay(_) if self.study.sampling.is_none() => 1.0,
             _ => 0.0,
         };
         let fastest = self.model.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
         if strides * fastest > 0.0 {
             steps.push(("duration".to_owned(), strides * duration * fastest));
         }
+        if let Some(body) = self.body.spatial() {
+            let rate = self.fastest_turn(body);
+            let step = self.body.flexible().map_or(LONGEST_TURN / rate, |flexible| flexible.step(rate));
+            if step.is_finite() {
+                steps.push((TURNS.to_owned(), duration / step));
+            }
+        }
         steps
+    }
+
+    /// How fast a body with three axes is expected to turn at most, and what acts on it to change (rad/s).
+    fn fastest_turn(&self, body: &Spatial) -> f64 {
+        let start = vector(&body.rate).norm();
+        let limits = self.targets().iter().filter_map(|target| target.rate_limit).map(Positive::get);
+        let around = self.study.around.as_ref().map_or(0.0, Surroundings::frequency);
+        let own = body.disturbance.as_ref().map_or(0.0, Periodic::frequency);
+        limits.fold(start, f64::max) + around + own
     }
 
     /// What a log of this detail holds beside what changes: the key, and how many messages.
     fn messages(&self, log: Option<Detail>) -> Vec<(String, f64)> {
         let (duration, period) = (self.duration.seconds(), self.log_period());
-        let topics = if self.spatial.is_some() { 4.0 } else { 5.0 };
+        let topics = if self.axis_count() == 3 { 4.0 } else { 5.0 };
         let mut messages = Vec::new();
         if log >= Some(Detail::Full) {
             messages.push(("log.period".to_owned(), topics * duration / period.seconds()));

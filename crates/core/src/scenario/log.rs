@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::document::Fault;
 use crate::quantity::Positive;
 use crate::time::Span;
 
@@ -68,10 +69,10 @@ impl SceneSpec {
     }
 
     /// The first factor that leaves no picture, and why.
-    pub fn inconsistency(&self) -> Option<(&'static str, String)> {
-        let factors = [("log.scene.bending", self.bending), ("log.scene.turning", self.turning)];
+    pub fn inconsistency(&self) -> Option<Fault> {
+        let factors = [("bending", self.bending), ("turning", self.turning)];
         let (key, factor) = factors.into_iter().find(|(_, f)| f.is_some_and(|f| f.get() > LARGEST_FACTOR))?;
-        Some((
+        Some(Fault::new(
             key,
             format!("must be at most {LARGEST_FACTOR:e}, got {:e}", factor.map_or(0.0, Positive::get)),
         ))

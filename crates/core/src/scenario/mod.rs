@@ -3,8 +3,12 @@
 mod consistency;
 mod cost;
 mod epoch;
+mod learning;
 mod log;
-mod spatial;
+mod parts;
+mod reference;
+mod spacecraft;
+mod study;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,15 +22,16 @@ use toml::value::Datetime;
 use crate::actuator::{Actuator, Opposes};
 use crate::adaptation::Adaptation;
 use crate::body::{Body, Chain, Coupled, Coupling, Drift, Planar};
+use crate::craft::{Appendage, Spacecraft};
 use crate::disturbance::Disturbance;
-use crate::document::{Document, ScenarioError};
+use crate::document::{Document, Fault, Parts, ScenarioError};
+use crate::environment::Environment;
 use crate::estimator::Estimator;
-use crate::law::{Goal, Law, Promise};
+use crate::law::{Goal, Law, Promise, Target};
 use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::motion::linear::Linear;
-use crate::quantity::Positive;
 use crate::sensor::Sensor;
-use crate::structure::{Fault, TOO_FAR_APART};
+use crate::structure::TOO_FAR_APART;
 use crate::time::{Instant, Span};
 use crate::uncertain::Distribution;
 
@@ -34,7 +39,8 @@ use epoch::nanoseconds_since_1970;
 
 pub use cost::{Cost, MOST_RUNS};
 pub use log::{Log, SceneSpec};
-pub use spatial::{AxesEstimator, SpatialLoop};
+pub use reference::Reference;
+pub use study::Study;
 
 /// More modes than these are not taken apart into the poles of their coupled motion.
 const MOST_COUPLED: usize = 100;
@@ -58,17 +64,24 @@ pub struct Scenario {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub epoch: Option<Datetime>,
-    /// What is controlled.
+    /// What is controlled, if it is not a `spacecraft`.
+    #[serde(default, skip_serializing_if = "Body::is_spacecraft")]
     pub body: Body,
-    /// The body with its modes, as it moves: solved from `body`. Of a spatial body it is empty: see `spatial`.
+    /// A spacecraft that is controlled, put together from its parts: the hub.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacecraft: Option<Spacecraft>,
+    /// What is clamped to the hub of the spacecraft.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub appendage: Vec<Appendage>,
+    /// The body with its modes, as it moves: solved from `body`. Of a spatial body it is empty: see `study`.
     #[serde(skip)]
     pub model: Planar,
     /// How the natural frequencies drift; left out, they do not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<Drift>,
-    /// How the angle is measured.
+    /// How the motion is measured: one sensor, or an array of several.
     #[serde(default)]
-    pub sensor: Sensor,
+    pub sensor: Parts<Sensor>,
     /// What is estimated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimator: Option<Estimator>,
@@ -90,9 +103,16 @@ pub struct Scenario {
     /// Disturbance torques.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub disturbance: Vec<Disturbance>,
+    /// What surrounds a body with three axes; left out, nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub environment: Option<Environment>,
     /// What a full log holds.
     #[serde(default)]
     pub log: Log,
+    /// Attitudes that a body with three axes shall turn to, in the order of their times; before the first it is the inertial
+    /// one. A law `phase_plane` may have them of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub target: Vec<Target>,
     /// What the metrics compare with.
     #[serde(default, skip_serializing_if = "Reference::is_empty")]
     pub reference: Reference,
@@ -105,30 +125,9 @@ pub struct Scenario {
     /// The exact chain, where the scenario asks for it.
     #[serde(skip)]
     pub chain: Option<Chain>,
-    /// The loop about three axes, where the body is a spatial one.
+    /// What the parts come to together.
     #[serde(skip)]
-    pub spatial: Option<SpatialLoop>,
-}
-
-/// Levels of other runs that the metrics compare with.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Reference {
-    /// Mean envelope without adaptation (rad), for the metric `envelope_reduction`; left out, the mean over
-    /// the run's own first window.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub envelope: Option<Positive>,
-    /// Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s` and `settling_time_s`.
-    /// Left out, what is promised: after a manoeuvre a thousandth of its angle, by a PD law 5 % of the distance at which the
-    /// goal begins, by a relay its dead zone and its hysteresis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub band: Option<Positive>,
-}
-
-impl Reference {
-    fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
+    pub study: Study,
 }
 
 impl Scenario {
@@ -158,13 +157,18 @@ impl Scenario {
         if let Some(error) = document.unread(&scenario.to_table()) {
             return Err(error);
         }
+        if let Some(parent) = parent {
+            scenario.take_own_parts(parent);
+        }
         if scenario.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
         }
-        scenario.body.locate(Path::new(document.origin()).parent().unwrap_or(Path::new("")));
-        let kind = scenario.body.kind();
-        let in_body = |(key, why): Fault| document.inconsistent(&format!("body.{kind}.{key}"), &why);
+        let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
+        scenario.body.locate(directory);
+        scenario.put_together(document, parent, directory)?;
+        let key = scenario.body.key();
+        let in_body = |fault: Fault| document.inconsistent(&fault.within(&key));
         scenario.body.read(parent.map(|parent| &parent.body)).map_err(in_body)?;
         scenario.model = match parent.filter(|parent| parent.body == scenario.body) {
             Some(parent) => parent.model.clone(),
@@ -174,8 +178,8 @@ impl Scenario {
         if matches!(scenario.law, Law::Open(_)) && !document.has("law") && scenario.manoeuvre.is_none() {
             return Err(document.missing("law"));
         }
-        let inconsistent = |(key, why): (String, String)| document.inconsistent(&key, &why);
-        scenario.spatial = SpatialLoop::of(&scenario).map_err(inconsistent)?;
+        let inconsistent = |fault: Fault| document.inconsistent(&fault);
+        scenario.fit().map_err(inconsistent)?;
         match scenario.inconsistency() {
             None => {
                 scenario.plan = scenario.planned().map_err(inconsistent)?;
@@ -186,16 +190,44 @@ impl Scenario {
         Ok(scenario)
     }
 
+    /// The scenario with a part of a program's own, such as `law: Law::Own(..)`, in place of what was read.
+    ///
+    /// # Errors
+    /// The part does not fit the others.
+    pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Result<Self, ScenarioError> {
+        change(&mut self);
+        let origin = self.name.clone();
+        let fault = |fault: Fault| ScenarioError::Key { origin, key: fault.key, why: fault.why };
+        self.fit().and_then(|()| self.inconsistency().map_or(Ok(()), Err)).map_err(fault)?;
+        Ok(self)
+    }
+
+    /// Takes over the parts of a program's own.
+    fn take_own_parts(&mut self, other: &Self) {
+        if let Law::Own(_) = other.law {
+            self.law.clone_from(&other.law);
+        }
+        if other.sensor.iter().any(|sensor| matches!(sensor, Sensor::Own(_))) {
+            self.sensor.clone_from(&other.sensor);
+        }
+        if let Some(Estimator::Own(_)) = other.estimator {
+            self.estimator.clone_from(&other.estimator);
+        }
+        if let Actuator::Own(_) = other.actuator {
+            self.actuator.clone_from(&other.actuator);
+        }
+    }
+
     /// The scenario's body of one angle, for what is an analysis of such bodies.
     ///
     /// # Errors
     /// The body is a spatial one.
     pub fn one_angle(&self) -> Result<&Planar, ScenarioError> {
-        match &self.spatial {
-            None => Ok(&self.model),
-            Some(_) => Err(ScenarioError::Key {
+        match &self.body {
+            Body::Planar(_) | Body::Matrices(_) | Body::Panels(_) => Ok(&self.model),
+            Body::Spatial(_) | Body::Spacecraft(_) => Err(ScenarioError::Key {
                 origin: self.name.clone(),
-                key: "body.spatial".to_owned(),
+                key: self.body.key(),
                 why: "turns about three axes, and this is done for bodies with one angle".to_owned(),
             }),
         }
@@ -203,26 +235,41 @@ impl Scenario {
 
     /// How many elastic modes the body has.
     pub fn mode_count(&self) -> usize {
-        self.spatial.as_ref().map_or(self.model.modes.len(), |spatial| spatial.body.modes.len())
+        self.body.spatial().map_or(self.model.modes.len(), |body| body.modes.len())
+    }
+
+    /// The attitudes that a body with three axes shall turn to.
+    pub fn targets(&self) -> &[Target] {
+        match &self.law {
+            Law::PhasePlane(law) if !law.targets.is_empty() => &law.targets,
+            _ => &self.target,
+        }
+    }
+
+    /// The key of the law about an axis.
+    pub fn law_key(&self, axis: usize) -> String {
+        match &self.law {
+            Law::PerAxis(laws) => {
+                format!("law.per_axis.{}.{}", crate::body::spatial::AXES[axis], laws.about(axis).kind())
+            }
+            law => format!("law.{}", law.kind()),
+        }
     }
 
     /// The plan of the manoeuvre, if there is one.
-    fn planned(&self) -> Result<Option<Plan>, (String, String)> {
+    fn planned(&self) -> Result<Option<Plan>, Fault> {
         let Some(manoeuvre) = &self.manoeuvre else { return Ok(None) };
         let body = self.planned_for();
         if body.drive != self.model.drive {
             let why = "must be the same as the body's".to_owned();
-            return Err(("manoeuvre.model.drive".to_owned(), why));
+            return Err(Fault::new("manoeuvre.model.drive", why));
         }
         let (start, rate) = (manoeuvre.start_rate.get(), self.model.rate.get());
         if start != rate {
             let why = format!("must be the body's rate at the start, {rate}, got {start}");
-            return Err(("manoeuvre.start_rate".to_owned(), why));
+            return Err(Fault::new("manoeuvre.start_rate", why));
         }
-        manoeuvre.plan(body).map(Some).map_err(|(key, why)| match key.as_str() {
-            "" => ("manoeuvre".to_owned(), why),
-            key => (format!("manoeuvre.{key}"), why),
-        })
+        manoeuvre.plan(body).map(Some).map_err(|fault| fault.within("manoeuvre"))
     }
 
     /// The scenario with all its defaults, as a table.
@@ -259,23 +306,26 @@ impl Scenario {
     }
 
     /// The flow by poles of a body that a damping matrix couples, or a wheel under a law that switches at crossings.
-    fn flow(&self) -> Result<Option<Arc<Linear>>, (String, String)> {
+    fn flow(&self) -> Result<Option<Arc<Linear>>, Fault> {
         let wheel = matches!(self.actuator, Actuator::Wheel(_));
-        let crosses = self.law.switches() && self.sensor.period().is_none();
+        let crosses = self.law.switches() && self.study.sampling.is_none();
         let damped = !self.model.damping_matrix.is_empty();
-        if self.spatial.is_some() || !(damped || wheel && crosses) {
+        if self.body.spatial().is_some() || !(damped || wheel && crosses) {
             return Ok(None);
         }
         let key = if damped { self.damping_key() } else { "actuator.wheel".to_owned() };
         let modes = self.model.modes.len();
         if modes > MOST_COUPLED {
-            return Err((key, format!("couples at most {MOST_COUPLED} modes, and the body has {modes}")));
+            return Err(Fault::new(
+                key,
+                format!("couples at most {MOST_COUPLED} modes, and the body has {modes}"),
+            ));
         }
         let (back_emf, total) = self.back_emf();
         let coupled = Coupled::new(&self.model, back_emf, total, &vec![1.0; self.model.modes.len()]);
         match coupled.flow() {
             Some(flow) => Ok(Some(Arc::new(flow))),
-            None => Err((key, format!("with the modes {TOO_FAR_APART}"))),
+            None => Err(Fault::new(key, format!("with the modes {TOO_FAR_APART}"))),
         }
     }
 
@@ -290,6 +340,7 @@ impl Scenario {
             from: Instant::START + Span::from_seconds(plan.time),
             angle: self.model.angle.get() + plan.angle,
             rate: plan.end_rate,
+            acceleration: 0.0,
         })
     }
 
@@ -298,12 +349,15 @@ impl Scenario {
         self.log.period_for(self.duration)
     }
 
-    /// How near to its goal the body shall stay: as the scenario says, else as its manoeuvre or its law promises.
+    /// How near to its goal the body has to stay: by the scenario, else as its manoeuvre or its law promises.
     pub fn promise(&self) -> Promise {
         match (self.reference.band, &self.plan) {
             (Some(band), _) => Promise::Within(band.get()),
             (None, Some(plan)) => Promise::Within(plan.band()),
-            (None, None) => self.law.promise(),
+            (None, None) => match self.study.bands.first() {
+                Some(Some(band)) if self.axis_count() == 1 => Promise::Within(*band),
+                _ => self.law.promise(),
+            },
         }
     }
 
@@ -319,12 +373,13 @@ impl Scenario {
         scenario
     }
 
-    /// The scenario with the modes of a spatial body in itself, where they have keys, and not in a file.
+    /// The scenario with the modes of three axes in itself, where they have keys, and not in a file.
     #[must_use]
     pub fn with_own_modes(mut self) -> Self {
         if let Body::Spatial(spatial) = &mut self.body {
             spatial.modes.forget_file();
         }
+        self.appendage.iter_mut().for_each(Appendage::forget_file);
         self
     }
 
@@ -338,7 +393,7 @@ impl Scenario {
         schemars::schema_for!(Scenario).to_value()
     }
 
-    /// Whether the torque has more to it than the switchings of a law tell.
+    /// Whether the torque is more than the switchings of a law.
     pub fn tells_torque(&self) -> bool {
         !self.law.switches() || !self.disturbance.is_empty() || self.actuator != Actuator::Ideal
     }

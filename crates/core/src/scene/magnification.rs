@@ -1,13 +1,13 @@
-//! Magnification: how many times as large as they are bending and turning are drawn, where the scenario does not say.
+//! Magnification: how many times as large as they are bending and turning are drawn, where the scenario leaves it out.
 //!
-//! A run does not know its largest motion beforehand. What its actuator can do, and how it begins, tell the order.
+//! A run does not know its largest motion beforehand. What its actuator can do, and how it begins, give the order of magnitude.
 
 use crate::actuator::Actuator;
-use crate::body::Mode;
 use crate::body::spatial::{SpatialMode, turned};
+use crate::body::{Mode, Spatial};
 use crate::law::Law;
-use crate::quantity::Finite;
-use crate::scenario::{Scenario, SpatialLoop};
+use crate::quantity::{Finite, Positive};
+use crate::scenario::Scenario;
 
 /// The bending that shall show (rad), and the turning.
 const BENDING: f64 = 0.35;
@@ -70,15 +70,16 @@ pub fn rate(scenario: &Scenario) -> f64 {
     model.rate.get().abs().max(planned).max(by_law)
 }
 
-/// The angle by which a spatial body turns, about (rad).
-pub fn spatial_angle(spatial: &SpatialLoop) -> f64 {
-    let targets = spatial.law.targets.iter().map(|target| {
+/// The angle by which a body with three axes turns, about (rad).
+pub fn spatial_angle(scenario: &Scenario, body: &Spatial) -> f64 {
+    let targets = scenario.targets().iter().map(|target| {
         let [roll, pitch, yaw] = [target.roll, target.pitch, target.yaw].map(Finite::get);
         turned(roll, pitch, yaw)
     });
-    let start = spatial.body.attitude.get();
+    let start = body.attitude.get();
     let angle = |q: nalgebra::Quaternion<f64>| 2.0 * libm::acos(q.w.abs().min(1.0));
-    targets.chain([start]).map(angle).fold(spatial.law.dead_zone.get(), f64::max)
+    let zones = scenario.study.zones(scenario).into_iter().fold(0.0, f64::max);
+    targets.chain([start]).map(angle).fold(zones, f64::max)
 }
 
 /// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, or once where a
@@ -105,25 +106,57 @@ pub fn largest(scenario: &Scenario) -> f64 {
     let by_law = match &scenario.law {
         Law::Relay(relay) => relay.strong.get(),
         Law::Pd(pd) if scenario.plan.is_none() => pd.k_p.get() * scenario.model.angle.get().abs(),
+        Law::Attitude(law) if scenario.plan.is_none() => {
+            law.first_torque(scenario.model.angle.get(), scenario.model.commanded_inertia())
+        }
         _ => 0.0,
     };
     match &scenario.actuator {
-        Actuator::Wheel(wheel) => wheel.gain.get() * wheel.shaped(by_law),
-        Actuator::Thrusters(thrusters) => thrusters.torque.get(),
+        Actuator::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.shaped(by_law)),
+        Actuator::Thrusters(thrusters) => thrusters.torque.about(0).get(),
         _ => planned.max(by_law),
     }
 }
 
-/// The same of the modes of a spatial body (m sqrt(kg)), under the jets of any axis.
-pub fn modal(spatial: &SpatialLoop) -> Vec<f64> {
+/// The largest torque about an axis of a body with three (N m), about, of an actuator that is no jets.
+fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
+    let unit = if let Actuator::Wheel(wheel) = &scenario.actuator { wheel.gain.get() } else { 1.0 };
+    let study = &scenario.study;
+    let most = study.authorities[axis].accelerations[0] * study.axes[axis].inertia.get();
+    let by_law = match scenario.law.about(axis) {
+        Law::Relay(relay) => unit * relay.strong.get(),
+        Law::Pd(pd) => unit * pd.k_p.get() * spatial_angle(scenario, body),
+        Law::Attitude(law) => {
+            let inertia = study.axes[axis].inertia.get();
+            // A turn along a profile asks for its acceleration, and not for all of the angle at once.
+            let led = study.targets.iter().map(|target| target.acceleration.map(Positive::get));
+            match led.reduce(|most, next| Some(most?.max(next?))).flatten() {
+                Some(acceleration) => inertia * acceleration,
+                None => law.first_torque(spatial_angle(scenario, body), inertia),
+            }
+        }
+        Law::PhasePlane(_) => most,
+        Law::Open(_) | Law::PerAxis(_) | Law::Own(_) => 0.0,
+    };
+    by_law.min(most)
+}
+
+/// The same of the modes of a body with three axes (m sqrt(kg)), under the jets or the torque of any axis.
+pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
+    let torques = [0, 1, 2].map(|axis| spatial_torque(scenario, body, axis));
+    let hub = body.shapes(&scenario.study.acts_at);
     let mode = |(index, mode): (usize, &SpatialMode)| {
         let w = mode.frequency.get();
-        let groups = spatial.groups.iter().flatten();
-        let force = groups.map(|group| group.forces[index].abs()).fold(0.0, f64::max);
+        let forces: Vec<f64> = match &scenario.study.groups {
+            Some(groups) => groups.iter().flatten().map(|group| group.forces[index]).collect(),
+            None => torques.iter().zip(&hub[index].1).map(|(torque, shape)| torque * shape).collect(),
+        };
+        let unloading = scenario.study.unloading.iter().flatten().flatten().map(|group| group.forces[index]);
+        let force = forces.into_iter().chain(unloading).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
         held.max(2.0 * force / (w * w))
     };
-    spatial.body.modes.iter().enumerate().map(mode).collect()
+    body.modes.iter().enumerate().map(mode).collect()
 }
 
 #[cfg(test)]

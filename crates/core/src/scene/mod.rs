@@ -1,6 +1,6 @@
 //! The scene: what viewers in three dimensions show of a run.
 //!
-//! The geometry is schematic. A scenario tells how a body moves, and not what it looks like: a hub with panels, or a boom to
+//! The geometry is schematic. A scenario describes how a body moves, not its appearance: a hub with panels, or a boom to
 //! each point and two wings, stand for it. Bending and turning are magnified, by factors that the scene itself shows.
 
 mod magnification;
@@ -12,11 +12,55 @@ mod pose;
 mod spatial;
 mod wheel;
 
-use crate::record::foxglove::FrameTransforms;
+use crate::record::foxglove::{FrameTransforms, SceneUpdate};
+use crate::record::row::Stamp;
 use crate::scenario::Scenario;
+use crate::time::Span;
 
 pub use planar::{PlanarScene, PlanarView};
 pub use spatial::SpatialScene;
+
+/// The scene of a run.
+#[derive(Clone, Debug)]
+pub enum Scene {
+    /// Of a body with one angle.
+    Planar(PlanarScene),
+    /// Of a body with three axes.
+    Spatial(SpatialScene),
+}
+
+impl Scene {
+    /// The scene of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        match scenario.body.spatial() {
+            None => Self::Planar(PlanarScene::new(scenario)),
+            Some(body) => Self::Spatial(SpatialScene::new(scenario, body)),
+        }
+    }
+
+    /// Period of the frames.
+    pub fn period(&self) -> Span {
+        match self {
+            Self::Planar(scene) => scene.period,
+            Self::Spatial(scene) => scene.period,
+        }
+    }
+
+    /// What it consists of.
+    pub fn parts(&self, stamp: Stamp) -> SceneUpdate {
+        match self {
+            Self::Planar(scene) => scene.parts(stamp),
+            Self::Spatial(scene) => scene.parts(stamp),
+        }
+    }
+
+    fn extent(&self) -> Extent {
+        match self {
+            Self::Planar(scene) => scene.extent(),
+            Self::Spatial(scene) => scene.extent(),
+        }
+    }
+}
 
 /// What a viewer has to know of a scene before it looks: how far it reaches (m), and the names of its frames.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,10 +74,7 @@ pub struct Extent {
 impl Extent {
     /// That of a scenario's scene.
     pub fn of(scenario: &Scenario) -> Self {
-        match &scenario.spatial {
-            None => PlanarScene::new(scenario).extent(),
-            Some(spatial) => SpatialScene::new(scenario, spatial).extent(),
-        }
+        Scene::new(scenario).extent()
     }
 
     fn new(reach: f64, frames: &FrameTransforms) -> Self {

@@ -13,7 +13,7 @@ pub const INERTIAL: &str = "inertial";
 /// The frame of the body.
 pub const BODY: &str = "body";
 
-/// Colours that people without full sight of colours can tell apart, and two greys.
+/// Colours that colour-blind readers can distinguish, and two greys.
 pub const HUB: Color = Color { r: 0.75, g: 0.75, b: 0.78, a: 1.0 };
 /// Of panels.
 pub const PANEL: Color = Color { r: 0.0, g: 0.45, b: 0.70, a: 1.0 };

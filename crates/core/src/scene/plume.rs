@@ -1,4 +1,4 @@
-//! Plumes: which thrusters burn, told at each change and then whole.
+//! Plumes: which thrusters burn, logged at each change and then whole.
 
 use super::part::{PLUME, cone, entity};
 use crate::body::spatial::Vector;
@@ -24,12 +24,12 @@ pub struct Burning {
     nozzles: Vec<Nozzle>,
     /// Length of a full plume (m).
     length: f64,
-    /// How much each nozzle gives, as a part of a full plume, as told last.
+    /// How much each nozzle gives, as a part of a full plume, as logged last.
     told: Option<Vec<f64>>,
 }
 
 impl Burning {
-    /// Nozzles of which nothing has been told.
+    /// Nozzles that have not been logged yet.
     pub fn new(nozzles: Vec<Nozzle>, length: f64) -> Self {
         Self { nozzles, length, told: None }
     }

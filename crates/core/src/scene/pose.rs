@@ -1,4 +1,4 @@
-//! Poses: rotations and places as viewers take them, in single precision, which the eye cannot tell from double.
+//! Poses: rotations and places as viewers take them, in single precision, which the eye cannot distinguish from double.
 
 use nalgebra::Quaternion as Rotation;
 

@@ -1,6 +1,6 @@
 //! The scene of a body with three axes: a hub, a boom to each of its points, two wings, and jets at the points.
 //!
-//! The booms bend as the modes say at their ends: a cubic between them. The shapes tell nothing of the wings, which swing
+//! The booms bend by a cubic between the mode shapes at their ends. There are no shapes of the wings, which swing
 //! against the rotation of the hub.
 
 use nalgebra::Quaternion;
@@ -11,12 +11,12 @@ use super::part::{BODY, BOOM, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, en
 use super::plume::{Burning, Nozzle};
 use super::pose::{about, attitude, from_z, limited, magnified, place};
 use crate::actuator::Pair;
-use crate::body::Phase;
 use crate::body::spatial::{Vector, vector};
+use crate::body::{Phase, Spatial};
 use crate::quantity::Positive;
 use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
 use crate::record::row::Stamp;
-use crate::scenario::{Scenario, SpatialLoop};
+use crate::scenario::Scenario;
 use crate::time::Span;
 
 /// Sections of a boom, and of a wing.
@@ -71,8 +71,10 @@ pub struct SpatialScene {
 
 impl SpatialScene {
     /// The scene of a loop.
-    pub fn new(scenario: &Scenario, spatial: &SpatialLoop) -> Self {
-        let (spec, body, jets) = (&scenario.log.scene, &spatial.body, &spatial.jets);
+    pub fn new(scenario: &Scenario, body: &Spatial) -> Self {
+        let spec = &scenario.log.scene;
+        let jets = scenario.actuator.jets().map(|(jets, _)| jets);
+        let thrusters = jets.map_or(&[][..], |jets| &jets.thrusters);
         let point = |point: &crate::body::spatial::NamedPoint| Point {
             name: point.name.clone(),
             at: vector(&point.position),
@@ -81,17 +83,17 @@ impl SpatialScene {
         let points: Vec<Point> = body.points.iter().map(point).collect();
         let farthest = points.iter().map(|point| point.at.norm()).fold(0.0, f64::max);
         let size = if farthest > NEAR { farthest } else { SIZE };
-        let nozzles = jets.thrusters.iter().map(|thruster| Nozzle {
+        let nozzles = thrusters.iter().map(|thruster| Nozzle {
             frame: point_frame(&thruster.point),
             name: thruster.name.clone(),
             at: vector(&thruster.offset),
             direction: -vector(&thruster.direction).normalize(),
         });
         let own = |names: &[String]| -> Vec<usize> {
-            names.iter().filter_map(|name| jets.thrusters.iter().position(|t| t.name == *name)).collect()
+            names.iter().filter_map(|name| thrusters.iter().position(|t| t.name == *name)).collect()
         };
         let pair = |pair: &Pair| [own(&pair.plus), own(&pair.minus)];
-        let reached = modal(spatial);
+        let reached = modal(scenario, body);
         let bent = points.iter().map(|point| {
             let rotations = point.shapes.iter().zip(&reached);
             rotations.map(|((_, rotation), q)| rotation.norm() * q).sum::<f64>()
@@ -100,9 +102,11 @@ impl SpatialScene {
         let mut made = Self {
             period: spec.period(scenario.log_period()),
             bending: spec.bending.map_or_else(|| bending(bent), Positive::get),
-            turning: spec.turning.map_or_else(|| turning(spatial_angle(spatial)), Positive::get),
+            turning: spec.turning.map_or_else(|| turning(spatial_angle(scenario, body)), Positive::get),
             size,
-            groups: [&jets.groups.roll, &jets.groups.pitch, &jets.groups.yaw].map(pair),
+            groups: jets.map_or_else(Default::default, |jets| {
+                [&jets.groups.roll, &jets.groups.pitch, &jets.groups.yaw].map(pair)
+            }),
             plumes: Burning::new(nozzles.collect(), 0.3 * size),
             frames: FrameTransforms { transforms: Vec::new() },
             points,

@@ -1,4 +1,4 @@
-//! The wheel of a body with one angle: a disc that turns as its momentum says.
+//! The wheel of a body with one angle: a disc that turns by its momentum.
 
 use super::PlanarView;
 use super::magnification::{rate, slowing};

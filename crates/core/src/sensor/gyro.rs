@@ -1,54 +1,164 @@
-//! A rate gyro about three axes: at a point of the structure, whose elastic motion it sees.
+//! A gyro: at a point of the structure, whose elastic motion it sees.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::counter::{self, Counter};
+use super::{Reading, Sense, Truth, stream};
+use crate::axes::Each;
+use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative};
 use crate::random::{Seed, Stream};
+use crate::time::{Instant, Span};
 
-/// A gyro that is read once in each cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then rounded (seed paper 4).
+/// A gyro. One that samples the rate is read once in each cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
+/// rounded (\[Timakov14\]). One with a random walk integrates: it tells the mean rate of each of its periods.
+///
+/// Numbers are one for all axes, or one for each of three.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gyro {
-    /// The point of the structure at which it is.
-    pub point: String,
+    /// The point of the structure at which it is, on a body with three axes; left out, the first of the body's points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub point: Option<String>,
+    /// Period of its samples (s); left out, that of the law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<Span>,
     /// Standard deviation of the white noise about each axis (rad/s).
     #[serde(default)]
-    pub noise: [NonNegative; 3],
+    pub noise: Each<NonNegative>,
     /// Constant error about each axis (rad/s).
     #[serde(default)]
-    pub bias: [Finite; 3],
+    pub bias: Each<Finite>,
     /// Quantum of the output about each axis (rad/s); 0 for none.
     #[serde(default)]
-    pub resolution: [NonNegative; 3],
+    pub resolution: Each<NonNegative>,
+    /// Angle random walk about each axis (rad/sqrt(s)), of one that integrates.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub angle_random_walk: Each<NonNegative>,
+    /// Rate random walk of the bias about each axis (rad/s^1.5), of one that integrates.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rate_random_walk: Each<NonNegative>,
+    /// Quantum of the angle about each axis (rad), of one that integrates: what is left is counted with the next; 0 for none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub quantum: Each<NonNegative>,
+    /// Relative error of the scale about each axis.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub scale: Each<Finite>,
+    /// What each axis, a row, measures of the rates about the others (rad), on a body with three; the diagonal is 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub misalignment: Option<Box<[[Finite; 3]; 3]>>,
+}
+
+fn is_zero(each: &Each<NonNegative>) -> bool {
+    *each == Each::default()
+}
+
+fn is_none(each: &Each<Finite>) -> bool {
+    *each == Each::default()
 }
 
 /// A gyro at work: each axis has a stream of noise of its own.
 #[derive(Clone, Debug)]
-pub struct Readout {
+pub struct AtCycles {
     gyro: Gyro,
-    noise: [Stream; 3],
+    noise: Vec<Stream>,
+    counter: Option<Counter>,
 }
 
 impl Gyro {
-    /// The gyro in a run.
-    pub fn readout(&self, seed: Seed) -> Readout {
-        let noise = ["gyro roll", "gyro pitch", "gyro yaw"].map(|name| seed.stream(name));
-        Readout { gyro: self.clone(), noise }
+    /// The gyro in a run of a body with so many axes, after so many others.
+    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> AtCycles {
+        let draws = |axis: usize| stream("gyro", (axis, axes), ordinal, seed);
+        let counter = self.integrates().then(|| Counter::new(self));
+        AtCycles { gyro: self.clone(), noise: (0..axes).map(draws).collect(), counter }
+    }
+
+    /// The key of a number that is given for each of three axes, if there is one.
+    pub fn three(&self) -> Option<&'static str> {
+        let keys = [
+            ("noise", self.noise.is_three()),
+            ("bias", self.bias.is_three()),
+            ("resolution", self.resolution.is_three()),
+            ("angle_random_walk", self.angle_random_walk.is_three()),
+            ("rate_random_walk", self.rate_random_walk.is_three()),
+            ("quantum", self.quantum.is_three()),
+            ("scale", self.scale.is_three()),
+            ("misalignment", self.misalignment.is_some()),
+        ];
+        keys.into_iter().find(|(_, three)| *three).map(|(key, _)| key)
+    }
+
+    /// Whether it tells the mean rate of each of its periods.
+    pub fn integrates(&self) -> bool {
+        !(is_zero(&self.angle_random_walk) && is_zero(&self.rate_random_walk) && is_zero(&self.quantum))
+    }
+
+    /// What it measures about an axis of these rates.
+    pub(super) fn scaled(&self, axis: usize, rates: &[f64; 3]) -> f64 {
+        let own = rates[axis] + self.scale.about(axis).get() * rates[axis];
+        self.misalignment.as_ref().map_or(own, |rows| {
+            rows[axis].iter().zip(rates).fold(own, |sum, (part, rate)| sum + part.get() * rate)
+        })
+    }
+
+    /// What single values cannot show to be wrong: a key within the gyro, and why.
+    pub fn inconsistency(&self) -> Option<Fault> {
+        let samples = [("noise", is_zero(&self.noise)), ("resolution", is_zero(&self.resolution))];
+        if self.integrates() {
+            if let Some((key, _)) = samples.into_iter().find(|(_, zero)| !zero) {
+                let why = "is that of a gyro that samples the rate: one with a random walk or a `quantum` integrates it";
+                return Some(Fault::new(key, why));
+            }
+            if self.period.is_none() {
+                return Some(Fault::new("period", "must be given for a gyro that integrates"));
+            }
+        }
+        let rows = self.misalignment.as_ref()?;
+        let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
+        let why = format!("must be 0, for `scale` is that error, got {}", rows[axis][axis].get());
+        Some(Fault::new(format!("misalignment[{axis}][{axis}]"), why))
+    }
+
+    /// Standard deviation of the rate about an axis (rad/s), that of its quantisation included.
+    pub fn rate_noise(&self, axis: usize) -> f64 {
+        if self.integrates() {
+            let period = self.period.map_or(1.0, Span::seconds);
+            return counter::deviation(self, axis, period);
+        }
+        let (noise, resolution) = (self.noise.about(axis).get(), self.resolution.about(axis).get());
+        libm::sqrt(noise * noise + resolution * resolution / 12.0)
     }
 }
 
-impl Readout {
-    /// The measurement of true rates at the gyro's point, elastic part included (rad/s).
-    pub fn measure(&mut self, rate: [f64; 3]) -> [f64; 3] {
-        let Self { gyro, noise } = self;
-        std::array::from_fn(|axis| {
-            let mut output = rate[axis] + gyro.bias[axis].get();
-            let (sd, quantum) = (gyro.noise[axis].get(), gyro.resolution[axis].get());
+impl Sense for AtCycles {
+    fn read(&mut self, now: Instant, truth: &Truth, _: Option<&Reading>) -> Option<Reading> {
+        let Self { gyro, noise, counter } = self;
+        if let Some(counter) = counter {
+            let mean = counter.mean(now, truth);
+            let rate = counter.count(gyro, mean, noise);
+            return Some(Reading { at: truth.orientation, rate: Some(rate) });
+        }
+        let mut rate = truth.rate;
+        for (axis, (rate, noise)) in rate.iter_mut().zip(noise).enumerate() {
+            *rate = gyro.scaled(axis, &truth.rate) + gyro.bias.about(axis).get();
+            let (sd, quantum) = (gyro.noise.about(axis).get(), gyro.resolution.about(axis).get());
             if sd > 0.0 {
-                output += sd * noise[axis].normal();
+                *rate += sd * noise.normal();
             }
-            if quantum > 0.0 { libm::round(output / quantum) * quantum } else { output }
-        })
+            if quantum > 0.0 {
+                *rate = libm::round(*rate / quantum) * quantum;
+            }
+        }
+        Some(Reading { at: truth.orientation, rate: Some(rate) })
+    }
+
+    fn bias(&self) -> Option<[f64; 3]> {
+        let constant = [0, 1, 2].map(|axis| self.gyro.bias.about(axis).get());
+        Some(self.counter.as_ref().map_or(constant, |counter| counter.bias))
+    }
+
+    fn copy(&self) -> Box<dyn Sense> {
+        Box::new(self.clone())
     }
 }

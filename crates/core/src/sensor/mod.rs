@@ -1,17 +1,28 @@
-//! How the angle is measured: continuously and exactly, or sampled with noise and a resolution; the rates of a spatial body.
+//! Sensors: what is measured of the angle or of the attitude, and of the rates, and when.
 
+mod counter;
 mod gyro;
+mod sampled;
+mod star_tracker;
 
+use std::fmt;
+
+use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{Finite, NonNegative, Positive, Time};
-use crate::random::Stream;
+use crate::body::spatial::{AXES, Vector, beyond, rotation};
+use crate::document::Parts;
+use crate::own::Own;
+use crate::quantity::Positive;
+use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
-pub use gyro::{Gyro, Readout};
+pub use gyro::{AtCycles, Gyro};
+pub use sampled::{AtSamples, Fault, Outage, Sampled};
+pub use star_tracker::StarTracker;
 
-/// The kinds of angle measurement.
+/// The kinds of sensor.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Sensor {
@@ -20,137 +31,254 @@ pub enum Sensor {
     Continuous,
     /// A sample at each period, held until the next: guards are tested at samples.
     Sampled(Sampled),
-    /// The rates of a spatial body, in each cycle of its law.
+    /// A rate gyro, read in each cycle of the law; the angle, or the attitude, is known exactly.
     Gyro(Gyro),
+    /// The attitude at exposures, told later.
+    StarTracker(StarTracker),
+    /// A sensor from outside of this crate, which no scenario file can name.
+    Own(Own<dyn Instrument>),
 }
 
-/// A sampled angle sensor.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Sampled {
-    /// Period of the samples (s).
-    pub period: Span,
-    /// Standard deviation of the white noise (rad).
-    #[serde(default)]
-    pub noise: NonNegative,
-    /// Constant error (rad).
-    #[serde(default)]
-    pub bias: Finite,
-    /// Quantum of the output (rad); 0 for none.
-    #[serde(default)]
-    pub resolution: NonNegative,
-    /// Standard deviation of the white noise of a rate gyro (rad/s); left out, there is no gyro, and the rate is the
-    /// difference of the last two angles over the period.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rate_noise: Option<Positive>,
-    /// Times at which the sensor fails.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<Fault>,
-}
+/// What a sensor from outside tells of itself before a run.
+pub trait Instrument: Send + Sync {
+    /// The sensor in a run of a body with so many axes.
+    fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sense>;
 
-/// A failure of the sensor, gyro included.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Fault {
-    /// It repeats the last measurement before the failure.
-    Stuck(Outage),
-    /// It gives no number.
-    Silent(Outage),
-}
+    /// The period of its samples.
+    fn period(&self) -> Span;
 
-/// How long a failure lasts.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Outage {
-    /// When it begins (s).
-    pub from: Time,
-    /// When it ends (s); left out, with the run.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub to: Option<Time>,
-}
+    /// Standard deviation of the measured angle (rad).
+    fn angle_noise(&self) -> f64 {
+        0.0
+    }
 
-impl Fault {
-    /// How long it lasts.
-    pub fn outage(&self) -> Outage {
-        let (Self::Stuck(outage) | Self::Silent(outage)) = self;
-        *outage
+    /// Standard deviation of the measured rate (rad/s), if rates are measured.
+    fn rate_noise(&self) -> Option<f64> {
+        None
     }
 }
 
-impl Outage {
-    fn lasts(self, now: Instant) -> bool {
-        let at = |time: Time| Instant::START + Span::from_seconds(time.get());
-        at(self.from) <= now && self.to.is_none_or(|to| now < at(to))
+/// A sensor at work.
+pub trait Sense: fmt::Debug + Send + Sync {
+    /// What is measured now, after the last reading; nothing of a sensor that is silent.
+    fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading>;
+
+    /// When it acts next after now, of a sensor with this period.
+    fn after(&mut self, now: Instant, period: Span) -> Instant {
+        now + period
+    }
+
+    /// The true bias of its rates now (rad/s), of a gyro.
+    fn bias(&self) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// A copy in the same state.
+    fn copy(&self) -> Box<dyn Sense>;
+}
+
+impl Clone for Box<dyn Sense> {
+    fn clone(&self) -> Self {
+        self.copy()
     }
 }
 
-/// A measurement: the angle (rad) and the rate of a gyro, if there is one (rad/s).
+/// Where a body points.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Measurement {
-    /// Angle (rad).
-    pub angle: f64,
-    /// Rate (rad/s).
-    pub rate: Option<f64>,
+pub enum Orientation {
+    /// Its one angle (rad).
+    Angle(f64),
+    /// The attitude of its axes: it turns their vectors into inertial ones.
+    Attitude(Quaternion<f64>),
 }
 
-impl Sensor {
-    /// The period of the samples, if the sensor is sampled.
-    pub fn period(&self) -> Option<Span> {
-        match self {
-            Self::Continuous | Self::Gyro(_) => None,
-            Self::Sampled(sampled) => Some(sampled.period),
+impl Orientation {
+    /// How far it is turned beyond another, about each axis (rad); about the first alone for one angle.
+    pub fn beyond(&self, other: &Self) -> [f64; 3] {
+        match (self, other) {
+            (Self::Attitude(q), Self::Attitude(goal)) => beyond(goal, q).into(),
+            (Self::Angle(angle), Self::Angle(goal)) => [angle - goal, 0.0, 0.0],
+            // A run has one kind.
+            _ => [f64::NAN; 3],
         }
     }
 
-    /// Standard deviation of the gyro's rate (rad/s), if there is a gyro.
-    pub fn rate_noise(&self) -> Option<f64> {
+    /// The orientation that is seen as these angles: one angle itself, or small rotations of this attitude (rad).
+    #[must_use]
+    pub fn at(&self, angles: [f64; 3]) -> Self {
         match self {
-            Self::Continuous | Self::Gyro(_) => None,
+            Self::Angle(_) => Self::Angle(angles[0]),
+            Self::Attitude(q) => Self::Attitude(q * rotation(&Vector::from(angles))),
+        }
+    }
+}
+
+/// What there is to measure at an instant.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Truth {
+    /// Where the body points: one angle with its elastic part, or the attitude of its axes.
+    pub orientation: Orientation,
+    /// The elastic rotations at the sensor beside an attitude (rad).
+    pub elastic: [f64; 3],
+    /// Rates at the sensor, elastic part included (rad/s).
+    pub rate: [f64; 3],
+    /// Rates of the body as if it were rigid (rad/s).
+    pub rigid: [f64; 3],
+    /// The integral of `rate` (rad), but for a constant: what a gyro that counts angles has counted.
+    pub turned: [f64; 3],
+}
+
+impl Truth {
+    /// What a sensor of angles sees: one angle, or the small rotations by which its place differs from the attitude (rad).
+    pub fn seen(&self) -> [f64; 3] {
+        match self.orientation {
+            Orientation::Angle(angle) => [angle, 0.0, 0.0],
+            Orientation::Attitude(_) => self.elastic,
+        }
+    }
+}
+
+/// A reading.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// Where the body points.
+    pub at: Orientation,
+    /// Rates (rad/s), of a sensor that measures them.
+    pub rate: Option<[f64; 3]>,
+}
+
+/// The true orientation and rates, at every instant.
+#[derive(Copy, Clone, Debug)]
+struct Exact;
+
+impl Sense for Exact {
+    fn read(&mut self, _: Instant, truth: &Truth, _: Option<&Reading>) -> Option<Reading> {
+        Some(Reading { at: truth.orientation.at(truth.seen()), rate: Some(truth.rate) })
+    }
+
+    fn copy(&self) -> Box<dyn Sense> {
+        Box::new(*self)
+    }
+}
+
+impl Sensor {
+    /// The sensor in a run of a body with so many axes, after so many others of its kind.
+    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
+        match self {
+            Self::Continuous => Box::new(Exact),
+            Self::Sampled(sampled) => Box::new(sampled.start(axes, seed, ordinal)),
+            Self::Gyro(gyro) => Box::new(gyro.start(axes, seed, ordinal)),
+            Self::StarTracker(tracker) => Box::new(tracker.start(seed, ordinal)),
+            Self::Own(own) => own.start(axes, seed),
+        }
+    }
+
+    /// Whether it knows the motion at every instant.
+    pub fn is_continuous(&self) -> bool {
+        matches!(self, Self::Continuous)
+    }
+
+    /// The kind, as a scenario names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Continuous => "continuous",
+            Self::Sampled(_) => "sampled",
+            Self::Gyro(_) => "gyro",
+            Self::StarTracker(_) => "star_tracker",
+            Self::Own(_) => "own",
+        }
+    }
+
+    /// The period of its samples under a law with a period of its own or none; none of a continuous sensor.
+    pub fn period(&self, law: Option<Span>) -> Option<Span> {
+        match self {
+            Self::Continuous => None,
+            Self::Sampled(sampled) => Some(sampled.period),
+            Self::Gyro(gyro) => gyro.period.or(law),
+            Self::StarTracker(tracker) => Some(tracker.period),
+            Self::Own(own) => Some(own.period()),
+        }
+    }
+
+    /// The point of the structure at which it is, if it names one.
+    pub fn point(&self) -> Option<&str> {
+        match self {
+            Self::Continuous | Self::Own(_) => None,
+            Self::Sampled(sampled) => sampled.point.as_deref(),
+            Self::Gyro(gyro) => gyro.point.as_deref(),
+            Self::StarTracker(tracker) => tracker.point.as_deref(),
+        }
+    }
+
+    /// Standard deviation of a measured rate about an axis (rad/s), if rates are measured.
+    pub fn rate_noise(&self, axis: usize) -> Option<f64> {
+        match self {
+            Self::Continuous | Self::StarTracker(_) => None,
             Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
+            Self::Gyro(gyro) => Some(gyro.rate_noise(axis)),
+            Self::Own(own) => own.rate_noise(),
         }
     }
 
     /// Standard deviation of the measured angle (rad), that of its quantisation included.
     pub fn angle_noise(&self) -> f64 {
-        let Self::Sampled(Sampled { noise, resolution, .. }) = self else { return 0.0 };
-        libm::sqrt(noise.get() * noise.get() + resolution.get() * resolution.get() / 12.0)
-    }
-
-    /// The failures of a sampled sensor.
-    pub fn faults(&self) -> &[Fault] {
         match self {
-            Self::Continuous | Self::Gyro(_) => &[],
-            Self::Sampled(sampled) => &sampled.faults,
+            Self::Sampled(sampled) => sampled.angle_noise(),
+            Self::StarTracker(tracker) => tracker.angle_noise(),
+            Self::Own(own) => own.angle_noise(),
+            Self::Continuous | Self::Gyro(_) => 0.0,
         }
     }
 
-    /// The measurement of a true angle (rad) and rate (rad/s) after the last one; none from a sensor that is silent.
-    pub fn measure(
-        &self,
-        now: Instant,
-        (angle, rate): (f64, f64),
-        last: Option<Measurement>,
-        noise: &mut Stream,
-    ) -> Option<Measurement> {
-        let Self::Sampled(sampled) = self else { return Some(Measurement { angle, rate: None }) };
-        // Draws are made in a failure too: those after it do not depend on it.
-        let angle = sampled.measure(angle, noise);
-        let rate = self.rate_noise().map(|sd| rate + sd * noise.normal());
-        match sampled.faults.iter().find(|fault| fault.outage().lasts(now)) {
-            None => Some(Measurement { angle, rate }),
-            Some(Fault::Stuck(_)) => Some(last.unwrap_or(Measurement { angle, rate })),
-            Some(Fault::Silent(_)) => None,
+    /// Its failures.
+    pub fn faults(&self) -> &[Fault] {
+        match self {
+            Self::Sampled(sampled) => &sampled.faults,
+            Self::StarTracker(tracker) => &tracker.faults,
+            Self::Continuous | Self::Gyro(_) | Self::Own(_) => &[],
         }
     }
 }
 
-impl Sampled {
-    fn measure(&self, angle: f64, noise: &mut Stream) -> f64 {
-        let mut output = angle + self.bias.get();
-        if self.noise.get() > 0.0 {
-            output += self.noise.get() * noise.normal();
-        }
-        let quantum = self.resolution.get();
-        if quantum > 0.0 { libm::round(output / quantum) * quantum } else { output }
+/// The stream of draws about an axis of a body with so many, of a sensor after so many others of its kind.
+fn stream(name: &str, (axis, axes): (usize, usize), ordinal: usize, seed: Seed) -> Stream {
+    let name = if ordinal == 0 { name.to_owned() } else { format!("{name} {ordinal}") };
+    match axes {
+        1 => seed.stream(&name),
+        _ => seed.stream(&format!("{name} {}", AXES[axis])),
+    }
+}
+
+impl Parts<Sensor> {
+    /// The first: the only one, in most scenarios.
+    pub fn first(&self) -> &Sensor {
+        &self[0]
+    }
+
+    /// How many of its kind come before a sensor.
+    pub fn ordinal(&self, index: usize) -> usize {
+        let kind = self[index].kind();
+        self[..index].iter().filter(|sensor| sensor.kind() == kind).count()
+    }
+
+    /// Whether a sensor tells where the body points: a gyro only where no other does, which then is known exactly.
+    pub fn orients(&self, index: usize) -> bool {
+        let gyro = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(_));
+        !gyro(&self[index]) || self.iter().all(gyro) && index == 0
+    }
+
+    /// The shortest period of their samples under a law with a period of its own or none; none of a continuous sensor.
+    pub fn period(&self, law: Option<Span>) -> Option<Span> {
+        self.iter().filter_map(|sensor| sensor.period(law)).min()
+    }
+
+    /// Standard deviation of a measured rate about an axis (rad/s), if rates are measured.
+    pub fn rate_noise(&self, axis: usize) -> Option<f64> {
+        self.iter().find_map(|sensor| sensor.rate_noise(axis))
+    }
+
+    /// Standard deviation of the measured angle (rad), that of its quantisation included.
+    pub fn angle_noise(&self) -> f64 {
+        (0..self.len()).find(|index| self.orients(*index)).map_or(0.0, |index| self[index].angle_noise())
     }
 }

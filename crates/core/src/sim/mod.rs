@@ -1,21 +1,40 @@
-//! Runs: the loop of a body with one angle, and that of a spatial one.
+//! The loop of all runs.
 //!
-//! In both, at one instant: the body arrives, the sensor measures, the estimator follows, the law decides, the actuator acts,
-//! the record is told. `docs/events.md` states the rules.
+//! At one instant, in this order: the body arrives, the sensor measures, the estimator takes the sample, the monitor closes its
+//! window and the adaptation learns, the laws decide once, the actuator acts, the record gets its rows. Between events all that
+//! acts is constant, or a waveform, and the motion exact. `docs/events.md` states the rules.
 
+mod arrival;
+mod drive;
+mod events;
 mod journal;
-mod planar;
-mod spatial;
+mod plant;
+mod reference;
+mod sensing;
+mod showing;
+mod telling;
 
 use thiserror::Error;
 
+use crate::belief::Belief;
+use crate::body::State;
+use crate::body::spatial::SpatialState;
+use crate::estimator::{self, Estimate, Monitor, Taken};
+use crate::law::{Cause, Controls, Event};
+use crate::random::Seed;
 use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
-use crate::scene::{PlanarScene, SpatialScene};
-use crate::time::Instant;
+use crate::sensor::{Orientation, Truth};
+use crate::time::{Instant, Span};
 
-pub use planar::PlanarRun;
-pub use spatial::SpatialRun;
+use drive::Drive;
+use plant::{Exerted, Plant};
+use reference::Reference;
+use sensing::Sensing;
+use telling::Telling;
+
+/// More decisions than this at one instant are chatter: no scenario's law needs more than a few.
+const MOST_DECISIONS: u32 = 32;
 
 /// A simulation that cannot go on.
 #[derive(Debug, Error)]
@@ -41,29 +60,63 @@ pub enum SimulationError {
 
 /// All that moves in a run.
 #[derive(Clone, Debug)]
-pub enum Simulation {
-    /// Of a body with one angle.
-    Planar(Box<PlanarRun>),
-    /// Of a body with three axes.
-    Spatial(Box<SpatialRun>),
+pub struct Simulation {
+    now: Instant,
+    end: Instant,
+    plant: Plant,
+    sensing: Sensing,
+    estimator: Box<dyn Estimate>,
+    /// Whether there is one.
+    estimates: bool,
+    /// Until when the estimator knows what a waveform gave.
+    given: Instant,
+    monitor: Option<Monitor>,
+    reference: Reference,
+    /// From where angles count, and until when.
+    origin: Orientation,
+    next_target: Option<Instant>,
+    beliefs: Vec<Belief>,
+    laws: Controls,
+    drive: Drive,
+    /// The torques of the present motion.
+    exerted: Exerted,
+    /// The instant and index of the guard that trips next, as long as the hold lasts.
+    trip: Option<(Instant, usize)>,
+    decisions: u32,
+    telling: Telling,
 }
 
 impl Simulation {
     /// A run of a scenario, before its start.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
-        match &scenario.spatial {
-            None => Self::Planar(Box::new(PlanarRun::new(scenario, run))),
-            Some(spatial) => Self::Spatial(Box::new(SpatialRun::new(scenario, spatial, run))),
+        let seed = Seed { scenario: scenario.seed, run };
+        let (study, reference) = (&scenario.study, Reference::new(scenario));
+        let axes = study.axes.len();
+        Self {
+            now: Instant::START,
+            end: Instant::START + scenario.duration,
+            plant: Plant::new(scenario),
+            sensing: Sensing::new(scenario, seed),
+            estimator: estimator::start(scenario, seed),
+            estimates: scenario.estimator.is_some(),
+            given: Instant::START,
+            monitor: Monitor::new(scenario, seed),
+            origin: reference.origin(Instant::START),
+            next_target: reference.next_target(Instant::START),
+            beliefs: vec![Belief::default(); axes],
+            laws: Controls::new(&scenario.law, &study.authorities),
+            drive: Drive::new(scenario, seed),
+            exerted: Exerted::default(),
+            trip: None,
+            decisions: 0,
+            telling: Telling::new(scenario, &reference, run),
+            reference,
         }
     }
 
     /// Makes the run draw its scene for records that want it; before it begins.
     pub fn draw(&mut self, scenario: &Scenario) {
-        match (self, &scenario.spatial) {
-            (Self::Planar(run), _) => run.draw(PlanarScene::new(scenario)),
-            (Self::Spatial(run), Some(spatial)) => run.draw(SpatialScene::new(scenario, spatial)),
-            (Self::Spatial(_), None) => {}
-        }
+        self.telling.draw(scenario);
     }
 
     /// Runs to the end of the scenario.
@@ -73,9 +126,212 @@ impl Simulation {
 
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
     pub fn run_until(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
-        match self {
-            Self::Planar(run) => run.run_until(until, record),
-            Self::Spatial(run) => run.run_until(until, record),
+        let until = until.min(self.end);
+        if self.telling.open(self.now, record)? {
+            self.begin(record)?;
         }
+        loop {
+            let next = self.next();
+            self.plant.approach(next.min(until), record)?;
+            if next > until {
+                self.now = until;
+                self.plant.view(until)?;
+                return self.finish(record);
+            }
+            if next > self.now {
+                self.now = next;
+                self.decisions = 0;
+            }
+            self.serve(record)?;
+        }
+    }
+
+    /// The state of a body with one angle now.
+    pub fn state(&self) -> Option<&State> {
+        if let Plant::Planar(plant) = &self.plant { Some(plant.state()) } else { None }
+    }
+
+    /// The state of a body with three axes now.
+    pub fn spatial_state(&self) -> Option<&SpatialState> {
+        if let Plant::Spatial(plant) = &self.plant { Some(plant.state()) } else { None }
+    }
+
+    /// The mean of the total envelope over the window that was closed last (rad).
+    pub fn window_mean(&self) -> Option<f64> {
+        self.monitor.as_ref().map(|monitor| monitor.mean)
+    }
+
+    /// Tunes a number of the law, such as `k_t`, as an adaptation does.
+    pub fn tune(&mut self, key: &str, value: f64) {
+        self.laws.tune(key, value);
+    }
+
+    fn begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let truth = self.plant.view(self.now)?;
+        self.sense(&truth, record)?;
+        self.ask(Event::Start);
+        self.drive.command(self.now, self.laws.commands(), &self.beliefs, truth.rigid);
+        self.drive.serve(self.now, truth.rigid);
+        self.depart(record)?;
+        self.tell_begin(record)
+    }
+
+    /// Ends the run, if this is its end and it has not ended yet.
+    fn finish(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        if self.now == self.end && self.telling.close() {
+            self.plant.tell_course(self.now, &self.exerted, record)?;
+            self.telling.journal_end(self.now, record)?;
+        }
+        Ok(())
+    }
+
+    /// The next instant at which anything is due.
+    fn next(&self) -> Instant {
+        let trip = self.trip.map(|(at, _)| at);
+        let closes = self.monitor.as_ref().map(|monitor| monitor.closes);
+        let due = [trip, self.laws.until(), self.drive.due, self.sensing.next, closes, self.telling.due()];
+        due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
+    }
+
+    /// Does what is due now.
+    fn serve(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        let mut event = Event::Due { sampled: false };
+        if let Some((_, guard)) = self.trip.filter(|(at, _)| *at == now) {
+            event = Event::Guard(guard);
+        }
+        if self.sensing.next == Some(now) {
+            let truth = self.plant.view(now)?;
+            self.sense(&truth, record)?;
+            event = Event::Due { sampled: true };
+        }
+        if self.monitor.as_ref().is_some_and(|monitor| monitor.closes == now) {
+            self.close_window(record)?;
+        }
+        self.tell_arrival(record)?;
+        let sampled = event == Event::Due { sampled: true };
+        if matches!(event, Event::Guard(_)) || self.laws.concerned(now, sampled, &self.beliefs) {
+            self.decide(event, record)?;
+        }
+        if self.drive.due == Some(now) {
+            let truth = self.plant.view(now)?;
+            self.drive.serve(now, truth.rigid);
+            self.depart(record)?;
+        }
+        self.tell(record)?;
+        self.show(record)
+    }
+
+    /// Takes a sample, which the estimator makes a belief of.
+    fn sense(&mut self, truth: &Truth, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        self.turn_to_target(now);
+        let plant = &self.plant;
+        let measured = self.sensing.read(now, |sensor| plant.at_sensor(sensor, truth), &self.origin);
+        if self.sensing.next.is_some() {
+            let (from, to) = (self.given.seconds(), now.seconds());
+            self.estimator.pushed(self.drive.actuator.waveform_impulse(from, to));
+            self.given = now;
+        }
+        let (plant, origin) = (&self.plant, &self.origin);
+        let taken = Taken {
+            now,
+            measured: measured.then_some(&self.sensing.measured[..]),
+            readings: &self.sensing.fresh,
+            origin,
+            truth: &|axis| plant.about(axis, origin),
+            actuator: &*self.drive.actuator,
+            ahead: self.laws.ahead(),
+        };
+        self.estimator.take(&taken, &mut self.beliefs);
+        for (belief, queued) in self.beliefs.iter_mut().zip(self.drive.actuator.queued()) {
+            belief.queued = queued;
+        }
+        self.tell_estimates(record)
+    }
+
+    /// Counts angles from the target of now: what is believed of them changes with it.
+    fn turn_to_target(&mut self, now: Instant) {
+        if self.next_target.is_none_or(|begins| now < begins) {
+            return;
+        }
+        let origin = self.reference.origin(now);
+        let by = self.origin.beyond(&origin);
+        self.estimator.shift(by);
+        for (axis, belief) in self.beliefs.iter_mut().enumerate() {
+            belief.angle += by[axis];
+        }
+        self.origin = origin;
+        self.next_target = self.reference.next_target(now);
+    }
+
+    /// Asks the laws that an event concerns; tells the cause.
+    fn ask(&mut self, event: Event) -> Option<Cause> {
+        let Self { reference, now, laws, beliefs, .. } = self;
+        let led = reference.led(*now, beliefs);
+        laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
+    }
+
+    fn decide(&mut self, event: Event, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        self.decisions += 1;
+        if self.decisions > MOST_DECISIONS {
+            return Err(SimulationError::Chatter { at: now, count: self.decisions });
+        }
+        let truth = self.plant.view(now)?;
+        self.turn_to_target(now);
+        if self.sensing.next.is_none() {
+            // What is continuous is as it is.
+            let angles = truth.orientation.at(truth.seen()).beyond(&self.origin);
+            for (axis, belief) in self.beliefs.iter_mut().enumerate() {
+                (belief.angle, belief.rate) = (angles[axis], truth.rate[axis]);
+            }
+        } else {
+            self.estimator.carry(now, &self.origin, &mut self.beliefs);
+        }
+        let before = self.laws.about(0).state();
+        let cause = self.ask(event);
+        self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
+        self.depart(record)?;
+        self.tell_switching(before, cause, &truth, record)
+    }
+
+    /// Closes the window that ends now, and lets the law have what the adaptation learned.
+    fn close_window(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        self.plant.view(self.now)?;
+        let gain = self.laws.about(0).tuned();
+        let Some(monitor) = &mut self.monitor else { return Ok(()) };
+        let closed = monitor.close(self.now, &self.plant.about(0, &self.origin), gain);
+        if let (Some((row, _)), Some(key)) = (&closed.step, monitor.tunes()) {
+            self.laws.tune(key, row.gain);
+        }
+        Ok(self.telling.window(self.now, &closed, record)?)
+    }
+
+    /// Begins a motion under what acts from now on, and finds the next trip.
+    fn depart(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
+        let now = self.now;
+        self.plant.tell_course(now, &self.exerted, record)?;
+        let (actuator, axes) = (&self.drive.actuator, self.beliefs.len());
+        if self.estimates {
+            let mut moments = [0.0; 3];
+            for (axis, moment) in moments.iter_mut().enumerate().take(axes) {
+                *moment = actuator.moment(axis);
+            }
+            self.estimator.given(now, moments);
+        }
+        let (constant, feedback) = (actuator.torque(0), actuator.asked(0));
+        self.exerted = Exerted { constant, feedback, back_emf: actuator.back_emf() };
+        if let Some(monitor) = &mut self.monitor {
+            monitor.command(now, &self.plant.about(0, &self.origin), self.exerted.constant);
+        }
+        self.plant.depart(self.drive.wrench(now));
+        self.trip = None;
+        // A sampled sensor trips its guards at samples.
+        if self.sensing.next.is_none() && !self.laws.guards().is_empty() {
+            let ends = [self.laws.until(), self.drive.due].into_iter().flatten().fold(self.end, Instant::min);
+            self.trip = self.plant.trip(self.laws.guards(), ends.since(now), record)?;
+        }
+        Ok(())
     }
 }

@@ -4,12 +4,16 @@
 //! (B B') y = w⁻² y with x = w L⁻' y: the low modes are the large eigenvalues, which keep all their digits. (Reduced by
 //! the factor of M instead, the errors would be relative to the highest mode.) x' M x = 1.
 
-use faer::{Mat, Side};
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+
+#[cfg(feature = "matrices")]
+use super::large::large;
+#[cfg(not(feature = "matrices"))]
+use super::left_out::large;
 
 /// Up to this order nalgebra solves it, whose result is the same on every machine. Above, faer is many times faster;
 /// its kernels, and so the last digits, depend on the processor.
-const SMALL: usize = 100;
+pub const SMALL: usize = 100;
 
 /// The modes: natural frequencies (rad/s), increasing, and for each the values of some linear functionals.
 pub struct Modes {
@@ -28,6 +32,9 @@ pub enum Unsolved {
     Mass,
     /// The numbers leave the range of double precision.
     Range,
+    /// The order is above [`SMALL`], and this build is without the feature `matrices`.
+    #[cfg(not(feature = "matrices"))]
+    LeftOut,
 }
 
 /// The modes of a stiffness and a mass matrix, and the values of functionals, the columns of `functionals`.
@@ -57,21 +64,17 @@ pub fn values(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
     if matrix.iter().any(|element| !element.is_finite()) {
         return None;
     }
-    let mut values = if matrix.is_empty() {
-        Vec::new() // A rigid body has no modes.
-    } else if matrix.nrows() <= SMALL {
-        matrix.symmetric_eigenvalues().as_slice().to_vec()
-    } else {
-        to_faer(matrix).self_adjoint_eigenvalues(Side::Lower).ok()?
-    };
+    // A rigid body has no modes.
+    let mut values =
+        if matrix.is_empty() { Vec::new() } else { matrix.symmetric_eigenvalues().as_slice().to_vec() };
     values.sort_by(f64::total_cmp);
     Some(values)
 }
 
 /// The eigenvalues w⁻² of B B' in any order, and y' L⁻¹ c for each eigenvector and functional.
-struct Reduced {
-    squares: Vec<f64>,
-    values: DMatrix<f64>,
+pub struct Reduced {
+    pub squares: Vec<f64>,
+    pub values: DMatrix<f64>,
 }
 
 fn small(
@@ -101,53 +104,9 @@ fn small(
     })
 }
 
-fn large(
-    stiffness: &DMatrix<f64>,
-    mass: &DMatrix<f64>,
-    functionals: &DMatrix<f64>,
-) -> Result<Reduced, Unsolved> {
-    use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-
-    let factor = |matrix: &DMatrix<f64>, indefinite| {
-        let factor = to_faer(matrix).llt(Side::Lower).map_err(|_| indefinite)?;
-        let pivots = (0..matrix.nrows()).map(|i| (factor.L()[(i, i)], matrix[(i, i)]));
-        if is_definite(pivots) { Ok(factor) } else { Err(indefinite) }
-    };
-    let l = factor(stiffness, Unsolved::Stiffness)?;
-    let mut b = factor(mass, Unsolved::Mass)?.L().to_owned();
-    l.L().solve_lower_triangular_in_place(&mut b);
-    let mut square = Mat::zeros(b.nrows(), b.nrows());
-    matmul(
-        &mut square,
-        BlockStructure::TriangularLower,
-        faer::Accum::Replace,
-        &b,
-        BlockStructure::Rectangular,
-        b.transpose(),
-        BlockStructure::Rectangular,
-        1.0,
-        faer::Par::Seq,
-    );
-    if !square.is_all_finite() {
-        return Err(Unsolved::Range);
-    }
-    let eigen = square.self_adjoint_eigen(Side::Lower).map_err(|_| Unsolved::Range)?;
-    let mut functionals = to_faer(functionals);
-    l.L().solve_lower_triangular_in_place(&mut functionals);
-    let values = eigen.U().transpose() * &functionals;
-    Ok(Reduced {
-        squares: eigen.S().column_vector().iter().copied().collect(),
-        values: DMatrix::from_fn(values.nrows(), values.ncols(), |i, j| values[(i, j)]),
-    })
-}
-
-fn to_faer(matrix: &DMatrix<f64>) -> Mat<f64> {
-    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)])
-}
-
 /// Whether the pivots of a Cholesky factor, each with the diagonal element that it comes from, are more than what
 /// rounding leaves of zero.
-fn is_definite(pivots: impl ExactSizeIterator<Item = (f64, f64)>) -> bool {
+pub fn is_definite(pivots: impl ExactSizeIterator<Item = (f64, f64)>) -> bool {
     let rounding = pivots.len() as f64 * f64::EPSILON;
     pivots.into_iter().all(|(pivot, diagonal)| pivot * pivot > rounding * diagonal)
 }

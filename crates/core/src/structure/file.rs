@@ -9,14 +9,18 @@ const LONGEST: u64 = 256 << 20;
 
 /// Opens a file.
 pub fn open(path: &Path) -> Result<File, String> {
+    open_up_to(path, LONGEST)
+}
+
+fn open_up_to(path: &Path, longest: u64) -> Result<File, String> {
     let told = |error: std::io::Error| error.to_string();
     // A pipe or a device may never end, and a pipe not even open.
     let metadata = fs::metadata(path).map_err(told)?;
     if !metadata.is_file() {
         return Err("not a file".to_owned());
     }
-    if metadata.len() > LONGEST {
-        return Err(format!("must have at most {LONGEST} bytes, got {}", metadata.len()));
+    if metadata.len() > longest {
+        return Err(format!("must have at most {longest} bytes, got {}", metadata.len()));
     }
     File::open(path).map_err(told)
 }
@@ -24,4 +28,9 @@ pub fn open(path: &Path) -> Result<File, String> {
 /// Opens a file that is read from its begin to its end, and no further than it may be long.
 pub fn open_text(path: &Path) -> Result<BufReader<Take<File>>, String> {
     Ok(BufReader::new(open(path)?.take(LONGEST)))
+}
+
+/// Opens such a file, of so many bytes at most.
+pub fn open_text_up_to(path: &Path, longest: u64) -> Result<BufReader<Take<File>>, String> {
+    Ok(BufReader::new(open_up_to(path, longest)?.take(longest)))
 }

@@ -9,7 +9,12 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{Fault, csv, market, npz};
+#[cfg(not(feature = "matrices"))]
+use super::left_out::npz;
+#[cfg(feature = "matrices")]
+use super::npz;
+use super::{csv, market};
+use crate::document::Fault;
 use crate::quantity::Finite;
 
 /// A dense matrix, or where one is.
@@ -42,12 +47,12 @@ impl Matrix {
                 for (index, row) in rows.iter().enumerate() {
                     if row.len() != columns {
                         let why = format!("must have {columns} numbers, as the first row, got {}", row.len());
-                        return Err((format!("[{index}]"), why));
+                        return Err(Fault::new(format!("[{index}]"), why));
                     }
                 }
                 Ok(DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j].get()))
             }
-            Self::File(file) => read_file(file).map_err(|why| (String::new(), why)),
+            Self::File(file) => read_file(file).map_err(|why| Fault::new("", why)),
         }
     }
 }

@@ -1,21 +1,28 @@
 //! A structure given by its mass and stiffness matrices, that turns about one axis: its modes.
 //!
-//! M q'' + K q = Q, where one coordinate is the angle theta of the hub (seed paper 2, equation (7)). A unit rigid rotation
+//! M q'' + K q = Q, where one coordinate is the angle theta of the hub (\[Rotation\], equation (7)). A unit rigid rotation
 //! displaces the coordinates by r, so that with q = r theta + e the elastic coordinates e leave the hub out and theta is
 //! the only coordinate without stiffness:
 //!
 //! J theta'' + m' e'' = torque, m theta'' + Mc e'' + Kc e = 0, J = r' M r, m = the elastic part of M r.
 
-pub(crate) mod csv;
+mod csv;
 mod eigen;
+pub mod fe;
 mod file;
+#[cfg(feature = "matrices")]
+mod large;
+#[cfg(not(feature = "matrices"))]
+mod left_out;
 mod market;
 mod matrix;
+pub mod mode_table;
+#[cfg(feature = "matrices")]
 mod npz;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::body::Drive;
+use crate::document::Fault;
 use eigen::Unsolved;
 pub use eigen::values as eigenvalues;
 pub use matrix::Matrix;
@@ -26,9 +33,6 @@ pub const LARGEST: usize = 2000;
 /// Differences up to this part of a matrix's largest element are taken for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What is wrong: the key, within those that describe the structure, and why.
-pub type Fault = (String, String);
-
 /// A structure that can turn about one axis, and in no other way without strain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure {
@@ -36,6 +40,15 @@ pub struct Structure {
     stiffness: DMatrix<f64>,
     hub: usize,
     rotation: DVector<f64>,
+}
+
+/// Whether the hub turns with the modes.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Hub {
+    /// It turns freely, and a torque drives it.
+    Free,
+    /// It is held, or moved as commanded.
+    Held,
 }
 
 /// The modes of a structure.
@@ -46,7 +59,7 @@ pub struct Modes {
     /// Natural frequencies (rad/s), increasing.
     pub frequencies: Vec<f64>,
     /// How the hub takes part in each mode of unit modal mass: of the free structure its angle X_n\[theta\]
-    /// (kg⁻¹ᐟ² m⁻¹), of the clamped one its coupling X_n' m (kg¹ᐟ² m; seed paper 2, equations (17) and (18)).
+    /// (kg⁻¹ᐟ² m⁻¹), of the clamped one its coupling X_n' m (kg¹ᐟ² m; \[Rotation\], equations (17) and (18)).
     pub participations: Vec<f64>,
     /// For each observed coordinate, what a unit rigid rotation gives.
     pub rigid: Vec<f64>,
@@ -110,7 +123,7 @@ impl Structure {
                 )
             };
             let key = rotation.map_or_else(|| format!("stiffness[{i}][{hub}]"), |_| "rotation".to_owned());
-            return Err((key, why));
+            return Err(Fault::new(key, why));
         }
         Ok(Self { mass, stiffness, hub, rotation: turned })
     }
@@ -155,7 +168,7 @@ impl Structure {
     ///
     /// # Errors
     /// A matrix that is not positive definite.
-    pub fn modes(&self, drive: Drive, observed: &[Vec<f64>]) -> Result<Modes, Fault> {
+    pub fn modes(&self, hub: Hub, observed: &[Vec<f64>]) -> Result<Modes, Fault> {
         let elastic: Vec<usize> = (0..self.mass.nrows()).filter(|i| *i != self.hub).collect();
         let order = elastic.len();
         let momenta = &self.mass * &self.rotation;
@@ -167,7 +180,7 @@ impl Structure {
         let block =
             |matrix: &DMatrix<f64>| DMatrix::from_fn(order, order, |i, j| matrix[(elastic[i], elastic[j])]);
         let mut mass = block(&self.mass);
-        if drive == Drive::Torque {
+        if hub == Hub::Free {
             mass.ger(-1.0 / inertia, &coupling, &coupling, 1.0);
         }
         let functionals = DMatrix::from_fn(order, 1 + observed.len(), |i, column| match column {
@@ -175,29 +188,31 @@ impl Structure {
             _ => observed[column - 1][elastic[i]],
         });
         let solved = eigen::modes(block(&self.stiffness), mass, &functionals).map_err(|which| match which {
-            Unsolved::Range => ("mass".to_owned(), TOO_FAR_APART.to_owned()),
-                Unsolved::Mass => ("mass".to_owned(), format!("{DEFINITE}, and is not")),
-            Unsolved::Stiffness => (
-                "stiffness".to_owned(),
-                format!(
+            Unsolved::Range => Fault::new("mass", TOO_FAR_APART),
+            #[cfg(not(feature = "matrices"))]
+            Unsolved::LeftOut => {
+                let (most, why) = (eigen::SMALL, left_out::LEFT_OUT);
+                Fault::new("mass", format!("has {order} elastic coordinates: more than {most} {why}"))
+            }
+            Unsolved::Mass => Fault::new("mass", format!("{DEFINITE}, and is not")),
+            Unsolved::Stiffness => Fault::new("stiffness", format!(
                     "{DEFINITE} with the hub held, and is not: the structure has another motion without strain \
                      beside the rotation, or a negative stiffness"
-                ),
-            ),
+                )),
         })?;
         let couplings = solved.values.column(0);
-        if drive == Drive::Motion && couplings.norm_squared() >= inertia {
+        if hub == Hub::Held && couplings.norm_squared() >= inertia {
             return fault("mass", format!("{DEFINITE}, and is not"));
         }
         let rigid: Vec<f64> = observed.iter().map(|weights| dot(weights, self.rotation.as_slice())).collect();
-        let participations: Vec<f64> = match drive {
-            Drive::Torque => couplings.iter().map(|coupling| -coupling / inertia).collect(),
-            Drive::Motion => couplings.iter().copied().collect(),
+        let participations: Vec<f64> = match hub {
+            Hub::Free => couplings.iter().map(|coupling| -coupling / inertia).collect(),
+            Hub::Held => couplings.iter().copied().collect(),
         };
         // A free mode moves the hub too, and with it all that turns with the hub.
-        let turns = |n: usize, rigid: f64| match drive {
-            Drive::Torque => rigid * participations[n],
-            Drive::Motion => 0.0,
+        let turns = |n: usize, rigid: f64| match hub {
+            Hub::Free => rigid * participations[n],
+            Hub::Held => 0.0,
         };
         let shape = |(c, rigid): (usize, &f64)| {
             (0..order).map(|n| solved.values[(n, c + 1)] + turns(n, *rigid)).collect()
@@ -217,7 +232,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn fault<T>(key: &str, why: String) -> Result<T, Fault> {
-    Err((key.to_owned(), why))
+    Err(Fault::new(key, why))
 }
 
 /// A matrix that is square, finite and symmetric to rounding, made symmetric to the last digit.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Table:
-    """What the runs of a campaign came to: a row for each run."""
+    """The results of a campaign: a row for each run."""
 
     scenario: Scenario
     """What the runs were drawn from."""
@@ -74,14 +74,14 @@ def campaign(
 ) -> Table:
     """Simulate many runs of a scenario: its `[uncertain]` keys and its noise drawn anew for each.
 
-    A run is the same whichever runs are made beside it: parts such as `range(500, 1000)` make up a whole.
+    A run does not depend on the other runs of the call: parts such as `range(500, 1000)` make up a whole.
 
     Args:
         scenario: What the runs are drawn from.
         runs: Their number, or their range (of step 1).
         jobs: Threads, at most 1024; left out, one for each core.
         seed: Seed, instead of the scenario's.
-        yes: Do what is estimated to take more than 10 h on one core, 4 GB of memory or 20 GB of logs.
+        yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
 
     Raises:
         ScenarioError: The scenario cannot vary so. A single run that fails is a row with an `error`.
@@ -114,7 +114,7 @@ def sweep(
         values: The values of a single key, of shape (runs,), such as `numpy.linspace(0.28, 0.40, 25)`.
         jobs: Threads, at most 1024; left out, one for each core.
         seed: Seed, instead of the scenario's.
-        yes: Do what is estimated to take more than 10 h on one core, 4 GB of memory or 20 GB of logs.
+        yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
 
     Raises:
         ScenarioError: There is no such key, or it does not accept the first or the last value. Any other

@@ -1,4 +1,4 @@
-"""Active damping by a relay of thrusters, and the convergence of the observer that it needs."""
+"""Active damping by a relay of thrusters, and the convergence of its observer."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ def relay_damping(
     amplitude: float = 0.0,
     threshold: float = 0.0,
 ) -> dict[str, npt.NDArray[np.float64]]:
-    """What a relay that pushes against the elastic rate does to modes of these natural frequencies.
+    """Damping of modes by a relay that pushes against their elastic rate.
 
     Args:
         frequencies: Natural frequencies (rad/s).
         acceleration: Elastic acceleration of a push, the rigid one times the influence on the mode (rad/s²).
-        period: Time from one sample to the next (s); 0 for a relay that reads and pushes all the time.
-        delay: Time from a sample to the push that it decides (s).
+        period: Sampling period (s); 0 for a continuous relay.
+        delay: Delay from a sample to its push (s).
         on_time: How long a push lasts (s); left out, the whole period.
         damping: Damping ratio of the modes.
         amplitude: Amplitude of the elastic rate at the start (rad/s).
         threshold: Amplitude below which no thruster fires (rad/s).
 
     Returns:
-        Columns of shape (frequencies,), NaN where there is nothing: `frequency_rad_s`, `phase_factor`,
+        Columns of shape (frequencies,), NaN where undefined: `frequency_rad_s`, `phase_factor`,
         `slope_rad_s2`, `delay_limit_s`, `gain_limit_1_s`, `limit_cycle_rate_rad_s`,
         `limit_cycle_frequency_rad_s`, `decay_s` and `thrust_s`, from the amplitude to the threshold.
 
@@ -98,7 +98,7 @@ def observer_margin(
     period: float = 0.2,
     damping: float = 0.005,
 ) -> dict[str, Any]:
-    """How fast the recurrence observer may identify a frequency, its regressor the oscillation that it is.
+    """How fast the recurrence observer may identify a frequency, with the oscillation as its regressor.
 
     Args:
         frequency: Natural frequency of the mode (rad/s).
@@ -108,8 +108,9 @@ def observer_margin(
         damping: Damping ratio of the mode.
 
     Returns:
-        `gain_max`, up to which it converges, `gain_best`, with which it does soonest, `spectral_radius`, what
-        a sample then leaves of an error (NaN if none converges); `radii`, that for each of `kappas`.
+        `gain_max`, up to which it converges; `gain_best`, with which it converges fastest;
+        `spectral_radius`, the factor of an error from sample to sample at that gain (NaN if none
+        converges); `radii`, the same for each of `kappas`.
 
     Raises:
         ValueError: A number is out of its range.
@@ -141,13 +142,13 @@ def identify(
 
     Args:
         modes: Natural frequency (rad/s) and influence of each mode.
-        off: Parts by which the frequencies are off at the start, up or down.
-        influence_off: Part by which the influences are.
+        off: Relative errors of the frequencies at the start, up or down.
+        influence_off: Relative error of the influences at the start.
         rate: Rate of the identification, eta.
         runs: Runs of each row.
         cycles: Cycles of a run.
         seed: Seed.
-        yes: Do what is estimated to take more than 10 h on one core.
+        yes: Run even if the estimate is more than 10 h on one core.
 
     Returns:
         Columns of shape (off,), NaN where no run converged: `off`, `runs`, `converged`, to 2 % of each
@@ -174,14 +175,14 @@ def identify(
 
 
 def persistence(sensitivities: npt.ArrayLike) -> float:
-    """Persistence of excitation: how well what was seen tells parameters apart.
+    """Persistence of excitation: how well measurements distinguish the parameters.
 
     Args:
         sensitivities: Derivatives of the measurement by each parameter, shape (samples, parameters).
 
     Returns:
         The least eigenvalue of their Gram matrix, each column normalised: 1 at best, 0 where a combination of
-        parameters was never seen; NaN if a parameter was never excited.
+        parameters does not show; NaN if a parameter was never excited.
     """
     import numpy as np
 

@@ -36,12 +36,12 @@ def gain_region(
         limit: The longest settling time (s).
         band: Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the
             start.
-        horizon: How long each loop is watched (s).
-        dominant_alone: The dominant mode alone changes its frequency, not all by one ratio.
-        yes: Do what is estimated to take more than 10 h on one core.
+        horizon: How long each loop is simulated (s).
+        dominant_alone: Change the frequency of the dominant mode alone, not of all modes by one ratio.
+        yes: Run even if the estimate is more than 10 h on one core.
 
     Returns:
-        Columns of shape (frequencies,), NaN where no gain does: `frequency_rad_s`, `gain_min`, `gain_max`,
+        Columns of shape (frequencies,), NaN without such a gain: `frequency_rad_s`, `gain_min`, `gain_max`,
         `midpoint`, `settling_s` and `spectral_radius` at the midpoint, `settling_without_s` and
         `spectral_radius_without`, without the extra loop.
 
@@ -71,16 +71,16 @@ def robust_gains(
     dominant_alone: bool = False,
     yes: bool = False,
 ) -> dict[str, npt.NDArray[np.float64]]:
-    """The gains that settle soonest while the model is off, at each frequency of the dominant mode.
+    """The gains that settle fastest with an uncertain model, at each frequency of the dominant mode.
 
     Args:
         scenario: A body under a law `pd`.
         frequencies: Frequencies of the dominant mode (rad/s).
-        off: By which part frequencies, modal gains and the actuator's gain may be off.
-        delay: By how much more the command may be delayed (s).
+        off: Relative error of frequencies, modal gains and the actuator's gain.
+        delay: Additional delay of the command to allow for (s).
         itae: Minimise the integral of time times angle instead of the settling time.
         quantile: The quantile of the perturbed loops that counts; 1 is the worst.
-        margin: By how much every spectral radius stays below 1.
+        margin: Margin by which every spectral radius stays below 1.
         gains: As for `gain_region`, with `band`, `horizon`, `dominant_alone` and `yes`.
 
     Returns:

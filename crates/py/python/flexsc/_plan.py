@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Plan(Mapping[str, Any]):
-    """The plan of a scenario's manoeuvre: what it comes to, by the names of `flexsc plan --json`.
+    """The plan of a scenario's manoeuvre, with the names of `flexsc plan --json`.
 
     Units are in the names: `plan["peak_torque_nm"]`, `plan["residual_rad"]["angle"]`.
     """

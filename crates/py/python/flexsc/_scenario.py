@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 class Scenario:
-    """What is simulated: everything that a scenario file says. It is valid and does not change.
+    """A study: everything that a scenario file contains. It is valid and immutable.
 
     Args:
         values: The keys of a scenario file, as nested dictionaries. Numbers may be numpy's, lists its arrays;
             the `epoch` is a `datetime`.
-        name: The scenario's name if `values` has none, and what errors call it.
+        name: The scenario's name if `values` has none, and in errors.
 
     Raises:
         ScenarioError: A key is unknown, missing, or has a value that is not accepted.
@@ -57,7 +57,7 @@ class Scenario:
 
     @classmethod
     def parse(cls, text: str, name: str = "scenario") -> Scenario:
-        """Read a scenario from TOML text. `name` is its name if it has none, and what errors call it.
+        """Read a scenario from TOML text. `name` is its name if it has none, and in errors.
 
         Raises:
             ScenarioError: The text is not accepted.
@@ -139,7 +139,7 @@ class Scenario:
         """A scenario with one key set, or several: `with_("law.relay.k_t", 0.34)`, `with_({"seed": 3, ...})`.
 
         Keys are paths into the file, such as `body.planar.modes[0].frequency`. Several are set together: only
-        the scenario that comes out has to be valid.
+        the result has to be valid.
 
         Raises:
             ScenarioError: A key or a value is not accepted.
@@ -153,7 +153,7 @@ class Scenario:
         `scenario.draw(57).simulate(run=57)` is run 57 of `campaign(scenario)`.
 
         Raises:
-            ScenarioError: What is drawn makes no valid scenario.
+            ScenarioError: The drawn values do not make a valid scenario.
         """
         return self._of(self._native.draw(run_number(run)))
 
@@ -171,18 +171,18 @@ class Scenario:
         log: Literal["events", "full", "scene", "none"] = "events",
         yes: bool = False,
     ) -> Result:
-        """Simulate the scenario as it stands. Other Python threads go on meanwhile.
+        """Simulate the scenario. Other Python threads continue meanwhile.
 
         Args:
             run: Number of the run: another number, other noise.
             log: `events` keeps all that changes (switchings, window means, adaptation), `full` also the
                 motion at each period of the scenario's log and at every switching, `none` the metrics only.
                 `scene` is `full` for columns; a file that is written of it has the scene for viewers, too.
-            yes: Do what is estimated to take more than 10 h on one core, 4 GB of memory or 20 GB of logs.
+            yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
 
         Raises:
             SimulationError: The state is no longer finite, or the law switches without end.
-            ValueError: The run is estimated to take too much, and `yes` is not given.
+            ValueError: The estimate is above these limits, and `yes` is not given.
         """
         run = run_number(run)
         metrics, topics = engine.simulate(self._native, run, log, yes)

@@ -1,4 +1,4 @@
-"""Values between Python and the engine: TOML that nobody wrote, dates, arrays of columns."""
+"""Values between Python and the engine: generated TOML, dates, arrays of columns."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ fn logged(text: &str, detail: Detail) -> Result<Vec<u8>, Box<dyn std::error::Err
     let scenario = Scenario::parse("s.toml", text)?;
     let study = Campaign::new(scenario, "s.toml", None)?;
     let run = Run { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() };
-    let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(&run), detail)?;
+    let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(&run, detail), detail)?;
     let metrics = Campaign::simulate(&run, &mut log)?;
     Ok(log.finish(&metrics, RunEnd::Complete)?.into_inner())
 }

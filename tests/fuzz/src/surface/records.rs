@@ -45,8 +45,11 @@ fn parse(mut bytes: &[u8]) -> Vec<Record> {
         bytes = &rest[8 + body.len()..];
         let mut record = Record { op: *op, body: body.to_vec(), within: Vec::new() };
         // An empty name of a compression, then the size of what follows.
-        if *op == op::CHUNK && body.get(CHUNK_HEAD..CHUNK_HEAD + 4) == Some(&[0; 4]) {
-            record.within = parse(&body[CHUNK_HEAD + 12..]);
+        if *op == op::CHUNK
+            && body.get(CHUNK_HEAD..CHUNK_HEAD + 4) == Some(&[0; 4])
+            && let Some(inner) = body.get(CHUNK_HEAD + 12..)
+        {
+            record.within = parse(inner);
             record.body.truncate(16);
         }
         records.push(record);

@@ -1,7 +1,8 @@
 //! Figure `curve`: metrics of a sweep over its key.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
 use super::table::{Key, Metric, Runs};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 /// So many values are marked each.
 const MARKS: usize = 100;

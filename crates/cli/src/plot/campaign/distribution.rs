@@ -2,9 +2,9 @@
 //! and the 5 and 95 %.
 
 use flexsc_core::statistics::quantile;
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_nice};
 
 use super::table::{Metric, Runs};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_nice};
 
 /// A histogram has no more bars, and no fewer.
 const BARS: [f64; 2] = [5.0, 60.0];

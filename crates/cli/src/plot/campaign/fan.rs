@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::record::Log;
 use flexsc_core::statistics::quantile;
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 use rayon::prelude::*;
 
 use super::super::motion::Motion;
@@ -14,7 +15,6 @@ use super::super::spatial::Cycles;
 use super::super::story::Story;
 use super::super::time;
 use crate::failure::Failure;
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
 use crate::{progress, say};
 
 /// Quantiles are taken at so many instants, evenly apart.
@@ -110,7 +110,7 @@ fn signals(path: &Path) -> Result<Vec<Signal>, Failure> {
     let story = Story::read(&log, path)?;
     let signal = |name: &str, unit, line, held| Signal { name: name.to_owned(), unit, line, held };
     let mut signals = Vec::new();
-    if story.scenario.spatial.is_some() {
+    if story.scenario.axis_count() == 3 {
         let cycles = Cycles::read(&story, &log, path)?;
         let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         signals.push(signal("pointing error", "rad", cycles.over_time(|c| length(c.error_rad)), false));
@@ -152,7 +152,7 @@ fn of_rotation(story: &Story, motion: &Motion) -> Vec<Signal> {
         held: false,
     }];
     if let (Some(output), Some(values)) = (story.scenario.model.outputs.last(), motion.outputs.last()) {
-        let (name, unit) = crate::figure::name_and_unit(&output.name, &output.unit);
+        let (name, unit) = flexsc_figure::name_and_unit(&output.name, &output.unit);
         signals.push(Signal { name, unit, line: over_time(&mut values.iter().copied()), held: false });
     }
     if !motion.estimates.is_empty() {

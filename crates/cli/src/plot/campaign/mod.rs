@@ -12,10 +12,12 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
+use flexsc_figure::Figure;
+
 use super::Args;
 use super::what::{What, chosen};
+use crate::drawing::Target;
 use crate::failure::Failure;
-use crate::figure::{Figure, Target};
 use crate::{print, say};
 use table::{Metric, Runs};
 
@@ -143,7 +145,7 @@ fn natural(runs: &Runs) -> Vec<What> {
 fn metrics<'a>(args: &Args, runs: &'a Runs) -> Result<Vec<&'a Metric>, Failure> {
     let named = |name: &str| runs.metrics.iter().find(|metric| metric.meaning.name == name);
     if args.metric.is_empty() {
-        // What only repeats a key tells nothing.
+        // What only repeats a key is left out.
         let tells =
             |metric: &&Metric| metric.varies() && runs.keys.iter().all(|key| key.values != metric.values);
         let main: Vec<_> = MAIN.into_iter().filter_map(named).filter(tells).collect();

@@ -1,9 +1,8 @@
 //! Figure `region`: a metric of a sweep over two keys, as a map.
 
-use plotters::style::RGBColor;
+use flexsc_figure::{Axis, Bar, Figure, Layer, Panel, Point, RGBColor, Shape, colour};
 
 use super::table::{Metric, Runs};
-use crate::figure::{Axis, Bar, Figure, Layer, Panel, Point, Shape, colour};
 
 /// The colours of the classes, darker for larger values also in print without colours (after Brewer).
 const COLOURS: [RGBColor; 8] = [
@@ -75,7 +74,7 @@ fn spread(classes: usize) -> Vec<RGBColor> {
     (0..classes).map(|class| COLOURS[(class * last).checked_div(classes - 1).unwrap_or(last / 2)]).collect()
 }
 
-/// Classes of values, and the axis that tells their unit.
+/// Classes of values, and the axis with their unit.
 struct Classes {
     axis: Axis,
     edges: Vec<f64>,

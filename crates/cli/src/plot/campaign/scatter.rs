@@ -1,7 +1,8 @@
 //! Figure `scatter`: a metric against each key that was drawn, or else swept, the most telling ones first.
 
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
 use super::table::{Key, Metric, Runs};
-use crate::figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 /// So many keys have a panel, at most.
 const PANELS: usize = 4;

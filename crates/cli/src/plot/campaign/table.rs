@@ -95,7 +95,7 @@ impl Rows {
         {
             return Err(refused(path, "is no table of a campaign: its columns must be `run`, ..., `error`"));
         }
-        // A part of nothing but failures has no metrics: the longer header tells them.
+        // A part of nothing but failures has no metrics: the longer header has them.
         let within = |short: &[String], long: &[String]| short.iter().all(|column| long.contains(column));
         if within(&self.header, &header) {
             self.header.clone_from(&header);
@@ -163,7 +163,7 @@ impl Rows {
     }
 }
 
-/// Whether a column tells about a run, and is neither a key nor a metric.
+/// Whether a column describes a run, and is neither a key nor a metric.
 fn is_about(column: &str) -> bool {
     ["run", "seed", "error"].contains(&column)
 }

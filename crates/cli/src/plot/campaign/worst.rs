@@ -109,7 +109,7 @@ pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) ->
             before = found.what;
         }
         let why = match found.value.parse() {
-            // A count is told as it is.
+            // A count is printed as it is.
             Ok(number) if found.value.contains('.') => short(number),
             _ => found.value.lines().next().unwrap_or_default().to_owned(),
         };

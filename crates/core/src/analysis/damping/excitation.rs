@@ -1,4 +1,4 @@
-//! Whether what an observer saw tells its parameters apart.
+//! Whether the measurements of an observer distinguish its parameters.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -22,7 +22,7 @@ impl Excitation {
     }
 
     /// Persistence of excitation: the least eigenvalue of the matrix, each parameter's sensitivities normalised to
-    /// length 1. It is 1 where the parameters are told apart as well as can be, 0 where some combination of them is never
+    /// length 1. It is 1 where the parameters are distinguished as well as can be, 0 where some combination of them is never
     /// seen; none if there are no parameters, or one that was never excited.
     pub fn persistence(&self) -> Option<f64> {
         let count = self.0.nrows();

@@ -1,34 +1,23 @@
 //! Active damping of an elastic mode by the spacecraft's own relay thrusters, in closed form.
 //!
-//! The thrusters push against the elastic rate g' that an observer tells: g'' + 2 zeta w g' + w² g = -a sign g', with
-//! a = mu m, the influence of the thrusters times their rigid acceleration (seed paper 4, page 48). Beside it, when the
-//! adaptive observer converges that tells it.
+//! The thrusters push against the elastic rate g' that an observer estimates: g'' + 2 zeta w g' + w² g = -a sign g', with
+//! a = mu m, the influence of the thrusters times their rigid acceleration (\[Timakov14\], page 48). Beside it, when that
+//! adaptive observer converges.
 
 mod convergence;
 mod decay;
 mod excitation;
 mod floquet;
-mod partition;
-mod phase_factor;
 
 use serde::Serialize;
+
+use crate::actuator::PulseTiming;
+use crate::numerics::delay_margin::delay_margin;
 
 pub use convergence::{Convergence, Edge};
 pub use decay::Decay;
 pub use excitation::{Excitation, persistence};
 pub use floquet::Margin;
-pub use partition::{Partition, partition};
-
-/// When a relay reads the elastic rate and pushes against it.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Relay {
-    /// Time from one sample to the next (s); 0 for a relay that reads and pushes all the time.
-    pub period: f64,
-    /// Time from a sample to the push that it decides (s).
-    pub delay: f64,
-    /// How long a push lasts (s), at most the period.
-    pub on_time: f64,
-}
 
 /// A mode under a relay.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
@@ -56,8 +45,8 @@ pub struct Damped {
 /// A relay against the modes of one damping ratio.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Study {
-    /// The relay.
-    pub relay: Relay,
+    /// When the relay pushes.
+    pub timing: PulseTiming,
     /// Damping ratio of the modes.
     pub damping: f64,
     /// Elastic acceleration of a push, a (rad/s²).
@@ -71,11 +60,11 @@ pub struct Study {
 impl Study {
     /// The first number that is out of its range, by its name, and what is wrong with it.
     pub fn inconsistency(&self) -> Option<(&'static str, String)> {
-        let Self { relay, damping, acceleration, amplitude, threshold } = *self;
+        let Self { timing, damping, acceleration, amplitude, threshold } = *self;
         let from_zero = [
-            ("period", relay.period),
-            ("delay", relay.delay),
-            ("on_time", relay.on_time),
+            ("period", timing.period),
+            ("delay", timing.delay),
+            ("on_time", timing.on_time),
             ("amplitude", amplitude),
             ("threshold", threshold),
         ];
@@ -88,7 +77,7 @@ impl Study {
         if !(acceleration > 0.0 && acceleration < 1e100) {
             return Some(("acceleration", format!("must be a positive number, got {acceleration}")));
         }
-        let Relay { period, on_time, .. } = relay;
+        let PulseTiming { period, on_time, .. } = timing;
         if period > 0.0 && !(on_time > 0.0 && on_time <= period) {
             return Some((
                 "on_time",
@@ -104,22 +93,22 @@ impl Study {
     }
 
     fn mode(&self, frequency: f64) -> Damped {
-        let Self { relay, damping, acceleration, amplitude, threshold } = *self;
-        let factor = relay.phase_factor(frequency);
+        let Self { timing, damping, acceleration, amplitude, threshold } = *self;
+        let factor = timing.phase_factor(frequency);
         let decay = Decay::new(acceleration * factor, damping * frequency);
-        let border = partition(frequency, relay.mean_delay(), damping);
+        let margin = delay_margin(frequency, timing.mean_delay(), damping);
         let reached = decay.threshold_time(amplitude, threshold);
         let thrust = decay.thrust_time(amplitude, threshold);
         Damped {
             frequency_rad_s: frequency,
             phase_factor: factor,
             slope_rad_s2: decay.slope,
-            delay_limit_s: relay.delay_limit(frequency),
-            gain_limit_1_s: border.map(|border| border.gain),
-            limit_cycle_rate_rad_s: border.map(|border| border.limit_cycle(acceleration * relay.duty())),
-            limit_cycle_frequency_rad_s: border.map(|border| border.frequency),
+            delay_limit_s: timing.delay_limit(frequency),
+            gain_limit_1_s: margin.map(|margin| margin.gain),
+            limit_cycle_rate_rad_s: margin.map(|margin| margin.limit_cycle(acceleration * timing.duty())),
+            limit_cycle_frequency_rad_s: margin.map(|margin| margin.frequency),
             decay_s: reached,
-            thrust_s: thrust.map(|time| time * relay.duty()),
+            thrust_s: thrust.map(|time| time * timing.duty()),
         }
     }
 }

@@ -24,7 +24,7 @@ impl<'a> Held<'a> {
         let (transition, mut whole) = coupled.discrete(of.period);
         whole *= of.authority;
         let periods = of.delay / of.period;
-        // A delay of whole periods is one, whatever its last bits say.
+        // A delay of whole periods is one, whatever its last bits.
         let late = libm::floor(periods + 1e-9);
         let part = (periods - late).max(0.0) * of.period;
         let forced = if part > 1e-9 * of.period {

@@ -1,7 +1,7 @@
 //! The sampled loop at constant frequencies: body, wheel and PD law as one linear system from sample to sample.
 //!
 //! u_k = shape(-(k_p y_k + k_d D_k)), held over [k T0, (k + 1) T0) or as much later as the wheel delays it;
-//! y = x + gain x_d with the displacement x_d of the dominant mode (seed papers 3 and 5, equations (5), (7) and (8)). The
+//! y = x + gain x_d with the displacement x_d of the dominant mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)). The
 //! reduced moment is m = b u - a x' with b > 0: the papers print k'_u with the sign that feeds back positively.
 
 mod closed;

@@ -1,4 +1,4 @@
-//! Where the gain of the extra loop may lie, over the frequency of the dominant mode (seed papers 3 and 5, figure 5).
+//! Where the gain of the extra loop may lie, over the frequency of the dominant mode (\[Wheel11, Sukhanov\], figure 5).
 
 use rayon::prelude::*;
 use serde::Serialize;

@@ -29,7 +29,7 @@ pub struct Settling {
 impl Window {
     /// The number of samples within it, its ends included.
     pub fn samples(&self, period: f64) -> usize {
-        // A sample at the horizon itself counts, whatever its last bits say.
+        // A sample at the horizon itself counts, whatever its last bits.
         libm::floor(self.horizon / period * (1.0 + 1e-12)) as usize + 1
     }
 }

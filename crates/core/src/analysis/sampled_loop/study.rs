@@ -4,6 +4,7 @@ use super::{Loop, Shape, Window};
 use crate::Scenario;
 use crate::actuator::{Actuator, Opposes, Wheel};
 use crate::body::Drive;
+use crate::document::Fault;
 use crate::law::{Extra, Law, Pd};
 use crate::quantity::Positive;
 use crate::scenario::Cost;
@@ -18,11 +19,11 @@ impl Loop {
     ///
     /// # Errors
     /// A key that has no place in such a loop, and why.
-    pub fn of(scenario: &Scenario) -> Result<(Self, &Pd), (String, String)> {
-        let refused = |key: &str, why: &str| Err((key.to_owned(), why.to_owned()));
-        if scenario.spatial.is_some() {
+    pub fn of(scenario: &Scenario) -> Result<(Self, &Pd), Fault> {
+        let refused = |key: &str, why: &str| Err(Fault::new(key, why));
+        if scenario.axis_count() == 3 {
             return refused(
-                "body.spatial",
+                &scenario.body.key(),
                 "turns about three axes: the loop that is analysed has one angle",
             );
         }
@@ -37,7 +38,10 @@ impl Loop {
             return refused("body", "must be turned by a torque, not by a given motion of the hub");
         }
         if scenario.manoeuvre.is_some() {
-            return refused("manoeuvre", "has no place in the analysis of a loop that brings the angle to 0");
+            return refused(
+                "manoeuvre",
+                "cannot be part of the analysis of a loop that brings the angle to 0",
+            );
         }
         let inertia = body.inertia.get();
         let (wheel, gain, back_emf, total, delay) = match &scenario.actuator {
@@ -46,7 +50,11 @@ impl Loop {
                 let total = wheel.opposes == Opposes::BodyRate;
                 (Some(wheel), wheel.gain.get(), wheel.back_emf.get(), total, wheel.delay.get())
             }
-            Actuator::Hold(_) | Actuator::Thrusters(_) | Actuator::Jets(_) => {
+            Actuator::Hold(_)
+            | Actuator::Thrusters(_)
+            | Actuator::Wheels(_)
+            | Actuator::Jets(_)
+            | Actuator::Own(_) => {
                 return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop");
             }
         };
@@ -113,13 +121,10 @@ impl Loop {
     ///
     /// # Errors
     /// The body starts at angle 0.
-    pub fn window(&self, band: Option<f64>, horizon: f64) -> Result<Window, (String, String)> {
+    pub fn window(&self, band: Option<f64>, horizon: f64) -> Result<Window, Fault> {
         match band.unwrap_or(0.05 * self.angle().abs()) {
             band if band > 0.0 => Ok(Window { band, horizon }),
-            _ => Err((
-                "body".to_owned(),
-                "must start at an angle other than 0, or the band be given".to_owned(),
-            )),
+            _ => Err(Fault::new("body", "must start at an angle other than 0, or the band be given")),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Attitudes: unit quaternions, and the small angles between two of them.
+//! Attitudes: unit quaternions, and the small angles between two of them (\[Hughes86\]).
 
 use std::borrow::Cow;
 
@@ -81,6 +81,16 @@ pub fn angles(q: &Quaternion<f64>) -> [f64; 3] {
         libm::asin(sine),
         libm::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
     ]
+}
+
+/// The rotation by a vector (rad).
+pub fn rotation(by: &Vector) -> Quaternion<f64> {
+    let angle = by.norm();
+    if angle == 0.0 {
+        return Quaternion::new(1.0, 0.0, 0.0, 0.0);
+    }
+    let (sin, cos) = libm::sincos(0.5 * angle);
+    Quaternion::from_parts(cos, by * (sin / angle))
 }
 
 /// How far an attitude is turned beyond a goal: 2 vec(goal* o q), in the body's axes and on the shorter way (rad for

@@ -1,7 +1,8 @@
 //! The spatial body: three axes, elastic modes with their shapes at named points of the structure.
 //!
 //! J w' + w x J w = M, Q' = 1/2 Q o (0, w), and q_i'' + 2 zeta_i w_i q_i' + w_i² q_i = sum_j f_i(r_j) . F_j + phi_i(r_j) . M_j
-//! (seed paper 4, equations (1) and (2)): mass-normalised modes, which the forces of the jets excite and which a gyro sees.
+//! (\[Timakov14\], equations (1) and (2); hybrid coordinates, \[Likins70\]): mass-normalised modes, which the forces of the jets
+//! excite and which a gyro sees.
 //! The modes do not act back on the rigid motion. Q turns vectors of the body into inertial ones: v = Q o v_body o Q*.
 
 mod attitude;
@@ -17,14 +18,14 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::structure::Fault;
 
-pub use attitude::{Attitude, angles, beyond, turned};
+pub use attitude::{Attitude, angles, beyond, rotation, turned};
 pub use disturbance::Periodic;
 pub use elastic::Elastic;
 pub use modes::SpatialModes;
-pub use rigid::{Rigid, Turn};
+pub use rigid::{LONGEST_TURN, Rigid, Turn};
 pub use state::SpatialState;
 
 /// Three numbers along the body's axes x, y and z, about which it rolls, pitches and yaws.
@@ -34,7 +35,7 @@ pub type Vector = nalgebra::Vector3<f64>;
 pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// A spatial body as a scenario describes it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spatial {
     /// Inertia tensor about the centre of mass (kg m²), row by row: symmetric, positive definite.
@@ -62,7 +63,7 @@ pub struct Spatial {
 pub struct NamedPoint {
     /// Name.
     pub name: String,
-    /// Position from the centre of mass (m).
+    /// Position (m): from the centre of mass, of a spacecraft's hub from its point O, of an appendage from its root.
     #[serde(default)]
     pub position: [Finite; 3],
 }
@@ -104,10 +105,23 @@ pub fn vector(of: &[Finite; 3]) -> Vector {
     Vector::new(of[0].get(), of[1].get(), of[2].get())
 }
 
+/// The tensor of a scenario's rows.
+pub fn tensor(of: &[[Finite; 3]; 3]) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| of[row][column].get())
+}
+
+/// Why a tensor is no symmetric one, if it is not.
+pub fn asymmetry(tensor: &Matrix3<f64>) -> Option<String> {
+    let mut below = (0..3).flat_map(|row| (0..row).map(move |column| (row, column)));
+    let (row, column) = below.find(|at| tensor[*at] != tensor[(at.1, at.0)])?;
+    let (found, other) = (tensor[(row, column)], tensor[(column, row)]);
+    Some(format!("must be symmetric, got {found} and {other} across the diagonal"))
+}
+
 impl Spatial {
     /// The inertia tensor (kg m²).
     pub fn tensor(&self) -> Matrix3<f64> {
-        Matrix3::from_fn(|row, column| self.inertia[row][column].get())
+        tensor(&self.inertia)
     }
 
     /// The position of a point from the centre of mass (m), if there is a point of this name.
@@ -135,14 +149,9 @@ impl Spatial {
     /// # Errors
     /// A key within the body, and why.
     pub fn check(&self) -> Result<(), Fault> {
-        let refused = |key: &str, why: String| Err((key.to_owned(), why));
+        let refused = |key: &str, why: String| Err(Fault::new(key, why));
         let tensor = self.tensor();
-        if tensor != tensor.transpose() {
-            let rows = (0..3).flat_map(|row| (0..row).map(move |column| (row, column)));
-            let mut unlike = rows.filter(|at| tensor[*at] != tensor[(at.1, at.0)]);
-            let (row, column) = unlike.next().unwrap_or_default();
-            let (found, other) = (tensor[(row, column)], tensor[(column, row)]);
-            let why = format!("must be symmetric, got {found} and {other} across the diagonal");
+        if let Some(why) = asymmetry(&tensor) {
             return refused("inertia", why);
         }
         if tensor.cholesky().is_none() {
@@ -160,7 +169,7 @@ impl Spatial {
                 return refused(&key, format!("must be one of the points, {}", self.point_names()));
             }
             if let Some(point) = self.points.iter().find(|point| !mode.shapes.contains_key(&point.name)) {
-                let why = format!("must tell the shape at each point, and `{}` is missing", point.name);
+                let why = format!("must have a shape at each point, and `{}` is missing", point.name);
                 return refused(&format!("modes[{index}].shapes"), why);
             }
         }

@@ -4,9 +4,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Gradient, Recurrence, Tracker};
+use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative};
 
-/// Modes nearer than this to each other cannot be told apart.
+/// Modes nearer than this to each other cannot be distinguished.
 const MERGE: f64 = 0.08;
 
 /// The rigid rates, and the dominant elastic modes that each axis of the gyro sees, with their parameters.
@@ -23,7 +24,7 @@ pub struct Adaptive {
     pub count: Option<u32>,
     /// Ratio of frequencies below which modes of the body are tracked as one.
     pub merge: NonNegative,
-    /// Whether an axis knows what the jets of the others do to it; left out, it does in the form `gradient`.
+    /// Whether an axis accounts for the jets of the others; left out, it does in the form `gradient`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cross_axis: Option<bool>,
     /// By which part the frequencies are off at the start.
@@ -40,7 +41,7 @@ pub struct Adaptive {
 pub enum Form {
     /// Recursive gradient with exact pulses.
     Gradient(Gradient),
-    /// The recurrence of seed paper 4.
+    /// The recurrence of \[Timakov14\].
     Recurrence(Recurrence),
 }
 
@@ -120,8 +121,8 @@ impl Adaptive {
     }
 
     /// What single values cannot show to be wrong: a key within the estimator, and why.
-    pub fn inconsistency(&self) -> Option<(String, String)> {
-        let at = |key: &str, why: String| Some((key.to_owned(), why));
+    pub fn inconsistency(&self) -> Option<Fault> {
+        let at = |key: &str, why: String| Some(Fault::new(key, why));
         for (key, error) in
             [("frequency_error", self.frequency_error), ("influence_error", self.influence_error)]
         {

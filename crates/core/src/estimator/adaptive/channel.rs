@@ -1,6 +1,8 @@
-//! The observer of one axis at work, between the jets of a spatial body and what its law believes.
+//! The observer of one axis at work, between the jets of a spatial body and the belief of its law.
 
-use super::{Design, Estimate, Form, GradientObserver, Observer, Plan, Pulse, RecurrenceObserver, Residual};
+use super::{
+    Design, Estimate, Form, GradientObserver, Observer, ObserverDesign, Pulse, RecurrenceObserver, Residual,
+};
 
 /// The innovations are small if below this part of the elastic rate, in mean square, or below the floor (rad/s); ours.
 const SHARE: f64 = 0.1;
@@ -36,9 +38,9 @@ impl Either {
     }
 }
 
-impl Plan {
+impl ObserverDesign {
     /// The observers at the start of a run.
-    pub fn channels(&self) -> [Channel; 3] {
+    pub fn channels(&self) -> Vec<Channel> {
         let channel = |axis: usize| {
             let design: &Design = &self.axes[axis];
             let observer = match (&self.form, design.start.first()) {
@@ -55,7 +57,7 @@ impl Plan {
             };
             Channel { observer, inputs: design.inputs.clone(), own: design.own(axis) }
         };
-        [0, 1, 2].map(channel)
+        (0..self.axes.len()).map(channel).collect()
     }
 }
 

@@ -1,18 +1,17 @@
 //! What the observer of one axis is built on: the modes of the design, where the observer starts, and what it is fed with.
 
 use super::{Adaptive, Form, Merged, Tracker, bounds, merged};
-use crate::actuator::Group;
-use crate::body::spatial::{AXES, Spatial, Vector};
+use crate::body::spatial::AXES;
+use crate::document::Fault;
 use crate::quantity::{Finite, Frequency};
-use crate::structure::Fault;
 
 /// The observers of all axes, as the scenario and its body make them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct ObserverDesign {
     /// Form and settings of the observers.
     pub form: Form,
     /// Each axis.
-    pub axes: [Design; 3],
+    pub axes: Vec<Design>,
     /// Period of the samples (s).
     pub period: f64,
 }
@@ -32,27 +31,48 @@ pub struct Design {
     pub seen: Vec<f64>,
 }
 
-impl Plan {
-    /// The observers of a body seen at a point, with these groups of jets.
+/// What rates are measured of a body, and what changes them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Natural frequencies of the modes.
+    pub frequencies: Vec<Frequency>,
+    /// For each axis, the rotation of each mode where rates are measured.
+    pub seen: Vec<Vec<f64>>,
+    /// For each axis, what its actuator does.
+    pub inputs: Vec<Input>,
+}
+
+/// What the actuator of an axis does while it gives a torque.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// Modal forces.
+    pub forces: Vec<f64>,
+    /// Acceleration about its own axis (rad/s²).
+    pub acceleration: f64,
+    /// What it adds to the rigid rate about each axis, for each unit that it adds to that about its own.
+    pub turning: Vec<f64>,
+}
+
+impl ObserverDesign {
+    /// The observers of what is measured, sample by sample of a period (s).
     ///
     /// # Errors
     /// A key within the estimator, and why.
-    pub fn of(
-        spec: &Adaptive,
-        body: &Spatial,
-        point: &str,
-        groups: &[[Group; 2]; 3],
-        period: f64,
-    ) -> Result<Self, Fault> {
+    pub fn of(spec: &Adaptive, measured: &Measured, period: f64) -> Result<Self, Fault> {
         if let Some(fault) = spec.inconsistency() {
             return Err(fault);
         }
+        let axes = measured.inputs.len();
+        if axes == 1 && spec.trackers.is_some() {
+            let why =
+                "are those of three axes: for a body with one angle `count` says how many modes are tracked";
+            return Err(Fault::new("trackers", why));
+        }
         let form = spec.working_form();
-        let shapes: Vec<Vector> = body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect();
-        let axis = |axis: usize| Design::of(spec, &form, axis, body, &shapes, groups, period);
-        let axes = [axis(0)?, axis(1)?, axis(2)?];
+        let axis = |axis: usize| Design::of(spec, &form, axis, measured, period);
+        let axes: Vec<Design> = (0..axes).map(axis).collect::<Result<_, _>>()?;
         if axes.iter().all(|design| design.start.is_empty()) {
-            return Err((String::new(), "must have a mode to track, and the gyro sees none".to_owned()));
+            return Err(Fault::new("", "must have a mode to track, and the gyro sees none"));
         }
         Ok(Self { form, axes, period })
     }
@@ -63,15 +83,14 @@ impl Design {
         spec: &Adaptive,
         form: &Form,
         axis: usize,
-        body: &Spatial,
-        shapes: &[Vector],
-        groups: &[[Group; 2]; 3],
+        measured: &Measured,
         period: f64,
     ) -> Result<Self, Fault> {
-        let inputs = if spec.crosses() { vec![0, 1, 2] } else { vec![axis] };
+        let Measured { frequencies, seen, inputs: sources } = measured;
+        let inputs = if spec.crosses() { (0..sources.len()).collect() } else { vec![axis] };
         let influence = |input: usize, mode: usize| {
-            let group = &groups[input][0];
-            shapes[mode][axis] * group.forces[mode] / group.acceleration
+            let source = &sources[input];
+            seen[axis][mode] * source.forces[mode] / source.acceleration
         };
         let tracker = |frequency: Frequency, influence: Vec<f64>| Tracker {
             frequency,
@@ -79,13 +98,11 @@ impl Design {
             bounds: None,
         };
         // Which modes dominate is what the axis' own jets tell: those are to damp them.
-        let sampled = |mode: &usize| body.modes[*mode].frequency.get() * period < std::f64::consts::PI;
+        let sampled = |mode: &usize| frequencies[*mode].get() * period < std::f64::consts::PI;
         let there: Vec<usize> =
-            (0..shapes.len()).filter(sampled).filter(|mode| influence(axis, *mode) != 0.0).collect();
-        let own: Vec<Tracker> = there
-            .iter()
-            .map(|mode| tracker(body.modes[*mode].frequency, vec![influence(axis, *mode)]))
-            .collect();
+            (0..frequencies.len()).filter(sampled).filter(|mode| influence(axis, *mode) != 0.0).collect();
+        let own: Vec<Tracker> =
+            there.iter().map(|mode| tracker(frequencies[*mode], vec![influence(axis, *mode)])).collect();
         let mut all = merged(&own, spec.merge.get());
         for one in &mut all {
             for mode in &mut one.modes {
@@ -100,17 +117,9 @@ impl Design {
         let designed: Vec<Tracker> =
             given.map_or_else(|| modes.iter().map(|mode| mode.tracker.clone()).collect(), <[_]>::to_vec);
         let start = started(spec, form, axis, &designed, inputs.len(), period)?;
-        let tensor = body.tensor();
-        let turn = |input: &usize| {
-            let group = &groups[*input][0];
-            if spec.crosses() {
-                tensor.cholesky().map_or(0.0, |of| of.solve(&group.torque)[axis] / group.acceleration)
-            } else {
-                1.0
-            }
-        };
+        let turn = |input: &usize| if spec.crosses() { sources[*input].turning[axis] } else { 1.0 };
         let rigid = inputs.iter().map(turn).collect();
-        Ok(Self { modes, start, rigid, inputs, seen: shapes.iter().map(|shape| shape[axis]).collect() })
+        Ok(Self { modes, start, rigid, inputs, seen: seen[axis].clone() })
     }
 
     /// The index of the axis' own jets among the inputs.
@@ -152,19 +161,21 @@ fn started(
     if designed.is_empty() {
         return Ok(Vec::new());
     }
-    let within = |(key, why): Fault| (key.replace("trackers", &format!("trackers.{}", AXES[axis])), why);
+    let of_axis = |Fault { key, why }: Fault| {
+        Fault::new(key.replacen("trackers", &format!("trackers.{}", AXES[axis]), 1), why)
+    };
     let (wrong, reach) = match form {
         Form::Gradient(of) => (of.inconsistency(designed, inputs, period), of.reach),
         Form::Recurrence(_) if designed.len() > 1 => {
             let why = format!("must be one mode in the form `recurrence`, got {}", designed.len());
-            return Err(within(("trackers".to_owned(), why)));
+            return Err(of_axis(Fault::new("trackers", why)));
         }
         Form::Recurrence(of) => (of.inconsistency(&designed[0], period), of.reach),
     };
-    if let Some((key, why)) = wrong {
+    if let Some(fault) = wrong {
         let kind = if matches!(form, Form::Gradient(_)) { "gradient" } else { "recurrence" };
-        let own = !key.starts_with("trackers");
-        return Err(if own { (format!("form.{kind}.{key}"), why) } else { within((key, why)) });
+        let own = !fault.key.starts_with("trackers");
+        return Err(if own { fault.within(&format!("form.{kind}")) } else { of_axis(fault) });
     }
     let factor = |error: Finite| 1.0 + error.get();
     let bounds = bounds(designed, reach.get(), period);

@@ -2,8 +2,9 @@
 //!
 //! y = w + sum g_i: the measured rate is the rigid one and the elastic rates of some modes, which known pulses of thrusters
 //! excite. The natural frequencies and the influence of the thrusters on each mode are identified as the observer runs. Two
-//! forms: the recurrence of seed paper 4 (pages 41 to 46) and a recursive gradient with exact pulses.
+//! forms: the recurrence of \[Timakov14\] (pages 41 to 46) and a recursive gradient with exact pulses.
 
+mod at_work;
 mod axes;
 mod channel;
 mod design;
@@ -15,11 +16,13 @@ mod residual;
 mod tests;
 mod tracker;
 
+use crate::document::Fault;
 use crate::quantity::{NonNegative, Positive};
 
+pub use at_work::Observers;
 pub use axes::{Adaptive, Form, Given};
 pub use channel::Channel;
-pub use design::{Design, Plan};
+pub use design::{Design, Input, Measured, ObserverDesign};
 pub use gradient::{Gradient, GradientObserver};
 pub use oscillator::{Oscillator, Phase};
 pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
@@ -49,7 +52,7 @@ impl Pulse {
     }
 }
 
-/// What an observer knows of a mode.
+/// An observer's estimate of a mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Elastic rate g of the mode in the channel, and s, a quarter of a period behind it (rad/s).
@@ -65,6 +68,11 @@ impl Estimate {
     pub fn amplitude(&self) -> f64 {
         libm::hypot(self.phase[0], self.phase[1])
     }
+
+    /// The angle of the mode (rad), as the part a quarter of a period behind tells it.
+    pub fn displacement(&self) -> f64 {
+        self.phase[1] / self.frequency
+    }
 }
 
 /// The first key of either form that does not fit the others, these trackers, so many inputs or the period of the samples
@@ -76,8 +84,8 @@ fn inconsistency(
     trackers: &[Tracker],
     inputs: usize,
     period: f64,
-) -> Option<(String, String)> {
-    let at = |key: &str, why: String| Some((key.to_owned(), why));
+) -> Option<Fault> {
+    let at = |key: &str, why: String| Some(Fault::new(key, why));
     let (damping, reach) = (damping.get(), reach.get());
     if damping >= 1.0 {
         return at("damping", format!("must be below 1, got {damping}"));

@@ -1,12 +1,12 @@
 //! One mode's exact motion under pulses, and how it changes with the mode's natural frequency.
 //!
 //! q'' + 2 zeta w q' + w² q = u in the state [p, s] = [q', w q], so that x' = K x + [u, 0] with
-//! K = [[-2 zeta w, -w], [w, 0]] (seed paper 4, equation (2); the closed forms are ours).
+//! K = [[-2 zeta w, -w], [w, 0]] (\[Timakov14\], equation (2); the closed forms are ours).
 
 /// A vector of the state: the modal rate p and, a quarter of a period behind it, s = w q, in the same unit.
 pub type Phase = [f64; 2];
 
-/// A mode as a model knows it.
+/// A mode of a model.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Oscillator {
     /// Natural frequency w (rad/s).

@@ -1,4 +1,4 @@
-//! How well an observer follows: its innovations beside the elastic rate that it tells.
+//! How well an observer follows: its innovations beside its estimate of the elastic rate.
 
 /// What a sample weighs in a mean: the last 50 count.
 const WEIGHT: f64 = 0.02;

@@ -268,7 +268,7 @@ fn still_modes_teach_no_frequency() {
     assert!(drift(1e-12) > 0.03, "{}", drift(1e-12));
 }
 
-/// What a gyro says at a sample.
+/// The reading of a gyro at a sample.
 type Measured = fn(usize) -> f64;
 
 #[test]
@@ -311,7 +311,7 @@ fn nonsense_is_never_passed_on() {
             }
         }
     }
-    // An observer that is told nothing is not trusted, one that follows is.
+    // An observer without samples is not trusted, one that follows is.
     let mut observer = gradient(0.3, 1.2);
     for (cycle, y) in measured().into_iter().enumerate() {
         observer.update(if cycle < 1200 { y } else { f64::NAN });

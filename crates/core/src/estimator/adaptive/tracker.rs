@@ -3,9 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::document::Fault;
 use crate::quantity::{Finite, Frequency};
 
-/// The part of the Nyquist frequency up to which a frequency can be told from its alias.
+/// The part of the Nyquist frequency up to which a frequency can be distinguished from its alias.
 const SAMPLED: f64 = 0.98;
 
 /// A mode as an observer of one channel begins with it.
@@ -15,7 +16,7 @@ pub struct Tracker {
     /// Natural frequency (rad/s).
     pub frequency: Frequency,
     /// Influence of each input: the jump of the elastic rate in this channel for a unit jump of the rigid rate that the
-    /// input makes about its own axis (seed paper 4, page 41; dimensionless).
+    /// input makes about its own axis (\[Timakov14\], page 41; dimensionless).
     pub influence: Vec<Finite>,
     /// `[low, high]` between which the frequency is looked for (rad/s); left out, up to the middle between it and its
     /// neighbours.
@@ -79,7 +80,7 @@ fn nearest(merged: &[Merged], merge: f64) -> Option<usize> {
 }
 
 /// The bounds of each tracker (rad/s): its own, or from its frequency divided by `reach` to its frequency times `reach`, and
-/// no further than the geometric mean with a neighbour, the neighbour's own bound, or what a period (s) of samples can tell
+/// no further than the geometric mean with a neighbour, the neighbour's own bound, or what a period (s) of samples can resolve
 /// from its alias.
 pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
     let highest = SAMPLED * std::f64::consts::PI / period;
@@ -105,19 +106,14 @@ pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
 
 /// The first key of the trackers that does not fit so many inputs, this period of samples (s) or another tracker, and what is
 /// wrong with it.
-pub fn inconsistency(
-    trackers: &[Tracker],
-    reach: f64,
-    inputs: usize,
-    period: f64,
-) -> Option<(String, String)> {
+pub fn inconsistency(trackers: &[Tracker], reach: f64, inputs: usize, period: f64) -> Option<Fault> {
     if trackers.is_empty() {
-        return Some(("trackers".to_owned(), "must have at least one mode to track, got none".to_owned()));
+        return Some(Fault::new("trackers", "must have at least one mode to track, got none"));
     }
     let nyquist = std::f64::consts::PI / period;
     let bounds = bounds(trackers, reach, period);
     for (index, (tracker, [low, high])) in trackers.iter().zip(&bounds).enumerate() {
-        let at = |key: &str, why: String| Some((format!("trackers[{index}].{key}"), why));
+        let at = |key: &str, why: String| Some(Fault::new(format!("trackers[{index}].{key}"), why));
         let (frequency, found) = (tracker.frequency.get(), tracker.influence.len());
         if found != inputs {
             return at("influence", format!("must be one number for each of {inputs} inputs, got {found}"));
@@ -210,7 +206,8 @@ mod tests {
             ..tracker(at, 1.0)
         };
         let wrong = |trackers: &[Tracker], inputs| {
-            let (key, why) = Gradient::default().inconsistency(trackers, inputs, CYCLE).expect("wrong");
+            let Fault { key, why } =
+                Gradient::default().inconsistency(trackers, inputs, CYCLE).expect("wrong");
             format!("{key} {why}")
         };
         for (found, expected) in [
@@ -239,9 +236,9 @@ mod tests {
         }
         let number = |value| NonNegative::new(value).expect("0 or more");
         let spec = Recurrence { influence_bounds: [2.0, 3.0].map(number), ..Recurrence::default() };
-        assert_eq!(spec.inconsistency(&tracker(0.2, 2.0), CYCLE).expect("wrong").0, "influence_bounds");
+        assert_eq!(spec.inconsistency(&tracker(0.2, 2.0), CYCLE).expect("wrong").key, "influence_bounds");
         let spec = Gradient { damping: number(1.0), ..Gradient::default() };
-        assert_eq!(spec.inconsistency(&[tracker(0.2, 2.0)], 1, CYCLE).expect("wrong").0, "damping");
+        assert_eq!(spec.inconsistency(&[tracker(0.2, 2.0)], 1, CYCLE).expect("wrong").key, "damping");
         let unknown: Result<Gradient, _> = toml::from_str("damping = 0.01\nlg = 0.1");
         assert!(unknown.is_err());
         let known: Gradient = toml::from_str("damping = 0.01\nelastic_gain = 0.1").expect("known");

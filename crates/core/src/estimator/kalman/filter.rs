@@ -73,8 +73,8 @@ pub struct Filter {
 }
 
 /// What a sample told the filter.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Told {
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Innovation {
     /// Measured angle less the predicted one (rad); 0 if the sample was dropped.
     pub innovation: f64,
     /// Normalised innovation squared, summed over the measurements; none if the sample was dropped.
@@ -133,7 +133,12 @@ impl Filter {
         self.mode
     }
 
-    /// Whether the filter has lost the body: its innovations of late are not what it expects, or it cannot go on.
+    /// Takes over that the angle counts from elsewhere: it is so much larger from now on (rad).
+    pub fn shift(&mut self, by: f64) {
+        self.mean[0] += by;
+    }
+
+    /// Whether the filter has lost the body: its innovations are not what it expects, or it cannot go on.
     pub fn is_lost(&self) -> bool {
         self.broken || self.lock.is_lost()
     }
@@ -192,7 +197,7 @@ impl Filter {
 
     /// Updates the state by the measured angle (rad) and, of a filter with a gyro, the measured rate (rad/s); by nothing
     /// if there is no measurement.
-    pub fn update(&mut self, measured: Option<(f64, f64)>) -> Told {
+    pub fn update(&mut self, measured: Option<(f64, f64)>) -> Innovation {
         self.keep();
         let gated = self.is_still();
         let innovation = measured.map_or(0.0, |(angle, _)| angle - self.seen(0));
@@ -206,11 +211,11 @@ impl Filter {
             nis = None;
         }
         self.rest(gated);
-        self.lock.take(nis);
+        self.lock.take(nis.map(|nis| (nis, innovation)));
         self.hold_ratios();
         self.choose_mode();
         self.trust();
-        Told { innovation: if nis.is_some() { innovation } else { 0.0 }, nis }
+        Innovation { innovation: if nis.is_some() { innovation } else { 0.0 }, nis }
     }
 
     fn keep(&mut self) {
@@ -273,7 +278,7 @@ impl Filter {
     }
 
     /// Whether the dominant mode is too still from this sample on. After a whole period of it the ratios are taken to stand
-    /// still, too: nothing tells how far their rates would carry them. That they may move stays in the covariance.
+    /// still, too: nothing shows how far their rates would carry them. That they may move stays in the covariance.
     fn rest(&mut self, gated: bool) {
         self.gated = gated;
         let before = self.gated_for;

@@ -1,7 +1,7 @@
-//! Kalman filters of the body's motion: linear, extended and unscented.
+//! Kalman filters of the body's motion: linear, extended and unscented (\[BarShalom01\]).
 //!
-//! The measured angle, and with a gyro the rate, tells the rigid motion and every mode. The extended and the unscented
-//! filter know the natural frequencies but for ratios, which drift as integrated random walks.
+//! The measured angle, and with a gyro the rate, determines the rigid motion and every mode. The extended and the unscented
+//! filter estimate ratios of the natural frequencies, which drift as integrated random walks.
 
 mod filter;
 mod lock;
@@ -14,18 +14,19 @@ use nalgebra::DVector;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Feeds;
 use crate::body::{Coupled, Mode, Planar};
 use crate::quantity::{NonNegative, Positive};
 use crate::random::Stream;
 
-pub use filter::{Filter, Prediction, Told, Tuning};
+pub use filter::{Filter, Innovation, Prediction, Tuning};
 pub use model::Model;
 
 /// A linear Kalman filter as a scenario describes it: natural frequencies that are known and constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Kalman {
-    /// The modes as the filter knows them; left out, they are the body's own at the start.
+    /// The modes of the filter's model; left out, they are the body's own at the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
     /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
@@ -34,7 +35,7 @@ pub struct Kalman {
     /// Standard deviation of the measured angle (rad); left out, that of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_noise: Option<Positive>,
-    /// Standard deviations of what the filter knows at the start.
+    /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: Initial,
     /// What the filter takes for the state at the start.
@@ -46,6 +47,11 @@ pub struct Kalman {
     /// When the metrics judge the filter, from one time to another (s); left out, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
+    /// What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured; `hub` for angle and
+    /// rate of the hub, elastic part included; `rigid` for those of the body as if it were rigid. Left out, `modes` for a law
+    /// that reads the dominant mode, else `hub`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub feeds: Option<Feeds>,
     /// Whether it is there to be assessed only: no law reads it.
     #[serde(default, skip_serializing_if = "is_false")]
     pub watch_only: bool,
@@ -54,8 +60,8 @@ pub struct Kalman {
 /// An extended or an unscented Kalman filter as a scenario describes it: natural frequencies that drift.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Drifting {
-    /// The modes as the filter knows them; left out, they are the body's own at the start.
+pub struct FrequencyTracking {
+    /// The modes of the filter's model; left out, they are the body's own at the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
     /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
@@ -64,7 +70,7 @@ pub struct Drifting {
     /// Standard deviation of the measured angle (rad); left out, that of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_noise: Option<Positive>,
-    /// Standard deviations of what the filter knows at the start.
+    /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: Initial,
     /// What the filter takes for the state at the start.
@@ -76,6 +82,11 @@ pub struct Drifting {
     /// When the metrics judge the filter, from one time to another (s); left out, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
+    /// What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured; `hub` for angle and
+    /// rate of the hub, elastic part included; `rigid` for those of the body as if it were rigid. Left out, `modes` for a law
+    /// that reads the dominant mode, else `hub`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub feeds: Option<Feeds>,
     /// Whether it is there to be assessed only: no law reads it.
     #[serde(default, skip_serializing_if = "is_false")]
     pub watch_only: bool,
@@ -108,7 +119,7 @@ pub struct Drifting {
     pub gate: NonNegative,
 }
 
-/// Standard deviations of what a filter knows at the start.
+/// Standard deviations of a filter's estimate at the start.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Initial {
@@ -129,7 +140,7 @@ pub enum Prior {
     /// One drawn around the true one with the standard deviations of `initial` and, around `ratio`, of `ratio_sd`.
     #[default]
     Drawn,
-    /// The true one: errors begin at 0, and say little of the filter.
+    /// The true one: errors begin at 0, and show little of the filter.
     True,
 }
 
@@ -162,7 +173,7 @@ impl Ratios {
     }
 }
 
-/// What a filter knows of the study around it.
+/// The part of a study that a filter uses.
 #[derive(Clone, Debug)]
 pub struct Setting<'a> {
     /// The body.
@@ -203,7 +214,7 @@ impl Kalman {
     }
 }
 
-impl Drifting {
+impl FrequencyTracking {
     /// The filter in a setting, extended or unscented; `draws` gives a drawn prior.
     pub fn filter(&self, setting: &Setting<'_>, prediction: Prediction, draws: &mut Stream) -> Filter {
         let body = believed(setting.body, self.modes.as_deref());
@@ -236,7 +247,7 @@ impl Drifting {
     }
 }
 
-/// The body with the modes that a filter knows.
+/// The body with the modes of a filter's model.
 fn believed(body: &Planar, modes: Option<&[Mode]>) -> Planar {
     Planar { modes: modes.unwrap_or(&body.modes).to_vec(), ..body.clone() }
 }
@@ -275,7 +286,7 @@ fn start(
     (DVector::from_vec(mean), DVector::from_vec(spread))
 }
 
-impl Default for Drifting {
+impl Default for FrequencyTracking {
     fn default() -> Self {
         Self {
             modes: None,
@@ -285,6 +296,7 @@ impl Default for Drifting {
             prior: Prior::default(),
             dominant: Ranking::default(),
             assess: None,
+            feeds: None,
             watch_only: false,
             ratios: Ratios::default(),
             ratio: Positive::ONE,

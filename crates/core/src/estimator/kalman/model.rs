@@ -11,7 +11,7 @@ use crate::body::{Flow, Mode};
 /// The model.
 #[derive(Clone, Debug)]
 pub struct Model {
-    modes: Vec<Swing>,
+    modes: Vec<ModeModel>,
     /// How many ratios the state has: none, one for all modes, or one for each.
     ratios: usize,
     /// Back-EMF a (1/s), and whether it opposes the total rate or the rigid one.
@@ -22,7 +22,7 @@ pub struct Model {
 }
 
 #[derive(Clone, Debug)]
-struct Swing {
+struct ModeModel {
     flow: Flow,
     frequency: f64,
     gain: f64,
@@ -46,7 +46,7 @@ impl Model {
         substeps: u32,
         bounds: [f64; 2],
     ) -> Self {
-        let swing = |mode: &Mode| Swing {
+        let swing = |mode: &Mode| ModeModel {
             flow: Flow::new(mode),
             frequency: mode.frequency.get(),
             gain: mode.gain.get(),
@@ -181,7 +181,7 @@ impl Model {
     }
 }
 
-impl Swing {
+impl ModeModel {
     fn turn(&self, h: f64, ratio: f64, moment: f64, (x, v): (f64, f64), with_slope: bool) -> Turn {
         // The flow in (x, x'/w) depends on w h alone, so that of another frequency is that of another time.
         let [a, b, c, d] = self.flow.transition(ratio * h);

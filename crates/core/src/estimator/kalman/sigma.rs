@@ -1,6 +1,6 @@
 //! The unscented transform: mean and covariance carried by points around the mean instead of a derivative.
 //!
-//! Julier and Uhlmann's scaled form with alpha = 1/2, beta = 2 and kappa = 0.
+//! The scaled form (\[JulierUhlmann04\]) with alpha = 1/2, beta = 2 and kappa = 0.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 

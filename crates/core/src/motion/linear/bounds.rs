@@ -2,7 +2,7 @@
 
 use super::flow::{Cluster, Linear};
 use super::segment::{Seen, Segment};
-use crate::phasor::{Phasor, abs};
+use crate::numerics::phasor::{Phasor, abs};
 use nalgebra::DVector;
 
 impl Linear {

@@ -5,7 +5,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::phi::exponential;
-use crate::phasor::{Phasor, abs};
+use crate::numerics::phasor::{Phasor, abs};
 
 /// e^(T h) r, h phi_1(T h) r and h² phi_2(T h) r.
 #[derive(Clone, Debug)]

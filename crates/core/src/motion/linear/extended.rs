@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use crate::phasor::Phasor;
+use crate::numerics::phasor::Phasor;
 
 /// A sum of products, as a double and what is left of it.
 #[derive(Copy, Clone, Default)]

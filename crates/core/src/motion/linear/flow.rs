@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::form::Form;
 use super::phi::Pole;
 use super::poles::{Block, blocks};
-use crate::phasor::{Phasor, abs};
+use crate::numerics::phasor::{Phasor, abs};
 
 /// The span for which bounds of growing poles hold, at most (s).
 const LONGEST: f64 = 1e6;
@@ -37,7 +37,7 @@ pub struct Simple {
     /// Rate of each cyclic coordinate.
     pub carry: Vec<Phasor>,
     /// What each output sees of w, its rate of w, and its acceleration of the modal rate.
-    pub sights: Vec<Sights>,
+    pub outputs: Vec<PoleOutput>,
     /// w of (w in form coordinates).
     left: DVector<Phasor>,
     right: DVector<Phasor>,
@@ -45,7 +45,7 @@ pub struct Simple {
 
 /// What an output sees of a pole: y of w, y' of w, and y'' of w'.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Sights {
+pub struct PoleOutput {
     pub angle: Phasor,
     pub rate: Phasor,
     pub residue: Phasor,
@@ -99,7 +99,7 @@ impl Linear {
             }
         }
         let finite =
-            |simple: &Simple| simple.sights.iter().all(|s| s.residue.is_finite() && s.angle.is_finite());
+            |simple: &Simple| simple.outputs.iter().all(|s| s.residue.is_finite() && s.angle.is_finite());
         let beats = beats(&poles);
         poles.iter().all(finite).then_some(Self { form, poles, clusters, rigid, beats, window })
     }
@@ -174,7 +174,8 @@ impl Simple {
             (0..m.nrows()).map(|j| sum(&mut m.row(j).iter().zip(right.iter()))).collect()
         };
         let (angles, rates, carry) = (rows(seen), rows(carried), rows(&form.carried));
-        let see = |(angle, rate): (Phasor, Phasor)| Sights { angle, rate, residue: rate + lambda * angle };
+        let see =
+            |(angle, rate): (Phasor, Phasor)| PoleOutput { angle, rate, residue: rate + lambda * angle };
         let push = form.input.column_iter().map(|b| sum(&mut b.iter().zip(left.iter()))).collect();
         Self {
             pole: Pole::new(lambda),
@@ -182,7 +183,7 @@ impl Simple {
             growth: if lambda.re > 0.0 { libm::exp(lambda.re * window) } else { 1.0 },
             push,
             carry,
-            sights: angles.into_iter().zip(rates).map(see).collect(),
+            outputs: angles.into_iter().zip(rates).map(see).collect(),
             left,
             right,
         }

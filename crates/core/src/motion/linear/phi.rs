@@ -2,7 +2,7 @@
 //!
 //! phi_1(z) = (e^z - 1)/z and phi_2(z) = (phi_1(z) - 1)/z. Below |z| = 1 they come from a series, so that nothing cancels.
 
-use crate::phasor::{Phasor, abs};
+use crate::numerics::phasor::{Phasor, abs};
 
 /// A pole: lambda (1/s) and its reciprocal, 0 for a pole at 0.
 #[derive(Copy, Clone, Debug, PartialEq)]

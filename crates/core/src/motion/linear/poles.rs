@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::extended::residual;
 use super::schur::Schur;
-use crate::phasor::{Phasor, abs};
+use crate::numerics::phasor::{Phasor, abs};
 
 /// Poles nearer than this part of their size are candidates for a cluster.
 const NEAR: f64 = 3e-3;
@@ -39,7 +39,7 @@ impl Block {
     }
 }
 
-/// The blocks of a matrix. The rows of `seen` and `carried` tell what each output sees of w and of the integral of w,
+/// The blocks of a matrix. The rows of `seen` and `carried` are each output's weights of w and of the integral of w,
 /// so that a pole's vector gets the phase in which it shows. None if there is no Schur form.
 pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>) -> Option<Vec<Block>> {
     let order = matrix.nrows();
@@ -48,7 +48,7 @@ pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>
     let poles = Spectrum::new(&schur);
     let mut groups = poles.singles();
     let mut blocks = gather(&schur, &poles, &groups, norm)?;
-    // Near poles with nearly equal vectors, then any pole that cannot be told from its neighbour.
+    // Near poles with nearly equal vectors, then any pole that cannot be distinguished from its neighbour.
     for (nearest, condition) in [(true, NEAR_CONDITION), (false, CONDITION)] {
         let ill: Vec<usize> =
             blocks.iter().filter(|(b, _)| b.condition() > condition).map(|(_, i)| *i).collect();

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::phasor::{Phasor, abs};
+use crate::numerics::phasor::{Phasor, abs};
 
 /// Steps for one eigenvalue after which there is no hope; a few are the rule.
 const MOST_STEPS: usize = 300;

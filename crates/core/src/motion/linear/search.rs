@@ -20,7 +20,7 @@ pub struct Level {
 impl Approach for Segment {
     type Guard = Level;
     type State = Seen;
-    type Sight = ();
+    type Sensed = ();
 
     fn begin(&self, seen: &mut Seen) {
         self.origin(seen);
@@ -31,11 +31,11 @@ impl Approach for Segment {
     }
 
     fn is_finite(seen: &Seen, (): ()) -> bool {
-        seen.sights.iter().all(|sight| sight.angle.is_finite())
+        seen.outputs.iter().all(|sensed| sensed.angle.is_finite())
     }
 
     fn holds(level: Level, seen: &Seen, (): ()) -> bool {
-        level.guard.holds(seen.sights[level.output].angle)
+        level.guard.holds(seen.outputs[level.output].angle)
     }
 
     fn window(seen: &Seen) -> f64 {
@@ -79,7 +79,7 @@ impl Approach for Segment {
     }
 
     fn stride(&self, Level { output, guard }: Level, seen: &Seen, (): ()) -> f64 {
-        let (now, towards) = (seen.sights[output], guard.side.sign());
+        let (now, towards) = (seen.outputs[output], guard.side.sign());
         let (gap, speed, acceleration) =
             (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
         let q = first_root(gap, speed, acceleration);
@@ -88,7 +88,7 @@ impl Approach for Segment {
     }
 
     fn is_clear(&self, Level { output, guard }: Level, seen: &Seen, (): (), time: f64) -> bool {
-        let (now, towards) = (seen.sights[output], guard.side.sign());
+        let (now, towards) = (seen.outputs[output], guard.side.sign());
         guard.gap(now.angle) > time * (towards * now.rate + 0.5 * seen.curvature[output] * time)
     }
 }

@@ -6,8 +6,8 @@ use nalgebra::DVector;
 
 use super::cluster::moved;
 use super::flow::{Linear, Modal};
-use crate::body::Sight;
-use crate::phasor::{Phasor, abs};
+use crate::body::Sensed;
+use crate::numerics::phasor::{Phasor, abs};
 
 /// A motion under one constant input.
 #[derive(Clone, Debug)]
@@ -28,7 +28,7 @@ pub struct Segment {
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
     /// Of each output: value, rate and acceleration.
-    pub sights: Vec<Sight>,
+    pub outputs: Vec<Sensed>,
     /// No |y''| of the output is larger within the window.
     pub curvature: Vec<f64>,
     /// No |y'''| of the output is larger within the window.
@@ -68,13 +68,13 @@ impl Segment {
             let pushed = simple.push.iter().zip(input).fold(Phasor::default(), |sum, (b, u)| sum + b * *u);
             let rate = simple.pole.lambda * w + pushed;
             self.rates[k] = rate;
-            for (j, sights) in simple.sights.iter().enumerate() {
-                let residue = sights.residue * rate;
+            for (j, output) in simple.outputs.iter().enumerate() {
+                let residue = output.residue * rate;
                 self.residues[j * count + k] = residue;
                 self.sizes[j * count + k] = simple.weight * abs(residue);
                 let (y, v) = &mut self.origins[j];
-                *y += simple.weight * real(sights.angle, *w);
-                *v += simple.weight * (real(sights.rate, *w) + real(sights.angle, rate));
+                *y += simple.weight * real(output.angle, *w);
+                *v += simple.weight * (real(output.rate, *w) + real(output.angle, rate));
             }
         }
         self.cluster_rates.clear();
@@ -94,28 +94,28 @@ impl Segment {
     pub fn at(&self, h: f64, seen: &mut Seen) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         seen.fit(self);
-        for (sight, (y, v)) in seen.sights.iter_mut().zip(&self.origins) {
-            *sight = Sight { angle: y + v * h, rate: *v, acceleration: 0.0 };
+        for (sensed, (y, v)) in seen.outputs.iter_mut().zip(&self.origins) {
+            *sensed = Sensed { angle: y + v * h, rate: *v, acceleration: 0.0 };
         }
         for (k, simple) in flow.poles.iter().enumerate() {
             let phi = simple.pole.phi(h);
             let shrunk = if simple.pole.lambda.re == 0.0 { 1.0 } else { abs(phi.exp) };
             seen.exponentials[k] = (phi.exp, shrunk);
-            for (j, sight) in seen.sights.iter_mut().enumerate() {
+            for (j, sensed) in seen.outputs.iter_mut().enumerate() {
                 let residue = self.residues[j * count + k];
-                sight.acceleration += simple.weight * real(residue, phi.exp);
-                sight.rate += simple.weight * real(residue, phi.first);
-                sight.angle += simple.weight * real(residue, phi.second);
+                sensed.acceleration += simple.weight * real(residue, phi.exp);
+                sensed.rate += simple.weight * real(residue, phi.first);
+                sensed.angle += simple.weight * real(residue, phi.second);
             }
         }
         for (k, (cluster, rates)) in flow.clusters.iter().zip(&self.cluster_rates).enumerate() {
             let moved = moved(&cluster.block.triangle, rates, h);
             let [acceleration, rate, angle] =
                 [&moved.exp, &moved.first, &moved.second].map(|vector| &cluster.residue * vector);
-            for (j, sight) in seen.sights.iter_mut().enumerate() {
-                sight.acceleration += cluster.block.weight * acceleration[j].re;
-                sight.rate += cluster.block.weight * rate[j].re;
-                sight.angle += cluster.block.weight * angle[j].re;
+            for (j, sensed) in seen.outputs.iter_mut().enumerate() {
+                sensed.acceleration += cluster.block.weight * acceleration[j].re;
+                sensed.rate += cluster.block.weight * rate[j].re;
+                sensed.angle += cluster.block.weight * angle[j].re;
             }
             seen.rates[k] = moved.exp;
         }
@@ -127,13 +127,13 @@ impl Segment {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         seen.fit(self);
         seen.exponentials.fill((Phasor { re: 1.0, im: 0.0 }, 1.0));
-        for (j, (sight, (angle, rate))) in seen.sights.iter_mut().zip(&self.origins).enumerate() {
+        for (j, (sensed, (angle, rate))) in seen.outputs.iter_mut().zip(&self.origins).enumerate() {
             let residues = flow.poles.iter().zip(&self.residues[j * count..]);
             let mut acceleration: f64 = residues.map(|(simple, a)| simple.weight * a.re).sum();
             for (cluster, rates) in flow.clusters.iter().zip(&self.cluster_rates) {
                 acceleration += cluster.block.weight * (cluster.residue.row(j) * rates)[0].re;
             }
-            *sight = Sight { angle: *angle, rate: *rate, acceleration };
+            *sensed = Sensed { angle: *angle, rate: *rate, acceleration };
         }
         seen.rates.clone_from(&self.cluster_rates);
         flow.bound(self, seen);
@@ -165,8 +165,8 @@ impl Segment {
 impl Seen {
     fn fit(&mut self, segment: &Segment) {
         let outputs = segment.origins.len();
-        if self.sights.len() != outputs || self.exponentials.len() != segment.rates.len() {
-            self.sights = vec![Sight::default(); outputs];
+        if self.outputs.len() != outputs || self.exponentials.len() != segment.rates.len() {
+            self.outputs = vec![Sensed::default(); outputs];
             self.curvature = vec![0.0; outputs];
             self.jerk = vec![0.0; outputs];
             self.exponentials = vec![Default::default(); segment.rates.len()];

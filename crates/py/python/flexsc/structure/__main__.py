@@ -14,13 +14,13 @@ from flexsc.structure._modal_model import StateSpace
 from flexsc.structure._state_space import from_state_space
 from flexsc.structure._structure import AXES
 
-# Assumed of the rigid body, of which such a file tells nothing: kg m², N, m.
+# Assumed of the rigid body, which such a file does not contain: kg m², N, m.
 INERTIA = (1e6, 1e7, 1e7)
 THRUST, ARM = 260.0, (2.0, 12.0, 12.0)
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Do what the arguments ask for; the exit code is returned."""
+    """Run the command with these arguments, and return its exit code."""
     parser = argparse.ArgumentParser(
         prog="python -m flexsc.structure",
         description="Modes of a state-space model in a MATLAB file (A, B, C).",

@@ -27,7 +27,7 @@ def from_csv(
 
     Raises:
         OSError: The file cannot be read.
-        ValueError: A line does not tell a mode; the text names it.
+        ValueError: A line is not a mode; the text names it.
     """
     import numpy as np
 

@@ -49,7 +49,7 @@ def from_nastran(
     Raises:
         ImportError: pyNastran is not installed: `pip install flexsc[nastran]`.
         OSError: A file cannot be read.
-        ValueError: The files do not tell what is asked for; the text says what.
+        ValueError: The files lack something that is needed; the text names it.
     """
     import numpy as np
 
@@ -65,9 +65,7 @@ def from_nastran(
         if number not in bulk.nodes:
             raise ValueError(f"points: must be grid points of {model}, got {number} for `{name}`")
         if number not in solution.shapes:
-            raise ValueError(
-                f"points: must be grid points of which {path} tells shapes, got {number} for `{name}`"
-            )
+            raise ValueError(f"points: must be grid points with shapes in {path}, got {number} for `{name}`")
         grid = bulk.nodes[number]
         positions[name] = (length_unit * (np.asarray(grid.get_position()) - origin)).tolist()
         to_basic = _output_system(grid)

@@ -32,7 +32,7 @@ def read_punch(path: Path, subcase: int | None = None) -> Solution:
 
     Raises:
         OSError: The file cannot be read.
-        ValueError: It does not tell eigenvectors; the text names the line.
+        ValueError: It has no valid eigenvectors; the text names the line.
     """
     import numpy as np
 

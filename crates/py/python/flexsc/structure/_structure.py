@@ -86,7 +86,7 @@ class Structure:
 
         tensor = self.inertia if inertia is None else inertia
         if tensor is None:
-            raise ValueError("inertia: must be given, as the structure does not tell it")
+            raise ValueError("inertia: must be given: the structure does not have it")
         points = [
             {"name": name, "position": [float(x) for x in position]}
             for name, position in self.positions.items()

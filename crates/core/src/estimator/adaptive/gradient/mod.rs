@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Tracker;
+use crate::document::Fault;
 use crate::quantity::{Fraction, NonNegative, Positive};
 
 pub use observer::GradientObserver;
@@ -53,12 +54,7 @@ impl Default for Gradient {
 impl Gradient {
     /// The first key that does not fit the others, these trackers, so many inputs or the period of the samples (s), and what
     /// is wrong with it.
-    pub fn inconsistency(
-        &self,
-        trackers: &[Tracker],
-        inputs: usize,
-        period: f64,
-    ) -> Option<(String, String)> {
+    pub fn inconsistency(&self, trackers: &[Tracker], inputs: usize, period: f64) -> Option<Fault> {
         super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, inputs, period)
     }
 }

@@ -1,4 +1,4 @@
-//! The recurrence of the paper: one mode as a difference equation that is linear in its parameters (seed paper 4, page 41 and
+//! The recurrence of the paper: one mode as a difference equation that is linear in its parameters (\[Timakov14\], page 41 and
 //! equation (8)), with the weights W1 to W8.
 //!
 //! A = 2 exp(-zeta w T) cos(w_d T) and B = exp(-2 zeta w T), of which A is identified and B is not. A pulse counts as an
@@ -10,6 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Tracker;
+use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Positive};
 
 pub use observer::RecurrenceObserver;
@@ -74,7 +75,7 @@ impl Default for Recurrence {
 
 impl Recurrence {
     /// The first key that does not fit the others, this tracker or the period of the samples (s), and what is wrong with it.
-    pub fn inconsistency(&self, tracker: &Tracker, period: f64) -> Option<(String, String)> {
+    pub fn inconsistency(&self, tracker: &Tracker, period: f64) -> Option<Fault> {
         let trackers = std::slice::from_ref(tracker);
         super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, 1, period)
     }

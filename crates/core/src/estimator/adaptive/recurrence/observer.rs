@@ -95,7 +95,7 @@ impl RecurrenceObserver {
         Oscillator { frequency, damping: self.spec.damping.get() }
     }
 
-    /// The state [g, s] that g(n), g(n - 1) and the impulse at the sample n tell.
+    /// The state [g, s] by g(n), g(n - 1) and the impulse at the sample n.
     fn phase(&self) -> Phase {
         let Motion { elastic, elastic_before, push, .. } = self.motion;
         let back = self.oscillator().transition(-self.period)[0];
@@ -109,7 +109,7 @@ impl RecurrenceObserver {
             let step = self.spec.frequency_gain.get() / amplitude * elastic_before.signum() * innovation;
             self.turn = stepped(self.turn, step, self.turn_bounds);
         }
-        // A long burn looks like a rigid rate: only its beginning and its end tell the influence.
+        // A long burn looks like a rigid rate: only its beginning and its end show the influence.
         if (push - push_before).abs() >= SWITCHING * push_largest && driven != 0.0 {
             let step = self.spec.influence_gain.get() / driven * innovation;
             self.influence = stepped(self.influence, step, self.influence_bounds);

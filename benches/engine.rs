@@ -1,0 +1,250 @@
+//! The engine beside a hand-written yardstick of the same mathematics, in one run.
+//!
+//! `python benches/table.py` runs this and its peers and prints the table of docs/benchmarks.md.
+
+mod reference;
+
+use std::hint::black_box;
+use std::io::Cursor;
+use std::time::Duration;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use flexsc_core::analysis::sampled_loop::{Held, Loop, Scaling, Window, map};
+use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::estimator::kalman::{FrequencyTracking, Prediction, Setting};
+use flexsc_core::metrics::Metrics;
+use flexsc_core::random::Seed;
+use flexsc_core::record::{Detail, McapLog, Record, RunEnd, Trace};
+use flexsc_core::structure::{Hub, Structure};
+use flexsc_core::{Scenario, Simulation};
+use nalgebra::DMatrix;
+
+/// relay-quiet without its observer: switchings alone.
+const EVENTS: &str = r"
+duration = 20000.0
+[body.planar]
+angle = 4.5e-4
+rate = 2.2e-5
+modes = [
+    { frequency = 0.44, gain = 0.0213, displacement = 2.75e-6 },
+    { frequency = 0.755, gain = 0.0216 },
+]
+[law.relay]
+dead_zone = 5e-4
+hysteresis = 1e-4
+strong = 4e-5
+weak = 1e-6
+k_t = 0.3389
+";
+
+/// The body of \[Wheel11, Sukhanov\], with four modes.
+const MODES: &str = "duration = 1.0\n[law.open]\n[body.planar]\nangle = 0.01\nmodes = [{ frequency = 0.3, gain = 1.44 }, \
+                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
+
+const WINDOWS: &str = "[estimator.envelope]\nwindow = 500.0\n";
+
+fn scenario(text: &str) -> Scenario {
+    Scenario::parse("bench.toml", text).expect("a valid scenario")
+}
+
+fn simulate(scenario: &Scenario, record: &mut impl Record) {
+    Simulation::new(scenario, 0).run(record).expect("a run");
+}
+
+/// A relay-quiet with the two modes and so many stiffer ones, which hardly move.
+fn with_modes(count: usize) -> Scenario {
+    let mut table = scenario(EVENTS).to_table();
+    let modes = table["body"]["planar"]["modes"].as_array_mut().expect("modes");
+    for index in modes.len()..count {
+        let mut mode = modes[1].clone();
+        let mode_table = mode.as_table_mut().expect("a mode");
+        mode_table["frequency"] = (1.0 + 0.05 * index as f64).into();
+        mode_table["gain"] = 1e-6.into();
+        modes.push(mode);
+    }
+    scenario(&toml::to_string(&table).expect("TOML"))
+}
+
+fn run(c: &mut Criterion) {
+    let mut group = c.benchmark_group("run of 20000 s");
+    let (events, windows) = (scenario(EVENTS), scenario(&format!("{EVENTS}{WINDOWS}")));
+    group.bench_function("yardstick", |b| b.iter(|| reference::exact(black_box(0.3389), 20_000.0)));
+    group.bench_function("events only", |b| b.iter(|| simulate(black_box(&events), &mut ())));
+    group.bench_function("events in memory", |b| {
+        b.iter(|| {
+            let mut trace = Trace::new(Detail::Events);
+            simulate(black_box(&events), &mut trace);
+            trace
+        });
+    });
+    group.bench_function("40 window means", |b| b.iter(|| simulate(black_box(&windows), &mut ())));
+    let run = Run { number: 0, scenario: windows.clone(), drawn: Vec::new() };
+    group.bench_function("windows and metrics", |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
+    group.bench_function("windows, metrics, log", |b| {
+        b.iter(|| {
+            let from = Campaign::provenance(&run, Detail::Events);
+            let mut log = McapLog::new(Cursor::new(Vec::new()), &from, Detail::Events).expect("a log");
+            let metrics = Campaign::simulate(&run, &mut log).expect("a run");
+            log.finish(&metrics, RunEnd::Complete).expect("a log")
+        });
+    });
+    group.finish();
+
+    let mut group = c.benchmark_group("fixed step, 200 s");
+    group.sample_size(10).measurement_time(Duration::from_secs(2));
+    group.bench_function("RK4 at 1e-4 s", |b| b.iter(|| reference::rk4(black_box(0.3389), 200.0, 1e-4)));
+    group.finish();
+}
+
+fn modes(c: &mut Criterion) {
+    let mut group = c.benchmark_group("modes");
+    group.sample_size(20);
+    for count in [2_usize, 20, 50, 100, 200] {
+        let scenario = with_modes(count);
+        group.throughput(Throughput::Elements(count as u64));
+        group.bench_with_input(BenchmarkId::from_parameter(count), &scenario, |b, scenario| {
+            b.iter(|| simulate(black_box(scenario), &mut ()));
+        });
+    }
+    group.finish();
+}
+
+/// One sample of each filter of twelve states, prediction over a period and update; whole runs with drifting frequencies.
+fn filters(c: &mut Criterion) {
+    let mut group = c.benchmark_group("filter");
+    for (name, prediction) in [("ekf step", Prediction::Extended), ("ukf step", Prediction::Unscented)] {
+        let body = scenario(MODES).model;
+        let setting =
+            Setting { body: &body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise: None };
+        let draws = &mut Seed { scenario: 0, run: 0 }.stream("prior");
+        let mut filter = FrequencyTracking::default().filter(&setting, prediction, draws);
+        let mut sample = 0.0;
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                sample += 1.0;
+                filter.predict(black_box(1e-6 * libm::cos(0.03 * sample)));
+                filter.update(Some((black_box(0.01 + 2e-3 * libm::cos(0.09 * sample)), 0.0)))
+            });
+        });
+    }
+    for (name, text) in [
+        ("run of 600 s, mode known", include_str!("../scenarios/wheel-scheduled-gain.toml")),
+        ("run of 600 s, extended filter", include_str!("../scenarios/wheel-ekf.toml")),
+    ] {
+        let run = Run { number: 0, scenario: scenario(text), drawn: Vec::new() };
+        group.bench_function(name, |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
+    }
+    group.finish();
+}
+
+fn log(c: &mut Criterion) {
+    let mut group = c.benchmark_group("log");
+    // 2000 s at 0.01 s: 200 000 instants with four messages each.
+    let text = format!("{EVENTS}{WINDOWS}[log]\nperiod = 0.01\n").replace("20000.0", "2000.0");
+    let full = scenario(&text);
+    let run = Run { number: 0, scenario: full.clone(), drawn: Vec::new() };
+    group.sample_size(10).throughput(Throughput::Elements(4 * 200_000));
+    group.bench_function("dense MCAP", |b| {
+        b.iter(|| {
+            let from = Campaign::provenance(&run, Detail::Full);
+            let mut log = McapLog::new(Cursor::new(Vec::new()), &from, Detail::Full).expect("a log");
+            simulate(&full, &mut log);
+            log.finish(&Metrics::default(), RunEnd::Complete).expect("a log")
+        });
+    });
+    group.finish();
+}
+
+/// A hub with a chain of springs whose masses all couple; benches/table.py solves the same matrices.
+fn chain(order: usize) -> Structure {
+    let mass = DMatrix::from_fn(order, order, |i, j| match (i, j) {
+        (0, 0) => 1e9,
+        (0, _) | (_, 0) => (i + j) as f64,
+        _ => 1.0 / (1.0 + i.abs_diff(j) as f64),
+    });
+    let stiffness = DMatrix::from_fn(order, order, |i, j| match (i, j) {
+        (0, _) | (_, 0) => 0.0,
+        _ if i == j => 2000.0,
+        _ if i.abs_diff(j) == 1 => -1000.0,
+        _ => 0.0,
+    });
+    Structure::new(mass, stiffness, 0, None).expect("a structure")
+}
+
+fn structure(c: &mut Criterion) {
+    let mut group = c.benchmark_group("structure");
+    group.sample_size(10).measurement_time(Duration::from_secs(8));
+    for order in [100, 1000] {
+        let structure = chain(order);
+        group.bench_with_input(BenchmarkId::from_parameter(order), &structure, |b, structure| {
+            b.iter(|| black_box(structure).modes(Hub::Free, &[]).expect("modes"));
+        });
+    }
+    group.finish();
+}
+
+/// The fitted set of \[Wheel11, Sukhanov\], figure 2.
+const WHEEL: &str = include_str!("../scenarios/wheel-fast-mode.toml");
+
+fn sampled_loop(c: &mut Criterion) {
+    let mut group = c.benchmark_group("sampled loop");
+    let window = Window { band: 0.003, horizon: 400.0 };
+    let looped = |text: &str| Loop::of(&scenario(text)).expect("a loop").0;
+    let (linear, shaped) = (looped(WHEEL), looped(&WHEEL.replace("back_emf", "dead_zone = 1e-3\nback_emf")));
+    let ratios = [1.0; 4];
+    group.bench_function("400 s", |b| {
+        b.iter(|| Held::new(black_box(&linear), &ratios).closed(0.0).settle(window));
+    });
+    let held = Held::new(&linear, &ratios);
+    group.bench_function("400 s, another gain", |b| b.iter(|| held.closed(black_box(1.2)).settle(window)));
+    let held = Held::new(&shaped, &ratios);
+    group.bench_function("400 s, shaped command", |b| b.iter(|| held.closed(black_box(0.0)).settle(window)));
+    group.bench_function("spectral radius", |b| b.iter(|| held.closed(black_box(0.0)).spectral_radius()));
+    group.sample_size(10).measurement_time(Duration::from_secs(10));
+    let (frequencies, periods) = (even(0.05, 0.5, 96), even(0.1, 2.0, 200));
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    group.bench_function("map of 96 x 200", |b| {
+        b.iter(|| one.install(|| map(&linear, &frequencies, &periods, Scaling::All, |_| 0.0, window)));
+    });
+    // As the papers sample: every cell has the 1333 samples of 400 s.
+    let periods = even(0.299, 0.301, 200);
+    group.bench_function("map of 96 x 200, 0.3 s", |b| {
+        b.iter(|| one.install(|| map(&linear, &frequencies, &periods, Scaling::All, |_| 0.0, window)));
+    });
+    group.finish();
+}
+
+/// The manoeuvre of the space station: 3500 cycles of its loop.
+fn station(c: &mut Criterion) {
+    let mut group = c.benchmark_group("station, 700 s");
+    group.sample_size(20);
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/iss-manoeuvre-off.toml");
+    let shipped = Scenario::load(path.as_ref()).expect("shipped");
+    for count in [12_usize, 135] {
+        let mut table = shipped.to_table();
+        let modes = table["body"]["spatial"]["modes"].as_array_mut().expect("modes");
+        for index in modes.len()..count {
+            let mut mode = modes[index % 12].clone();
+            mode.as_table_mut().expect("a mode")["frequency"] = (8.0 + 0.1 * index as f64).into();
+            modes.push(mode);
+        }
+        let scenario = scenario(&toml::to_string(&table).expect("TOML"));
+        group.bench_with_input(BenchmarkId::from_parameter(count), &scenario, |b, scenario| {
+            b.iter(|| simulate(black_box(scenario), &mut ()));
+        });
+    }
+    let damped = scenario(include_str!("../scenarios/iss-manoeuvre.toml"));
+    group.bench_function("damped", |b| b.iter(|| simulate(black_box(&damped), &mut ())));
+    group.finish();
+}
+
+fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
+    targets = run, modes, filters, log, structure, sampled_loop, station
+}
+criterion_main!(benches);

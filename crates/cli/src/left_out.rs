@@ -1,0 +1,17 @@
+//! What this build leaves out, and how to have it.
+
+/// What helps.
+pub const HINT: &str = "hint: cargo build --release --features full";
+
+/// In place of what renders PNG.
+#[cfg(not(feature = "png"))]
+#[derive(Default)]
+pub struct Renderer {}
+
+#[cfg(not(feature = "png"))]
+impl Renderer {
+    #[expect(clippy::unused_self, reason = "as of the renderer that there is with the feature")]
+    pub fn png(&self, _: &str) -> Result<Vec<u8>, String> {
+        Err(format!("PNG needs the feature `png`, which this build leaves out\n\n{HINT}"))
+    }
+}

@@ -1,0 +1,46 @@
+//! Figure `consistency` of three axes: the errors of an attitude filter beside three of its standard deviations, and its
+//! normalised error squared, which is about 1 for each of its states if they fit.
+
+use flexsc_core::record::AxisEstimate;
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+
+use super::spatial::{Cycles, panels};
+use super::story::Story;
+use super::{time, title};
+
+/// Attitude and bias.
+const STATES: f64 = 6.0;
+/// Chi-square of six degrees of freedom lies between these with a probability of 95 %, over six.
+const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let over_time = |axis: usize, of: &dyn Fn(&AxisEstimate) -> f64| -> Vec<Point> {
+        cycles.attitude.iter().map(|(time, row)| (*time, of(&row.axes[axis]))).collect()
+    };
+    let mut panels = panels(story, "rad", |axis| {
+        let name = |name| if axis == 0 { name } else { "" };
+        let [high, low] = [3.0, -3.0].map(|width| over_time(axis, &|row| width * row.angle_sd_rad));
+        let errors = over_time(axis, &|row| row.angle_error_rad);
+        vec![
+            Layer::new(name("3 standard deviations"), colour::GREEN, Shape::Area(0.2), band(&low, &high)),
+            Layer::new(name("error of the attitude"), colour::BLUE, Shape::Line(1.0), errors),
+        ]
+    });
+    if let Some(last) = panels.last_mut() {
+        last.x = last.x.unnamed();
+    }
+    let nees: Vec<Point> = cycles.attitude.iter().map(|(time, row)| (*time, row.nees / STATES)).collect();
+    let level = |height: f64| [(0.0, height), (story.end, height)];
+    let y = Axis::from_zero("NEES / states", "", nees.iter().map(|point| point.1).chain(INSIDE));
+    let layers = vec![
+        Layer::new(
+            "95 % of chi-square",
+            colour::GREEN,
+            Shape::Area(0.2),
+            band(&level(INSIDE[0]), &level(INSIDE[1])),
+        ),
+        Layer::new("", colour::BLUE, Shape::Line(1.0), nees),
+    ];
+    panels.push(Panel::new(time(0.0..story.end), y, layers));
+    Figure { title: title(story, "consistency of the attitude filter"), panels, panel_height: 160 }
+}

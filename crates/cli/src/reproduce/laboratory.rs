@@ -1,0 +1,59 @@
+//! The program itself as the laboratory of a page: it carries out the commands that the page names.
+
+use flexsc_core::record::Detail;
+use flexsc_figure::Figure;
+use flexsc_papers::Laboratory;
+use serde_json::Value as Json;
+
+use super::command::Command;
+use crate::failure::Failure;
+
+/// This program.
+pub struct Programme;
+
+impl Laboratory for Programme {
+    fn tell(&self, command: &str) -> Result<Json, String> {
+        told(Command::parse(command).and_then(|command| command.tell()))
+    }
+
+    fn column(&self, command: &str, topic: &str, name: &str) -> Result<[Vec<f64>; 2], String> {
+        let log = told(Command::parse(command).and_then(|command| command.log(Detail::Full)))?;
+        let columns = log.columns(topic).map_err(|error| error.to_string())?;
+        Ok(["time_s", name].map(|name| columns.numbers(name).map(<[f64]>::to_vec).unwrap_or_default()))
+    }
+
+    fn draw(&self, command: &str, what: &str) -> Result<(Figure, String), String> {
+        told(Command::parse(command).and_then(|command| command.draw(what)))
+    }
+}
+
+fn told<T>(result: Result<T, Failure>) -> Result<T, String> {
+    result.map_err(|failure| failure.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_tells_what_it_prints() {
+        let told =
+            Programme.tell("simulate scenarios/relay-quiet.toml --set duration=1000.0").expect("a run");
+        assert_eq!(told["pushes_right"], 21);
+    }
+
+    #[test]
+    fn what_is_not_known_is_an_error() {
+        let wrong = [
+            ("simulate scenarios/other.toml", "no scenario of the papers"),
+            ("simulate scenarios/relay-quiet.toml --sets duration=100.0", "--sets"),
+            ("simulate scenarios/relay-quiet.toml --set durations=100.0", "durations"),
+        ];
+        for (command, why) in wrong {
+            let error = Programme.tell(command).expect_err(command);
+            assert!(error.contains(why), "{command}: {error}");
+        }
+        let drawn = Programme.draw("plan scenarios/rotation-sine.toml", "colour");
+        assert!(drawn.is_err_and(|error| error.contains("colour")));
+    }
+}

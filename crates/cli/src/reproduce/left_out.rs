@@ -1,0 +1,19 @@
+//! `flexsc reproduce` in a build without the feature `papers`.
+
+use crate::failure::Failure;
+use crate::left_out::HINT;
+
+#[derive(clap::Args)]
+#[command(disable_help_flag = true)]
+pub struct Args {
+    /// Whatever is given
+    #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    given: Vec<String>,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let words = [&["flexsc reproduce".to_owned()], &args.given[..]].concat().join(" ");
+    Err(Failure::Arguments(format!(
+        "{words}: needs the feature `papers`, which this build leaves out\n\n{HINT}"
+    )))
+}

@@ -1,0 +1,68 @@
+//! The zero-order hold: in each period the mean of the waveform, and the feedback at its start.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{AxisActuate, Setting};
+use crate::time::{Instant, Span};
+
+/// A zero-order hold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ZeroOrderHold {
+    /// Period (s).
+    pub period: Span,
+}
+
+/// The hold at work.
+#[derive(Clone, Debug)]
+pub struct Holding {
+    period: Span,
+    setting: Setting,
+    next: Instant,
+    feedback: f64,
+    held: f64,
+}
+
+impl ZeroOrderHold {
+    /// The hold before its first period.
+    pub fn start(&self, setting: &Setting) -> Holding {
+        Holding {
+            period: self.period,
+            setting: setting.clone(),
+            next: Instant::START,
+            feedback: 0.0,
+            held: 0.0,
+        }
+    }
+}
+
+impl AxisActuate for Holding {
+    fn command(&mut self, _: Instant, command: f64, _: f64) {
+        self.feedback = command;
+    }
+
+    fn serve(&mut self, now: Instant, _: f64) {
+        if self.next == now {
+            self.next = now + self.period;
+            let h = self.period.seconds();
+            self.held = self.feedback + self.setting.planned(now, h) / h;
+        }
+    }
+
+    fn due(&self) -> Option<Instant> {
+        Some(self.next)
+    }
+
+    fn torque(&self) -> f64 {
+        self.held
+    }
+
+    fn asked(&self) -> f64 {
+        self.feedback
+    }
+
+    fn copy(&self) -> Box<dyn AxisActuate> {
+        Box::new(self.clone())
+    }
+}

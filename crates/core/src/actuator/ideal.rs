@@ -1,0 +1,49 @@
+//! The ideal actuator: the command itself at every instant, and the waveform of a manoeuvre as it is.
+
+use std::sync::Arc;
+
+use super::{AxisActuate, Setting};
+use crate::body::Forced;
+use crate::time::Instant;
+use crate::waveform::Waveform;
+
+/// The actuator at work.
+#[derive(Clone, Debug)]
+pub struct Ideal {
+    torque: f64,
+    waveform: Option<Arc<Waveform>>,
+}
+
+impl Ideal {
+    /// The actuator before its first command.
+    pub fn new(setting: &Setting) -> Self {
+        Self { torque: 0.0, waveform: setting.waveform.clone() }
+    }
+}
+
+impl AxisActuate for Ideal {
+    fn command(&mut self, _: Instant, command: f64, _: f64) {
+        self.torque = command;
+    }
+
+    fn torque(&self) -> f64 {
+        self.torque
+    }
+
+    fn asked(&self) -> f64 {
+        self.torque
+    }
+
+    fn forced(&self, now: Instant) -> Option<Forced> {
+        let waveform = self.waveform.as_ref().filter(|waveform| now.seconds() < waveform.end())?;
+        Some(Forced::new(Arc::clone(waveform), now.seconds()))
+    }
+
+    fn applied(&self, now: Instant, _: [f64; 2]) -> f64 {
+        self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds())) + self.torque
+    }
+
+    fn copy(&self) -> Box<dyn AxisActuate> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,173 @@
+//! Jets at work: what is commanded, what waits, what burns, and the propellant.
+
+use super::{Actuate, Cycle, Demand, Group, Jets, PulseWidth};
+use crate::body::Wrench;
+use crate::body::spatial::Vector;
+use crate::estimator::adaptive::Pulse;
+use crate::time::{Instant, Span};
+
+/// The jets of a body.
+#[derive(Clone, Debug)]
+pub struct Pulsing {
+    groups: [[Group; 2]; 3],
+    width: PulseWidth,
+    delayed: bool,
+    /// The cycle of the pulses, and when the next begins where it is not the law's.
+    period: Span,
+    next: Option<Instant>,
+    /// What laws command.
+    demands: [Demand; 3],
+    /// Signed on-times that were commanded in the last cycle, and are executed in the next (s).
+    waiting: [f64; 3],
+    /// Signed on-times of this cycle (s).
+    executed: [f64; 3],
+    /// When the pulse of each axis ends.
+    ends: [Option<Instant>; 3],
+    fuel: f64,
+    /// Pulses so far.
+    pulses: u64,
+}
+
+impl Pulsing {
+    /// The jets before the first command, of these groups; `period` is that of the law, for jets without one of their own.
+    pub fn new(jets: &Jets, groups: &[[Group; 2]; 3], period: Span) -> Self {
+        Self {
+            groups: groups.clone(),
+            width: jets.width(),
+            delayed: jets.delay > 0,
+            period: jets.period.unwrap_or(period),
+            next: jets.period.map(|_| Instant::START),
+            demands: [Demand::Torque(0.0); 3],
+            waiting: [0.0; 3],
+            executed: [0.0; 3],
+            ends: [None; 3],
+            fuel: 0.0,
+            pulses: 0,
+        }
+    }
+
+    /// The group of an axis whose pulse has this sign.
+    fn group(&self, axis: usize, on: f64) -> &Group {
+        &self.groups[axis][usize::from(on < 0.0)]
+    }
+
+    /// The signed on-time that comes of the command about an axis (s).
+    fn on_time(&self, axis: usize) -> f64 {
+        let period = self.period.seconds();
+        let (wanted, sign) = match self.demands[axis] {
+            Demand::Change(change) => (change.abs() / self.group(axis, change).acceleration, change),
+            Demand::Torque(torque) => {
+                let most = self.group(axis, torque).torque[axis].abs();
+                (torque.abs() / most * period, torque)
+            }
+        };
+        if sign == 0.0 { 0.0 } else { sign.signum() * self.width.on_time(wanted, period) }
+    }
+
+    /// Begins a cycle with what is commanded.
+    fn begin(&mut self, now: Instant) {
+        let commanded = [0, 1, 2].map(|axis| self.on_time(axis));
+        self.executed = if self.delayed { self.waiting } else { commanded };
+        self.waiting = if self.delayed { commanded } else { [0.0; 3] };
+        for axis in 0..3 {
+            let on = self.executed[axis];
+            self.ends[axis] = (on != 0.0).then(|| now + Span::from_seconds(on.abs()));
+            self.fuel += on.abs() * self.group(axis, on).flow;
+            self.pulses += u64::from(on != 0.0);
+        }
+    }
+
+    /// What the pulses of this cycle turn the body by, all together (N m s).
+    pub fn impulse(&self) -> Vector {
+        let pulse = |axis: usize| self.group(axis, self.executed[axis]).torque * self.executed[axis].abs();
+        pulse(0) + pulse(1) + pulse(2)
+    }
+
+    fn pulses(&self, on: [f64; 3]) -> Vec<Pulse> {
+        let pulse = |axis: usize| Pulse {
+            input: axis,
+            acceleration: on[axis].signum() * self.group(axis, on[axis]).acceleration,
+            start: 0.0,
+            duration: on[axis].abs(),
+        };
+        (0..3).filter(|axis| on[*axis] != 0.0).map(pulse).collect()
+    }
+}
+
+impl Actuate for Pulsing {
+    fn command(&mut self, now: Instant, demands: &[Demand], _: [f64; 3]) {
+        for (own, demand) in self.demands.iter_mut().zip(demands) {
+            *own = *demand;
+        }
+        if self.next.is_none() {
+            self.begin(now);
+        }
+    }
+
+    fn due(&self) -> Option<Instant> {
+        self.ends.into_iter().flatten().chain(self.next).min()
+    }
+
+    fn serve(&mut self, now: Instant, _: [f64; 3]) {
+        self.ends = self.ends.map(|end| end.filter(|end| *end > now));
+        if self.next == Some(now) {
+            self.begin(now);
+            self.next = Some(now + self.period);
+        }
+    }
+
+    fn exert(&self, _: Instant, onto: &mut Wrench) {
+        for axis in (0..3).filter(|axis| self.ends[*axis].is_some()) {
+            let group = self.group(axis, self.executed[axis]);
+            onto.torque += group.torque;
+            onto.forces.resize(group.forces.len(), 0.0);
+            onto.forces.iter_mut().zip(&group.forces).for_each(|(sum, force)| *sum += force);
+        }
+    }
+
+    fn asked(&self, axis: usize) -> f64 {
+        match self.demands[axis] {
+            Demand::Torque(torque) => torque,
+            Demand::Change(change) => {
+                let group = self.group(axis, change);
+                change / group.acceleration * group.torque[axis].abs() / self.period.seconds()
+            }
+        }
+    }
+
+    fn torque(&self, axis: usize) -> f64 {
+        let burning = (0..3).filter(|axis| self.ends[*axis].is_some());
+        burning.map(|burning| self.group(burning, self.executed[burning]).torque[axis]).sum()
+    }
+
+    fn applied(&self, _: Instant, axis: usize, _: [f64; 2]) -> f64 {
+        self.torque(axis)
+    }
+
+    fn moment(&self, axis: usize) -> f64 {
+        let on = self.executed[axis];
+        if self.ends[axis].is_some() { on.signum() * self.group(axis, on).acceleration } else { 0.0 }
+    }
+
+    fn cycle(&self) -> Option<Cycle> {
+        let sign = |axis: usize| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 };
+        Some(Cycle { on: self.executed, fuel: self.fuel, pulses: self.pulses, burning: [0, 1, 2].map(sign) })
+    }
+
+    fn executed(&self) -> Option<Vec<Pulse>> {
+        Some(self.pulses(self.executed))
+    }
+
+    fn queued(&self) -> [f64; 3] {
+        let on = self.waiting;
+        std::array::from_fn(|axis| on[axis] * self.group(axis, on[axis]).acceleration)
+    }
+
+    fn waiting(&self) -> Vec<Pulse> {
+        self.pulses(self.waiting)
+    }
+
+    fn copy(&self) -> Box<dyn Actuate> {
+        Box::new(self.clone())
+    }
+}

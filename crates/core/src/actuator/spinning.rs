@@ -1,0 +1,334 @@
+//! Reaction wheels at work: what each exerts, and the momentum that it keeps.
+//!
+//! A wheel's momentum about its axis is h = I (Omega + a.w), absolute: it changes by the torque of its motor and by nothing
+//! else, h' = u, however the body turns (Euler's third equation of a rotor). So it is known exactly at every instant, and with
+//! it the instant at which it reaches its limit. The speed Omega also depends on the body's rate.
+
+use super::allocation::Allocation;
+use super::wheels::{SpeedBias, Wheels};
+use super::{Actuate, Demand, Setting};
+use crate::body::Wrench;
+use crate::body::spatial::Vector;
+use crate::motion::turning::Rotor;
+use crate::quantity::Positive;
+use crate::record;
+use crate::time::{Instant, Span};
+
+/// The wheels of a body.
+#[derive(Clone, Debug)]
+pub struct Spinning {
+    allocation: Allocation,
+    /// About their axes (kg m²).
+    inertia: f64,
+    /// Largest torque (N m), momentum (N m s) and speed (rad/s) of each.
+    torque_limit: f64,
+    momentum_limit: f64,
+    speed_limit: f64,
+    bias: Option<SpeedBias>,
+    settings: Vec<Setting>,
+    /// The torque on the body that laws ask for, and one of others that the wheels hold against (N m).
+    wanted: Vector,
+    against: Vector,
+    wheels: Vec<Spin>,
+    /// Since when the wheels' momenta are counted.
+    since: Instant,
+}
+
+/// A wheel.
+#[derive(Copy, Clone, Debug)]
+struct Spin {
+    /// Momentum when its torque changed last (N m s).
+    momentum: f64,
+    /// What its motor exerts on it (N m).
+    torque: f64,
+    /// When it reaches a limit.
+    full: Option<Instant>,
+}
+
+impl Spin {
+    fn momentum_at(&self, seconds: f64) -> f64 {
+        self.momentum + self.torque * seconds
+    }
+}
+
+impl Spinning {
+    /// The wheels before their first command, at these speeds (rad/s).
+    pub fn new(wheels: &Wheels, allocation: Allocation, speeds: &[f64], settings: &[Setting]) -> Self {
+        let inertia = wheels.inertia.get();
+        let rate = Vector::from_fn(|axis, _| settings.get(axis).map_or(0.0, |setting| setting.rate));
+        let spin = |(axis, speed): (&Vector, &f64)| Spin {
+            momentum: inertia * (speed + axis.dot(&rate)),
+            torque: 0.0,
+            full: None,
+        };
+        let limit = |limit: Option<Positive>| limit.map_or(f64::INFINITY, Positive::get);
+        Self {
+            wheels: allocation.axes().iter().zip(speeds).map(spin).collect(),
+            allocation,
+            inertia,
+            torque_limit: limit(wheels.torque),
+            momentum_limit: limit(wheels.momentum),
+            speed_limit: limit(wheels.speed_limit),
+            bias: wheels.speed_bias,
+            settings: settings.to_vec(),
+            wanted: Vector::zeros(),
+            against: Vector::zeros(),
+            since: Instant::START,
+        }
+    }
+
+    /// Makes them hold against a torque on the body (N m) from the next command on.
+    pub fn hold_against(&mut self, torque: Vector) {
+        self.against = torque;
+    }
+
+    fn elapsed(&self, now: Instant) -> f64 {
+        now.since(self.since).seconds()
+    }
+
+    /// Momenta go on to now.
+    fn turn(&mut self, now: Instant) {
+        let seconds = self.elapsed(now);
+        for wheel in &mut self.wheels {
+            wheel.momentum = wheel.momentum_at(seconds);
+        }
+        self.since = now;
+    }
+
+    /// Speeds relative to a body that turns at this rate (rad/s).
+    fn speeds(&self, rate: &Vector) -> Vec<f64> {
+        let axes = self.allocation.axes().iter();
+        axes.zip(&self.wheels).map(|(axis, wheel)| wheel.momentum / self.inertia - axis.dot(rate)).collect()
+    }
+
+    /// The torques of the motors that give the body what is wanted, as far as they can.
+    fn motors(&self, speeds: &[f64]) -> Vec<f64> {
+        let mut torques = self.allocation.torques(&(self.against - self.wanted));
+        let largest = torques.iter().map(|torque| torque.abs()).fold(0.0, f64::max);
+        if largest > self.torque_limit {
+            for torque in &mut torques {
+                *torque *= self.torque_limit / largest;
+            }
+        }
+        if let (Some(bias), Some(null)) = (self.bias, self.allocation.null()) {
+            let square: f64 = null.iter().map(|part| part * part).sum();
+            let speed = null.iter().zip(speeds).map(|(part, speed)| part * speed).sum::<f64>() / square;
+            let mut part = bias.gain.get() * (bias.speed.get() - speed) * self.inertia;
+            for (torque, null) in torques.iter().zip(null).filter(|(_, null)| **null != 0.0) {
+                let ends = [self.torque_limit, -self.torque_limit].map(|limit| (limit - torque) / null);
+                part = part.clamp(ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0));
+            }
+            torques.iter_mut().zip(null).for_each(|(torque, null)| *torque += part * null);
+        }
+        torques
+    }
+
+    /// What is left of a torque on a wheel at this speed, and how long until the wheel is at a limit (s).
+    fn within_limits(&self, momentum: f64, speed: f64, torque: f64) -> (f64, f64) {
+        let ahead = libm::copysign(1.0, torque);
+        let room =
+            (self.momentum_limit - ahead * momentum).min((self.speed_limit - ahead * speed) * self.inertia);
+        if room <= 0.0 { (0.0, f64::INFINITY) } else { (torque, room / torque.abs()) }
+    }
+}
+
+impl Actuate for Spinning {
+    fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
+        self.turn(now);
+        for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
+            self.wanted[axis] = match demand {
+                Demand::Torque(torque) => *torque,
+                Demand::Change(change) => change * setting.inertia / setting.cycle.map_or(1.0, Span::seconds),
+            };
+        }
+        let speeds = self.speeds(&rigid.into());
+        for (index, torque) in self.motors(&speeds).into_iter().enumerate() {
+            let (torque, seconds) = self.within_limits(self.wheels[index].momentum, speeds[index], torque);
+            let wheel = &mut self.wheels[index];
+            wheel.torque = torque;
+            wheel.full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
+        }
+    }
+
+    fn due(&self) -> Option<Instant> {
+        self.wheels.iter().filter_map(|wheel| wheel.full).min()
+    }
+
+    /// A wheel at its limit stays there until the next command.
+    fn serve(&mut self, now: Instant, _: [f64; 3]) {
+        if self.wheels.iter().any(|wheel| wheel.full == Some(now)) {
+            self.turn(now);
+            for wheel in self.wheels.iter_mut().filter(|wheel| wheel.full == Some(now)) {
+                (wheel.torque, wheel.full) = (0.0, None);
+            }
+        }
+    }
+
+    fn exert(&self, now: Instant, onto: &mut Wrench) {
+        let seconds = self.elapsed(now);
+        let rotor = |(axis, wheel): (&Vector, &Spin)| Rotor {
+            axis: *axis,
+            momentum: wheel.momentum_at(seconds),
+            torque: wheel.torque,
+        };
+        onto.rotors.extend(self.allocation.axes().iter().zip(&self.wheels).map(rotor));
+    }
+
+    fn asked(&self, axis: usize) -> f64 {
+        self.wanted[axis]
+    }
+
+    fn torque(&self, axis: usize) -> f64 {
+        let wheels = self.allocation.axes().iter().zip(&self.wheels);
+        -wheels.map(|(about, wheel)| about[axis] * wheel.torque).sum::<f64>()
+    }
+
+    fn moment(&self, axis: usize) -> f64 {
+        self.torque(axis) / self.settings[axis].inertia
+    }
+
+    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<record::Wheel> {
+        let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
+        let motion = |(axis, wheel): (&Vector, &Spin)| record::Wheel {
+            speed_rad_s: wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate),
+            momentum_nm_s: wheel.momentum_at(seconds),
+            torque_nm: wheel.torque,
+        };
+        self.allocation.axes().iter().zip(&self.wheels).map(motion).collect()
+    }
+
+    fn stored(&self, now: Instant) -> [f64; 3] {
+        let (seconds, wheels) = (self.elapsed(now), self.allocation.axes().iter().zip(&self.wheels));
+        wheels.fold(Vector::zeros(), |sum, (axis, wheel)| sum + axis * wheel.momentum_at(seconds)).into()
+    }
+
+    fn copy(&self) -> Box<dyn Actuate> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERIOD: f64 = 0.25;
+
+    fn start(keys: &str) -> Spinning {
+        let text = format!(
+            "arrangement = \"pyramid\"\ncant = 0.610_865_238_198_015_3\ninertia = 0.04\n{keys}\n\
+             speeds = [200.0, -200.0, 200.0, -200.0]"
+        );
+        let wheels: Wheels = toml::from_str(&text).unwrap();
+        let setting = |axis| Setting {
+            axis,
+            inertia: 1000.0,
+            planned_inertia: 1000.0,
+            rate: 0.0,
+            cycle: Some(Span::from_seconds(PERIOD)),
+            waveform: None,
+        };
+        wheels.start(&wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
+    }
+
+    fn at(seconds: f64) -> Instant {
+        Instant::START + Span::from_seconds(seconds)
+    }
+
+    fn ask(wheels: &mut Spinning, now: Instant, torque: [f64; 3]) {
+        wheels.command(now, &torque.map(Demand::Torque), [0.0; 3]);
+    }
+
+    fn given(wheels: &Spinning) -> [f64; 3] {
+        [0, 1, 2].map(|axis| wheels.torque(axis))
+    }
+
+    #[test]
+    fn wheels_take_the_momentum_that_the_body_gets() {
+        let mut wheels = start("torque = 0.4");
+        let before = Vector::from(wheels.stored(at(0.0)));
+        assert!(before.norm() < 1e-14, "two turn one way and two the other: {before}");
+        let torque = [0.1, -0.05, 0.2];
+        ask(&mut wheels, at(0.0), torque);
+        for (found, exact) in given(&wheels).into_iter().zip(torque) {
+            assert!((found - exact).abs() < 1e-15);
+        }
+        let after = Vector::from(wheels.stored(at(2.0)));
+        assert!((after + Vector::from(torque) * 2.0).norm() < 1e-14, "{after}");
+        let speed = wheels.wheels(at(2.0), [0.0; 3])[0].speed_rad_s;
+        assert!((speed - (200.0 - 2.0 * 0.108_752_79 / 0.04)).abs() < 1e-5, "{speed}");
+        // A body that turns makes a wheel of the same momentum slower.
+        let turning = wheels.wheels(at(2.0), [0.0, 0.0, 1.0])[0].speed_rad_s;
+        assert!((speed - turning - 0.573_576_436_351_046).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_torque_that_is_too_large_keeps_its_axis() {
+        let mut wheels = start("torque = 0.4");
+        ask(&mut wheels, at(0.0), [1.0, -0.5, 2.0]);
+        // Ten times the torque that asks 0.1519 of a wheel.
+        let part = 0.4 / 1.519_136_9;
+        for (found, exact) in given(&wheels).into_iter().zip([1.0, -0.5, 2.0]) {
+            assert!((found - part * exact).abs() < 1e-7, "{found}");
+        }
+    }
+
+    #[test]
+    fn a_wheel_stops_at_its_limit_exactly() {
+        // Of 8 N m s at the start, 1 more at |u| = 0.4 takes 2.5 s.
+        let mut wheels = start("torque = 0.4\nmomentum = 9.0");
+        ask(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
+        assert_eq!(wheels.due(), Some(at(2.5)));
+        wheels.serve(at(2.5), [0.0; 3]);
+        let motion = wheels.wheels(at(9.0), [0.0; 3]);
+        assert!(
+            (motion[0].momentum_nm_s - 9.0).abs() < 1e-14 && (motion[1].momentum_nm_s + 4.4).abs() < 1e-13
+        );
+        // Two of four are left, which go on; away from the limit all do.
+        ask(&mut wheels, at(9.0), [0.0, 0.0, -5.0]);
+        assert_eq!(wheels.wheels.iter().filter(|wheel| wheel.torque == 0.0).count(), 2);
+        ask(&mut wheels, at(9.0), [0.0, 0.0, 5.0]);
+        assert!(wheels.wheels.iter().all(|wheel| wheel.torque == -0.4));
+        let mut wheels = start("torque = 0.4\nspeed_limit = 250.0");
+        ask(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
+        assert_eq!(wheels.due(), Some(at(5.0)), "50 rad/s at 10 rad/s²");
+    }
+
+    #[test]
+    fn a_speed_bias_gives_the_body_nothing() {
+        let mut wheels = start("torque = 0.4\nspeed_bias = { speed = 100.0, gain = 0.02 }");
+        let torque = [0.1, -0.05, 0.2];
+        for k in 0..1600 {
+            ask(&mut wheels, at(PERIOD * f64::from(k)), if k < 8 { torque } else { [0.0; 3] });
+            let wanted = if k < 8 { torque } else { [0.0; 3] };
+            for (found, exact) in given(&wheels).into_iter().zip(wanted) {
+                assert!((found - exact).abs() < 1e-14);
+            }
+            assert!(wheels.wheels.iter().all(|wheel| wheel.torque.abs() <= 0.4 + 1e-15));
+        }
+        let speeds: Vec<f64> =
+            wheels.wheels(at(400.0), [0.0; 3]).iter().map(|wheel| wheel.speed_rad_s).collect();
+        let bias = (speeds[0] - speeds[1] + speeds[2] - speeds[3]) / 4.0;
+        // (1 - gain T)^1600 of the 100 rad/s that were too many are left.
+        assert!((bias - 100.0 - 100.0 * libm::pow(0.995, 1600.0)).abs() < 0.1, "{bias}");
+    }
+
+    #[test]
+    fn what_cannot_be_built_is_refused_with_its_key() {
+        let fault = |text: &str| {
+            let wheels: Wheels = toml::from_str(&format!("inertia = 0.04\n{text}")).unwrap();
+            wheels.allocation().unwrap_err().to_string()
+        };
+        assert!(fault("").starts_with("`axes` must be given without an `arrangement`"));
+        assert!(fault("axes = [[1, 0, 0], [0, 1, 0]]").contains("must reach all three axes"));
+        assert!(
+            fault("axes = [[1, 0, 0], [0, 1, 0], [0, 0, 0]]").starts_with("`axes[2]` must have a length")
+        );
+        assert!(fault("arrangement = \"pyramid\"\nspeeds = [1.0]").contains("one for each of 4 wheels"));
+        let bias = "speed_bias = { speed = 1.0, gain = 1.0 }";
+        assert!(
+            fault(&format!("arrangement = \"orthogonal\"\n{bias}")).starts_with("`speed_bias` needs four")
+        );
+        let fast = "arrangement = \"orthogonal\"\nmomentum = 1.0\nspeeds = [0.0, 30.0, 0.0]";
+        assert!(fault(fast).starts_with("`speeds[1]` must be within"));
+    }
+}

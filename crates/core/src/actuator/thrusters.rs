@@ -1,0 +1,128 @@
+//! A pair of thrusters for each direction: in each period one pulse, centred in it, with the impulse that a hold would have.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{AxisActuate, PulseWidth, Setting};
+use crate::axes::Each;
+use crate::quantity::{NonNegative, Positive};
+use crate::time::{Instant, Span};
+
+/// A pair of thrusters for each direction, modulated by the width of its pulses.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Thrusters {
+    /// Torque of a pulse (N m); one, or one for each of three axes.
+    pub torque: Each<Positive>,
+    /// Period of the pulses (s).
+    pub period: Span,
+    /// Shortest pulse (s).
+    #[serde(default)]
+    pub minimum_on: NonNegative,
+    /// Quantum of a pulse's length (s); 0 for none.
+    #[serde(default)]
+    pub quantum: NonNegative,
+}
+
+/// A pulse: this torque (N m) from one instant to another.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct Pulse {
+    torque: f64,
+    from: Instant,
+    to: Instant,
+}
+
+impl Thrusters {
+    /// What becomes of a wanted pulse.
+    pub fn width(&self) -> PulseWidth {
+        PulseWidth { minimum: self.minimum_on, quantum: self.quantum }
+    }
+
+    /// The thrusters before their first period.
+    pub fn start(&self, setting: &Setting) -> Pulsed {
+        Pulsed {
+            most: self.torque.about(setting.axis).get(),
+            period: self.period,
+            width: self.width(),
+            setting: setting.clone(),
+            next: Instant::START,
+            feedback: 0.0,
+            held: 0.0,
+            pulse: None,
+            owed: 0.0,
+        }
+    }
+}
+
+/// The thrusters at work.
+#[derive(Clone, Debug)]
+pub struct Pulsed {
+    most: f64,
+    period: Span,
+    width: PulseWidth,
+    setting: Setting,
+    next: Instant,
+    feedback: f64,
+    held: f64,
+    pulse: Option<Pulse>,
+    /// Impulse that the thrusters owe (N m s).
+    owed: f64,
+}
+
+impl Pulsed {
+    fn begin_period(&mut self, now: Instant) {
+        self.next = now + self.period;
+        let h = self.period.seconds();
+        let planned = self.setting.planned(now, h);
+        self.held = 0.0;
+        let (pulse, owed) = self.pulse(now, self.owed + planned + self.feedback * h);
+        self.owed = owed;
+        self.pulse = (pulse.from < pulse.to).then_some(pulse);
+    }
+
+    /// The pulse of a period that begins now and shall give this impulse (N m s), and what it leaves undone (N m s).
+    /// The rest is asked of the next period; it is at most what one period can give.
+    fn pulse(&self, now: Instant, impulse: f64) -> (Pulse, f64) {
+        let period = self.period.seconds();
+        let on = self.width.on_time(impulse.abs() / self.most, period);
+        let torque = self.most.copysign(impulse);
+        let most = self.most * period;
+        let from = now + Span::from_seconds(0.5 * (period - on));
+        let pulse = Pulse { torque, from, to: from + Span::from_seconds(on) };
+        (pulse, (impulse - torque * on).clamp(-most, most))
+    }
+}
+
+impl AxisActuate for Pulsed {
+    fn command(&mut self, _: Instant, command: f64, _: f64) {
+        self.feedback = command;
+    }
+
+    fn serve(&mut self, now: Instant, _: f64) {
+        if self.next == now {
+            self.begin_period(now);
+        }
+        if let Some(pulse) = self.pulse {
+            let on = pulse.from <= now && now < pulse.to;
+            self.held = if on { pulse.torque } else { 0.0 };
+            self.pulse = self.pulse.filter(|_| now < pulse.to);
+        }
+    }
+
+    fn due(&self) -> Option<Instant> {
+        let pulse = self.pulse.map(|pulse| if self.held == 0.0 { pulse.from } else { pulse.to });
+        Some(pulse.map_or(self.next, |pulse| pulse.min(self.next)))
+    }
+
+    fn torque(&self) -> f64 {
+        self.held
+    }
+
+    fn asked(&self) -> f64 {
+        self.feedback
+    }
+
+    fn copy(&self) -> Box<dyn AxisActuate> {
+        Box::new(self.clone())
+    }
+}

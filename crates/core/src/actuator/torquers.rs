@@ -1,0 +1,168 @@
+//! Actuators that give a torque about an axis each: one of a body with one angle, three of a body with three axes.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::{Actuate, Actuator, Demand};
+use crate::body::{Forced, Wrench};
+use crate::record::WheelMotion;
+use crate::time::{Instant, Span};
+use crate::waveform::Waveform;
+
+/// What an actuator of one axis knows of what is around it.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
+    pub axis: usize,
+    /// What a unit of the torque accelerates (kg m²).
+    pub inertia: f64,
+    /// The same of the body that the manoeuvre is planned for.
+    pub planned_inertia: f64,
+    /// Rate at the start (rad/s).
+    pub rate: f64,
+    /// The law's period, if it has one.
+    pub cycle: Option<Span>,
+    /// The manoeuvre's command (N m).
+    pub waveform: Option<Arc<Waveform>>,
+}
+
+impl Setting {
+    /// Impulse of the waveform over the next `h` seconds (N m s).
+    pub fn planned(&self, now: Instant, h: f64) -> f64 {
+        let from = now.seconds();
+        self.waveform.as_ref().map_or(0.0, |waveform| waveform.impulse(from, from + h))
+    }
+}
+
+/// An actuator of one axis at work.
+pub trait AxisActuate: fmt::Debug + Send + Sync {
+    /// Takes over a command from now on: a torque (N m), or so many of its units, on a body that turns at this rigid rate
+    /// (rad/s).
+    fn command(&mut self, now: Instant, command: f64, rigid_rate: f64);
+
+    /// Does what is due now.
+    fn serve(&mut self, _now: Instant, _rigid_rate: f64) {}
+
+    /// The next instant at which its torque changes by itself.
+    fn due(&self) -> Option<Instant> {
+        None
+    }
+
+    /// Torque for each unit of its command (N m).
+    fn unit(&self) -> f64 {
+        1.0
+    }
+
+    /// The torque that it holds (N m), without a waveform and without back-EMF.
+    fn torque(&self) -> f64;
+
+    /// The torque that is asked for (N m).
+    fn asked(&self) -> f64;
+
+    /// The waveform that it executes from now on as it is.
+    fn forced(&self, _now: Instant) -> Option<Forced> {
+        None
+    }
+
+    /// The torque that it gives a body with this rate and this rigid rate (N m).
+    fn applied(&self, _now: Instant, _rates: [f64; 2]) -> f64 {
+        self.torque()
+    }
+
+    /// Back-EMF for each unit of the rate (N m s), and whether it is that of the elastic body.
+    fn back_emf(&self) -> (f64, bool) {
+        (0.0, false)
+    }
+
+    /// Its rotor, of a body that turns at this rigid rate (rad/s), if it stores momentum.
+    fn rotor(&self, _rigid_rate: f64) -> Option<WheelMotion> {
+        None
+    }
+
+    /// A copy in the same state.
+    fn copy(&self) -> Box<dyn AxisActuate>;
+}
+
+impl Clone for Box<dyn AxisActuate> {
+    fn clone(&self) -> Self {
+        self.copy()
+    }
+}
+
+/// The actuators of all axes.
+#[derive(Clone, Debug)]
+pub struct Torquers(Vec<(Box<dyn AxisActuate>, Setting)>);
+
+impl Torquers {
+    /// An actuator in the setting of each axis.
+    pub fn new(kind: &Actuator, settings: Vec<Setting>) -> Self {
+        Self(settings.into_iter().map(|setting| (kind.about_an_axis(&setting), setting)).collect())
+    }
+}
+
+impl Actuate for Torquers {
+    fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
+        for (axis, ((actuator, setting), demand)) in self.0.iter_mut().zip(demands).enumerate() {
+            let wanted = match demand {
+                Demand::Torque(torque) => *torque,
+                Demand::Change(change) => {
+                    let cycle = setting.cycle.map_or(1.0, Span::seconds);
+                    change * setting.inertia / cycle / actuator.unit()
+                }
+            };
+            actuator.command(now, wanted, rigid[axis]);
+        }
+    }
+
+    fn due(&self) -> Option<Instant> {
+        self.0.iter().filter_map(|(actuator, _)| actuator.due()).min()
+    }
+
+    fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
+        for ((actuator, _), rate) in self.0.iter_mut().zip(rigid) {
+            actuator.serve(now, rate);
+        }
+    }
+
+    fn exert(&self, now: Instant, onto: &mut Wrench) {
+        for ((actuator, _), torque) in self.0.iter().zip(&mut onto.hub) {
+            *torque += actuator.torque();
+        }
+        onto.waveform = self.0[0].0.forced(now);
+    }
+
+    fn asked(&self, axis: usize) -> f64 {
+        self.0[axis].0.asked()
+    }
+
+    fn torque(&self, axis: usize) -> f64 {
+        self.0[axis].0.torque()
+    }
+
+    fn applied(&self, now: Instant, axis: usize, rates: [f64; 2]) -> f64 {
+        self.0[axis].0.applied(now, rates)
+    }
+
+    fn moment(&self, axis: usize) -> f64 {
+        let (actuator, setting) = &self.0[axis];
+        actuator.torque() / setting.inertia
+    }
+
+    fn waveform_impulse(&self, from: f64, to: f64) -> f64 {
+        let (actuator, setting) = &self.0[0];
+        let forced = setting.waveform.as_ref().filter(|_| actuator.forced(Instant::START).is_some());
+        forced.map_or(0.0, |waveform| waveform.impulse(from, to) / setting.inertia)
+    }
+
+    fn back_emf(&self) -> (f64, bool) {
+        self.0[0].0.back_emf()
+    }
+
+    fn wheel(&self, axis: usize, rigid_rate: f64) -> Option<WheelMotion> {
+        self.0[axis].0.rotor(rigid_rate)
+    }
+
+    fn copy(&self) -> Box<dyn Actuate> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,205 @@
+//! A flywheel on a motor with back-EMF, with a delay, a dead zone, a quantum and a limit of its commands.
+
+use std::collections::VecDeque;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{AxisActuate, Setting};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
+use crate::record::WheelMotion;
+use crate::time::{Instant, Span};
+
+/// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wheel {
+    /// Torque for each unit of the law's command (N m; k'_u of \[Wheel11, Sukhanov\] times the body's inertia).
+    pub gain: Positive,
+    /// Torque for each unit of the rate (N m s; k'_omega times the body's inertia).
+    #[serde(default)]
+    pub back_emf: NonNegative,
+    /// The rate that the back-EMF opposes.
+    #[serde(default)]
+    pub opposes: Opposes,
+    /// The wheel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotor: Option<Rotor>,
+    /// Commands of less than this are not executed.
+    #[serde(default)]
+    pub dead_zone: NonNegative,
+    /// Quantum of the command; 0 for none.
+    #[serde(default)]
+    pub quantum: NonNegative,
+    /// Largest command; left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<Positive>,
+    /// Time from a sample to the command that is computed from it (s).
+    #[serde(default)]
+    pub delay: Time,
+}
+
+/// The rate that the back-EMF opposes.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Opposes {
+    /// The measured rate, elastic part included: so in the papers, which overstates the damping of the modes.
+    #[default]
+    BodyRate,
+    /// The rigid rate: the momentum of the wheel is that which the body's torque gave it, exactly.
+    RigidRate,
+}
+
+/// A wheel that stores momentum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rotor {
+    /// Moment of inertia (kg m²).
+    pub inertia: Positive,
+    /// Speed at the start (rad/s).
+    #[serde(default)]
+    pub speed: Finite,
+    /// Largest speed (rad/s), at which no torque drives it further; left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_limit: Option<Positive>,
+}
+
+impl Wheel {
+    /// What is executed of a command: limited, quantised, nothing of a small one.
+    pub fn shaped(&self, command: f64) -> f64 {
+        let limit = self.limit.map_or(f64::INFINITY, Positive::get);
+        let (dead_zone, quantum) = (self.dead_zone.get(), self.quantum.get());
+        let command = command.clamp(-limit, limit);
+        if command.abs() < dead_zone {
+            0.0
+        } else if quantum > 0.0 {
+            libm::round(command / quantum) * quantum
+        } else {
+            command
+        }
+    }
+}
+
+/// The wheel at work.
+#[derive(Clone, Debug)]
+pub struct Driven {
+    wheel: Wheel,
+    setting: Setting,
+    /// What the law commands, and the torque that it comes to without back-EMF (N m).
+    feedback: f64,
+    held: f64,
+    /// Commands that the wheel has not yet taken, with the instants at which it does.
+    delayed: VecDeque<(Instant, f64)>,
+    /// When the next part of the manoeuvre's command is due, unless the law commands earlier.
+    next: Option<Instant>,
+}
+
+impl Wheel {
+    /// The wheel before its first command.
+    pub fn start(&self, setting: &Setting) -> Driven {
+        Driven {
+            wheel: self.clone(),
+            setting: setting.clone(),
+            feedback: 0.0,
+            held: 0.0,
+            delayed: VecDeque::new(),
+            next: None,
+        }
+    }
+}
+
+impl Driven {
+    /// Commands what the law wants, and the next part of the manoeuvre.
+    fn drive(&mut self, now: Instant) {
+        let delay = Span::from_seconds(self.wheel.delay.get());
+        let whole = self.feedback + self.feedforward(now);
+        self.delayed.push_back((now + delay, self.wheel.shaped(whole)));
+    }
+
+    /// What the motor has to add for the waveform over the law's next period, or until the waveform ends: its mean, and the
+    /// back-EMF at its mean rate.
+    fn feedforward(&mut self, now: Instant) -> f64 {
+        let (Some(waveform), Some(cycle)) = (&self.setting.waveform, self.setting.cycle) else { return 0.0 };
+        let end = Instant::START + Span::from_seconds(waveform.end());
+        let next = if now < end { end.min(now + cycle) } else { now + cycle };
+        self.next = Some(next);
+        let (from, to, inertia) = (now.seconds(), next.seconds(), self.setting.planned_inertia);
+        let span = next.since(now).seconds();
+        let rate =
+            self.setting.rate + (waveform.impulse(0.0, from) + waveform.travel(from, to) / span) / inertia;
+        (waveform.impulse(from, to) / span + self.wheel.back_emf.get() * rate) / self.wheel.gain.get()
+    }
+
+    /// Gives the wheel the commands that have come through.
+    fn turn(&mut self, now: Instant, rigid_rate: f64) {
+        while let Some((_, command)) = self.delayed.front().copied().filter(|(at, _)| *at <= now) {
+            self.delayed.pop_front();
+            let torque = self.wheel.gain.get() * command;
+            // What accelerates the body takes speed from the wheel.
+            let spent = self
+                .speed(rigid_rate)
+                .is_some_and(|(speed, limit)| speed.abs() >= limit && speed * torque < 0.0);
+            self.held = if spent { 0.0 } else { torque };
+        }
+    }
+
+    /// Speed of a wheel that stores momentum, and its limit (rad/s).
+    fn speed(&self, rigid_rate: f64) -> Option<(f64, f64)> {
+        let rotor = self.wheel.rotor.as_ref()?;
+        let gained = self.setting.inertia * (rigid_rate - self.setting.rate) / rotor.inertia.get();
+        let limit = rotor.speed_limit.map_or(f64::INFINITY, Positive::get);
+        Some((rotor.speed.get() - gained, limit))
+    }
+}
+
+impl AxisActuate for Driven {
+    fn command(&mut self, now: Instant, command: f64, rigid_rate: f64) {
+        self.feedback = command;
+        self.drive(now);
+        self.turn(now, rigid_rate);
+    }
+
+    /// A law that does not follow the manoeuvre commands nothing while it lasts: the parts of it come all the same.
+    fn serve(&mut self, now: Instant, rigid_rate: f64) {
+        if self.next == Some(now) {
+            self.drive(now);
+        }
+        self.turn(now, rigid_rate);
+    }
+
+    fn due(&self) -> Option<Instant> {
+        let delayed = self.delayed.front().map(|(at, _)| *at);
+        [delayed, self.next].into_iter().flatten().min()
+    }
+
+    fn unit(&self) -> f64 {
+        self.wheel.gain.get()
+    }
+
+    fn torque(&self) -> f64 {
+        self.held
+    }
+
+    fn asked(&self) -> f64 {
+        self.wheel.gain.get() * self.feedback
+    }
+
+    fn applied(&self, _: Instant, [rate, rigid_rate]: [f64; 2]) -> f64 {
+        let felt = if self.wheel.opposes == Opposes::BodyRate { rate } else { rigid_rate };
+        self.held - self.wheel.back_emf.get() * felt
+    }
+
+    fn back_emf(&self) -> (f64, bool) {
+        (self.wheel.back_emf.get(), self.wheel.opposes == Opposes::BodyRate)
+    }
+
+    fn rotor(&self, rigid_rate: f64) -> Option<WheelMotion> {
+        let (speed, _) = self.speed(rigid_rate)?;
+        let inertia = self.wheel.rotor.as_ref().map_or(0.0, |rotor| rotor.inertia.get());
+        Some(WheelMotion { speed_rad_s: speed, momentum_nm_s: inertia * speed })
+    }
+
+    fn copy(&self) -> Box<dyn AxisActuate> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,172 @@
+//! Reaction wheels about axes of their own, which together give a torque about three axes and keep its momentum.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Setting;
+use super::allocation::{Allocation, Choice};
+use super::spinning::Spinning;
+use super::unloading::Unloading;
+use crate::body::spatial::Vector;
+use crate::craft::Rotor;
+use crate::document::Fault;
+use crate::quantity::{Finite, Positive};
+
+/// Reaction wheels, alike but for their axes and speeds at the start.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wheels {
+    /// How they are arranged; left out, their `axes` are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arrangement: Option<Arrangement>,
+    /// Of a pyramid, the angle of each axis above the plane of x and y (rad); left out, the one with equal torques about all
+    /// three axes, 0.6155 rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cant: Option<Finite>,
+    /// The axis of each wheel in the body's axes, of any length.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<[Finite; 3]>,
+    /// Moment of inertia of each about its axis (kg m²).
+    pub inertia: Positive,
+    /// Largest torque of each motor (N m); left out, there is no limit. A torque that asks more of one is made smaller as a
+    /// whole: it keeps its axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub torque: Option<Positive>,
+    /// Largest momentum of each about its axis (N m s), at which no torque drives it further; left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub momentum: Option<Positive>,
+    /// Largest speed of each (rad/s), at which no torque drives it further; left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_limit: Option<Positive>,
+    /// Speed of each at the start, relative to the body (rad/s); left out, 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub speeds: Vec<Finite>,
+    /// Which of all torques that give what is wanted are taken.
+    #[serde(default)]
+    pub allocation: Choice,
+    /// Of four wheels, a speed that torques which cancel each other keep; left out, none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_bias: Option<SpeedBias>,
+    /// How jets unload them; left out, none do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unloading: Option<Unloading>,
+}
+
+/// How wheels are arranged.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Arrangement {
+    /// One each about x, y and z.
+    Orthogonal,
+    /// Four, halfway between the axes x and y seen along z, and canted towards z.
+    Pyramid,
+}
+
+/// A speed at which four wheels turn beside what the torque asks of them, two one way and two the other.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpeedBias {
+    /// The speed (rad/s), of the first one.
+    pub speed: Finite,
+    /// How fast they are brought there (1/s).
+    pub gain: Positive,
+}
+
+/// The cant of a pyramid with equal torques about all axes: atan(1/sqrt(2)) (rad).
+const EQUAL_CANT: f64 = 0.615_479_708_670_387_3;
+
+impl Wheels {
+    /// The wheels before their first command, on a body of these settings.
+    pub fn start(&self, allocation: &Allocation, settings: &[Setting]) -> Spinning {
+        Spinning::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
+    }
+
+    fn speeds(&self, count: usize) -> Vec<f64> {
+        (0..count).map(|wheel| self.speeds.get(wheel).map_or(0.0, |speed| speed.get())).collect()
+    }
+
+    /// The allocation of a torque to them, once all keys fit each other.
+    ///
+    /// # Errors
+    /// A key that does not fit the others, and why.
+    pub fn allocation(&self) -> Result<Allocation, Fault> {
+        let axes = self.directions()?;
+        let count = axes.len();
+        if self.allocation == Choice::LeastLargest && count > 4 {
+            let why = format!("must be `pseudo_inverse` for more than four wheels, got {count}");
+            return Err(Fault::new("allocation", why));
+        }
+        let why = "must reach all three axes: these lie in a plane, or nearly";
+        let allocation = Allocation::new(&axes, self.allocation)
+            .ok_or_else(|| Fault::new(if self.axes.is_empty() { "cant" } else { "axes" }, why))?;
+        if !self.speeds.is_empty() && self.speeds.len() != count {
+            let why = format!("must be one for each of {count} wheels, got {}", self.speeds.len());
+            return Err(Fault::new("speeds", why));
+        }
+        if let Some((wheel, speed)) = self.beyond_limits(&self.speeds(count)) {
+            let why = format!("must be within `speed_limit` and `momentum`, got {speed}");
+            return Err(Fault::new(format!("speeds[{wheel}]"), why));
+        }
+        if self.speed_bias.is_some() && allocation.null().is_none() {
+            let why =
+                format!("needs four wheels, whose torques can cancel each other in one way, got {count}");
+            return Err(Fault::new("speed_bias", why));
+        }
+        if let Some(fault) = self.unloading.as_ref().and_then(Unloading::inconsistency) {
+            return Err(fault.within("unloading"));
+        }
+        Ok(allocation)
+    }
+
+    /// The rotors.
+    ///
+    /// # Errors
+    /// A key that does not fit the others, and why.
+    pub fn rotors(&self) -> Result<Vec<Rotor>, Fault> {
+        let spin_inertia = self.inertia.get();
+        Ok(self.directions()?.into_iter().map(|axis| Rotor { axis, spin_inertia }).collect())
+    }
+
+    /// The unit axes.
+    fn directions(&self) -> Result<Vec<Vector>, Fault> {
+        let Some(arrangement) = self.arrangement else {
+            return self.given();
+        };
+        if !self.axes.is_empty() {
+            return Err(Fault::new("axes", "must be left out with an `arrangement`"));
+        }
+        if arrangement == Arrangement::Orthogonal {
+            let why = "is that of a pyramid: leave it out";
+            let straight = vec![Vector::x(), Vector::y(), Vector::z()];
+            return if self.cant.is_some() { Err(Fault::new("cant", why)) } else { Ok(straight) };
+        }
+        let (up, across) = libm::sincos(self.cant.map_or(EQUAL_CANT, Finite::get));
+        let part = across * std::f64::consts::FRAC_1_SQRT_2;
+        let signs = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+        Ok(signs.map(|[x, y]| Vector::new(x * part, y * part, up)).to_vec())
+    }
+
+    fn given(&self) -> Result<Vec<Vector>, Fault> {
+        if self.axes.is_empty() {
+            return Err(Fault::new("axes", "must be given without an `arrangement`"));
+        }
+        if self.cant.is_some() {
+            return Err(Fault::new("cant", "is that of an `arrangement`, and there is none"));
+        }
+        let unit = |(index, axis): (usize, &[Finite; 3])| {
+            let axis = Vector::from(axis.map(Finite::get));
+            let length = axis.norm();
+            let why = || Fault::new(format!("axes[{index}]"), "must have a length, got [0, 0, 0]");
+            if length > 0.0 { Ok(axis / length) } else { Err(why()) }
+        };
+        self.axes.iter().enumerate().map(unit).collect()
+    }
+
+    /// The first wheel with a speed at the start that it cannot have.
+    fn beyond_limits(&self, speeds: &[f64]) -> Option<(usize, f64)> {
+        let most = self.speed_limit.map_or(f64::INFINITY, Positive::get);
+        let momentum = self.momentum.map_or(f64::INFINITY, Positive::get);
+        let is_beyond = |speed: f64| speed.abs() > most || speed.abs() * self.inertia.get() > momentum;
+        speeds.iter().copied().enumerate().find(|(_, speed)| is_beyond(*speed))
+    }
+}

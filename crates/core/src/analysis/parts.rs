@@ -1,0 +1,111 @@
+//! The parts of a spacecraft as tables: what the modes of each appendage carry, and what a torque on the hub does at each point.
+
+use serde::Serialize;
+
+use super::influence::Influences;
+use crate::body::spatial::{Vector, vector};
+use crate::craft::Craft;
+use crate::scenario::Scenario;
+
+/// A spacecraft's modes, clamped and free.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parts {
+    /// The free modes.
+    #[serde(flatten)]
+    pub free: Influences,
+    /// Total mass (kg).
+    pub mass_kg: f64,
+    /// Total centre of mass, from the spacecraft's point O (m).
+    pub centre_m: [f64; 3],
+    /// Inertia tensor about it, without the spin inertia of the wheels (kg m²).
+    pub inertia_kg_m2: [[f64; 3]; 3],
+    /// Off-diagonal damping of the free modes.
+    pub damping_coupling: f64,
+    /// The modes with the roots held, appendage by appendage.
+    pub clamped: Vec<Clamped>,
+    /// What a torque on the hub does at each point.
+    pub points: Vec<AtPoint>,
+}
+
+/// A mode of an appendage with its root held.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Clamped {
+    /// The appendage.
+    pub appendage: String,
+    /// Natural frequency (rad/s).
+    pub frequency_rad_s: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Effective mass along the appendage's own axes (kg): squares of its participation in translation.
+    pub effective_mass_kg: [f64; 3],
+    /// Effective moment of inertia about those axes through the root (kg m²).
+    pub effective_inertia_kg_m2: [f64; 3],
+    /// Whether its first moments are known.
+    pub first_moments: bool,
+}
+
+/// A point of the structure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AtPoint {
+    /// Name.
+    pub point: String,
+    /// The appendage that it is on; of the hub none.
+    pub appendage: Option<String>,
+    /// Position from the total centre of mass (m).
+    pub position_m: [f64; 3],
+    /// Influence of a torque on the hub about each axis: the jump of the elastic rate at the point for each jump of the
+    /// rigid rate, both about that axis, for each free mode.
+    pub influences: [Vec<f64>; 3],
+}
+
+impl Parts {
+    /// The modes of a scenario's spacecraft.
+    pub fn of(scenario: &Scenario, craft: &Craft) -> Self {
+        let written = scenario.appendage.iter().flat_map(|appendage| {
+            let participations = appendage.participations();
+            participations.into_iter().map(move |participation| (&appendage.name, participation))
+        });
+        let clamped =
+            craft.parts.iter().zip(written).map(|(part, (name, (translation, rotation)))| Clamped {
+                appendage: name.clone(),
+                frequency_rad_s: part.frequency,
+                damping: part.damping,
+                effective_mass_kg: three(&translation.component_mul(&translation)),
+                effective_inertia_kg_m2: three(&rotation.component_mul(&rotation)),
+                first_moments: part.knows_moments,
+            });
+        let inertia = &craft.flexible.inertia;
+        let on = |name: &str| {
+            let mut appendages = scenario.appendage.iter();
+            appendages.find(|appendage| appendage.points.iter().any(|point| point.name == name))
+        };
+        let points = craft.spatial.points.iter().map(|point| {
+            let shapes = craft.spatial.shapes(&point.name);
+            let about = |axis: usize| {
+                let modes = shapes.iter().zip(&craft.flexible.modes);
+                modes
+                    .map(|((_, seen), mode)| seen[axis] * mode.rotation[axis] * inertia[(axis, axis)])
+                    .collect()
+            };
+            AtPoint {
+                point: point.name.clone(),
+                appendage: on(&point.name).map(|appendage| appendage.name.clone()),
+                position_m: three(&vector(&point.position)),
+                influences: [0, 1, 2].map(about),
+            }
+        });
+        Self {
+            free: Influences::of(scenario, &craft.spatial),
+            mass_kg: craft.mass,
+            centre_m: three(&craft.centre),
+            inertia_kg_m2: [0, 1, 2].map(|row| three(&inertia.row(row).transpose())),
+            damping_coupling: craft.damping_coupling,
+            clamped: clamped.collect(),
+            points: points.collect(),
+        }
+    }
+}
+
+fn three(of: &Vector) -> [f64; 3] {
+    [of.x, of.y, of.z]
+}

@@ -1,0 +1,98 @@
+//! The axes of a body, and values about them: one for all, or one for each of three.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// An axis of a body with three.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    /// About x.
+    Roll,
+    /// About y.
+    Pitch,
+    /// About z.
+    Yaw,
+}
+
+impl Axis {
+    /// Its place among the three.
+    pub fn index(self) -> usize {
+        match self {
+            Self::Roll => 0,
+            Self::Pitch => 1,
+            Self::Yaw => 2,
+        }
+    }
+}
+
+/// One value for all axes, or one each for roll, pitch and yaw.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Each<T> {
+    /// For all.
+    All(T),
+    /// For roll, pitch and yaw.
+    Three([T; 3]),
+}
+
+impl<T: Copy> Each<T> {
+    /// The value about an axis.
+    pub fn about(&self, axis: usize) -> T {
+        match self {
+            Self::All(value) => *value,
+            Self::Three(values) => values[axis.min(2)],
+        }
+    }
+
+    /// Whether there is one for each of three axes.
+    pub fn is_three(&self) -> bool {
+        matches!(self, Self::Three(_))
+    }
+}
+
+impl<T: Default> Default for Each<T> {
+    fn default() -> Self {
+        Self::All(T::default())
+    }
+}
+
+impl<T: Serialize> Serialize for Each<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::All(value) => value.serialize(serializer),
+            Self::Three(values) => values.serialize(serializer),
+        }
+    }
+}
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Each<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        use serde::de::Error;
+        let value = toml::Value::deserialize(deserializer)?;
+        let message = |error: toml::de::Error| D::Error::custom(error.message());
+        if let toml::Value::Array(values) = &value {
+            let found = values.len();
+            if found != 3 {
+                let why = format!("must be one number, or three for roll, pitch and yaw, got {found}");
+                return Err(D::Error::custom(why));
+            }
+            return value.try_into().map(Self::Three).map_err(message);
+        }
+        value.try_into().map(Self::All).map_err(message)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Each<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Each{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<T>();
+        let three = generator.subschema_for::<[T; 3]>();
+        json_schema!({ "anyOf": [one, three] })
+    }
+}

@@ -1,0 +1,254 @@
+//! The motion of the planar body under one input, in closed form, with the bounds that certify crossings.
+
+use nalgebra::DVector;
+
+use super::forced::{Forced, Input, Push};
+use super::mode::Flow;
+use super::stretch::{Expansion, REACH};
+use super::{Drive, Phase, Planar, Sensed, State};
+use crate::crossing::first_root;
+use crate::guard::Guard;
+use crate::numerics::polynomial::TERMS;
+
+/// The motion under one input, from the state in which it began.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    mobility: f64,
+    /// Whether the modes show in the hub's angle.
+    visible: bool,
+    forced: Option<Forced>,
+    moment: f64,
+    angle: f64,
+    rate: f64,
+    modes: Vec<ModeSegment>,
+    /// Sum of the modes' equilibria, and of their largest distances from them (rad).
+    centre: f64,
+    reach: f64,
+    /// No |x''| on the segment is larger (rad/s²).
+    curvature: f64,
+    /// No |x'''| on the segment is larger (rad/s³).
+    jerk: f64,
+}
+
+/// One mode on a segment: its equilibrium, and the deviation in which the segment began.
+#[derive(Clone, Debug)]
+struct ModeSegment {
+    flow: Flow,
+    equilibrium: f64,
+    from: Phase,
+}
+
+impl Segment {
+    /// The segment of a body, not yet departed.
+    pub fn new(body: &Planar) -> Self {
+        let swing = |mode| ModeSegment { flow: Flow::new(mode), equilibrium: 0.0, from: Phase::default() };
+        Self {
+            mobility: 1.0 / body.commanded_inertia(),
+            visible: body.drive == Drive::Torque,
+            forced: None,
+            moment: 0.0,
+            angle: 0.0,
+            rate: 0.0,
+            modes: body.modes.iter().map(swing).collect(),
+            centre: 0.0,
+            reach: 0.0,
+            curvature: 0.0,
+            jerk: 0.0,
+        }
+    }
+
+    /// Begins the segment anew: from this state, under this input. Its bounds, and so guards, are for the constant only.
+    pub fn depart(&mut self, from: &State, input: &Input) {
+        self.moment = input.constant * self.mobility;
+        self.forced.clone_from(&input.waveform);
+        self.angle = from.rigid_angle;
+        self.rate = from.rigid_rate;
+        self.centre = 0.0;
+        self.reach = 0.0;
+        self.curvature = self.moment.abs();
+        self.jerk = 0.0;
+        for (swing, phase) in self.modes.iter_mut().zip(&from.modes) {
+            let equilibrium = swing.flow.excitability * self.moment;
+            let displacement = phase.displacement - equilibrium;
+            swing.equilibrium = equilibrium;
+            swing.from = Phase { displacement, quadrature: phase.quadrature };
+            let distance = libm::sqrt(displacement * displacement + phase.quadrature * phase.quadrature);
+            if !self.visible {
+                continue;
+            }
+            self.centre += equilibrium;
+            self.reach += distance;
+            self.curvature += swing.flow.stiffness * distance;
+            self.jerk += swing.flow.jerk * distance;
+        }
+    }
+
+    /// The state `h` seconds after departure, and what a sensor sees of it.
+    #[allow(clippy::inline_always, reason = "the search for crossings calls it")]
+    #[inline(always)]
+    pub fn at(&self, h: f64, state: &mut State) -> Sensed {
+        state.rigid_angle = self.angle + h * (self.rate + 0.5 * self.moment * h);
+        state.rigid_rate = self.rate + self.moment * h;
+        let mut sensed =
+            Sensed { angle: state.rigid_angle, rate: state.rigid_rate, acceleration: self.moment };
+        for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
+            let [xx, xy, yx, yy] = swing.flow.transition(h);
+            let Phase { displacement: x, quadrature: y } = swing.from;
+            let deviation = xx * x + xy * y;
+            phase.displacement = swing.equilibrium + deviation;
+            phase.quadrature = yx * x + yy * y;
+            if self.visible {
+                swing.flow.add_to(swing.equilibrium, deviation, phase.quadrature, &mut sensed);
+            }
+        }
+        if let Some(forced) = &self.forced {
+            self.add_forced(forced, h, state, &mut sensed);
+        }
+        sensed
+    }
+
+    /// Adds what the waveform does within `h` seconds of departure; apart, so that the search for crossings, which has
+    /// no waveform, stays small.
+    #[inline(never)]
+    fn add_forced(&self, forced: &Forced, h: f64, state: &mut State, sensed: &mut Sensed) {
+        let mut show = |push: Push| {
+            sensed.angle += push.angle;
+            sensed.rate += push.rate;
+            sensed.acceleration += push.acceleration;
+        };
+        let rigid = forced.rigid(h).times(self.mobility);
+        state.rigid_angle += rigid.angle;
+        state.rigid_rate += rigid.rate;
+        show(rigid);
+        for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
+            let push = forced.mode(&swing.flow, h).times(self.mobility);
+            phase.displacement += push.angle;
+            phase.quadrature += push.rate / swing.flow.frequency;
+            if self.visible {
+                show(push);
+            }
+        }
+    }
+
+    /// Finds the series of all coordinates `h` seconds after departure, with a waveform that has no break until twice
+    /// `middle` seconds after it, and returns how far they reach (s).
+    pub fn expand(&self, h: f64, middle: f64, state: &mut State, into: &mut Expansion) -> f64 {
+        self.at(h, state);
+        let mut fastest = 0.0_f64;
+        if let Some(forced) = &self.forced {
+            into.command = forced.series(middle, h);
+            fastest = forced.fastest();
+        }
+        let mut moment = into.command.map(|c| self.mobility * c);
+        moment[0] += self.moment;
+        let [rigid, modes @ ..] = &mut into.coordinates[..] else { return f64::INFINITY };
+        (rigid[0], rigid[1]) = (state.rigid_angle, state.rigid_rate);
+        for n in 0..TERMS - 2 {
+            rigid[n + 2] = moment[n] / ((n + 1) * (n + 2)) as f64;
+        }
+        for ((swing, phase), x) in self.modes.iter().zip(&state.modes).zip(modes) {
+            let flow = &swing.flow;
+            (x[0], x[1]) = (phase.displacement, flow.frequency * phase.quadrature);
+            for n in 0..TERMS - 2 {
+                let back = flow.velocity(flow.frequency * x[n], (n + 1) as f64 * x[n + 1])[1];
+                x[n + 2] = (flow.gain * moment[n] + back) / ((n + 1) * (n + 2)) as f64;
+            }
+            fastest = fastest.max(flow.fastest());
+        }
+        REACH / fastest
+    }
+
+    /// Whether the modes show in the hub's angle.
+    pub fn shows_modes(&self) -> bool {
+        self.visible
+    }
+
+    /// Whether the bounds hold: they are without a waveform.
+    pub fn knows_bounds(&self) -> bool {
+        self.forced.is_none()
+    }
+
+    /// Whether the angle is certain to stay within so much of 0 for `span` seconds: the rigid parabola with all modes at
+    /// full swing does.
+    pub fn stays_within(&self, band: f64, span: f64) -> bool {
+        if !self.knows_bounds() {
+            return false;
+        }
+        let end = self.angle + span * (self.rate + 0.5 * self.moment * span);
+        let (mut low, mut high) = (self.angle.min(end), self.angle.max(end));
+        let turn = -self.rate / self.moment;
+        if turn > 0.0 && turn < span {
+            let crest = self.angle + 0.5 * self.rate * turn;
+            (low, high) = (low.min(crest), high.max(crest));
+        }
+        high + self.centre + self.reach <= band && low + self.centre - self.reach >= -band
+    }
+
+    /// What a sensor sees at departure.
+    #[inline]
+    pub fn origin(&self) -> Sensed {
+        let mut sensed = Sensed { angle: self.angle, rate: self.rate, acceleration: self.moment };
+        let forced = self.forced.as_ref().map_or(0.0, |forced| forced.at(0.0) * self.mobility);
+        sensed.acceleration += forced;
+        for swing in self.modes.iter().filter(|_| self.visible) {
+            let Phase { displacement, quadrature } = swing.from;
+            swing.flow.add_to(swing.equilibrium, displacement, quadrature, &mut sensed);
+            sensed.acceleration += swing.flow.gain * forced;
+        }
+        sensed
+    }
+
+    /// A time after departure (s) before which the guard cannot trip: until then the rigid parabola with
+    /// all modes at full swing towards the guard stays short of its level.
+    pub fn earliest(&self, guard: Guard) -> f64 {
+        let towards = guard.side.sign();
+        let gap = towards * (guard.level - self.angle - self.centre) - self.reach;
+        if gap <= 0.0 {
+            return 0.0;
+        }
+        first_root(gap, towards * self.rate, towards * self.moment)
+    }
+
+    /// A time (s) for which the guard cannot trip, given what a sensor sees now.
+    ///
+    /// With the bounds M of |x''| and J of |x'''| the gap left after t is at least gap - speed t - M t²/2, and at least
+    /// gap - speed t - a t²/2 - J t³/6 with the acceleration a now. Let q be the first root of gap - speed t - a t²/2.
+    /// Up to q, J t³/6 is at most (J q/3) t²/2, so that the first root with the acceleration a + J q/3, which is not
+    /// after q, is certain too. The lesser of the two accelerations gives the longer stride.
+    #[inline]
+    pub fn stride(&self, guard: Guard, now: Sensed) -> f64 {
+        let towards = guard.side.sign();
+        let (gap, speed, acceleration) =
+            (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
+        let q = first_root(gap, speed, acceleration);
+        // Without modes an endless q makes J q no number, and the minimum takes M.
+        first_root(gap, speed, self.curvature.min(acceleration + self.jerk * q / 3.0))
+    }
+
+    /// Whether the guard cannot trip within a time (s), given what a sensor sees now.
+    #[inline]
+    pub fn is_clear(&self, guard: Guard, now: Sensed, time: f64) -> bool {
+        let speed = guard.side.sign() * now.rate;
+        guard.gap(now.angle) > time * (speed + 0.5 * self.curvature * time)
+    }
+
+    /// Carries a small deviation of the state over `h` seconds. Its components are the rigid angle and rate, then
+    /// displacement and quadrature of each mode.
+    pub fn carry(&self, h: f64, deviation: &mut [f64]) {
+        deviation[0] += h * deviation[1];
+        for (swing, pair) in self.modes.iter().zip(deviation[2..].chunks_exact_mut(2)) {
+            let [xx, xy, yx, yy] = swing.flow.transition(h);
+            (pair[0], pair[1]) = (xx * pair[0] + xy * pair[1], yx * pair[0] + yy * pair[1]);
+        }
+    }
+
+    /// The derivative of a state with time on this segment, in the components of [`Segment::carry`].
+    pub fn velocity(&self, state: &State) -> DVector<f64> {
+        let mut velocity = vec![state.rigid_rate, self.moment];
+        for (swing, phase) in self.modes.iter().zip(&state.modes) {
+            let from_rest = phase.displacement - swing.equilibrium;
+            velocity.extend(swing.flow.velocity(from_rest, phase.quadrature));
+        }
+        DVector::from_vec(velocity)
+    }
+}

@@ -1,0 +1,110 @@
+//! An appendage of a spacecraft, as a scenario writes it: a panel, an antenna, a mass on a spring.
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::clamped::{ClampedMode, rotation_of};
+use super::mass::MassProperties;
+use super::results::Units;
+use super::turned::Turned;
+use crate::body::Damping;
+use crate::body::spatial::{NamedPoint, Vector, tensor, vector};
+use crate::quantity::{Finite, Positive};
+use crate::structure::mode_table::ModeTable;
+
+/// An appendage, clamped to the hub at its root.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Appendage {
+    /// Name.
+    pub name: String,
+    /// Mass (kg).
+    pub mass: Positive,
+    /// Centre of mass from the root (m), in its own axes.
+    #[serde(default)]
+    pub centre: [Finite; 3],
+    /// Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; left out, it is a point mass.
+    #[serde(default)]
+    pub inertia: [[Finite; 3]; 3],
+    /// Where its root is, from the point O of the spacecraft (m).
+    #[serde(default)]
+    pub at: [Finite; 3],
+    /// How its axes are turned against those of the body.
+    #[serde(default, skip_serializing_if = "Turned::is_none")]
+    pub turned: Turned,
+    /// The axis along which a thin plate in the plane of its own x and y stretches: first moments then follow from rotations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plate: Option<Plate>,
+    /// Named points of the appendage, from its root in its own axes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<NamedPoint>,
+    /// Its modes with the root held: a table, or the path of a CSV file or of results of a finite-element program. Without any it
+    /// is rigid.
+    #[serde(default)]
+    pub modes: ModeTable<ClampedMode>,
+    /// Damping ratios of the modes of results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<Damping>,
+    /// How many of the modes of results are kept, those with the lowest frequencies; left out, all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep: Option<usize>,
+    /// The units of results: metres and kilograms where it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<Units>,
+}
+
+/// Along which of its own axes a plate stretches.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Plate {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+}
+
+impl Appendage {
+    /// Whether it has no extent of its own.
+    pub(super) fn is_point(&self) -> bool {
+        tensor(&self.inertia) == Matrix3::zeros()
+    }
+
+    /// What it weighs and how it turns, not deformed, in the body's axes from O.
+    pub(super) fn mass_properties(&self) -> MassProperties {
+        let axes = self.turned.matrix();
+        MassProperties {
+            mass: self.mass.get(),
+            centre: vector(&self.at) + axes * vector(&self.centre),
+            inertia: axes * tensor(&self.inertia) * axes.transpose(),
+        }
+    }
+
+    /// Whether the first moments of a mode are known, and not only their antisymmetric part.
+    pub(super) fn knows_moments(&self, mode: &ClampedMode) -> bool {
+        mode.moments.is_some() || self.plate.is_some() || self.is_point()
+    }
+
+    /// Participation of each mode in translation (sqrt(kg)) and in rotation about the root (sqrt(kg) m), in its own axes.
+    pub fn participations(&self) -> Vec<(Vector, Vector)> {
+        self.modes.iter().map(|mode| (mode.translation(), rotation_of(&self.moments(mode)))).collect()
+    }
+
+    /// First moments of a mode about the root, in the axes of the appendage (sqrt(kg) m).
+    pub(super) fn moments(&self, mode: &ClampedMode) -> Matrix3<f64> {
+        if let Some(moments) = mode.moments() {
+            return moments;
+        }
+        if self.is_point() {
+            return vector(&self.centre) * mode.translation().transpose();
+        }
+        let r = mode.rotation.as_ref().map_or_else(Vector::zeros, vector);
+        match self.plate {
+            // Bending and torsion leave no doubt; in plane, points move across the length.
+            Some(Plate::Y) => Matrix3::new(0.0, 0.0, -r.y, -r.z, 0.0, r.x, 0.0, 0.0, 0.0),
+            Some(Plate::X) => Matrix3::new(0.0, r.z, -r.y, 0.0, 0.0, r.x, 0.0, 0.0, 0.0),
+            // Nothing tells the symmetric part: it is left out.
+            None => -0.5 * r.cross_matrix(),
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! From the written parts to numbers: total mass, clamped modes as the hub sees them, free modes, points.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix3, Matrix3xX};
+
+use super::appendage::Appendage;
+use super::check;
+use super::clamped::rotation_of;
+use super::damping::FreeDamping;
+use super::free::{Free, Held};
+use super::mass::MassProperties;
+use super::spacecraft::Spacecraft;
+use super::{Craft, Rotor};
+use crate::body::Spatial;
+use crate::body::spatial::{NamedPoint, Shape, SpatialMode, Vector, vector};
+use crate::document::Fault;
+use crate::motion::turning::{Flexible, FreeMode};
+use crate::quantity::{Finite, Frequency, NonNegative};
+
+/// A clamped mode as a part of the spacecraft.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Natural frequency with the root held (rad/s).
+    pub frequency: f64,
+    /// Damping ratio with the root held.
+    pub damping: f64,
+    /// Participation in translation, in the body's axes (sqrt(kg)).
+    pub translation: Vector,
+    /// First moments about the total centre of mass, in the body's axes (sqrt(kg) m).
+    pub moments: Matrix3<f64>,
+    /// Whether the first moments are known, and not only their antisymmetric part.
+    pub knows_moments: bool,
+}
+
+/// A point of the structure: where it is in the body, and what the clamped modes do there.
+struct Place<'a> {
+    point: &'a NamedPoint,
+    at: Vector,
+    /// Displacement and rotation for a unit of each clamped mode, against the hub.
+    shapes: Vec<(Vector, Vector)>,
+}
+
+impl Craft {
+    /// Puts a spacecraft together.
+    ///
+    /// # Errors
+    /// A key of data that no spacecraft has, such as `appendage[1].modes[0].translation`, and why.
+    pub fn assemble(
+        spacecraft: &Spacecraft,
+        appendages: &[Appendage],
+        rotors: &[Rotor],
+    ) -> Result<Self, Fault> {
+        check::check(spacecraft, appendages)?;
+        let bodies = appendages.iter().map(Appendage::mass_properties);
+        let bodies: Vec<_> = std::iter::once(spacecraft.mass_properties()).chain(bodies).collect();
+        let whole = MassProperties::together(&bodies);
+        let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
+        let parts = parts(appendages, &whole.centre);
+        let held = Held {
+            mass: whole.mass,
+            inertia: whole.inertia - spinning,
+            frequencies: parts.iter().map(|part| part.frequency).collect(),
+            translations: columns(&parts, |part| part.translation),
+            rotations: columns(&parts, |part| rotation_of(&part.moments)),
+        };
+        let left = held.residual_inertia().unwrap_or_else(Matrix3::zeros);
+        check::hub_keeps(&left, &held.inertia)?;
+        let unsolved = || Fault::new("spacecraft.inertia", "leaves the free modes without a mass matrix");
+        let free = held.free().ok_or_else(unsolved)?;
+        let ratios: Vec<f64> = parts.iter().map(|part| part.damping).collect();
+        let damping = FreeDamping::new(&free, &held.frequencies, &ratios);
+        let hub_points = spacecraft.hub_points();
+        let places = places(&hub_points, appendages, parts.len());
+        Ok(Self {
+            spatial: Spatial {
+                inertia: rows(&held.inertia)?,
+                attitude: spacecraft.attitude,
+                rate: spacecraft.rate,
+                points: points(&places, &whole.centre)?,
+                modes: modes(appendages, &held, &free, &damping, &places, &whole.centre)?.into(),
+                disturbance: None,
+            },
+            flexible: Flexible {
+                inertia: held.inertia,
+                modes: coupled(&parts, &free, &damping),
+                damping: damping.whole(),
+            },
+            mass: whole.mass,
+            centre: whole.centre,
+            parts,
+            damping_coupling: damping.coupling,
+        })
+    }
+}
+
+impl Rotor {
+    /// Its inertia tensor about its axis alone (kg m²).
+    pub fn spinning(&self) -> Matrix3<f64> {
+        self.spin_inertia * self.axis * self.axis.transpose()
+    }
+}
+
+impl Part {
+    /// What a unit of the mode adds to the inertia tensor (sqrt(kg) m): 2 tr(N) 1 - N - N'.
+    fn stretching(&self) -> Matrix3<f64> {
+        let n = &self.moments;
+        2.0 * n.trace() * Matrix3::identity() - n - n.transpose()
+    }
+}
+
+/// The clamped modes about the total centre of mass, at a distance b from each root: N becomes C N C' + b (C t)'.
+fn parts(appendages: &[Appendage], centre: &Vector) -> Vec<Part> {
+    let of = |appendage: &Appendage| -> Vec<Part> {
+        let (axes, from_centre) = (appendage.turned.matrix(), vector(&appendage.at) - centre);
+        let mode = |mode| {
+            let mode: &super::ClampedMode = mode;
+            let translation = axes * mode.translation();
+            let own = axes * appendage.moments(mode) * axes.transpose();
+            Part {
+                frequency: mode.frequency.get(),
+                damping: mode.damping.get(),
+                translation,
+                moments: own + from_centre * translation.transpose(),
+                knows_moments: appendage.knows_moments(mode),
+            }
+        };
+        appendage.modes.iter().map(mode).collect()
+    };
+    appendages.iter().flat_map(of).collect()
+}
+
+fn columns(parts: &[Part], of: impl Fn(&Part) -> Vector) -> Matrix3xX<f64> {
+    let columns: Vec<Vector> = parts.iter().map(of).collect();
+    Matrix3xX::from_fn(columns.len(), |row, column| columns[column][row])
+}
+
+/// All points, those of the hub first.
+fn places<'a>(hub: &'a [NamedPoint], appendages: &'a [Appendage], modes: usize) -> Vec<Place<'a>> {
+    let rigid = || vec![(Vector::zeros(), Vector::zeros()); modes];
+    let mut places: Vec<_> =
+        hub.iter().map(|point| Place { point, at: vector(&point.position), shapes: rigid() }).collect();
+    let mut first = 0;
+    for appendage in appendages {
+        let axes = appendage.turned.matrix();
+        for point in &appendage.points {
+            let mut shapes = rigid();
+            for (index, mode) in appendage.modes.iter().enumerate() {
+                let shape = mode.shapes.get(&point.name).copied().unwrap_or_default();
+                shapes[first + index] = (axes * vector(&shape.translation), axes * vector(&shape.rotation));
+            }
+            let at = vector(&appendage.at) + axes * vector(&point.position);
+            places.push(Place { point, at, shapes });
+        }
+        first += appendage.modes.len();
+    }
+    places
+}
+
+fn points(places: &[Place], centre: &Vector) -> Result<Vec<NamedPoint>, Fault> {
+    let point = |place: &Place| {
+        Ok(NamedPoint { name: place.point.name.clone(), position: three(&(place.at - centre))? })
+    };
+    places.iter().map(point).collect()
+}
+
+/// The free modes with their state at the start and their shapes at all points.
+fn modes(
+    appendages: &[Appendage],
+    held: &Held,
+    free: &Free,
+    damping: &FreeDamping,
+    places: &[Place],
+    centre: &Vector,
+) -> Result<Vec<SpatialMode>, Fault> {
+    let clamped = || appendages.iter().flat_map(|appendage| appendage.modes.iter());
+    let displacements: Vec<f64> = clamped().map(|mode| mode.displacement.get()).collect();
+    let rates: Vec<f64> = clamped().map(|mode| mode.rate.get()).collect();
+    let (displacements, rates) = (held.to_free(free, &displacements), held.to_free(free, &rates));
+    let mode = |(index, frequency): (usize, &f64)| {
+        let shapes =
+            places.iter().map(|place| Ok((place.point.name.clone(), place.shape(free, index, centre)?)));
+        Ok(SpatialMode {
+            frequency: Frequency::new(*frequency).ok_or_else(|| too_fast(*frequency))?,
+            damping: NonNegative::new(damping.ratios[index].max(0.0)).ok_or_else(out_of_range)?,
+            displacement: finite(displacements[index])?,
+            rate: finite(rates[index])?,
+            shapes: shapes.collect::<Result<BTreeMap<_, _>, Fault>>()?,
+        })
+    };
+    free.frequencies.iter().enumerate().map(mode).collect()
+}
+
+impl Place<'_> {
+    /// Displacement u + phi x (p - c) + F Y and rotation phi + R Y of the point in a free mode, whose clamped parts are Y.
+    fn shape(&self, free: &Free, mode: usize, centre: &Vector) -> Result<Shape, Fault> {
+        let rotation = free.rotation(mode);
+        let hub = (free.translation(mode) + rotation.cross(&(self.at - centre)), rotation);
+        let column = free.shapes.column(mode);
+        let parts = self.shapes.iter().zip(column.iter());
+        let (translation, rotation) =
+            parts.fold(hub, |(f, r), (shape, part)| (f + shape.0 * *part, r + shape.1 * *part));
+        Ok(Shape { translation: three(&translation)?, rotation: three(&rotation)? })
+    }
+}
+
+fn coupled(parts: &[Part], free: &Free, damping: &FreeDamping) -> Vec<FreeMode> {
+    let mode = |(index, frequency): (usize, &f64)| {
+        let column = free.shapes.column(index);
+        FreeMode {
+            frequency: *frequency,
+            damping: damping.ratios[index],
+            rotation: free.rotation(index),
+            moments: parts.iter().zip(column.iter()).map(|(part, share)| part.stretching() * *share).sum(),
+        }
+    };
+    free.frequencies.iter().enumerate().map(mode).collect()
+}
+
+fn too_fast(frequency: f64) -> Fault {
+    let why = format!(
+        "must leave the hub inertia of its own: with the hub free a mode has {frequency:e} rad/s, and {} to {} rad/s are \
+         computed",
+        Frequency::SMALLEST,
+        Frequency::LARGEST
+    );
+    Fault::new("spacecraft.inertia", why)
+}
+
+fn out_of_range() -> Fault {
+    Fault::new("spacecraft", "has numbers whose products leave the range of double precision")
+}
+
+fn finite(value: f64) -> Result<Finite, Fault> {
+    Finite::new(value).ok_or_else(out_of_range)
+}
+
+fn three(of: &Vector) -> Result<[Finite; 3], Fault> {
+    Ok([finite(of.x)?, finite(of.y)?, finite(of.z)?])
+}
+
+fn rows(of: &Matrix3<f64>) -> Result<[[Finite; 3]; 3], Fault> {
+    let row = |row: usize| three(&of.row(row).transpose());
+    Ok([row(0)?, row(1)?, row(2)?])
+}

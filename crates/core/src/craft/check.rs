@@ -1,0 +1,225 @@
+//! Data that no spacecraft can have, each with its key: more mass in the modes than there is, lengths in other units.
+
+use nalgebra::{DMatrix, Matrix3, Matrix6, SymmetricEigen, Vector6};
+
+use super::appendage::Appendage;
+use super::clamped::{ClampedMode, rotation_of};
+use super::mass::of_point;
+use super::spacecraft::Spacecraft;
+use crate::body::spatial::{NamedPoint, Vector, asymmetry, tensor, vector};
+use crate::document::Fault;
+use crate::document::key::bare_or_quoted;
+use crate::structure::eigenvalues;
+use crate::structure::mode_table::MOST_MODES;
+
+/// No part is larger (m): what is, is not in metres.
+const LARGEST: f64 = 1000.0;
+/// Printed participations may leave so much less than nothing, as a part of the appendage's own mass.
+const ROUNDING: f64 = 1e-3;
+/// Parts of a tensor and of first moments that are to agree do so up to this part of them.
+const AGREEMENT: f64 = 1e-4;
+/// Participations whose squares are this many times too large are in other units.
+const OTHER_UNITS: f64 = 100.0;
+
+/// What is wrong with the parts of a spacecraft, each by itself and beside the others.
+///
+/// # Errors
+/// The key, and why.
+pub fn check(spacecraft: &Spacecraft, appendages: &[Appendage]) -> Result<(), Fault> {
+    hub(spacecraft).map_err(|fault| fault.within("spacecraft"))?;
+    let hub_points = spacecraft.hub_points();
+    let mut points: Vec<&str> = Vec::new();
+    distinct(&hub_points, &mut points).map_err(|fault| fault.within("spacecraft"))?;
+    let mut modes = 0;
+    for (index, appendage) in appendages.iter().enumerate() {
+        let within = |fault: Fault| fault.within(&format!("appendage[{index}]"));
+        if appendages[..index].iter().any(|other| other.name == appendage.name) {
+            let why = format!("must differ from the other names, got `{}` again", appendage.name);
+            return Err(within(Fault::new("name", why)));
+        }
+        modes += appendage.modes.len();
+        if modes > MOST_MODES {
+            let why = format!("makes {modes} modes with those before, and at most {MOST_MODES} are computed");
+            return Err(within(Fault::new("modes", why)));
+        }
+        distinct(&appendage.points, &mut points).map_err(within)?;
+        appendage_itself(appendage).map_err(within)?;
+    }
+    Ok(())
+}
+
+fn hub(spacecraft: &Spacecraft) -> Result<(), Fault> {
+    let inertia = tensor(&spacecraft.inertia);
+    if let Some(why) = asymmetry(&inertia) {
+        return Err(Fault::new("inertia", why));
+    }
+    if inertia.cholesky().is_none() {
+        return Err(Fault::new("inertia", "must be positive definite"));
+    }
+    in_metres("centre", vector(&spacecraft.centre).norm())?;
+    extent(&inertia, spacecraft.mass.get())?;
+    for (index, point) in spacecraft.points.iter().enumerate() {
+        in_metres(&format!("points[{index}].position"), vector(&point.position).norm())?;
+    }
+    Ok(())
+}
+
+fn appendage_itself(appendage: &Appendage) -> Result<(), Fault> {
+    let inertia = tensor(&appendage.inertia);
+    if let Some(why) = asymmetry(&inertia) {
+        return Err(Fault::new("inertia", why));
+    }
+    let moments = inertia.symmetric_eigenvalues();
+    let (least, most) = (moments.min(), moments.max());
+    if least < -1e-9 * most.abs() || most < 0.0 {
+        return Err(Fault::new("inertia", format!("must have no negative moment, got one of {least} kg m²")));
+    }
+    in_metres("at", vector(&appendage.at).norm())?;
+    in_metres("centre", vector(&appendage.centre).norm())?;
+    extent(&inertia, appendage.mass.get())?;
+    appendage.turned.check().map_err(|fault| fault.within("turned"))?;
+    for (index, point) in appendage.points.iter().enumerate() {
+        in_metres(&format!("points[{index}].position"), vector(&point.position).norm())?;
+    }
+    for (index, mode) in appendage.modes.iter().enumerate() {
+        mode_itself(appendage, mode).map_err(|fault| fault.within(&format!("modes[{index}]")))?;
+    }
+    residual(appendage)
+}
+
+fn in_metres(key: &str, length: f64) -> Result<(), Fault> {
+    if length <= LARGEST {
+        return Ok(());
+    }
+    Err(Fault::new(key, format!("must be within {LARGEST} m, got {length} m: is it in mm?")))
+}
+
+/// The radius of gyration must be a length in metres too.
+fn extent(inertia: &Matrix3<f64>, mass: f64) -> Result<(), Fault> {
+    let radius = libm::sqrt(0.5 * inertia.trace() / mass);
+    if radius <= LARGEST {
+        return Ok(());
+    }
+    let why = format!(
+        "must be that of a body within {LARGEST} m: with this mass its radius of gyration is {radius} m; is it in kg mm²?"
+    );
+    Err(Fault::new("inertia", why))
+}
+
+fn distinct<'a>(points: &'a [NamedPoint], known: &mut Vec<&'a str>) -> Result<(), Fault> {
+    for (index, point) in points.iter().enumerate() {
+        if known.contains(&point.name.as_str()) {
+            let why = format!("must differ from the other names, got `{}` again", point.name);
+            return Err(Fault::new(format!("points[{index}].name"), why));
+        }
+        known.push(&point.name);
+    }
+    Ok(())
+}
+
+fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), Fault> {
+    if let (Some(rotation), Some(moments)) = (&mode.rotation, mode.moments()) {
+        let (given, follows) = (vector(rotation), rotation_of(&moments));
+        if (given - follows).norm() > AGREEMENT * moments.norm() {
+            let follows: Vec<_> = follows.iter().map(|part| format!("{part:.6}")).collect();
+            let why = format!("must be that of the first moments, [{}], or left out", follows.join(", "));
+            return Err(Fault::new("rotation", why));
+        }
+    } else if mode.rotation.is_some() && appendage.is_point() {
+        let why = "must be left out: without `inertia` the appendage is a point mass, of which it follows";
+        return Err(Fault::new("rotation", why));
+    }
+    let of_appendage = |name: &String| appendage.points.iter().any(|point| point.name == *name);
+    if let Some(name) = mode.shapes.keys().find(|name| !of_appendage(name)) {
+        let key = format!("shapes.{}", bare_or_quoted(name));
+        return Err(Fault::new(key, "must be at one of the appendage's `points`"));
+    }
+    if let Some(point) = appendage.points.iter().find(|point| !mode.shapes.contains_key(&point.name)) {
+        let why = format!("must have a shape at each point, and `{}` is missing", point.name);
+        return Err(Fault::new("shapes", why));
+    }
+    Ok(())
+}
+
+/// Modes must leave the appendage a mass matrix without negative values: the six rigid motions' less what the modes carry.
+///
+/// It is taken about the centre of mass and in principal axes, each divided by what the appendage has there, so that what is
+/// rounding does not depend on units or on the distance of the root.
+fn residual(appendage: &Appendage) -> Result<(), Fault> {
+    let (mass, centre) = (appendage.mass.get(), vector(&appendage.centre));
+    let inertia = tensor(&appendage.inertia);
+    let about_root = inertia + of_point(mass, &centre);
+    let own = SymmetricEigen::new(inertia);
+    let rounded = AGREEMENT * (mass * centre.norm_squared() + 0.5 * inertia.trace());
+    let scales = own.eigenvalues.map(|moment| {
+        let scale = libm::sqrt(moment.max(rounded));
+        if scale > 0.0 { scale } else { 1.0 }
+    });
+    let mut left = Matrix6::identity();
+    for axis in 0..3 {
+        left[(3 + axis, 3 + axis)] = own.eigenvalues[axis].max(0.0) / (scales[axis] * scales[axis]);
+    }
+    let modes = appendage.modes.iter().zip(appendage.participations());
+    for (index, (mode, (t, r))) in modes.enumerate() {
+        let at = |key: &str, why: String| Err(Fault::new(format!("modes[{index}]{key}"), why));
+        let effective = t.norm_squared();
+        if effective > mass * (1.0 + ROUNDING) {
+            let hint = if effective > OTHER_UNITS * mass {
+                ": is the mode mass-normalised, in kg and m?"
+            } else {
+                ""
+            };
+            let why = format!(
+                "must carry no more than the appendage: its effective mass is {effective} kg, the appendage's mass {mass} kg{hint}"
+            );
+            return at(".translation", why);
+        }
+        let carried = r.norm_squared();
+        let there = if carried > 0.0 { (r.transpose() * about_root * r).x / carried } else { 0.0 };
+        if carried > there * (1.0 + ROUNDING) {
+            let hint = if carried > OTHER_UNITS * there { ": is it in sqrt(kg) mm?" } else { "" };
+            let key = if mode.moments.is_some() { ".moments" } else { ".rotation" };
+            let why = format!(
+                "must carry no more than the appendage: its effective inertia about its axis is {carried} kg m², the \
+                 appendage's, about the root, {there} kg m²{hint}"
+            );
+            return at(key, why);
+        }
+        let about_centre: Vector = own.eigenvectors.tr_mul(&(r - centre.cross(&t)));
+        let mut row = Vector6::zeros();
+        row.fixed_rows_mut::<3>(0).copy_from(&(t / libm::sqrt(mass)));
+        row.fixed_rows_mut::<3>(3).copy_from(&about_centre.component_div(&scales));
+        left -= row * row.transpose();
+        if !left.iter().all(|element| element.is_finite()) {
+            return at("", "must have numbers of a size that can be computed with".to_owned());
+        }
+        let least = left.symmetric_eigenvalues().min();
+        if least < -ROUNDING {
+            let (with, before) = if index == 0 { ("", "") } else { ("with the modes before ", ", together") };
+            let why = format!(
+                "must leave the appendage mass and inertia: {with}it carries {:.4} of what the appendage has in some motion \
+                 of its root{before}; is one of `translation`, `rotation`, `centre` about another point, or in other units?",
+                1.0 - least
+            );
+            return at("", why);
+        }
+    }
+    Ok(())
+}
+
+/// The hub must keep inertia of its own, beside what the modes carry and the rotors spin with.
+///
+/// # Errors
+/// The key of the hub, and what is left.
+pub fn hub_keeps(left: &Matrix3<f64>, whole: &Matrix3<f64>) -> Result<(), Fault> {
+    let matrix = DMatrix::from_iterator(3, 3, left.iter().copied());
+    let least = eigenvalues(&matrix).and_then(|values| values.first().copied()).unwrap_or(f64::NAN);
+    if least > 1e-6 * whole.norm() {
+        return Ok(());
+    }
+    let why = format!(
+        "must leave the hub inertia of its own: less what the modes carry and wheels spin with, {least} kg m² are left \
+         about some axis"
+    );
+    Err(Fault::new("spacecraft.inertia", why))
+}

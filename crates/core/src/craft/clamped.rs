@@ -1,0 +1,97 @@
+//! A mode of an appendage whose root is held, as a scenario or a file gives it.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::body::spatial::{Shape, Vector, tensor, vector};
+use crate::quantity::{Finite, Frequency, NonNegative};
+use crate::structure::mode_table::{Common, Row};
+
+/// A mode of an appendage clamped at its root, mass-normalised: the integral of phi_i . phi_j dm is 1 for i = j, else 0.
+///
+/// Vectors are in the axes of the appendage, and r is the position from its root.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ClampedMode {
+    /// Natural frequency O with the root held (rad/s).
+    pub frequency: Frequency,
+    /// Damping ratio zeta with the root held: 0 undamped, 1 critical.
+    #[serde(default)]
+    pub damping: NonNegative,
+    /// Participation in translation, the integral of phi dm (sqrt(kg)).
+    #[serde(default)]
+    pub translation: [Finite; 3],
+    /// Participation in rotation about the root, the integral of r x phi dm (sqrt(kg) m).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<[Finite; 3]>,
+    /// First moments about the root, the integral of r phi' dm (sqrt(kg) m), row by row: rows along r, columns along phi.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moments: Option<[[Finite; 3]; 3]>,
+    /// Modal displacement at the start (m sqrt(kg)).
+    #[serde(default)]
+    pub displacement: Finite,
+    /// Its rate at the start (m sqrt(kg)/s).
+    #[serde(default)]
+    pub rate: Finite,
+    /// The mode's shape at each point of the appendage, by the point's name, against the held root.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub shapes: BTreeMap<String, Shape>,
+}
+
+impl ClampedMode {
+    /// Participation in translation (sqrt(kg)).
+    pub fn translation(&self) -> Vector {
+        vector(&self.translation)
+    }
+
+    /// First moments, if they are given (sqrt(kg) m).
+    pub fn moments(&self) -> Option<Matrix3<f64>> {
+        self.moments.as_ref().map(tensor)
+    }
+}
+
+/// The integral of r x phi dm, from that of r phi' dm: its antisymmetric part.
+pub fn rotation_of(moments: &Matrix3<f64>) -> Vector {
+    let n = moments;
+    Vector::new(n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)])
+}
+
+impl Row for ClampedMode {
+    const LIST: &'static str = "ClampedModes";
+    const FILES: &'static str = ".csv, .f06, .dat or .flex";
+    const OWN: &'static [&'static str] =
+        &["tx", "ty", "tz", "rx", "ry", "rz", "nxx", "nxy", "nxz", "nyx", "nyy", "nyz", "nzx", "nzy", "nzz"];
+
+    fn of(frequency: Frequency) -> Self {
+        Self {
+            frequency,
+            damping: NonNegative::default(),
+            translation: <[Finite; 3]>::default(),
+            rotation: None,
+            moments: None,
+            displacement: Finite::default(),
+            rate: Finite::default(),
+            shapes: BTreeMap::new(),
+        }
+    }
+
+    fn common(&mut self) -> Common<'_> {
+        Common {
+            damping: &mut self.damping,
+            displacement: &mut self.displacement,
+            rate: &mut self.rate,
+            shapes: &mut self.shapes,
+        }
+    }
+
+    fn set_own(&mut self, column: usize, value: Finite) {
+        match column {
+            0..3 => self.translation[column] = value,
+            3..6 => self.rotation.get_or_insert_default()[column - 3] = value,
+            _ => self.moments.get_or_insert_default()[(column - 6) / 3][column % 3] = value,
+        }
+    }
+}

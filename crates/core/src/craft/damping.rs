@@ -1,0 +1,50 @@
+//! The damping of free modes: what the clamped modes' own ratios come to.
+
+use nalgebra::DMatrix;
+
+use super::free::Free;
+
+/// Off-diagonal damping below this is no more than a small error of the response.
+const SMALL: f64 = 0.05;
+
+/// Damping of free modes, Dq = Y' D Y with D = 2 zeta O of the clamped ones.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeDamping {
+    /// The whole matrix Dq (1/s).
+    pub matrix: DMatrix<f64>,
+    /// Damping ratios of its diagonal, Dq_ii/(2 W_i).
+    pub ratios: Vec<f64>,
+    /// The largest of |Dq_ij| W/|W_i² - W_j²|: about what part of a mode is lost if only the diagonal is kept.
+    pub coupling: f64,
+}
+
+impl FreeDamping {
+    /// The damping of free modes, from the clamped modes' frequencies and ratios.
+    pub fn new(free: &Free, frequencies: &[f64], ratios: &[f64]) -> Self {
+        let mut scaled = free.shapes.clone();
+        for (mut row, (frequency, ratio)) in scaled.row_iter_mut().zip(frequencies.iter().zip(ratios)) {
+            row *= 2.0 * ratio * frequency;
+        }
+        let matrix = free.shapes.tr_mul(&scaled);
+        let matrix = 0.5 * (&matrix + matrix.transpose());
+        let own = &free.frequencies;
+        let mut coupling: f64 = 0.0;
+        for row in 0..own.len() {
+            for column in 0..row {
+                let apart = (own[row] * own[row] - own[column] * own[column]).abs();
+                let damped = matrix[(row, column)].abs() * own[row].max(own[column]);
+                // Modes that coincide are coupled by any damping at all.
+                if damped > 0.0 {
+                    coupling = coupling.max(damped / apart);
+                }
+            }
+        }
+        let ratios = own.iter().enumerate().map(|(mode, frequency)| matrix[(mode, mode)] / (2.0 * frequency));
+        Self { ratios: ratios.collect(), coupling, matrix }
+    }
+
+    /// The whole matrix, if its diagonal does not say enough.
+    pub fn whole(&self) -> Option<DMatrix<f64>> {
+        (self.coupling > SMALL).then(|| self.matrix.clone())
+    }
+}

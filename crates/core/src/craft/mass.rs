@@ -1,0 +1,33 @@
+//! Mass, centre of mass and inertia of rigid parts, and of what they are together.
+
+use nalgebra::Matrix3;
+
+use crate::body::spatial::Vector;
+
+/// Mass properties of a rigid part, in the body's axes.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct MassProperties {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Centre of mass (m).
+    pub centre: Vector,
+    /// Inertia tensor about that centre (kg m²).
+    pub inertia: Matrix3<f64>,
+}
+
+impl MassProperties {
+    /// What parts are together.
+    pub fn together(parts: &[Self]) -> Self {
+        let mass: f64 = parts.iter().map(|part| part.mass).sum();
+        let centre = parts.iter().map(|part| part.centre * part.mass).sum::<Vector>() / mass;
+        let about = |part: &Self| part.inertia + of_point(part.mass, &(part.centre - centre));
+        let inertia: Matrix3<f64> = parts.iter().map(about).sum();
+        // Rotated tensors are symmetric but for rounding.
+        Self { mass, centre, inertia: 0.5 * (inertia + inertia.transpose()) }
+    }
+}
+
+/// The inertia tensor of a point mass at a distance.
+pub fn of_point(mass: f64, at: &Vector) -> Matrix3<f64> {
+    mass * (Matrix3::identity() * at.norm_squared() - at * at.transpose())
+}

@@ -1,0 +1,54 @@
+//! A spacecraft from its parts: a rigid hub, appendages known by their clamped modes, rotors.
+//!
+//! [`Spacecraft`] and [`Appendage`] are what a scenario writes, [`Craft`] is what they come to before anything moves: one body in
+//! free modes (`docs/spacecraft.md`).
+
+mod appendage;
+mod assembly;
+mod check;
+mod clamped;
+mod damping;
+mod free;
+mod limit;
+mod mass;
+mod results;
+mod spacecraft;
+mod turned;
+
+use crate::body::Spatial;
+use crate::body::spatial::Vector;
+use crate::motion::turning::Flexible;
+
+pub use appendage::{Appendage, Plate};
+pub use assembly::Part;
+pub use clamped::ClampedMode;
+pub use limit::Limit;
+pub use results::Units;
+pub use spacecraft::Spacecraft;
+pub use turned::{Turn, Turned};
+
+/// A rotor of the hub that turns freely about its axis.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Rotor {
+    /// Unit vector along its axis, in the body's axes.
+    pub axis: Vector,
+    /// Moment of inertia about that axis (kg m²).
+    pub spin_inertia: f64,
+}
+
+/// A spacecraft as it moves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Craft {
+    /// Its rigid body and its free modes, which do not act back on it. Positions are from the total centre of mass.
+    pub spatial: Spatial,
+    /// The coupling of its rotation and its modes in both directions.
+    pub flexible: Flexible,
+    /// Total mass (kg).
+    pub mass: f64,
+    /// Total centre of mass, from the point O (m).
+    pub centre: Vector,
+    /// The clamped modes as the hub sees them, appendage by appendage.
+    pub parts: Vec<Part>,
+    /// Off-diagonal damping of the free modes, the largest |Dq_ij| W/|W_i² - W_j²|.
+    pub damping_coupling: f64,
+}

@@ -1,0 +1,48 @@
+//! The hub of a spacecraft, as a scenario writes it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::mass::MassProperties;
+use crate::body::spatial::{Attitude, NamedPoint, tensor, vector};
+use crate::quantity::{Finite, Positive};
+
+/// A spacecraft: its rigid hub, to which the appendages are clamped.
+///
+/// Positions are from a point O of the user's choice, in the axes of the hub, which are the body's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Spacecraft {
+    /// Mass of the hub alone (kg).
+    pub mass: Positive,
+    /// Centre of mass of the hub alone (m).
+    #[serde(default)]
+    pub centre: [Finite; 3],
+    /// Inertia tensor of the hub alone about its centre of mass, with wheels locked in it (kg m²), row by row.
+    pub inertia: [[Finite; 3]; 3],
+    /// Attitude at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the body into inertial ones.
+    #[serde(default)]
+    pub attitude: Attitude,
+    /// Rates at the start (rad/s), in the body's axes: of the spacecraft as a whole, which are those of the hub while nothing
+    /// vibrates.
+    #[serde(default)]
+    pub rate: [Finite; 3],
+    /// Named points of the hub, at which jets push and gyros look. Left out, there is one at O, named `hub`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<NamedPoint>,
+}
+
+impl Spacecraft {
+    /// What the hub weighs, and how it turns.
+    pub(super) fn mass_properties(&self) -> MassProperties {
+        MassProperties { mass: self.mass.get(), centre: vector(&self.centre), inertia: tensor(&self.inertia) }
+    }
+
+    /// The points of the hub: one at O, if none is named.
+    pub(super) fn hub_points(&self) -> Vec<NamedPoint> {
+        if self.points.is_empty() {
+            return vec![NamedPoint { name: "hub".to_owned(), position: <[Finite; 3]>::default() }];
+        }
+        self.points.clone()
+    }
+}

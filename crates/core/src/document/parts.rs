@@ -1,0 +1,105 @@
+//! Parts of which a scenario has one, as a table, or several, as an array of tables.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::{Deref, DerefMut};
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Error, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// One part or more.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parts<T> {
+    parts: Vec<T>,
+    /// Whether they were written as an array, of one part too.
+    listed: bool,
+}
+
+impl<T> Parts<T> {
+    /// A single part.
+    pub fn one(part: T) -> Self {
+        Self { parts: vec![part], listed: false }
+    }
+
+    /// The key of a part, which is called `name` where it stands alone.
+    pub fn key(&self, name: &str, index: usize) -> String {
+        if self.listed { format!("{name}[{index}]") } else { name.to_owned() }
+    }
+}
+
+impl<T: Default> Default for Parts<T> {
+    fn default() -> Self {
+        Self::one(T::default())
+    }
+}
+
+impl<T> Deref for Parts<T> {
+    type Target = [T];
+    fn deref(&self) -> &[T] {
+        &self.parts
+    }
+}
+
+impl<T> DerefMut for Parts<T> {
+    fn deref_mut(&mut self) -> &mut [T] {
+        &mut self.parts
+    }
+}
+
+impl<T: Serialize> Serialize for Parts<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.parts[..] {
+            [part] if !self.listed => part.serialize(serializer),
+            parts => parts.serialize(serializer),
+        }
+    }
+}
+
+/// Reads either.
+struct Either<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for Either<T> {
+    type Value = Parts<T>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("a table, or an array of tables")
+    }
+
+    fn visit_str<E: Error>(self, value: &str) -> Result<Parts<T>, E> {
+        T::deserialize(serde::de::value::StrDeserializer::new(value)).map(Parts::one)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Parts<T>, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(map)).map(Parts::one)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Parts<T>, A::Error> {
+        let parts = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
+        if parts.is_empty() {
+            Err(A::Error::invalid_length(0, &"one part or more"))
+        } else {
+            Ok(Parts { parts, listed: true })
+        }
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Parts<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Either(PhantomData))
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Parts<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("{}s", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<T>();
+        let several = generator.subschema_for::<Vec<T>>();
+        json_schema!({ "anyOf": [one, several] })
+    }
+}

@@ -1,0 +1,296 @@
+//! Surroundings against theory: the spec's libration periods, integrals of the motion, fields by another way.
+
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::{Matrix3, Quaternion};
+
+use super::{Around, Environment};
+use crate::body::Spatial;
+use crate::body::spatial::{Rigid, Turn, Vector, beyond, rotation};
+use crate::motion::turning::{Acting, Flexible, FreeMode, Rotor, Surroundings, Turning};
+use crate::time::Instant;
+
+type Never = std::convert::Infallible;
+
+/// Rate of the orbit (rad/s).
+const RATE: f64 = 1.1e-3;
+
+/// A long body that flies upright: least inertia along the nadir, most across the orbit.
+fn upright() -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector::new(1100.0, 1400.0, 500.0))
+}
+
+fn around(text: &str, inertia: &Matrix3<f64>) -> Around {
+    let environment: Environment = toml::from_str(text).expect("an environment");
+    Around::new(&environment, [*inertia, Matrix3::zeros()], &Vector::zeros())
+}
+
+/// A rigid body that moves one way, begun anew every 20 s as a plant does.
+struct One {
+    rigid: Rigid,
+    turn: Turn,
+    around: Around,
+    t: f64,
+}
+
+impl One {
+    fn new(inertia: &Matrix3<f64>, around: Around, attitude: Quaternion<f64>, rate: Vector) -> Self {
+        let rows = (0..3).map(|row| format!("{:?}", inertia.row(row).iter().collect::<Vec<_>>()));
+        let text = format!("inertia = [{}]", rows.collect::<Vec<_>>().join(", "));
+        let body: Spatial = toml::from_str(&text).expect("a body");
+        let rigid = Rigid::new(&body);
+        Self { turn: rigid.start(attitude, rate), rigid, around, t: 0.0 }
+    }
+
+    fn go(&mut self, until: f64) {
+        while self.t < until {
+            let h = (until - self.t).min(20.0);
+            let around = Some(&self.around as &dyn Surroundings);
+            let moved =
+                self.rigid.advance(&mut self.turn, &Vector::zeros(), None, around, (self.t, h), || {
+                    Ok::<(), Never>(())
+                });
+            moved.expect("nothing stops it");
+            self.t += h;
+        }
+    }
+}
+
+/// The local axes of an orbit that begins in the inertial ones.
+fn local(t: f64) -> Quaternion<f64> {
+    rotation(&Vector::new(0.0, -RATE * t, 0.0))
+}
+
+/// Roll, pitch and yaw of a body beyond the local axes, and its rate beyond theirs.
+fn libration(body: &One) -> (Vector, Vector) {
+    let attitude = body.turn.attitude;
+    let normal = super::orbit::into(&attitude, &Vector::new(0.0, -RATE, 0.0));
+    (beyond(&local(body.t), &attitude), body.rigid.rate(&body.turn) - normal)
+}
+
+/// The instant near `guess` at which the pitch crosses 0.
+fn crossing(body: &mut One, guess: f64) -> f64 {
+    body.go(guess);
+    for _ in 0..6 {
+        let (angles, rates) = libration(body);
+        let step = -angles.y / rates.y;
+        let around = Some(&body.around as &dyn Surroundings);
+        let moved = body.rigid.advance(
+            &mut body.turn,
+            &Vector::zeros(),
+            None,
+            around,
+            (body.t, step.max(0.0)),
+            || Ok::<(), Never>(()),
+        );
+        moved.expect("nothing stops it");
+        body.t += step.max(0.0);
+    }
+    body.t
+}
+
+#[test]
+fn the_pitch_swings_with_its_period() {
+    let inertia = upright();
+    let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
+    let start = rotation(&Vector::new(0.0, 1e-3, 0.0));
+    let mut body = One::new(&inertia, around, start, Vector::new(0.0, -RATE, 0.0));
+    let first = crossing(&mut body, 1259.0);
+    let second = crossing(&mut body, first + 5037.0);
+    // (4/w) K(sin² of 1e-3 rad), w = n sqrt(3 (Jx - Jz)/Jy).
+    let exact = 5_037.499_975_779;
+    assert!(((second - first) / exact - 1.0).abs() < 1e-10, "{}", second - first);
+    assert!((first / (0.25 * exact) - 1.0).abs() < 1e-10, "{first}");
+}
+
+#[test]
+fn roll_and_yaw_swing_with_the_roots_of_the_quartic() {
+    let inertia = upright();
+    let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
+    let start = rotation(&Vector::new(1e-6, 0.0, -5e-7));
+    let normal = super::orbit::into(&start, &Vector::new(0.0, -RATE, 0.0));
+    let mut body = One::new(&inertia, around, start, normal);
+    // Samples of two harmonics obey x[2] + x[-2] - a (x[1] + x[-1]) + b x[0] = 0 with a = 2 (c1 + c2), b = 2 + 4 c1 c2.
+    let period = 900.0;
+    let samples: Vec<Vector> = (0..40)
+        .map(|k| {
+            body.go(period * f64::from(k));
+            libration(&body).0
+        })
+        .collect();
+    let (mut normal, mut right) = (nalgebra::Matrix2::zeros(), nalgebra::Vector2::zeros());
+    for row in samples.windows(5).flat_map(|x| [0, 2].map(|axis| [0, 1, 2, 3, 4].map(|k| x[k][axis]))) {
+        let [e, d, c, b, a] = row;
+        let unknown = nalgebra::Vector2::new(b + d, -c);
+        normal += unknown * unknown.transpose();
+        right += unknown * (a + e);
+    }
+    let found = normal.try_inverse().expect("two harmonics") * right;
+    let (sum, product) = (0.5 * found.x, 0.25 * (found.y - 2.0));
+    let root = libm::sqrt(sum * sum - 4.0 * product);
+    let frequencies = [0.5 * (sum + root), 0.5 * (sum - root)].map(|cos| libm::acos(cos) / period);
+    let (k1, k3) = ((1400.0 - 500.0) / 1100.0, (1400.0 - 1100.0) / 500.0);
+    let (b, c) = (1.0 + 3.0 * k1 + k1 * k3, 4.0 * k1 * k3);
+    let root = libm::sqrt(b * b - 4.0 * c);
+    let exact = [0.5 * (b - root), 0.5 * (b + root)].map(|square| RATE * libm::sqrt(square));
+    for (found, exact) in frequencies.iter().zip(exact) {
+        assert!((found / exact - 1.0).abs() < 1e-10, "{found} {exact}");
+    }
+}
+
+/// Energy in the axes of the orbit: that of the motion and of gravity, less the orbit's rate times momentum.
+fn integral(
+    energy: f64,
+    attitude: &Quaternion<f64>,
+    momentum: &Vector,
+    inertia: &Matrix3<f64>,
+    t: f64,
+) -> f64 {
+    let nadir = Vector::new(-libm::sin(RATE * t), 0.0, libm::cos(RATE * t));
+    let nadir = super::orbit::into(attitude, &nadir);
+    let normal = super::orbit::into(attitude, &Vector::new(0.0, -RATE, 0.0));
+    let gravity = RATE * RATE * (1.5 * nadir.dot(&(inertia * nadir)) - 0.5 * inertia.trace());
+    energy + gravity - normal.dot(momentum)
+}
+
+#[test]
+fn a_rigid_body_keeps_its_energy_in_the_axes_of_the_orbit() {
+    let inertia = Matrix3::new(1100.0, 20.0, -10.0, 20.0, 1400.0, 30.0, -10.0, 30.0, 500.0);
+    let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
+    let mut body =
+        One::new(&inertia, around, rotation(&Vector::new(0.9, -0.4, 1.3)), Vector::new(4e-3, 1e-3, -2e-3));
+    let of = |body: &One| {
+        let (energy, momentum) = (body.rigid.energy(&body.turn), Rigid::momentum(&body.turn));
+        integral(energy, &body.turn.attitude, &momentum, &inertia, body.t)
+    };
+    let (before, momentum) = (of(&body), Rigid::momentum(&body.turn));
+    for k in 1..=20 {
+        body.go(1000.0 * f64::from(k));
+        let scale = body.rigid.energy(&body.turn);
+        assert!((of(&body) - before).abs() < 1e-14 * scale, "{k} {:e}", (of(&body) - before) / scale);
+    }
+    // Gravity did turn it.
+    let turned = Rigid::momentum(&body.turn).norm() / momentum.norm() - 1.0;
+    assert!(turned.abs() > 1e-2, "{turned}");
+}
+
+/// Two modes whose first moments and rotations are those of panels, and one that is hardly felt but makes steps short.
+fn flexible() -> Flexible {
+    let mode = |frequency: f64, rotation: [f64; 3], moments: [f64; 6]| {
+        let [xx, yy, zz, yz, zx, xy] = moments;
+        let moments = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
+        FreeMode { frequency, damping: 0.0, rotation: rotation.into(), moments }
+    };
+    Flexible {
+        inertia: Matrix3::new(1112.5, 6.0, 0.6, 6.0, 311.9, 4.9, 0.6, 4.9, 1089.3),
+        modes: vec![
+            mode(0.115, [0.02, -1e-3, -0.01], [0.7, 0.5, -0.2, -18.0, 0.1, -8.4]),
+            mode(0.43, [1e-3, 0.03, 2e-3], [1.6, 0.0, -1.6, 0.4, 1.4, 2.0]),
+            mode(2.0, [1e-6, 0.0, 0.0], [0.0; 6]),
+        ],
+        damping: None,
+    }
+}
+
+#[test]
+fn a_bent_body_keeps_its_energy_in_the_axes_of_the_orbit() {
+    let body = flexible();
+    let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &body.inertia);
+    let start = rotation(&Vector::new(0.9, -0.4, 1.3));
+    let mut turning = Turning::new(&body, start, Vector::new(4e-3, 1e-3, -2e-3), &[[0.5, 0.0], [0.0, 0.02]]);
+    let momentum = 2.0;
+    turning.depart(&Acting {
+        rotors: vec![Rotor { axis: Vector::new(0.6, 0.0, 0.8), momentum, torque: 0.0 }],
+        ..Acting::default()
+    });
+    let of = |turning: &Turning, t: f64| {
+        let seen = turning.seen();
+        let energy = seen.rotational + turning.energies().sum::<f64>();
+        let energy = integral(energy, &seen.attitude, &seen.momentum, &turning.inertia(), t);
+        (energy, 0.5 * seen.rate.dot(&seen.momentum))
+    };
+    let (before, _) = of(&turning, 0.0);
+    for k in 1..=10 {
+        let t = 200.0 * f64::from(k);
+        turning.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
+        let (now, scale) = of(&turning, t);
+        assert!((now - before).abs() < 1e-11 * scale.abs(), "{k} {:e} of {scale:e}", now - before);
+    }
+}
+
+#[test]
+fn a_torque_that_is_constant_in_inertial_axes_adds_to_the_momentum_as_time_does() {
+    let text = "torque = [2e-3, -1e-3, 3e-3]";
+    let torque = Vector::new(2e-3, -1e-3, 3e-3);
+    let (inertia, rate) = (upright(), Vector::new(0.01, -0.03, 0.02));
+    let start = rotation(&Vector::new(0.3, 1.0, -0.5));
+    let mut body = One::new(&inertia, around(text, &inertia), start, rate);
+    let in_space =
+        |attitude: Quaternion<f64>, momentum: Vector| super::orbit::into(&attitude.conjugate(), &momentum);
+    let before = in_space(start, inertia * rate);
+    for t in [100.0, 1000.0, 3000.0] {
+        body.go(t);
+        let now = in_space(body.turn.attitude, Rigid::momentum(&body.turn));
+        let off = (now - before - torque * t).norm() / now.norm();
+        assert!(off < 1e-14, "{t} {off:e}");
+    }
+    let (body, start) = (flexible(), Quaternion::identity());
+    let around = around(text, &body.inertia);
+    let mut turning = Turning::new(&body, start, rate, &[[0.5, 0.0], [0.0, 0.02]]);
+    let seen = turning.seen();
+    let before = in_space(seen.attitude, seen.momentum);
+    for t in [100.0, 1000.0, 3000.0] {
+        turning.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
+        let seen = turning.seen();
+        let now = in_space(seen.attitude, seen.momentum);
+        let off = (now - before - torque * t).norm() / now.norm();
+        assert!(off < 1e-14, "{t} {off:e}");
+    }
+}
+
+#[test]
+fn the_field_is_that_of_a_dipole_along_the_axis() {
+    let (inclination, node, strength) = (0.9_f64, 0.7_f64, 2.4e-5);
+    let text = format!(
+        "dipole = {{ moment = [1.0, -2.0, 0.5], strength = {strength}, inclination = {inclination}, from_node = {node}, \
+         orbit_rate = {RATE} }}"
+    );
+    let environment: Environment = toml::from_str(&text).expect("an environment");
+    let dipole = environment.dipole.expect("a dipole");
+    // In axes of the equator, x to the ascending node, z north; of the local axes at the start, in those.
+    let (sin_i, cos_i) = libm::sincos(inclination);
+    let up = |u: f64| {
+        let (sin, cos) = libm::sincos(u);
+        Vector::new(cos, sin * cos_i, sin * sin_i)
+    };
+    let (nadir, along) = (-up(node), up(node + FRAC_PI_2));
+    let axes = Matrix3::from_columns(&[along, nadir.cross(&along), nadir]);
+    for t in [0.0, 800.0, 5000.0] {
+        let from = up(node + RATE * t);
+        let south = -Vector::z();
+        let field = (from * (3.0 * south.dot(&from)) - south) * strength;
+        let found = axes * dipole.field(t);
+        assert!((found - field).norm() < 1e-14 * strength, "{t} {found} {field}");
+        let attitude = rotation(&Vector::new(0.2, 0.4, -1.0));
+        let body = super::orbit::into(&attitude, &dipole.field(t));
+        let torque = around(&text, &upright()).torque(t, &attitude, &upright());
+        assert!((torque - Vector::new(1.0, -2.0, 0.5).cross(&body)).norm() < 1e-20);
+        assert!(torque.norm() <= dipole.bound());
+    }
+}
+
+#[test]
+fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
+    let text = "solar_pressure = { force = [1e-4, 0.0, 0.0], at = [0.1, 0.5, 0.0], shadow = [[10.0, 20.0]] }";
+    let environment: Environment = toml::from_str(text).expect("an environment");
+    let centre = Vector::new(0.1, 0.3, 0.0);
+    let around = Around::new(&environment, [upright(), Matrix3::zeros()], &centre);
+    let at = |t: f64| around.torque(t, &Quaternion::identity(), &upright());
+    let pushed = Vector::new(0.0, 0.0, -0.2e-4);
+    assert!((at(0.0) - pushed).norm() < 1e-19 && (at(20.0) - pushed).norm() < 1e-19);
+    assert!(at(10.0) == Vector::zeros() && at(19.9) == Vector::zeros());
+    // A body turned by a quarter about z sees the force along its -y, where there is no arm.
+    let quarter = rotation(&Vector::new(0.0, 0.0, FRAC_PI_2));
+    assert!(around.torque(0.0, &quarter, &upright()).norm() < 1e-19);
+    assert!(environment.edges().map(Instant::seconds).eq([10.0, 20.0]));
+}

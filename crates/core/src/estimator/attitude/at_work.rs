@@ -1,0 +1,165 @@
+//! The attitude filter at work: it reads the gyro and what measures the attitude, and writes the belief about three axes.
+
+use nalgebra::Quaternion;
+
+use super::spec::{AttitudeFilter, Role, Setting};
+use super::{Correction, Filter, Fix, History};
+use crate::belief::Belief;
+use crate::body::spatial::{Vector, rotation};
+use crate::estimator::kalman::Prior;
+use crate::estimator::{Estimate, Taken};
+use crate::random::Stream;
+use crate::record::{AttitudeEstimate, AxisEstimate};
+use crate::sensor::{Orientation, Reading};
+use crate::time::Instant;
+
+/// The filter at work.
+#[derive(Clone, Debug)]
+pub struct Tracking {
+    spec: AttitudeFilter,
+    setting: Setting,
+    draws: Stream,
+    /// From the first sample on.
+    history: Option<History>,
+    /// The last gyro reading (rad/s), and when the filter took a gyro reading last.
+    rate: Vector,
+    since: Instant,
+    /// What the last sample told of the attitude, and whether it told any.
+    told: Correction,
+    used: bool,
+}
+
+impl Tracking {
+    /// The filter before the first sample; `draws` gives a drawn prior.
+    pub fn new(spec: &AttitudeFilter, setting: Setting, draws: Stream) -> Self {
+        Self {
+            spec: spec.clone(),
+            setting,
+            draws,
+            history: None,
+            rate: Vector::zeros(),
+            since: Instant::START,
+            told: Correction::default(),
+            used: false,
+        }
+    }
+
+    /// What the filter takes for the truth at the start, where this is the true attitude.
+    fn prior(&mut self, attitude: &Quaternion<f64>) -> Filter {
+        let deviations = [self.spec.initial.angle.get(), self.spec.initial.bias.get()];
+        let mut off = [Vector::zeros(); 2];
+        if self.spec.prior == Prior::Drawn {
+            for (off, deviation) in off.iter_mut().zip(deviations) {
+                *off = Vector::from_fn(|_, _| deviation * self.draws.normal());
+            }
+        }
+        Filter::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations)
+    }
+
+    /// Takes what each sensor measured now.
+    fn read(&mut self, now: Instant, readings: &[Option<Reading>]) {
+        let Some(history) = &mut self.history else { return };
+        let mut corrections = Vec::new();
+        // First the gyro: a measurement of now then finds the filter there.
+        for reading in self.setting.of(readings, &|role| *role == Role::Gyro) {
+            if let Some(rate) = reading.1.rate {
+                self.rate = rate.into();
+                corrections.extend(history.read(now, self.rate));
+                self.since = now;
+            }
+        }
+        for (role, reading) in self.setting.of(readings, &|role| matches!(role, Role::Attitude { .. })) {
+            let (Role::Attitude { latency, noise }, Orientation::Attitude(attitude)) = (role, reading.at)
+            else {
+                continue;
+            };
+            // What is told at the start is of the start.
+            let exposed = if now == Instant::START { now } else { now.before(*latency) };
+            corrections.extend(history.fix(Fix { exposed, attitude, noise: *noise }));
+        }
+        self.used = !corrections.is_empty();
+        self.told = corrections.pop().unwrap_or_default();
+    }
+
+    /// The attitude now, by the last gyro reading since.
+    fn attitude(&self, now: Instant) -> Option<Quaternion<f64>> {
+        let filter = self.history.as_ref()?.latest();
+        let turn = (self.rate - filter.bias) * now.since(self.since).seconds();
+        Some(filter.attitude * rotation(&turn))
+    }
+}
+
+impl Setting {
+    /// The readings of sensors with a role.
+    fn of<'a>(
+        &'a self,
+        readings: &'a [Option<Reading>],
+        wanted: &'a dyn Fn(&Role) -> bool,
+    ) -> impl Iterator<Item = (&'a Role, Reading)> {
+        let all = self.roles.iter().zip(readings);
+        all.filter(move |(role, _)| wanted(role)).filter_map(|(role, reading)| Some((role, (*reading)?)))
+    }
+}
+
+impl Estimate for Tracking {
+    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]) {
+        let now = taken.now;
+        if self.history.is_none() {
+            let Orientation::Attitude(origin) = taken.origin else { return };
+            let beyond = Vector::from_fn(|axis, _| 0.5 * (taken.truth)(axis).rigid_angle);
+            let real = libm::sqrt((1.0 - beyond.norm_squared()).max(0.0));
+            let filter = self.prior(&(origin * Quaternion::from_parts(real, beyond)));
+            self.history = Some(History::new(now, filter, self.setting.noise, self.setting.reach));
+        }
+        self.read(now, taken.readings);
+        let (Some(history), Some(attitude)) = (&self.history, self.attitude(now)) else { return };
+        let angles = Orientation::Attitude(attitude).beyond(taken.origin);
+        for (axis, belief) in beliefs.iter_mut().enumerate() {
+            if self.spec.watch_only {
+                if let Some(measured) = taken.measured {
+                    [belief.angle, belief.rate] = measured[axis];
+                }
+            } else {
+                (belief.angle, belief.rate) = (angles[axis], self.rate[axis] - history.latest().bias[axis]);
+            }
+        }
+    }
+
+    fn carry(&self, now: Instant, origin: &Orientation, beliefs: &mut [Belief]) {
+        let Some(attitude) = self.attitude(now).filter(|_| !self.spec.watch_only) else { return };
+        let angles = Orientation::Attitude(attitude).beyond(origin);
+        beliefs.iter_mut().zip(angles).for_each(|(belief, angle)| belief.angle = angle);
+    }
+
+    fn attitude(&self, now: Instant, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+        let (Orientation::Attitude(truth), filter) = (truth, self.history.as_ref()?.latest()) else {
+            return None;
+        };
+        let (estimate, bias) = (Tracking::attitude(self, now)?, Vector::from(bias));
+        let ([angle_sd, bias_sd], off) =
+            (filter.deviations(), Filter { attitude: estimate, ..filter.clone() });
+        let [angle_error, bias_error] = off.error(truth, &bias);
+        let axis = |axis: usize| AxisEstimate {
+            angle_error_rad: -angle_error[axis],
+            angle_sd_rad: angle_sd[axis],
+            bias_rad_s: filter.bias[axis],
+            bias_error_rad_s: -bias_error[axis],
+            bias_sd_rad_s: bias_sd[axis],
+            innovation_rad: self.told.innovation[axis],
+        };
+        Some(AttitudeEstimate {
+            q_w: estimate.w,
+            q_x: estimate.i,
+            q_y: estimate.j,
+            q_z: estimate.k,
+            axes: [0, 1, 2].map(axis).into(),
+            nees: off.nees(truth, &bias),
+            nis: self.told.nis,
+            measured: self.used.into(),
+        })
+    }
+
+    fn copy(&self) -> Box<dyn Estimate> {
+        Box::new(self.clone())
+    }
+}

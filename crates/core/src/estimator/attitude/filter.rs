@@ -1,0 +1,125 @@
+//! A multiplicative extended Kalman filter of attitude and gyro bias (\[LeffertsMarkleyShuster82\]).
+//!
+//! The attitude is Q = Q^ exp(theta), the bias b = b^ + beta; theta and beta, three numbers each, have the covariance P. A gyro
+//! reading y covers an interval: w^ = y - b^ turns Q^ through it, and theta' = -w^ x theta - beta - n_v, beta' = n_u is solved
+//! exactly for constant w^, with the exact covariance of what n_v and n_u add. An attitude z corrects by 2 vec(Q^* z), in the
+//! form of Joseph. Errors stay on the right of Q^: nothing has to be reset but Q^ itself.
+
+use nalgebra::{Cholesky, Matrix3, Matrix6, Quaternion, SMatrix};
+
+use crate::body::spatial::{Vector, beyond, rotation};
+use crate::numerics::stumpff::stumpff;
+
+/// Noise of a gyro as the filter knows it, the same about each axis.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct GyroNoise {
+    /// Angle random walk (rad/sqrt(s)).
+    pub angle_random_walk: f64,
+    /// Rate random walk (rad/s^1.5).
+    pub rate_random_walk: f64,
+}
+
+/// The filter: what it knows at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Filter {
+    /// The attitude, which turns vectors of the body's axes into inertial ones.
+    pub attitude: Quaternion<f64>,
+    /// The bias of the gyro (rad/s).
+    pub bias: Vector,
+    /// Covariance of the errors of attitude (rad) and bias (rad/s).
+    pub covariance: Matrix6<f64>,
+}
+
+/// What a measured attitude told a filter.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Correction {
+    /// How far the measured attitude was beyond the predicted one, in the body's axes (rad).
+    pub innovation: Vector,
+    /// The normalised square of the innovation.
+    pub nis: f64,
+}
+
+impl Filter {
+    /// The filter that knows an attitude and a bias with these standard deviations about each axis (rad, rad/s).
+    pub fn new(attitude: Quaternion<f64>, bias: Vector, deviations: [f64; 2]) -> Self {
+        let variance = |row: usize, _| deviations[row / 3] * deviations[row / 3];
+        let covariance =
+            Matrix6::from_fn(|row, column| if row == column { variance(row, column) } else { 0.0 });
+        Self { attitude, bias, covariance }
+    }
+
+    /// Goes on through an interval of so many seconds, of which the gyro tells the mean rate (rad/s).
+    pub fn predict(&mut self, reading: &Vector, seconds: f64, noise: &GyroNoise) {
+        let turn = (reading - self.bias) * seconds;
+        let (white, walk) = (noise.angle_random_walk, noise.rate_random_walk);
+        let (transition, added) = interval(&turn, seconds, [white * white, walk * walk]);
+        self.attitude = unit(self.attitude * rotation(&turn));
+        self.covariance = symmetric(&(transition * self.covariance * transition.transpose() + added));
+    }
+
+    /// Takes a measured attitude whose error in the body's axes has this covariance (rad²). It tells nothing where the
+    /// covariance of the innovation is not positive.
+    pub fn correct(&mut self, measured: &Quaternion<f64>, noise: &Matrix3<f64>) -> Option<Correction> {
+        let innovation = beyond(&self.attitude, measured);
+        let to_attitude = self.covariance.fixed_columns::<3>(0).into_owned();
+        let inverse = Cholesky::new(to_attitude.fixed_rows::<3>(0) + noise)?.inverse();
+        let gain = to_attitude * inverse;
+        let error = gain * innovation;
+        self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
+        self.bias += error.fixed_rows::<3>(3);
+        let mut kept = Matrix6::identity();
+        let mut told = kept.fixed_columns_mut::<3>(0);
+        told -= gain;
+        self.covariance =
+            symmetric(&(kept * self.covariance * kept.transpose() + gain * noise * gain.transpose()));
+        Some(Correction { innovation, nis: innovation.dot(&(inverse * innovation)) })
+    }
+
+    /// Its error where these are attitude and bias: so far is the truth beyond the estimate (rad, rad/s).
+    pub fn error(&self, attitude: &Quaternion<f64>, bias: &Vector) -> [Vector; 2] {
+        [beyond(&self.attitude, attitude), bias - self.bias]
+    }
+
+    /// The normalised square of its error where these are attitude and bias; NaN of a covariance that is not positive.
+    pub fn nees(&self, attitude: &Quaternion<f64>, bias: &Vector) -> f64 {
+        let [angle, rate] = self.error(attitude, bias);
+        let error = SMatrix::<f64, 6, 1>::from_fn(|row, _| if row < 3 { angle[row] } else { rate[row - 3] });
+        Cholesky::new(self.covariance).map_or(f64::NAN, |factor| error.dot(&factor.solve(&error)))
+    }
+
+    /// Standard deviations of attitude (rad) and bias (rad/s) about each axis.
+    pub fn deviations(&self) -> [[f64; 3]; 2] {
+        [0, 3].map(|from| [0, 1, 2].map(|axis| libm::sqrt(self.covariance[(from + axis, from + axis)])))
+    }
+}
+
+/// The transition of the errors through an interval in which the body turns so far (rad), and the covariance that noise of these
+/// densities adds.
+fn interval(turn: &Vector, seconds: f64, [white, walk]: [f64; 2]) -> (Matrix6<f64>, Matrix6<f64>) {
+    let [c1, c2, c3, c4, c5] = stumpff(turn.norm_squared());
+    let (one, cross) = (Matrix3::identity(), turn.cross_matrix());
+    let twice = cross * cross;
+    let turned = one - cross * c1 + twice * c2;
+    let drifted = (one - cross * c2 + twice * c3) * seconds;
+    let with_bias = (one * 0.5 - cross * c3 + twice * c4) * (seconds * seconds * walk);
+    let both = (one * c3 + turn * turn.transpose() * c5) * (2.0 * seconds * seconds * seconds * walk);
+    let assemble = |blocks: [Matrix3<f64>; 4]| {
+        Matrix6::from_fn(|row, column| blocks[row / 3 * 2 + column / 3][(row % 3, column % 3)])
+    };
+    let transition = assemble([turned, -drifted, Matrix3::zeros(), one]);
+    let added = assemble([
+        both + one * (white * seconds),
+        -with_bias,
+        -with_bias.transpose(),
+        one * (walk * seconds),
+    ]);
+    (transition, added)
+}
+
+fn unit(q: Quaternion<f64>) -> Quaternion<f64> {
+    q / q.norm()
+}
+
+fn symmetric(of: &Matrix6<f64>) -> Matrix6<f64> {
+    (of + of.transpose()) * 0.5
+}

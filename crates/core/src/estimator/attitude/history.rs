@@ -1,0 +1,115 @@
+//! The recent past of an attitude filter, so that a measurement that arrives late corrects it where the body was exposed.
+//!
+//! Each entry holds the filter after what happened at its instant, with the gyro reading of the interval that ends there and
+//! the attitudes that were measured there. A late measurement is put where it belongs, and all that is later is done again:
+//! the result is that of a filter to which nothing is late.
+
+use std::collections::VecDeque;
+
+use nalgebra::{Matrix3, Quaternion};
+
+use super::filter::{Correction, Filter, GyroNoise};
+use crate::body::spatial::Vector;
+use crate::time::{Instant, Span};
+
+/// A measured attitude.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Fix {
+    /// When the body was exposed.
+    pub exposed: Instant,
+    /// The attitude.
+    pub attitude: Quaternion<f64>,
+    /// Covariance of its error in the body's axes (rad²).
+    pub noise: Matrix3<f64>,
+}
+
+/// A filter and its recent past.
+#[derive(Clone, Debug)]
+pub struct History {
+    noise: GyroNoise,
+    /// How late a measurement may be.
+    reach: Span,
+    entries: VecDeque<Entry>,
+    /// Measurements of instants that no gyro reading covers yet.
+    early: Vec<Fix>,
+}
+
+#[derive(Clone, Debug)]
+struct Entry {
+    at: Instant,
+    /// The gyro reading of the interval that ends here (rad/s).
+    reading: Vector,
+    fixes: Vec<Fix>,
+    filter: Filter,
+}
+
+impl History {
+    /// The history of a filter that begins at an instant, to which nothing is later than `reach`.
+    pub fn new(at: Instant, filter: Filter, noise: GyroNoise, reach: Span) -> Self {
+        let entry = Entry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
+        Self { noise, reach, entries: VecDeque::from([entry]), early: Vec::new() }
+    }
+
+    /// The filter after all that it was told.
+    pub fn latest(&self) -> &Filter {
+        // There is always an entry.
+        &self.entries[self.entries.len() - 1].filter
+    }
+
+    /// The last gyro reading (rad/s).
+    pub fn reading(&self) -> Vector {
+        self.entries[self.entries.len() - 1].reading
+    }
+
+    /// Takes a gyro reading of the interval that ends now (rad/s); tells what measurements that waited for it made of it.
+    pub fn read(&mut self, now: Instant, reading: Vector) -> Vec<Correction> {
+        let last = &self.entries[self.entries.len() - 1];
+        if now <= last.at {
+            return Vec::new();
+        }
+        let mut filter = last.filter.clone();
+        filter.predict(&reading, now.since(last.at).seconds(), &self.noise);
+        self.entries.push_back(Entry { at: now, reading, fixes: Vec::new(), filter });
+        let waiting = std::mem::take(&mut self.early);
+        let told = waiting.into_iter().filter_map(|fix| self.fix(fix)).collect();
+        // The last entry that is older stays: from there begins the interval with the oldest that may still be exposed.
+        while self.entries.get(1).is_some_and(|second| second.at + self.reach <= now) {
+            self.entries.pop_front();
+        }
+        told
+    }
+
+    /// Takes a measured attitude, as late as it may be; nothing comes of one that is later, and of one that waits for a reading.
+    pub fn fix(&mut self, fix: Fix) -> Option<Correction> {
+        let Some(index) = self.entries.iter().position(|entry| fix.exposed <= entry.at) else {
+            self.early.push(fix);
+            return None;
+        };
+        if self.entries[index].at > fix.exposed {
+            // Older than all that is kept.
+            let before = index.checked_sub(1)?;
+            let (reading, from) = (self.entries[index].reading, &self.entries[before]);
+            let mut filter = from.filter.clone();
+            filter.predict(&reading, fix.exposed.since(from.at).seconds(), &self.noise);
+            self.entries.insert(index, Entry { at: fix.exposed, reading, fixes: Vec::new(), filter });
+        }
+        let entry = &mut self.entries[index];
+        let correction = entry.filter.correct(&fix.attitude, &fix.noise)?;
+        entry.fixes.push(fix);
+        self.again(index + 1);
+        Some(correction)
+    }
+
+    /// Does again what the entries from this index on hold.
+    fn again(&mut self, from: usize) {
+        for index in from..self.entries.len() {
+            let (mut filter, since) = (self.entries[index - 1].filter.clone(), self.entries[index - 1].at);
+            let entry = &mut self.entries[index];
+            filter.predict(&entry.reading, entry.at.since(since).seconds(), &self.noise);
+            for fix in &entry.fixes {
+                filter.correct(&fix.attitude, &fix.noise);
+            }
+            entry.filter = filter;
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Attitude and gyro bias, by a multiplicative extended Kalman filter to which measurements may be late.
+
+mod at_work;
+mod filter;
+mod history;
+#[cfg(test)]
+mod loop_tests;
+mod spec;
+#[cfg(test)]
+mod tests;
+
+pub use at_work::Tracking;
+pub use filter::{Correction, Filter, GyroNoise};
+pub use history::{Fix, History};
+pub use spec::{AttitudeFilter, Initial, Role, Setting};

@@ -1,0 +1,171 @@
+//! The attitude filter as a scenario describes it, and what it makes of the scenario's sensors.
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::GyroNoise;
+use crate::body::spatial::Vector;
+use crate::document::Fault;
+use crate::estimator::kalman::Prior;
+use crate::quantity::{NonNegative, Positive};
+use crate::sensor::{Gyro, Sensor};
+use crate::time::Span;
+
+/// Attitude and gyro bias of a body with three axes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AttitudeFilter {
+    /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; left out, the largest of the gyro's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle_random_walk: Option<Positive>,
+    /// Rate random walk of the gyro's bias (rad/s^1.5); left out, the largest of the gyro's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_random_walk: Option<NonNegative>,
+    /// Standard deviation of a measured attitude about each axis of what measures it (rad); left out, the sensor's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude_noise: Option<[Positive; 3]>,
+    /// Standard deviations of the estimate at the start.
+    #[serde(default)]
+    pub initial: Initial,
+    /// What the filter takes for attitude and bias at the start.
+    #[serde(default)]
+    pub prior: Prior,
+    /// When the metrics judge the filter, from one time to another (s); left out, always.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub assess: Option<[NonNegative; 2]>,
+    /// Whether it is there to be assessed only: no law reads it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub watch_only: bool,
+}
+
+/// Standard deviations of an attitude filter's estimate at the start, the same about each axis.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Initial {
+    /// Of the attitude (rad).
+    pub angle: Positive,
+    /// Of the bias (rad/s).
+    pub bias: Positive,
+}
+
+impl Default for Initial {
+    /// A milliradian, and 2 degrees an hour.
+    fn default() -> Self {
+        let positive = |value: f64| Positive::new(value).unwrap_or(Positive::ONE);
+        Self { angle: positive(1e-3), bias: positive(1e-5) }
+    }
+}
+
+/// What a sensor is to the filter.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Role {
+    /// Its rates carry the attitude on.
+    Gyro,
+    /// It measures the attitude, so late, with errors of this covariance in the body's axes (rad²).
+    Attitude {
+        /// From exposure to when it is told.
+        latency: Span,
+        /// The covariance.
+        noise: Matrix3<f64>,
+    },
+    /// The filter does not read it.
+    None,
+}
+
+/// What the sensors of a scenario are to a filter.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Setting {
+    /// Each sensor, in the order of the scenario.
+    pub roles: Vec<Role>,
+    /// Noise of the gyro.
+    pub noise: GyroNoise,
+    /// Bias of the gyro at the start (rad/s).
+    pub bias: Vector,
+    /// How late a measurement may be.
+    pub reach: Span,
+}
+
+impl AttitudeFilter {
+    /// What these sensors are to the filter, under a law with this period or none.
+    ///
+    /// # Errors
+    /// Why they do not do, and the key.
+    pub fn setting(&self, sensors: &[Sensor], cycle: Option<Span>) -> Result<Setting, Fault> {
+        let gyro = sensors.iter().enumerate().find_map(|(index, sensor)| match sensor {
+            Sensor::Gyro(gyro) => Some((index, gyro)),
+            _ => None,
+        });
+        let Some((read, gyro)) = gyro else {
+            return Err(Fault::new(
+                "",
+                "carries the attitude on by the rates of a `gyro`, and there is none",
+            ));
+        };
+        let role = |(index, sensor): (usize, &Sensor)| match self.measured(sensor) {
+            Some((latency, noise)) => Ok(Role::Attitude { latency, noise: noise? }),
+            None if index == read => Ok(Role::Gyro),
+            None => Ok(Role::None),
+        };
+        let roles = sensors.iter().enumerate().map(role).collect::<Result<Vec<_>, Fault>>()?;
+        let late =
+            |role: &Role| if let Role::Attitude { latency, .. } = role { Some(*latency) } else { None };
+        let Some(latest) = roles.iter().filter_map(late).max() else {
+            let why =
+                "corrects its attitude by that of a `star_tracker` or a `sampled` sensor, and there is none";
+            return Err(Fault::new("", why));
+        };
+        let Some(period) = gyro.period.or(cycle) else {
+            return Err(Fault::new("", "needs a gyro with a `period`"));
+        };
+        let noise = self.gyro_noise(gyro, period.seconds())?;
+        let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
+        Ok(Setting { roles, noise, bias, reach: latest + period })
+    }
+
+    /// How late a sensor measures the attitude, and the covariance of its errors; nothing of one that does not.
+    fn measured(&self, sensor: &Sensor) -> Option<(Span, Result<Matrix3<f64>, Fault>)> {
+        let given = self.attitude_noise.map(|noise| noise.map(Positive::get));
+        let known = |own: [f64; 3]| {
+            let noise = given.unwrap_or(own);
+            let why = "must be given where a sensor of the attitude has no noise about an axis";
+            if noise.iter().all(|noise| *noise > 0.0) {
+                Ok(noise)
+            } else {
+                Err(Fault::new("attitude_noise", why))
+            }
+        };
+        match sensor {
+            Sensor::StarTracker(tracker) => {
+                let noise = known(tracker.noise.map(NonNegative::get));
+                Some((tracker.latency(), noise.map(|noise| tracker.covariance(noise))))
+            }
+            Sensor::Sampled(sampled) => {
+                let squares = |noise: [f64; 3]| Vector::from(noise.map(|noise| noise * noise));
+                let noise = known([sampled.angle_noise(); 3]);
+                Some((Span::ZERO, noise.map(|noise| Matrix3::from_diagonal(&squares(noise)))))
+            }
+            Sensor::Continuous | Sensor::Gyro(_) | Sensor::Own(_) => None,
+        }
+    }
+
+    /// Noise of the gyro: white noise of sampled rates is that of an angle that walks.
+    fn gyro_noise(&self, gyro: &Gyro, period: f64) -> Result<GyroNoise, Fault> {
+        let largest = |of: &dyn Fn(usize) -> f64| (0..3).map(of).fold(0.0, f64::max);
+        let own = if gyro.integrates() {
+            largest(&|axis| gyro.angle_random_walk.about(axis).get())
+        } else {
+            largest(&|axis| gyro.rate_noise(axis)) * libm::sqrt(period)
+        };
+        let angle_random_walk = self.angle_random_walk.map_or(own, Positive::get);
+        if angle_random_walk <= 0.0 {
+            let why = "must be given where the gyro has no noise about any axis";
+            return Err(Fault::new("angle_random_walk", why));
+        }
+        let walk = largest(&|axis| gyro.rate_random_walk.about(axis).get());
+        Ok(GyroNoise {
+            angle_random_walk,
+            rate_random_walk: self.rate_random_walk.map_or(walk, NonNegative::get),
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! The filter against one in forty digits.
+
+use nalgebra::{Matrix3, Quaternion};
+
+use super::filter::{Correction, Filter, GyroNoise};
+use super::history::{Fix, History};
+use crate::body::spatial::Vector;
+use crate::time::{Instant, Span};
+
+/// Gyro readings, measured attitudes and truth of a made-up run; a filter in forty digits with the covariance of Van Loan,
+/// which lives at exposures (k of `tests/golden/attitude-filter-in.csv`, 0.25 s apart).
+const READ: &str = include_str!("../../../../../tests/golden/attitude-filter-in.csv");
+/// What that filter gave.
+const GIVEN: &str = include_str!("../../../../../tests/golden/attitude-filter-out.csv");
+
+const NOISE: GyroNoise = GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 };
+
+fn rows(text: &str) -> Vec<Vec<f64>> {
+    let row = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect();
+    text.lines().skip_while(|line| !line.starts_with("k,")).skip(1).map(row).collect()
+}
+
+fn quaternion(of: &[f64]) -> Quaternion<f64> {
+    Quaternion::new(of[0], of[1], of[2], of[3])
+}
+
+fn first() -> Filter {
+    let attitude = Quaternion::new(
+        0.799_372_729_975_218_5,
+        0.360_841_357_110_226_4,
+        -0.480_412_696_190_943,
+        0.000_628_418_145_252_526_5,
+    );
+    Filter::new(attitude, Vector::zeros(), [1e-3, 1e-5])
+}
+
+/// Variances in the tracker's axes, with its boresight z, turned into the body's.
+fn tracker() -> Matrix3<f64> {
+    let axes = Matrix3::new(0.6, 0.0, 0.8, 0.0, 1.0, 0.0, -0.8, 0.0, 0.6);
+    let (across, about) = (2.4e-5 * 2.4e-5, 1.5e-4 * 1.5e-4);
+    axes * Matrix3::from_diagonal(&Vector::new(across, across, about)) * axes.transpose()
+}
+
+fn at(k: usize) -> Instant {
+    Instant::START + Span::from_seconds(0.25 * k as f64)
+}
+
+fn fix(read: &[Vec<f64>], k: usize) -> Fix {
+    Fix { exposed: at(k), attitude: quaternion(&read[k][5..9]), noise: tracker() }
+}
+
+/// The run, with the filter after each reading, where attitudes arrive this many readings after exposure.
+fn replay(late: usize) -> (Vec<History>, Vec<Correction>) {
+    let read = rows(READ);
+    let mut history = History::new(at(0), first(), NOISE, Span::from_seconds(0.5));
+    let (mut states, mut told) = (vec![history.clone()], Vec::new());
+    for k in 1..read.len() {
+        history.read(at(k), Vector::from_column_slice(&read[k][2..5]));
+        if k > late && (k - late).is_multiple_of(4) {
+            told.push(history.fix(fix(&read, k - late)).unwrap());
+        }
+        states.push(history.clone());
+    }
+    (states, told)
+}
+
+#[test]
+fn late_attitudes_give_what_forty_digits_give() {
+    let (states, told) = replay(2);
+    let read = rows(READ);
+    for row in rows(GIVEN) {
+        let k = row[0] as usize;
+        let filter = states[k].latest();
+        let q = quaternion(&row[2..6]);
+        // The table has 14 digits.
+        assert!((filter.attitude - q).norm() < 1e-14, "{k} {:e}", (filter.attitude - q).norm());
+        for axis in 0..3 {
+            let [angle, rate] = filter.deviations();
+            assert!((filter.bias[axis] - row[6 + axis]).abs() < 1e-16, "{k} {}", filter.bias);
+            assert!((angle[axis] / row[9 + axis] - 1.0).abs() < 5e-14, "{k} {angle:?}");
+            assert!((rate[axis] / row[12 + axis] - 1.0).abs() < 5e-14, "{k} {rate:?}");
+        }
+        let nees = filter.nees(&quaternion(&read[k][9..13]), &Vector::from_column_slice(&read[k][13..16]));
+        assert!((nees / row[15] - 1.0).abs() < 1e-10, "{k} {nees}");
+    }
+    for (told, nis) in told.iter().zip([5.333_105_268_783_31, 4.911_998_660_611_991, 7.379_221_081_636_101]) {
+        assert!((told.nis / nis - 1.0).abs() < 1e-10, "{}", told.nis);
+    }
+}
+
+#[test]
+fn whatever_is_late_comes_to_the_same() {
+    let [soon, later] = [0, 2].map(|late| replay(late).0);
+    // Where both have taken the same attitudes; out of order and with an exposure between readings too.
+    for k in (7..soon.len()).step_by(4) {
+        let (a, b) = (soon[k].latest(), later[k].latest());
+        assert!((a.attitude - b.attitude).norm() < 1e-14 && (a.bias - b.bias).norm() < 1e-18, "{k}");
+    }
+    let read = rows(READ);
+    let build = |order: [usize; 2]| {
+        let mut history = History::new(at(0), first(), NOISE, Span::from_seconds(1.0));
+        for row in &read[1..6] {
+            history.read(at(row[0] as usize), Vector::from_column_slice(&row[2..5]));
+        }
+        let between = Fix { exposed: at(2) + Span::from_seconds(0.1), ..fix(&read, 4) };
+        let fixes = [between, fix(&read, 4)];
+        for index in order {
+            assert!(history.fix(fixes[index]).is_some());
+        }
+        history
+    };
+    let [a, b] = [[0, 1], [1, 0]].map(build);
+    assert!((a.latest().attitude - b.latest().attitude).norm() < 1e-15);
+    assert!((a.latest().covariance - b.latest().covariance).norm() < 1e-18);
+}
+
+#[test]
+fn a_measurement_waits_for_its_reading_and_not_for_ever() {
+    let read = rows(READ);
+    let reading = |k: usize| Vector::from_column_slice(&read[k][2..5]);
+    let mut history = History::new(at(0), first(), NOISE, Span::from_seconds(0.5));
+    assert!(history.fix(fix(&read, 4)).is_none());
+    for k in 1..12 {
+        assert_eq!(history.read(at(k), reading(k)).len(), usize::from(k == 4));
+    }
+    assert!(history.fix(fix(&read, 8)).is_none(), "0.75 s late");
+}

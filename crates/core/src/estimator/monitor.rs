@@ -1,0 +1,110 @@
+//! The envelope monitor: its observer, its windows, and the adaptation that learns from them.
+
+use crate::adaptation::{Adaptation, Search};
+use crate::body::State;
+use crate::estimator::{EnvelopeMonitor, Estimator};
+use crate::random::{Seed, Stream};
+use crate::record::{self, ModeEnvelope, WindowMean};
+use crate::scenario::Scenario;
+use crate::time::{Instant, Span};
+
+/// The observer at work, window by window.
+#[derive(Clone, Debug)]
+pub struct Monitor {
+    observer: EnvelopeMonitor,
+    window: Span,
+    opened: Instant,
+    /// When the window closes.
+    pub closes: Instant,
+    index: u64,
+    /// Mean of the window that was closed last (rad).
+    pub mean: f64,
+    search: Option<Searching>,
+}
+
+/// The adaptation at work.
+#[derive(Clone, Debug)]
+struct Searching {
+    search: Search,
+    draws: Stream,
+    /// The number of the law that it tunes, and its value.
+    key: String,
+    value: f64,
+}
+
+/// What a window that ends brings.
+#[derive(Clone, Debug)]
+pub struct Closed {
+    /// Its mean.
+    pub mean: WindowMean,
+    /// The step of the adaptation, with the value before it.
+    pub step: Option<(record::Adaptation, f64)>,
+}
+
+impl Monitor {
+    /// The monitor that a scenario asks for, if any.
+    pub fn new(scenario: &Scenario, seed: Seed) -> Option<Self> {
+        let spec = scenario.estimator.as_ref().and_then(Estimator::envelope)?;
+        let search = scenario.adaptation.clone().map(|Adaptation::RandomSearch(constants)| {
+            let key = constants.tunes.clone();
+            let tunable = scenario.law.tunable().into_iter().find(|(known, _)| *known == key);
+            let value = tunable.map_or(f64::NAN, |(_, value)| value);
+            Searching { search: Search::new(constants, value), draws: seed.stream("adaptation"), key, value }
+        });
+        Some(Self {
+            observer: EnvelopeMonitor::new(spec, &scenario.model.modes, scenario.model.inertia.get()),
+            window: spec.window,
+            opened: Instant::START,
+            closes: Instant::START + spec.window,
+            index: 0,
+            mean: f64::NAN,
+            search,
+        })
+    }
+
+    /// Takes over a torque that is commanded from now on.
+    pub fn command(&mut self, now: Instant, state: &State, torque: f64) {
+        self.observer.advance(now, state);
+        self.observer.command(torque);
+    }
+
+    /// Closes the window that ends now, while the law had this tunable number, and lets the adaptation learn.
+    pub fn close(&mut self, now: Instant, state: &State, gain: f64) -> Closed {
+        self.observer.advance(now, state);
+        self.mean = self.observer.close_window() / self.window.seconds();
+        let mean = WindowMean {
+            window: self.index,
+            from_s: self.opened.seconds(),
+            to_s: now.seconds(),
+            mean_rad: self.mean,
+            gain,
+        };
+        self.opened = now;
+        self.closes = now + self.window;
+        self.index += 1;
+        let step = self.search.as_mut().and_then(|searching| {
+            let step = searching.search.learn(now, mean.mean_rad, searching.draws.uniform())?;
+            let row = record::Adaptation {
+                window: mean.window,
+                decision: step.decision,
+                change: step.change,
+                draw: step.draw,
+                gain: step.gain,
+                settled: u64::from(step.settled),
+            };
+            Some((row, std::mem::replace(&mut searching.value, step.gain)))
+        });
+        Closed { mean, step }
+    }
+
+    /// The key of the number that the adaptation tunes.
+    pub fn tunes(&self) -> Option<&str> {
+        self.search.as_ref().map(|searching| searching.key.as_str())
+    }
+
+    /// The envelope now, as logged.
+    pub fn envelope(&self, now: Instant) -> record::Envelope {
+        let modes: Vec<_> = self.observer.at(now).map(|envelope_rad| ModeEnvelope { envelope_rad }).collect();
+        record::Envelope { envelope_rad: modes.iter().map(|mode| mode.envelope_rad).sum(), modes }
+    }
+}

@@ -1,0 +1,251 @@
+//! Estimators that act at each sample of an axis: what the actuator gave and the sensor measured become a belief of the motion.
+
+use super::kalman::{Filter, Innovation, Prediction, Setting};
+use super::{Estimate, Estimator, Feeds, Taken};
+use crate::belief::{Belief, Dominant};
+use crate::body::{Drift, State};
+use crate::law::Reads;
+use crate::random::Seed;
+use crate::record::{self, ModeEstimate};
+use crate::scenario::Scenario;
+use crate::time::Instant;
+
+/// The estimators of all axes.
+#[derive(Clone, Debug)]
+pub struct AtSamples(Vec<Track>);
+
+/// The estimator of one axis at work.
+#[derive(Clone, Debug)]
+struct Track {
+    eye: Eye,
+    feeds: Feeds,
+    /// Natural frequencies at the start (rad/s), and how they drift.
+    frequencies: Vec<f64>,
+    excitability: Vec<f64>,
+    drift: Option<Drift>,
+    /// The reduced moment since an instant, and its integral from the last sample until then (rad/s², rad/s).
+    moment: f64,
+    since: Instant,
+    impulse: f64,
+    /// The last sample.
+    sampled: Option<Instant>,
+    told: Innovation,
+}
+
+/// Who looks.
+#[derive(Clone, Debug)]
+enum Eye {
+    /// An ideal observer.
+    Ideal,
+    /// A filter.
+    Filter(Box<Filter>),
+}
+
+impl AtSamples {
+    /// The estimators that a scenario asks for, if they act at samples.
+    pub fn new(scenario: &Scenario, seed: Seed) -> Option<Self> {
+        let axes = 0..scenario.study.axes.len();
+        axes.map(|axis| Track::new(scenario, axis, seed)).collect::<Option<_>>().map(Self)
+    }
+}
+
+impl Estimate for AtSamples {
+    fn given(&mut self, now: Instant, moments: [f64; 3]) {
+        for (track, moment) in self.0.iter_mut().zip(moments) {
+            track.given(now, moment);
+        }
+    }
+
+    fn pushed(&mut self, impulse: f64) {
+        self.0[0].impulse += impulse;
+    }
+
+    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]) {
+        for (axis, (track, belief)) in self.0.iter_mut().zip(beliefs).enumerate() {
+            track.take(axis, taken, belief);
+        }
+    }
+
+    fn shift(&mut self, by: [f64; 3]) {
+        for (track, by) in self.0.iter_mut().zip(by) {
+            if let Eye::Filter(filter) = &mut track.eye {
+                filter.shift(by);
+            }
+        }
+    }
+
+    fn lost(&self) -> [bool; 3] {
+        let mut lost = [false; 3];
+        for (track, lost) in self.0.iter().zip(&mut lost) {
+            *lost = matches!(&track.eye, Eye::Filter(filter) if filter.is_lost());
+        }
+        lost
+    }
+
+    fn estimate(&self, axis: usize, now: Instant, truth: &State) -> Option<record::Estimate> {
+        self.0[axis].row(now.seconds(), truth)
+    }
+
+    fn copy(&self) -> Box<dyn Estimate> {
+        Box::new(self.clone())
+    }
+}
+
+impl Track {
+    fn new(scenario: &Scenario, axis: usize, seed: Seed) -> Option<Self> {
+        let study = &scenario.study;
+        let model = &study.axes[axis];
+        let back_emf = study.back_emf;
+        let setting = Setting {
+            body: model,
+            back_emf: (back_emf.0 / model.inertia.get(), back_emf.1),
+            period: study.sampling?.seconds(),
+            angle_noise: scenario.sensor.angle_noise(),
+            rate_noise: scenario.sensor.rate_noise(axis),
+        };
+        let stream = match axis {
+            0 => "prior".to_owned(),
+            axis => format!("prior {axis}"),
+        };
+        let draws = &mut seed.stream(&stream);
+        let filter = |filter| Eye::Filter(Box::new(filter));
+        let estimator = scenario.estimator.as_ref()?;
+        let eye = match estimator {
+            Estimator::Envelope(_)
+            | Estimator::Attitude(_)
+            | Estimator::RigidRate(_)
+            | Estimator::Adaptive(_)
+            | Estimator::Own(_) => return None,
+            Estimator::Truth(_) => Eye::Ideal,
+            Estimator::Kalman(spec) => filter(spec.filter(&setting, draws)),
+            Estimator::ExtendedKalman(spec) => filter(spec.filter(&setting, Prediction::Extended, draws)),
+            Estimator::UnscentedKalman(spec) => filter(spec.filter(&setting, Prediction::Unscented, draws)),
+        };
+        Some(Self {
+            eye,
+            feeds: estimator.feeds(scenario.law.about(axis).reads() == Reads::DominantMode),
+            frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
+            excitability: model.modes.iter().map(|mode| mode.excitability().abs()).collect(),
+            drift: scenario.drift.clone(),
+            moment: 0.0,
+            since: Instant::START,
+            impulse: 0.0,
+            sampled: None,
+            told: Innovation::default(),
+        })
+    }
+
+    /// Takes over the reduced moment (rad/s²) that the actuator gives from now on.
+    fn given(&mut self, now: Instant, moment: f64) {
+        self.impulse += self.moment * now.since(self.since).seconds();
+        (self.moment, self.since) = (moment, now);
+    }
+
+    /// Takes a sample, at which the sensor measured something or not.
+    fn take(&mut self, axis: usize, taken: &Taken<'_>, belief: &mut Belief) {
+        let now = taken.now;
+        self.given(now, self.moment);
+        let period = self.sampled.replace(now).map(|sampled| now.since(sampled).seconds());
+        let impulse = std::mem::take(&mut self.impulse);
+        if let Some(measured) = taken.measured {
+            [belief.angle, belief.rate] = measured[axis];
+        }
+        match &mut self.eye {
+            Eye::Ideal => {
+                let truth = (taken.truth)(axis);
+                belief.dominant = self.ideal(now.seconds(), &truth);
+                match self.feeds {
+                    Feeds::Modes => {}
+                    Feeds::Hub => {
+                        let modes = truth.modes.iter().zip(&self.frequencies);
+                        let rate = modes.map(|(mode, frequency)| frequency * mode.quadrature).sum::<f64>();
+                        (belief.angle, belief.rate) = (truth.angle(), truth.rigid_rate + rate);
+                    }
+                    Feeds::Rigid => (belief.angle, belief.rate) = (truth.rigid_angle, truth.rigid_rate),
+                }
+            }
+            Eye::Filter(filter) => {
+                if let Some(period) = period {
+                    filter.predict(impulse / period);
+                }
+                self.told = filter.update(taken.measured.map(|measured| measured[axis].into()));
+                belief.dominant = filter.dominant();
+                let mean = filter.mean();
+                match self.feeds {
+                    Feeds::Modes => {}
+                    Feeds::Hub => {
+                        let sum = |from: usize| {
+                            mean.iter().skip(from).step_by(2).take(1 + self.frequencies.len()).sum()
+                        };
+                        (belief.angle, belief.rate) = (sum(0), sum(1));
+                    }
+                    Feeds::Rigid => (belief.angle, belief.rate) = (mean[0], mean[1]),
+                }
+            }
+        }
+    }
+
+    /// What an ideal observer knows.
+    fn ideal(&self, t: f64, state: &State) -> Dominant {
+        let ratio = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+        let value = |mode: usize| self.excitability[mode] / (ratio(mode) * ratio(mode));
+        let modes = 1..self.frequencies.len();
+        let mode = modes.fold(0, |best, mode| if value(mode) > value(best) { mode } else { best });
+        Dominant {
+            displacement: state.modes[mode].displacement,
+            rate: self.frequencies[mode] * state.modes[mode].quadrature,
+            frequency: self.frequencies[mode] * ratio(mode),
+        }
+    }
+
+    /// What is logged of a filter.
+    fn row(&self, t: f64, state: &State) -> Option<record::Estimate> {
+        let Eye::Filter(filter) = &self.eye else { return None };
+        let told = self.told;
+        let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
+        let ratio = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+        let slope = |mode: usize| self.drift.as_ref().map_or(0.0, |drift| drift.slope(mode, t));
+        let mut truth = state.to_vector(&self.frequencies).as_slice().to_vec();
+        for at in (model.motion()..model.order()).step_by(2) {
+            // A ratio of all modes is judged by the dominant one.
+            let mut owners = (0..model.modes()).filter(|owner| model.ratio_of(*owner) == Some(at));
+            let of = if model.ratio_of(mode) == Some(at) { mode } else { owners.next().unwrap_or(mode) };
+            // Relative to the frequency that the filter knows.
+            let own = self.frequencies[of] * mean[at] / model.frequency(of, mean.as_slice());
+            truth.extend([own * ratio(of), own * slope(of)]);
+        }
+        let known = model.ratio_of(mode);
+        let value = |offset: usize| known.map_or(1.0 - offset as f64, |at| mean[at + offset]);
+        let sd = |offset: usize| {
+            known.map_or(0.0, |at| libm::sqrt(filter.covariance()[(at + offset, at + offset)]))
+        };
+        let modes = (0..model.modes()).map(|index| {
+            let (amplitude_rad, amplitude_sd_rad) = filter.amplitude(index);
+            ModeEstimate {
+                displacement_rad: mean[2 + 2 * index],
+                rate_rad_s: mean[3 + 2 * index],
+                frequency_rad_s: filter.frequency(index).0,
+                amplitude_rad,
+                amplitude_sd_rad,
+            }
+        });
+        Some(record::Estimate {
+            dominant: mode as u64,
+            frequency_rad_s: filter.dominant().frequency,
+            frequency_sd_rad_s: filter.frequency(mode).1,
+            true_frequency_rad_s: self.frequencies[mode] * ratio(mode),
+            displacement_rad: filter.dominant().displacement,
+            ratio: value(0),
+            ratio_sd: sd(0),
+            ratio_rate_1_s: value(1),
+            ratio_rate_sd_1_s: sd(1),
+            modes: modes.collect(),
+            innovation_rad: told.innovation,
+            nis: told.nis.unwrap_or(0.0),
+            measured: told.nis.is_some().into(),
+            nees: filter.nees(&truth),
+            gated: filter.is_gated().into(),
+            lock: (!filter.is_lost()).into(),
+        })
+    }
+}

@@ -1,0 +1,271 @@
+//! The sampled attitude law: the acceleration about an axis that gives its error a bandwidth and a damping ratio.
+//!
+//! With e the angle beyond the target and w the rate beyond the reference's, it commands -(wn² (e + z/t) + 2 zeta wn w), z being
+//! the integral of e, sends that through its filters, and adds the reference's own acceleration. An acceleration about each of
+//! three axes becomes one torque by the whole inertia (\[Wie08\], quaternion feedback).
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::filter::Filter;
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule};
+use crate::belief::Belief;
+use crate::document::Fault;
+use crate::numerics::biquad::Biquad;
+use crate::quantity::Positive;
+use crate::time::{Instant, Span};
+
+/// The attitude law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AttitudeLaw {
+    /// Period of its samples (s).
+    pub period: Span,
+    /// Bandwidth wn (rad/s): the natural frequency of the error of a rigid body.
+    pub bandwidth: Positive,
+    /// Damping ratio zeta of the error.
+    #[serde(default = "damping")]
+    pub damping: Positive,
+    /// The integral of the error; left out, there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integral: Option<Integral>,
+    /// Largest rate at which an error is taken back (rad/s); left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_limit: Option<Positive>,
+    /// What the fed-back acceleration goes through, in this order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub filters: Vec<Filter>,
+}
+
+/// The integral of the error.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Integral {
+    /// Its time constant t (s).
+    pub time: Positive,
+    /// Largest integral (rad s). It stands still as well while the torque or the rate is at its limit and the error would make
+    /// it larger.
+    pub limit: Positive,
+}
+
+fn damping() -> Positive {
+    Positive::new(0.7).unwrap_or(Positive::ONE)
+}
+
+impl AttitudeLaw {
+    /// The torque on a body of this inertia (kg m²) that is at rest so far from its target (rad): its size (N m).
+    pub fn first_torque(&self, angle: f64, inertia: f64) -> f64 {
+        let wn = self.bandwidth.get();
+        inertia * wn * wn * angle.abs()
+    }
+
+    /// What single values cannot show to be wrong: a key within the law, and why.
+    pub fn inconsistency(&self) -> Option<Fault> {
+        let wrong = |(index, filter): (usize, &Filter)| {
+            let fault = filter.sampled(self.period.seconds()).err()?;
+            Some(fault.within(&format!("filters[{index}]")))
+        };
+        self.filters.iter().enumerate().find_map(wrong)
+    }
+}
+
+impl Rule for AttitudeLaw {
+    fn start(&self, authority: &Authority) -> Box<dyn Control> {
+        let period = self.period.seconds();
+        Box::new(AtSamples {
+            filters: self.filters.iter().filter_map(|filter| filter.sampled(period).ok()).collect(),
+            bandwidth: self.bandwidth.get(),
+            damping: self.damping.get(),
+            tuned: f64::NAN,
+            accelerations: authority.accelerations,
+            integral: 0.0,
+            spec: self.clone(),
+        })
+    }
+
+    fn period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    /// The usual 5 % of a step.
+    fn promise(&self) -> Promise {
+        Promise::Part(0.05)
+    }
+
+    fn reads(&self) -> Reads {
+        Reads::Motion
+    }
+
+    fn tunable(&self) -> Vec<(&'static str, f64)> {
+        vec![("bandwidth", self.bandwidth.get()), ("damping", self.damping.get())]
+    }
+}
+
+/// The law at work about an axis.
+#[derive(Clone, Debug)]
+struct AtSamples {
+    spec: AttitudeLaw,
+    bandwidth: f64,
+    damping: f64,
+    /// The number that was tuned last.
+    tuned: f64,
+    filters: Vec<Biquad>,
+    /// Largest accelerations of plus and minus (rad/s²).
+    accelerations: [f64; 2],
+    /// The integral of the error (rad s).
+    integral: f64,
+}
+
+impl AtSamples {
+    /// The fed-back acceleration (rad/s²) for an error of angle (rad) and rate (rad/s), and whether something is at its limit.
+    fn feedback(&mut self, error: f64, rate: f64) -> (f64, bool) {
+        let (wn, zeta) = (self.bandwidth, self.damping);
+        let kept = self.spec.integral.map_or(0.0, |integral| self.integral / integral.time.get());
+        let (angle, gain) = (error + kept, 2.0 * zeta * wn);
+        let (feedback, limited) = match self.spec.rate_limit.map(Positive::get) {
+            None => (-(wn * wn * angle + gain * rate), false),
+            Some(limit) => {
+                let wanted = 0.5 * wn / zeta * angle;
+                (-gain * (rate + wanted.clamp(-limit, limit)), wanted.abs() > limit)
+            }
+        };
+        (self.filters.iter_mut().fold(feedback, |sample, filter| filter.filter(sample)), limited)
+    }
+
+    /// Integrates the error over a period, unless that drove what is at its limit further.
+    fn integrate(&mut self, error: f64, limited: bool) {
+        let Some(integral) = self.spec.integral else { return };
+        if !(limited && error * self.integral > 0.0) {
+            let limit = integral.limit.get();
+            self.integral = (self.integral + self.spec.period.seconds() * error).clamp(-limit, limit);
+        }
+    }
+}
+
+impl Control for AtSamples {
+    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+        let (angle, rate) = goal.at(now);
+        let error = belief.angle - angle;
+        let (feedback, limited) = self.feedback(error, belief.rate - rate);
+        let acceleration = feedback + goal.acceleration;
+        let [above, below] = self.accelerations;
+        self.integrate(error, limited || acceleration > above || -acceleration > below);
+        Hold {
+            command: Command::Acceleration(acceleration),
+            until: Some(now + self.spec.period),
+            guards: Guards::NONE,
+        }
+    }
+
+    fn state(&self) -> Phase {
+        Phase::Feedback
+    }
+
+    /// Its reference has an acceleration to follow.
+    fn tracks(&self) -> bool {
+        true
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(self.clone())
+    }
+
+    fn tuned(&self) -> f64 {
+        self.tuned
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        match key {
+            "bandwidth" => self.bandwidth = value,
+            "damping" => self.damping = value,
+            _ => return,
+        }
+        self.tuned = value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::PulseWidth;
+
+    const PERIOD: f64 = 0.25;
+
+    fn start(keys: &str, most: f64) -> Box<dyn Control> {
+        let text = format!("period = {PERIOD}\nbandwidth = 0.1\ndamping = 0.8\n{keys}");
+        let law: AttitudeLaw = toml::from_str(&text).unwrap();
+        assert_eq!(law.inconsistency(), None);
+        let width = PulseWidth::default();
+        law.start(&Authority { accelerations: [most; 2], width, delay: 0.0, threshold: 0.0 })
+    }
+
+    fn command(law: &mut dyn Control, angle: f64, rate: f64, acceleration: f64) -> f64 {
+        let goal = Goal { acceleration, ..Goal::default() };
+        let belief = Belief { angle, rate, ..Belief::default() };
+        match law.decide(Instant::START, Cause::Timeout, &goal, &belief).command {
+            Command::Acceleration(acceleration) => acceleration,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_error_of_a_rigid_body_has_the_bandwidth_and_damping_that_are_asked_for() {
+        // Feedback that is held over a period, of e'' = u: the sampled poles are near exp((-zeta +- i sqrt(1 - zeta²)) wn T).
+        let mut law = start("", f64::INFINITY);
+        let (mut angle, mut rate) = (1e-3, 0.0);
+        let mut peak = 0.0_f64;
+        for _ in 0..400 {
+            let u = command(&mut *law, angle, rate, 0.0);
+            angle += rate * PERIOD + 0.5 * u * PERIOD * PERIOD;
+            rate += u * PERIOD;
+            peak = peak.min(angle);
+        }
+        // exp(-pi zeta/sqrt(1 - zeta²)) of the step is the overshoot: 1.52 %; the sampling adds a little.
+        assert!((peak / -1e-3 - 0.0152).abs() < 2e-3, "{peak}");
+        assert!(angle.abs() < 1e-6 && rate.abs() < 1e-7);
+    }
+
+    #[test]
+    fn what_the_reference_accelerates_passes_the_filters_by() {
+        let mut law = start("filters = [{ notch = { frequency = 1.1475, depth = 0.05 } }]", f64::INFINITY);
+        assert_eq!(command(&mut *law, 0.0, 0.0, 2e-4), 2e-4);
+        let biquad = toml::from_str::<AttitudeLaw>(
+            "period = 0.25\nbandwidth = 0.1\nfilters = [{ low_pass = { frequency = 20.0 } }]",
+        );
+        let fault = biquad.unwrap().inconsistency().unwrap();
+        assert_eq!(fault.key, "filters[0].low_pass.frequency");
+    }
+
+    #[test]
+    fn an_error_is_taken_back_at_the_rate_limit() {
+        let mut law = start("rate_limit = 0.002", f64::INFINITY);
+        // At this rate nothing is left to do, however far it is.
+        assert!(command(&mut *law, 1.0, -0.002, 0.0).abs() < 1e-18);
+        let mut free = start("", f64::INFINITY);
+        let [limited, free] = [&mut law, &mut free].map(|law| command(&mut **law, 1e-3, 1e-4, 0.0));
+        assert!((limited / free - 1.0).abs() < 1e-14, "{limited} {free}");
+    }
+
+    #[test]
+    fn the_integral_takes_a_constant_torque_away_and_does_not_wind_up() {
+        let keys = "integral = { time = 30.0, limit = 0.5 }";
+        let mut law = start(keys, f64::INFINITY);
+        let (mut angle, mut rate) = (0.0, 0.0);
+        for _ in 0..4000 {
+            let u = command(&mut *law, angle, rate, 0.0) + 1e-5;
+            angle += rate * PERIOD + 0.5 * u * PERIOD * PERIOD;
+            rate += u * PERIOD;
+        }
+        // Without it the angle would be 1e-5/wn² = 1e-3.
+        assert!(angle.abs() < 1e-9, "{angle}");
+        // Where the actuator is at its limit the integral stands still; where not it goes on to its own.
+        for (most, integral) in [(1e-4, PERIOD), (f64::INFINITY, 0.5)] {
+            let mut law = start(keys, most);
+            for _ in 0..10 {
+                command(&mut *law, 1.0, 0.0, 0.0);
+            }
+            let found = command(&mut *law, 0.0, 0.0, 0.0);
+            assert!((found + 0.01 * integral / 30.0).abs() < 1e-18, "{found}");
+        }
+    }
+}

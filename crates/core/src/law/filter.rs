@@ -1,0 +1,197 @@
+//! Filters of what a law commands, as a scenario writes them: each becomes a digital filter at the law's period.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::document::Fault;
+use crate::numerics::biquad::Biquad;
+use crate::quantity::{Finite, NonNegative, Positive};
+
+/// The kinds of filter.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Filter {
+    /// (s² + 2 depth zeta w s + w²)/(s² + 2 zeta w s + w²).
+    Notch(Notch),
+    /// w²/(s² + 2 zeta w s + w²).
+    LowPass(LowPass),
+    /// (1 + s/zero)/(1 + s/pole): a lead with the zero below the pole, else a lag.
+    Lead(Lead),
+    /// b0 + b1/z + b2/z² over 1 + a1/z + a2/z², as they are.
+    Biquad(Coefficients),
+}
+
+/// A notch: its gain is 1 far from a frequency, and small there.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Notch {
+    /// The frequency w (rad/s).
+    pub frequency: Positive,
+    /// The gain there, below 1.
+    pub depth: NonNegative,
+    /// The damping ratio zeta of the denominator: the notch is the wider the larger it is.
+    #[serde(default = "wide")]
+    pub damping: Positive,
+}
+
+/// A low-pass filter of second order.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LowPass {
+    /// The frequency w (rad/s).
+    pub frequency: Positive,
+    /// The damping ratio zeta.
+    #[serde(default = "butterworth")]
+    pub damping: Positive,
+}
+
+/// A zero and a pole.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Lead {
+    /// The zero (rad/s).
+    pub zero: Positive,
+    /// The pole (rad/s).
+    pub pole: Positive,
+}
+
+/// The coefficients of a digital filter at the law's period.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Coefficients {
+    /// b0, b1, b2.
+    pub b: [Finite; 3],
+    /// a1, a2.
+    pub a: [Finite; 2],
+}
+
+fn wide() -> Positive {
+    Positive::new(0.6).unwrap_or(Positive::ONE)
+}
+
+fn butterworth() -> Positive {
+    Positive::new(std::f64::consts::FRAC_1_SQRT_2).unwrap_or(Positive::ONE)
+}
+
+impl Filter {
+    /// The digital filter at samples this far apart (s).
+    ///
+    /// # Errors
+    /// A key that does not fit the period, and why.
+    pub fn sampled(&self, period: f64) -> Result<Biquad, Fault> {
+        match self {
+            Self::Notch(notch) => {
+                let (w, depth) = (notch.frequency.get(), notch.depth.get());
+                if depth >= 1.0 {
+                    return Err(Fault::new("notch.depth", format!("must be a gain below 1, got {depth}")));
+                }
+                below_nyquist(w, period).map_err(|why| Fault::new("notch.frequency", why))?;
+                let damping = 2.0 * notch.damping.get() * w;
+                Ok(Biquad::tustin([w * w, depth * damping, 1.0], [w * w, damping, 1.0], w, period))
+            }
+            Self::LowPass(pass) => {
+                let w = pass.frequency.get();
+                below_nyquist(w, period).map_err(|why| Fault::new("low_pass.frequency", why))?;
+                let damping = 2.0 * pass.damping.get() * w;
+                Ok(Biquad::tustin([w * w, 0.0, 0.0], [w * w, damping, 1.0], w, period))
+            }
+            Self::Lead(lead) => {
+                let (zero, pole) = (lead.zero.get(), lead.pole.get());
+                // Where the phase is largest.
+                let middle = libm::sqrt(zero) * libm::sqrt(pole);
+                below_nyquist(middle, period).map_err(|why| {
+                    Fault::new("lead.pole", format!("makes the middle of zero and pole one that {why}"))
+                })?;
+                Ok(Biquad::tustin([1.0, 1.0 / zero, 0.0], [1.0, 1.0 / pole, 0.0], middle, period))
+            }
+            Self::Biquad(coefficients) => {
+                let biquad = Biquad::new(coefficients.b.map(Finite::get), coefficients.a.map(Finite::get));
+                let why = "must make a filter that is stable: |a2| < 1 and |a1| < 1 + a2";
+                if biquad.is_stable() { Ok(biquad) } else { Err(Fault::new("biquad.a", why)) }
+            }
+        }
+    }
+}
+
+/// A filter knows nothing of a frequency that its samples show as another.
+fn below_nyquist(frequency: f64, period: f64) -> Result<(), String> {
+    let most = std::f64::consts::PI / period;
+    if frequency < most {
+        return Ok(());
+    }
+    let turns = libm::round(frequency / (2.0 * most));
+    let alias = (frequency - turns * 2.0 * most).abs();
+    Err(format!(
+        "must be below pi over the law's period, {most:.4} rad/s, got {frequency}: at samples this appears at {alias:.4} rad/s"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filter(text: &str) -> Filter {
+        toml::from_str(text).unwrap()
+    }
+
+    fn close(found: [f64; 2], exact: [f64; 2], within: f64) {
+        for (found, exact) in found.into_iter().zip(exact) {
+            assert!((found - exact).abs() <= within, "{found} {exact}");
+        }
+    }
+
+    #[test]
+    fn the_coefficients_are_those_of_the_bilinear_transform() {
+        let responses = |text: &str| {
+            let mut biquad = filter(text).sampled(0.25).unwrap();
+            [1.0, 0.0, 0.0, 0.0].map(|sample| biquad.filter(sample))
+        };
+        // The impulse response of given coefficients: b0, b1 - a1 b0, ...
+        let impulse = |b: [f64; 3], a: [f64; 2]| {
+            let mut biquad = Biquad::new(b, a);
+            [1.0, 0.0, 0.0, 0.0].map(|sample| biquad.filter(sample))
+        };
+        // Eight digits from SciPy's signal.bilinear, prewarped.
+        let notch = impulse([0.866_960_62, -1.639_860_29, 0.842_771_65], [-1.639_860_29, 0.709_732_27]);
+        let low = impulse([0.045_828_70, 0.091_657_41, 0.045_828_70], [-1.314_141_89, 0.497_456_71]);
+        let found = responses("notch = { frequency = 1.1475, depth = 0.08333333333333333, damping = 0.6 }");
+        for (found, exact) in found.into_iter().zip(notch) {
+            assert!((found - exact).abs() < 3e-8, "{found} {exact}");
+        }
+        for (found, exact) in responses("low_pass = { frequency = 2.0, damping = 0.7 }").into_iter().zip(low)
+        {
+            assert!((found - exact).abs() < 3e-8, "{found} {exact}");
+        }
+    }
+
+    #[test]
+    fn gains_are_those_asked_for() {
+        let notch = filter("notch = { frequency = 1.1475, depth = 0.05 }").sampled(0.25).unwrap();
+        close(notch.response(1.1475, 0.25), [0.05, 0.0], 1e-12);
+        close(notch.response(0.0, 0.25), [1.0, 0.0], 1e-13);
+        // Half the zero's and pole's phases: atan(w/z) - atan(w/p) at sqrt(z p).
+        let lead = filter("lead = { zero = 0.5, pole = 2.0 }").sampled(0.25).unwrap();
+        let phase = libm::atan(2.0) - libm::atan(0.5);
+        close(lead.response(1.0, 0.25), [2.0, phase], 1e-14);
+        let low = filter("low_pass = { frequency = 2.0 }").sampled(0.25).unwrap();
+        close(
+            low.response(2.0, 0.25),
+            [std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_PI_2],
+            1e-13,
+        );
+    }
+
+    #[test]
+    fn what_samples_cannot_show_is_refused() {
+        let fault = |text: &str| filter(text).sampled(0.25).unwrap_err().to_string();
+        let notch = fault("notch = { frequency = 50.4, depth = 0.1 }");
+        assert!(
+            notch.starts_with("`notch.frequency` must be below pi over the law's period, 12.5664 rad/s"),
+            "{notch}"
+        );
+        assert!(notch.ends_with("appears at 0.1345 rad/s"), "{notch}");
+        assert!(fault("notch = { frequency = 5.0, depth = 1.0 }").contains("a gain below 1"));
+        assert!(fault("biquad = { b = [1.0, 0.0, 0.0], a = [-2.0, 1.0] }").contains("stable"));
+        assert!(filter("biquad = { b = [1.0, 0.0, 0.0], a = [-1.0, 0.5] }").sampled(0.25).is_ok());
+    }
+}

@@ -1,0 +1,55 @@
+//! A law of its own about each of three axes.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Authority, Control, Law, Promise, Reads, Rule};
+use crate::time::Span;
+
+/// Laws of one angle, lifted to three axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PerAxis {
+    /// About x.
+    pub roll: Law,
+    /// About y.
+    pub pitch: Law,
+    /// About z.
+    pub yaw: Law,
+}
+
+impl PerAxis {
+    /// The law about an axis.
+    pub fn about(&self, axis: usize) -> &Law {
+        [&self.roll, &self.pitch, &self.yaw][axis.min(2)]
+    }
+
+    fn all(&self) -> [&Law; 3] {
+        [&self.roll, &self.pitch, &self.yaw]
+    }
+}
+
+impl Rule for PerAxis {
+    fn start(&self, authority: &Authority) -> Box<dyn Control> {
+        self.roll.start(authority)
+    }
+
+    /// The shortest of its laws, at which sensors are read that have no period of their own.
+    fn period(&self) -> Option<Span> {
+        self.all().into_iter().filter_map(|law| law.period()).min()
+    }
+
+    fn switches(&self) -> bool {
+        self.all().into_iter().all(|law| law.switches())
+    }
+
+    fn promise(&self) -> Promise {
+        Promise::Nothing
+    }
+
+    fn reads(&self) -> Reads {
+        let of = |wanted: Reads| self.all().into_iter().any(|law| law.reads() == wanted);
+        let order = [Reads::ElasticRates, Reads::DominantMode, Reads::Motion];
+        order.into_iter().find(|wanted| of(*wanted)).unwrap_or(Reads::Nothing)
+    }
+}

@@ -1,0 +1,235 @@
+//! A turn from one attitude to another about one axis, in closed form (\[Wie08\], eigenaxis rotation).
+
+use nalgebra::Quaternion;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::body::spatial::{Vector, rotation};
+
+/// How the rate of a turn rises to its limit, and falls.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Profile {
+    /// At a constant acceleration: the shortest.
+    #[default]
+    Trapezoid,
+    /// At an acceleration that rises and falls as 1 - cos: twice as long, without a jump.
+    Versine,
+}
+
+/// Where a turn is at an instant.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Pose {
+    /// The attitude.
+    pub attitude: Quaternion<f64>,
+    /// The rate in the axes of that attitude (rad/s).
+    pub rate: Vector,
+    /// The acceleration in the same axes (rad/s²).
+    pub acceleration: Vector,
+}
+
+impl Pose {
+    /// At rest in an attitude.
+    pub fn at_rest(attitude: Quaternion<f64>) -> Self {
+        Self { attitude, rate: Vector::zeros(), acceleration: Vector::zeros() }
+    }
+
+    /// Rate and acceleration in the axes of a body that is beyond it by so much (twice the sine of half the angle along its
+    /// axis, rad).
+    pub fn seen_from(&self, beyond: &Vector) -> [Vector; 2] {
+        let half = beyond * 0.5;
+        let turn = Quaternion::from_parts(libm::sqrt((1.0 - half.norm_squared()).max(0.0)), half);
+        let turned = |vector: &Vector| -> Vector {
+            (turn.conjugate() * Quaternion::from_imag(*vector) * turn).vector().into_owned()
+        };
+        [turned(&self.rate), turned(&self.acceleration)]
+    }
+}
+
+/// A turn from rest to rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slew {
+    from: Quaternion<f64>,
+    to: Quaternion<f64>,
+    /// The axis, the same in both attitudes, and the angle about it, at most pi (rad).
+    axis: Vector,
+    angle: f64,
+    profile: Profile,
+    /// Largest acceleration (rad/s²) and rate (rad/s) of this turn.
+    acceleration: f64,
+    rate: f64,
+    /// How long the rate rises, and how long it stays (s).
+    rise: f64,
+    coast: f64,
+}
+
+impl Slew {
+    /// The turn on the shorter way within these limits (rad/s², rad/s); the rate may be endless.
+    pub fn new(
+        [from, to]: [Quaternion<f64>; 2],
+        acceleration: f64,
+        rate_limit: f64,
+        profile: Profile,
+    ) -> Self {
+        let turn = from.conjugate() * to;
+        let sine = turn.vector().norm();
+        let angle = 2.0 * libm::atan2(sine, turn.w.abs());
+        let axis =
+            if sine > 0.0 { turn.vector() * (libm::copysign(1.0, turn.w) / sine) } else { Vector::x() };
+        // The mean of the acceleration while the rate rises.
+        let mean = if profile == Profile::Versine { 0.5 * acceleration } else { acceleration };
+        let rate = rate_limit.min(libm::sqrt(angle * mean));
+        let rise = rate / mean;
+        let coast = if rate > 0.0 { (angle / rate - rise).max(0.0) } else { 0.0 };
+        Self { from, to, axis, angle, profile, acceleration, rate, rise, coast }
+    }
+
+    /// The turn that is over as it begins.
+    pub fn at_once(to: Quaternion<f64>) -> Self {
+        Self {
+            from: to,
+            to,
+            axis: Vector::x(),
+            angle: 0.0,
+            profile: Profile::Trapezoid,
+            acceleration: 0.0,
+            rate: 0.0,
+            rise: 0.0,
+            coast: 0.0,
+        }
+    }
+
+    /// The attitude at its end.
+    pub fn to(&self) -> Quaternion<f64> {
+        self.to
+    }
+
+    /// How long it lasts (s).
+    pub fn duration(&self) -> f64 {
+        2.0 * self.rise + self.coast
+    }
+
+    /// Where it is so many seconds after it began.
+    pub fn at(&self, t: f64) -> Pose {
+        if t >= self.duration() {
+            return Pose::at_rest(self.to);
+        }
+        let [angle, rate, acceleration] = self.along(t.max(0.0));
+        Pose {
+            attitude: self.from * rotation(&(self.axis * angle)),
+            rate: self.axis * rate,
+            acceleration: self.axis * acceleration,
+        }
+    }
+
+    /// Angle (rad), rate (rad/s) and acceleration (rad/s²) about the axis.
+    fn along(&self, t: f64) -> [f64; 3] {
+        if t < self.rise {
+            self.rising(t)
+        } else if t < self.rise + self.coast {
+            [0.5 * self.rate * self.rise + self.rate * (t - self.rise), self.rate, 0.0]
+        } else {
+            let [angle, rate, acceleration] = self.rising(self.duration() - t);
+            [self.angle - angle, rate, -acceleration]
+        }
+    }
+
+    /// The same while the rate rises.
+    fn rising(&self, t: f64) -> [f64; 3] {
+        let most = self.acceleration;
+        match self.profile {
+            Profile::Trapezoid => [0.5 * most * t * t, most * t, most],
+            Profile::Versine => {
+                let w = 2.0 * std::f64::consts::PI / self.rise;
+                let (sin, half) = (libm::sin(w * t), libm::sin(0.5 * w * t));
+                let versine = 2.0 * half * half;
+                [
+                    0.5 * most * (0.5 * t * t - versine / (w * w)),
+                    0.5 * most * (t - sin / w),
+                    0.5 * most * versine,
+                ]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIXTY: f64 = std::f64::consts::FRAC_PI_3;
+
+    fn turned(by: f64) -> Quaternion<f64> {
+        rotation(&(Vector::new(1.0, 2.0, 2.0) * (by / 3.0)))
+    }
+
+    fn slew(angle: f64, rate: f64, profile: Profile) -> Slew {
+        let from = rotation(&Vector::new(0.3, -0.2, 0.5));
+        Slew::new([from, from * turned(angle)], 2e-4, rate, profile)
+    }
+
+    #[test]
+    fn sixty_degrees_take_as_long_as_by_hand() {
+        // 2 r/a + (A - r²/a)/r.
+        let slew = slew(SIXTY, 8e-3, Profile::Trapezoid);
+        assert!((slew.duration() - 170.899_693_899_574_71).abs() < 1e-12, "{}", slew.duration());
+        // a t²/2 while it speeds up, and the same backwards at the end.
+        let from = rotation(&Vector::zeros());
+        let plain = Slew::new([from, turned(SIXTY)], 2e-4, 8e-3, Profile::Trapezoid);
+        let at = |t: f64| plain.at(t).attitude;
+        assert!((at(10.0) - turned(0.01)).norm() < 1e-15);
+        assert!((at(60.0) - turned(0.16 + 8e-3 * 20.0)).norm() < 1e-15);
+        let left = plain.duration() - 140.0;
+        assert!((at(140.0) - turned(SIXTY - 1e-4 * left * left)).norm() < 1e-15);
+        assert_eq!(plain.at(60.0).acceleration, Vector::zeros());
+    }
+
+    #[test]
+    fn a_short_turn_does_not_reach_the_rate() {
+        for profile in [Profile::Trapezoid, Profile::Versine] {
+            for rate in [8e-3, f64::INFINITY] {
+                let slew = slew(0.1, rate, profile);
+                let mean = if profile == Profile::Versine { 1e-4 } else { 2e-4 };
+                assert!((slew.duration() - 2.0 * libm::sqrt(0.1 / mean)).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn rate_and_acceleration_are_derivatives() {
+        for profile in [Profile::Trapezoid, Profile::Versine] {
+            for (angle, rate) in [(SIXTY, 8e-3), (-0.1, 8e-3), (3.1, 0.02)] {
+                let slew = slew(angle, rate, profile);
+                let h = 1e-3;
+                for part in [0.01, 0.1, 0.2, 0.3, 0.45, 0.7, 0.9, 0.99] {
+                    let t = part * slew.duration();
+                    let [before, now, after] = [t - h, t, t + h].map(|t| slew.at(t));
+                    let turn = (before.attitude.conjugate() * after.attitude).vector() * 2.0;
+                    assert!((turn / (2.0 * h) - now.rate).norm() < 1e-10, "{profile:?} {t}");
+                    let change = (after.rate - before.rate) / (2.0 * h);
+                    assert!((change - now.acceleration).norm() < 1e-9, "{profile:?} {t}");
+                    assert!(
+                        now.rate.norm() <= rate * (1.0 + 1e-12)
+                            && now.acceleration.norm() <= 2e-4 * (1.0 + 1e-12)
+                    );
+                }
+                let end = slew.at(slew.duration() + 1.0);
+                let there = rotation(&Vector::new(0.3, -0.2, 0.5)) * turned(angle);
+                assert!((end.attitude - there).norm() < 1e-15 && end.rate.norm() == 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn no_turn_takes_no_time_and_the_way_is_the_shorter() {
+        let nowhere = slew(0.0, 8e-3, Profile::Versine);
+        assert_eq!(nowhere.duration(), 0.0);
+        assert!(nowhere.at(0.0).attitude.norm().is_finite() && nowhere.at(0.0).acceleration.norm() == 0.0);
+        // 300 degrees are 60 the other way, whichever sign the quaternion has.
+        for sign in [1.0, -1.0] {
+            let slew = Slew::new([turned(0.0), turned(5.0 * SIXTY) * sign], 2e-4, 8e-3, Profile::Trapezoid);
+            assert!((slew.duration() - 170.899_693_899_574_71).abs() < 1e-11, "{}", slew.duration());
+            assert!(slew.at(1.0).rate.x < 0.0);
+        }
+    }
+}

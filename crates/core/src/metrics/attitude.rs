@@ -1,0 +1,66 @@
+//! How well an attitude filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
+
+use super::{ATTITUDE_ERROR, BIAS_ERROR, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told, Value};
+use crate::record::{AttitudeEstimate, AxisEstimate, Use};
+use crate::scenario::Scenario;
+use crate::time::Instant;
+
+/// Chi-square of three degrees of freedom lies between these with a probability of 95 %.
+const INSIDE: [f64; 2] = [0.215_795_282_623_897_85, 9.348_403_604_496_148];
+
+/// Gathers the samples of a filter.
+#[derive(Clone, Debug)]
+pub struct Known {
+    assess: [f64; 2],
+    /// How many samples, and how many of them measured the attitude.
+    count: (u64, u64),
+    nees: f64,
+    nis: f64,
+    inside: u64,
+    /// Sums of the squared errors of attitude (rad²) and bias (rad²/s²).
+    squares: [f64; 2],
+}
+
+impl Known {
+    /// An empty gathering for runs of a scenario with an attitude filter.
+    pub fn new(scenario: &Scenario) -> Option<Self> {
+        let estimator = scenario.estimator.as_ref();
+        let filter = estimator.filter(|estimator| estimator.attitude().is_some())?;
+        let assess = filter.assess();
+        Some(Self { assess, count: (0, 0), nees: 0.0, nis: 0.0, inside: 0, squares: [0.0; 2] })
+    }
+
+    /// Takes what the filter made of a sample.
+    pub fn see(&mut self, now: Instant, estimate: &AttitudeEstimate) {
+        let ([from, to], t) = (self.assess, now.seconds());
+        if t < from || t > to {
+            return;
+        }
+        self.count.0 += 1;
+        self.nees += estimate.nees;
+        let errors: [fn(&AxisEstimate) -> f64; 2] =
+            [|axis| axis.angle_error_rad, |axis| axis.bias_error_rad_s];
+        for (sum, error) in self.squares.iter_mut().zip(errors) {
+            *sum += estimate.axes.iter().map(|axis| error(axis) * error(axis)).sum::<f64>();
+        }
+        if estimate.measured == Use::Used {
+            self.count.1 += 1;
+            self.nis += estimate.nis;
+            self.inside += u64::from((INSIDE[0]..=INSIDE[1]).contains(&estimate.nis));
+        }
+    }
+
+    /// The metrics of the run that has ended.
+    pub fn finish(self) -> [Told; 5] {
+        // 0/0 of no samples: no number.
+        let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
+        let [attitude, bias] = self.squares.map(|sum| Value::Number(libm::sqrt(sum / all)));
+        [
+            (&NEES_MEAN, Value::Number(self.nees / all / 6.0)),
+            (&NIS_MEAN, Value::Number(self.nis / measured / 3.0)),
+            (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),
+            (&ATTITUDE_ERROR, attitude),
+            (&BIAS_ERROR, bias),
+        ]
+    }
+}

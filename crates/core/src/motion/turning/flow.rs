@@ -1,0 +1,271 @@
+//! The motion from one departure to the next.
+
+use nalgebra::{Matrix3, Quaternion};
+
+use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
+use super::pace::Pace;
+use super::response::Response;
+use super::rotation::Bend;
+use super::state::{Seen, State};
+use super::step::{Step, Work};
+use crate::body::spatial::Vector;
+
+/// Steps after which the motion asks whether it may go on.
+const STEPS: u64 = 256;
+
+/// A flexible body that turns, and what acts on it since it departed.
+#[derive(Clone, Debug)]
+pub struct Turning {
+    model: Model,
+    pace: Pace,
+    /// The state at the departure, at the instant of the grid that was reached last, and at the instant seen last.
+    departed: State,
+    grid: State,
+    here: State,
+    /// Seconds since the departure of the last two.
+    reached: f64,
+    now: f64,
+    seen: Seen,
+    acting: Acting,
+    /// Responses over a step of the grid at each level, once they were needed.
+    regular: Vec<Option<Regular>>,
+    /// Those over the last step that was beside the grid.
+    beside: Vec<Response>,
+    work: Work,
+    effort: Effort,
+}
+
+/// What acts from a departure on.
+#[derive(Clone, Debug, Default)]
+pub struct Acting {
+    /// Torque on the hub in its axes (N m).
+    pub torque: Vector,
+    /// Modal forces beside phi' times the torque, which the motion has of itself (N/sqrt(kg)); none at all if there are none.
+    pub forces: Vec<f64>,
+    /// The rotors. One that was not there before brings its momentum with it.
+    pub rotors: Vec<Rotor>,
+}
+
+/// What the motion took so far.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Steps.
+    pub steps: u64,
+    /// Passes over the stages of these steps.
+    pub passes: u64,
+}
+
+/// A step of the grid: its length (s) and the responses over it.
+#[derive(Clone, Debug)]
+struct Regular {
+    h: f64,
+    responses: Vec<Response>,
+}
+
+impl Flexible {
+    /// Length of the steps in which the body moves while it turns, and torques change, at such a rate (rad/s), in s.
+    pub fn step(&self, rate: f64) -> f64 {
+        let pace = Pace::new(&Model::new(self).felt);
+        pace.length(pace.level(rate, 0.0))
+    }
+}
+
+impl Acting {
+    /// Momentum of the rotors `t` seconds after the departure (N m s), and its rate (N m).
+    fn rotors(&self, t: f64) -> (Vector, Vector) {
+        self.rotors.iter().fold((Vector::zeros(), Vector::zeros()), |(sum, rate), rotor| {
+            (sum + rotor.axis * (rotor.momentum + rotor.torque * t), rate + rotor.axis * rotor.torque)
+        })
+    }
+
+    /// The step of `h` seconds that begins `t` seconds after the departure.
+    fn step<'a>(
+        &'a self,
+        model: &'a Model,
+        responses: &'a [Response],
+        h: f64,
+        t: f64,
+        around: Option<(&'a dyn Surroundings, f64)>,
+    ) -> Step<'a> {
+        Step {
+            model,
+            responses,
+            h,
+            torque: self.torque,
+            forces: &self.forces,
+            rotors: self.rotors(t),
+            around: around.map(|(around, since)| (around, since + t)),
+        }
+    }
+}
+
+impl Turning {
+    /// A body whose mean axes have an attitude, with these rates as if it were rigid (rad/s), and q and q' of each mode
+    /// (m sqrt(kg), and per second), at rest if they are left out; nothing acts.
+    pub fn new(body: &Flexible, attitude: Quaternion<f64>, rigid: Vector, modes: &[[f64; 2]]) -> Self {
+        let model = Model::new(body);
+        let turning = body.inertia * rigid;
+        let at = |index: usize| modes.get(index).copied().unwrap_or_default();
+        let (mut bent, mut rate) = (Vector::zeros(), rigid);
+        for (index, mode) in body.modes.iter().enumerate() {
+            let [q, speed] = at(index);
+            bent += mode.rotation * q;
+            rate += mode.rotation * speed;
+        }
+        let moved = body.modes.iter().enumerate();
+        let momentum =
+            moved.clone().fold(turning, |sum, (index, mode)| sum + mode.moments * rate * at(index)[0]);
+        let canonical = |(index, mode): (usize, &FreeMode)| {
+            let [q, speed] = at(index);
+            [q, (speed - mode.rotation.dot(&turning)) / mode.frequency, 0.0, 0.0]
+        };
+        let state = State {
+            attitude,
+            momentum: Bend::new(bent).forward(&momentum),
+            turned: Vector::zeros(),
+            lost: (Quaternion::default(), Vector::zeros(), Vector::zeros()),
+            modes: moved.map(canonical).collect(),
+        };
+        let mut turning = Self {
+            pace: Pace::new(&model.felt),
+            grid: state.clone(),
+            here: state.clone(),
+            reached: 0.0,
+            now: 0.0,
+            seen: Seen::empty(state.modes.len()),
+            acting: Acting::default(),
+            regular: Vec::new(),
+            beside: Vec::new(),
+            work: Work::new(state.modes.len()),
+            effort: Effort::default(),
+            departed: state,
+            model,
+        };
+        turning.look();
+        turning
+    }
+
+    /// Begins a new motion at the instant seen last, under what acts from now on.
+    pub fn depart(&mut self, acting: &Acting) {
+        let bent = self
+            .here
+            .modes
+            .iter()
+            .zip(&self.model.modes)
+            .fold(Vector::zeros(), |sum, ([q, ..], mode)| sum + mode.rotation * *q);
+        for rotor in acting.rotors.iter().skip(self.acting.rotors.len()) {
+            self.here.momentum += Bend::new(bent).forward(&(rotor.axis * rotor.momentum));
+        }
+        self.acting.torque = acting.torque;
+        self.acting.forces.clone_from(&acting.forces);
+        self.acting.rotors.clone_from(&acting.rotors);
+        self.departed.copy_from(&self.here);
+        self.grid.copy_from(&self.here);
+        (self.reached, self.now) = (0.0, 0.0);
+        self.look();
+    }
+
+    /// Brings the body to `t` seconds after the departure, which was so long after the start of the run (s), as long as it
+    /// may `go_on`.
+    ///
+    /// # Errors
+    /// What `go_on` says.
+    pub fn advance<E>(
+        &mut self,
+        t: f64,
+        around: Option<(&dyn Surroundings, f64)>,
+        mut go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<(), E> {
+        if t < self.reached {
+            self.grid.copy_from(&self.departed);
+            self.reached = 0.0;
+        }
+        let mut steps = 0_u64;
+        loop {
+            let level = self.level(around);
+            self.prepare(level);
+            let Some(Some(Regular { h, responses })) = self.regular.get(level) else { break };
+            if self.reached + h > t {
+                break;
+            }
+            steps += 1;
+            if steps.is_multiple_of(STEPS) {
+                go_on()?;
+            }
+            let step = self.acting.step(&self.model, responses, *h, self.reached, around);
+            self.effort.passes += u64::from(step.take(&mut self.grid, &mut self.work));
+            self.effort.steps += 1;
+            self.reached += h;
+        }
+        self.here.copy_from(&self.grid);
+        self.now = t;
+        let h = t - self.reached;
+        if h > 0.0 {
+            let modes = self.model.modes.iter();
+            self.beside.clear();
+            self.beside.extend(modes.map(|of| Response::new(of.frequency, of.damping, h)));
+            let step = self.acting.step(&self.model, &self.beside, h, self.reached, around);
+            step.take(&mut self.here, &mut self.work);
+        }
+        self.look();
+        Ok(())
+    }
+
+    /// The level of the next step.
+    fn level(&self, around: Option<(&dyn Surroundings, f64)>) -> usize {
+        let (exerted, slow) = around.map_or((0.0, 0.0), |(around, _)| (around.bound(), around.frequency()));
+        let (rotors, change) = self.acting.rotors(self.reached);
+        let push = self.acting.torque.norm() + exerted + change.norm();
+        let size = self.grid.momentum.norm() + rotors.norm();
+        self.pace.level(self.model.mobility * size + slow, self.model.mobility * push)
+    }
+
+    /// Makes sure that there are responses for a level.
+    fn prepare(&mut self, level: usize) {
+        if self.regular.len() <= level {
+            self.regular.resize(level + 1, None);
+        }
+        if self.regular[level].is_none() {
+            let h = self.pace.length(level);
+            let modes = self.model.modes.iter();
+            let responses = modes.map(|of| Response::new(of.frequency, of.damping, h)).collect();
+            self.regular[level] = Some(Regular { h, responses });
+        }
+    }
+
+    /// The inertia tensor of the body as it is bent at the instant seen last (kg m²).
+    pub fn inertia(&self) -> Matrix3<f64> {
+        let modes = self.model.modes.iter().zip(&self.seen.displacements);
+        modes.fold(self.model.inertia, |sum, (of, q)| sum + tensor(of.moments) * *q)
+    }
+
+    fn look(&mut self) {
+        self.seen.look(&self.model, &self.here, &self.acting.rotors(self.now).0);
+    }
+
+    /// The body at the instant seen last.
+    pub fn seen(&self) -> &Seen {
+        &self.seen
+    }
+
+    /// Energy of motion and deformation of each mode at the instant seen last (J): (q'² + W² q²)/2.
+    pub fn energies(&self) -> impl Iterator<Item = f64> + '_ {
+        let seen = self.seen.displacements.iter().zip(&self.seen.rates);
+        seen.zip(&self.model.modes).map(|((q, rate), mode)| {
+            let stretched = mode.frequency * q;
+            0.5 * (rate * rate + stretched * stretched)
+        })
+    }
+
+    /// What the motion took so far.
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
+    /// Makes it walk at another pace.
+    #[cfg(test)]
+    pub(super) fn set_pace(&mut self, pace: Pace) {
+        self.pace = pace;
+        self.regular.clear();
+    }
+}

@@ -1,0 +1,174 @@
+//! What a turning flexible body is: its inertia, free modes and rotors, and the constants that follow.
+
+use nalgebra::{DMatrix, Matrix3, Quaternion};
+
+use crate::body::spatial::Vector;
+
+/// A free mode: of the whole body, in axes that follow its total momentum, mass-normalised.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeMode {
+    /// Natural frequency W (rad/s).
+    pub frequency: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Rotation of the hub for a unit of the mode (rad/(m sqrt(kg))).
+    pub rotation: Vector,
+    /// Change of the inertia tensor for a unit of the mode (sqrt(kg) m).
+    pub moments: Matrix3<f64>,
+}
+
+/// A flexible body that turns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Flexible {
+    /// Inertia tensor about the centre of mass (kg m²), without what rotors have about their axes.
+    pub inertia: Matrix3<f64>,
+    /// The free modes.
+    pub modes: Vec<FreeMode>,
+    /// The damping matrix of all modes (1/s) where what is beside its diagonal counts; the diagonal then replaces the modes'
+    /// damping ratios.
+    pub damping: Option<DMatrix<f64>>,
+}
+
+/// A rotor under way: h' = u.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Rotor {
+    /// Its axis, a unit vector of the body.
+    pub axis: Vector,
+    /// Angular momentum about the axis, with what the body's rate gives it (N m s).
+    pub momentum: f64,
+    /// Torque on the rotor about its axis, of motor and bearing together (N m), until the next departure.
+    pub torque: f64,
+}
+
+/// What the surroundings do to a body.
+pub trait Surroundings {
+    /// The torque in the body's axes (N m) at a time since the start (s), where the hub faces this way and the body has this
+    /// inertia (kg m²).
+    fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector;
+
+    /// The tensor (1/s²) whose product with what a unit of a mode adds to the inertia, element by element, is the force on the
+    /// mode; none if there is no such force.
+    fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
+
+    /// No torque is larger (N m).
+    fn bound(&self) -> f64;
+
+    /// How fast it changes by itself (rad/s).
+    fn frequency(&self) -> f64;
+}
+
+/// The constants of the motion.
+#[derive(Clone, Debug)]
+pub(super) struct Model {
+    /// J.
+    pub inertia: Matrix3<f64>,
+    /// J^-1.
+    pub inverse: Matrix3<f64>,
+    /// The inertia that is left to the hub, the inverse of J^-1 + sum phi phi'.
+    pub left: Matrix3<f64>,
+    /// sum phi phi'.
+    pub bending: Matrix3<f64>,
+    /// No rigid rate is larger for a unit of angular momentum (1/(kg m²)).
+    pub mobility: f64,
+    pub modes: Vec<Constants>,
+    /// The damping matrix without its diagonal (1/s).
+    pub beside: Option<DMatrix<f64>>,
+    /// Whether any mode changes the inertia.
+    pub stretches: bool,
+    /// The frequencies of modes that turn the hub or change the inertia (rad/s).
+    pub felt: Vec<f64>,
+}
+
+/// The constants of a mode.
+#[derive(Clone, Debug)]
+pub(super) struct Constants {
+    pub frequency: f64,
+    pub damping: f64,
+    pub rotation: Vector,
+    /// xx, yy, zz, yz, zx and xy of the change of the inertia tensor.
+    pub moments: [f64; 6],
+}
+
+impl Constants {
+    /// 1/2 w' J1 w, the force of the centrifugal acceleration (N/sqrt(kg)).
+    pub fn centrifugal(&self, rate: &Vector) -> f64 {
+        let ([xx, yy, zz, yz, zx, xy], [x, y, z]) = (self.moments, [rate.x, rate.y, rate.z]);
+        0.5 * (xx * x * x + yy * y * y + zz * z * z) + yz * y * z + zx * z * x + xy * x * y
+    }
+
+    /// The force of a tide (N/sqrt(kg)).
+    pub fn pulled(&self, tide: &Matrix3<f64>) -> f64 {
+        let [xx, yy, zz, yz, zx, xy] = self.moments;
+        let across = yz * tide.m23 + zx * tide.m31 + xy * tide.m12;
+        xx * tide.m11 + yy * tide.m22 + zz * tide.m33 + 2.0 * across
+    }
+}
+
+/// Rotations and moments below this part of what a mode can have are rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl Model {
+    /// The constants of a body.
+    pub fn new(body: &Flexible) -> Self {
+        // A body that was checked has an inverse.
+        let inverted = |m: Matrix3<f64>| symmetric(m.try_inverse().unwrap_or_else(Matrix3::identity));
+        let inverse = inverted(body.inertia);
+        let bending = body.modes.iter().fold(Matrix3::zeros(), |sum: Matrix3<f64>, mode| {
+            sum + mode.rotation * mode.rotation.transpose()
+        });
+        let constants = |(index, mode): (usize, &FreeMode)| {
+            let m = symmetric(mode.moments);
+            let damping = body.damping.as_ref().map(|d| d[(index, index)] / (2.0 * mode.frequency));
+            Constants {
+                frequency: mode.frequency,
+                damping: damping.unwrap_or(mode.damping),
+                rotation: mode.rotation,
+                moments: [m.m11, m.m22, m.m33, m.m23, m.m13, m.m12],
+            }
+        };
+        let size = libm::sqrt(body.inertia.norm());
+        let felt = body
+            .modes
+            .iter()
+            .filter(|mode| mode.rotation.norm() * size > ROUNDING || mode.moments.norm() > ROUNDING * size);
+        Self {
+            left: inverted(inverse + bending),
+            inertia: body.inertia,
+            mobility: inverse.norm(),
+            inverse,
+            bending,
+            modes: body.modes.iter().enumerate().map(constants).collect(),
+            beside: body.damping.as_ref().map(|damping| {
+                let mut beside = damping.clone();
+                beside.fill_diagonal(0.0);
+                beside
+            }),
+            stretches: body.modes.iter().any(|mode| mode.moments.norm() > 0.0),
+            felt: felt.map(|mode| mode.frequency).collect(),
+        }
+    }
+
+    /// The momentum Gt that turns the body as if it were rigid, and the rate of the hub, under a change of the inertia:
+    /// (J_left + J1) w = G + J_left phi P and Gt = G - J1 w.
+    pub fn rates(&self, momentum: &Vector, elastic: &Vector, changed: &Matrix3<f64>) -> (Vector, Vector) {
+        let rate = solved(&(self.left + changed), &(momentum + self.left * elastic));
+        (momentum - changed * rate, rate)
+    }
+}
+
+/// Symmetric to the last bit, so that energies are quadratic forms.
+fn symmetric(matrix: Matrix3<f64>) -> Matrix3<f64> {
+    (matrix + matrix.transpose()) * 0.5
+}
+
+/// The solution of M x = v by Cramer's rule; not finite if there is none.
+fn solved(m: &Matrix3<f64>, v: &Vector) -> Vector {
+    let (a, b, c): (Vector, Vector, Vector) = (m.column(0).into(), m.column(1).into(), m.column(2).into());
+    let (first, second, third) = (b.cross(&c), c.cross(&a), a.cross(&b));
+    Vector::new(first.dot(v), second.dot(v), third.dot(v)) / a.dot(&first)
+}
+
+/// The tensor of xx, yy, zz, yz, zx and xy.
+pub(super) fn tensor([xx, yy, zz, yz, zx, xy]: [f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
+}

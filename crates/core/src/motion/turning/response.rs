@@ -1,0 +1,182 @@
+//! The exact response of a mode over parts of a step, to what it departs with and to parabolas through the nodes.
+//!
+//! In (q, P/W) a mode moves by x' = A x + b g + c s with A = W \[\[0, 1\], \[-1, -2 zeta\]\], b = (1, -2 zeta) and
+//! c = (0, 1/W): g is the rate that momentum gives the mode, s what forces it. A function of A is a + b B with
+//! B = A/W + zeta, B² = zeta² - 1: such pairs are complex numbers below critical damping.
+
+use crate::numerics::gauss_legendre::{NODES, PARABOLAS};
+use crate::numerics::phasor::Phasor;
+use crate::numerics::phi;
+
+/// From this damping ratio on, poles are so near each other that functions of them are not separated.
+const NEAR_CRITICAL: f64 = 0.99;
+
+/// The responses of a mode at the three nodes and at the end of a step.
+#[derive(Clone, Debug)]
+pub struct Response {
+    /// Transitions of (q, P/W), row by row.
+    pub free: [[f64; 4]; 4],
+    /// By how much the squares of the last transition's columns exceed 1 by rounding, halved; 0 with damping.
+    pub excess: f64,
+    /// To g: of q and of P/W, for a unit at each of the nodes (s).
+    pub of_rate: [[[f64; 3]; 2]; 4],
+    /// To s (s², s).
+    pub of_force: [[[f64; 3]; 2]; 4],
+    /// To an s that stays 1.
+    pub of_constant: [[f64; 2]; 4],
+}
+
+impl Response {
+    /// The responses of a mode with this frequency W (rad/s) and damping ratio over a step of `h` seconds.
+    pub fn new(frequency: f64, damping: f64, h: f64) -> Self {
+        let mut response = Self {
+            free: [[0.0; 4]; 4],
+            excess: 0.0,
+            of_rate: [[[0.0; 3]; 2]; 4],
+            of_force: [[[0.0; 3]; 2]; 4],
+            of_constant: [[0.0; 2]; 4],
+        };
+        for (stage, part) in NODES.into_iter().chain([1.0]).enumerate() {
+            let phis = phis(frequency * part * h, damping);
+            response.free[stage] = phis[0].matrix(damping);
+            // To 1, x and x² of the step's fraction x.
+            let powers = [part * h, part * part * h, 2.0 * part * part * part * h];
+            let moments = [1, 2, 3].map(|n| phis[n].matrix(damping).map(|entry| entry * powers[n - 1]));
+            for (node, parabola) in PARABOLAS.iter().enumerate() {
+                let [m00, m01, m10, m11]: [f64; 4] =
+                    std::array::from_fn(|at| (0..3).map(|n| parabola[n] * moments[n][at]).sum());
+                response.of_rate[stage][0][node] = m00 - 2.0 * damping * m01;
+                response.of_rate[stage][1][node] = m10 - 2.0 * damping * m11;
+                response.of_force[stage][0][node] = m01 / frequency;
+                response.of_force[stage][1][node] = m11 / frequency;
+            }
+            response.of_constant[stage] = [moments[0][1] / frequency, moments[0][3] / frequency];
+        }
+        if damping == 0.0 {
+            let [cos, sin, ..] = response.free[3];
+            // cos² + sin² - 1 to twice the digits.
+            let (c, s) = (cos * cos, sin * sin);
+            let lost = libm::fma(cos, cos, -c) + libm::fma(sin, sin, -s);
+            let (large, little) = if c > s { (c, s) } else { (s, c) };
+            response.excess = 0.5 * (((large - 1.0) + little) + lost);
+        }
+        response
+    }
+}
+
+/// a + b B.
+#[derive(Copy, Clone, Debug)]
+struct Pair(f64, f64);
+
+impl Pair {
+    /// Row by row.
+    fn matrix(self, damping: f64) -> [f64; 4] {
+        let Self(a, b) = self;
+        [a + b * damping, b, -b, a - b * damping]
+    }
+}
+
+/// exp and phi_1 to phi_3 of A t, where W t is an `angle` (rad).
+fn phis(angle: f64, damping: f64) -> [Pair; 4] {
+    if damping < NEAR_CRITICAL {
+        let root = libm::sqrt((1.0 - damping) * (1.0 + damping));
+        let z = Phasor::new(-damping * angle, root * angle);
+        phi::first(z).map(|value| Pair(value.re, value.im / root))
+    } else {
+        doubled(angle, damping)
+    }
+}
+
+/// The same at and above critical damping, by series of a small part of the angle, which then is doubled.
+fn doubled(angle: f64, damping: f64) -> [Pair; 4] {
+    let square = (damping - 1.0) * (damping + 1.0);
+    let times = |Pair(a, b): Pair, Pair(c, d): Pair| Pair(a * c + b * d * square, a * d + b * c);
+    let sum = |Pair(a, b): Pair, Pair(c, d): Pair| Pair(a + c, b + d);
+    let scaled = |Pair(a, b): Pair, by: f64| Pair(a * by, b * by);
+    let mut doublings = 0;
+    let mut small = angle;
+    while small * (1.0 + 2.0 * damping) > 0.5 && doublings < 60 {
+        small *= 0.5;
+        doublings += 1;
+    }
+    let z = Pair(-damping * small, small);
+    let one = Pair(1.0, 0.0);
+    // phi_3 from its series, the others from z phi_(n + 1) = phi_n - 1/n!.
+    let third = (0..16)
+        .rev()
+        .fold(one, |sum_so_far, k| sum(one, scaled(times(z, sum_so_far), 1.0 / f64::from(k + 4))));
+    let third = scaled(third, 1.0 / 6.0);
+    let second = sum(times(z, third), Pair(0.5, 0.0));
+    let first = sum(times(z, second), one);
+    let mut phis = [sum(times(z, first), one), first, second, third];
+    for _ in 0..doublings {
+        let [whole, first, second, third] = phis;
+        let half_third = sum(sum(times(first, second), second), scaled(third, 2.0));
+        phis = [
+            times(whole, whole),
+            scaled(sum(times(whole, first), first), 0.5),
+            scaled(sum(times(first, first), scaled(second, 2.0)), 0.25),
+            scaled(half_third, 0.125),
+        ];
+    }
+    phis
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The phi functions by poles and by doubling, in every regime.
+    #[test]
+    fn doubling_agrees_with_poles_and_with_the_equation_of_motion() {
+        for angle in [1e-6, 0.3, 3.0, 20.0] {
+            for damping in [0.0, 0.005, 0.5, 0.98] {
+                let (poles, series) = (phis(angle, damping), doubled(angle, damping));
+                for (n, (Pair(a, b), Pair(c, d))) in poles.into_iter().zip(series).enumerate() {
+                    assert!((a - c).abs() + (b - d).abs() < 2e-14, "{angle} {damping} {n}: {a} {c}, {b} {d}");
+                }
+            }
+        }
+        // Critical: exp(-a) (1 + a B) with B² = 0, and above it exp(-2 a) (cosh + B sinh/sqrt(3), of sqrt(3) a).
+        let Pair(a, b) = phis(1.5, 1.0)[0];
+        assert!((a - libm::exp(-1.5)).abs() < 1e-15 && (b - 1.5 * libm::exp(-1.5)).abs() < 1e-15);
+        let (Pair(a, b), root) = (phis(1.5, 2.0)[0], libm::sqrt(3.0));
+        assert!((a - libm::exp(-3.0) * libm::cosh(1.5 * root)).abs() < 1e-14);
+        assert!((b - libm::exp(-3.0) * libm::sinh(1.5 * root) / root).abs() < 1e-14);
+    }
+
+    /// Under g = a + b t + c t² and s alike the response is a polynomial and a free motion: against small steps.
+    #[test]
+    fn parabolas_are_answered_exactly() {
+        let (w, zeta, h) = (3.0, 0.2, 0.7);
+        let response = Response::new(w, zeta, h);
+        let (g, s) = (|t: f64| 0.3 - t + 2.0 * t * t, |t: f64| -1.0 + 0.5 * t + t * t);
+        let rate = |t: f64, [q, p]: [f64; 2]| {
+            let v = w * p + g(t);
+            [v, (-w * w * q - 2.0 * zeta * w * v + s(t)) / w]
+        };
+        let mut x = [0.4, -0.6];
+        let steps = 4000;
+        let d = h / f64::from(steps);
+        for n in 0..steps {
+            let t = d * f64::from(n);
+            let along = |x: [f64; 2], k: [f64; 2], by: f64| [x[0] + k[0] * by, x[1] + k[1] * by];
+            let k1 = rate(t, x);
+            let k2 = rate(t + d / 2.0, along(x, k1, d / 2.0));
+            let k3 = rate(t + d / 2.0, along(x, k2, d / 2.0));
+            let k4 = rate(t + d, along(x, k3, d));
+            x = [0, 1].map(|i| x[i] + d / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+        }
+        for part in 0..2 {
+            let free = response.free[3];
+            let mut found = free[2 * part] * 0.4 - free[2 * part + 1] * 0.6;
+            for (node, at) in NODES.into_iter().enumerate() {
+                found += response.of_rate[3][part][node] * g(at * h);
+                found += response.of_force[3][part][node] * s(at * h);
+            }
+            assert!((found - x[part]).abs() < 1e-12, "{found} {}", x[part]);
+            let all: f64 = response.of_force[3][part].iter().sum();
+            assert!((all - response.of_constant[3][part]).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Where a turning body is, in mean axes, and what that looks like from the hub.
+
+use nalgebra::Quaternion;
+
+use super::model::{Model, tensor};
+use super::rotation::Bend;
+use crate::body::spatial::{Vector, rotation};
+
+/// The state that steps carry on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct State {
+    /// Unit quaternion that turns vectors of the mean axes into inertial ones.
+    pub attitude: Quaternion<f64>,
+    /// Total angular momentum in mean axes (N m s), rotors included.
+    pub momentum: Vector,
+    /// What the body turned by as if it were rigid: the integral of J^-1 Gt (rad).
+    pub turned: Vector,
+    /// What rounding has left out of the three.
+    pub lost: (Quaternion<f64>, Vector, Vector),
+    /// q and P/W of each mode (m sqrt(kg)), and what rounding has left out of both.
+    pub modes: Vec<[f64; 4]>,
+}
+
+impl State {
+    /// Takes over another state, without allocation.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { attitude, momentum, turned, lost, modes } = self;
+        (*attitude, *momentum, *turned, *lost) = (other.attitude, other.momentum, other.turned, other.lost);
+        modes.copy_from_slice(&other.modes);
+    }
+}
+
+/// A turning body as seen at an instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// Unit quaternion that turns vectors of the hub into inertial ones.
+    pub attitude: Quaternion<f64>,
+    /// The same of the mean axes, which no mode turns: the attitude as if the body were rigid.
+    pub mean: Quaternion<f64>,
+    /// Rates of the hub, in its axes (rad/s).
+    pub rate: Vector,
+    /// Rates of the body as if it were rigid (rad/s): those of the hub without their elastic part.
+    pub rigid: Vector,
+    /// Total angular momentum in the hub's axes (N m s), rotors included.
+    pub momentum: Vector,
+    /// Energy of the rotation as if the body were rigid and bent as it is (J), without rotors.
+    pub rotational: f64,
+    /// The integral of the rigid rates since the start (rad).
+    pub turned: Vector,
+    /// Displacements q of the modes (m sqrt(kg)).
+    pub displacements: Vec<f64>,
+    /// Their rates q' (m sqrt(kg)/s).
+    pub rates: Vec<f64>,
+}
+
+impl Seen {
+    /// A view of so many modes, to be filled.
+    pub(super) fn empty(modes: usize) -> Self {
+        let (one, zero) = (Quaternion::identity(), Vector::zeros());
+        Self {
+            attitude: one,
+            mean: one,
+            rate: zero,
+            rigid: zero,
+            momentum: zero,
+            rotational: 0.0,
+            turned: zero,
+            displacements: vec![0.0; modes],
+            rates: vec![0.0; modes],
+        }
+    }
+
+    /// Looks at a state, in which rotors have this momentum (N m s).
+    pub(super) fn look(&mut self, model: &Model, state: &State, rotors: &Vector) {
+        let (mut bent, mut elastic, mut changed) = (Vector::zeros(), Vector::zeros(), [0.0; 6]);
+        for (of, [q, p, ..]) in model.modes.iter().zip(&state.modes) {
+            bent += of.rotation * *q;
+            elastic += of.rotation * (of.frequency * p);
+            changed.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
+        }
+        let bend = Bend::new(bent);
+        let changed = tensor(changed);
+        self.mean = state.attitude;
+        self.attitude = state.attitude * rotation(&bent);
+        self.momentum = bend.back(&state.momentum);
+        let (turning, rate) = model.rates(&(self.momentum - rotors), &elastic, &changed);
+        self.rate = rate;
+        self.rigid = model.inverse * turning;
+        self.rotational = 0.5 * (turning.dot(&self.rigid) + rate.dot(&(changed * rate)));
+        self.turned = state.turned;
+        for ((of, [q, p, ..]), (displacement, rate)) in
+            model.modes.iter().zip(&state.modes).zip(self.displacements.iter_mut().zip(&mut self.rates))
+        {
+            *displacement = *q;
+            *rate = of.frequency * p + of.rotation.dot(&turning);
+        }
+    }
+}

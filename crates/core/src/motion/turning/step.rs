@@ -1,0 +1,289 @@
+//! One step: Gauss-Legendre of order 6 for momentum and attitude in mean axes, the modes exact.
+//!
+//! With th = sum phi q, Q = Q_m o exp(th) and H = exp(-\[th\]) H_m, the rate of the mean axes is
+//! w_m = exp(\[th\]) (J^-1 Gt + (1 - Gr) phi q'), in which the elastic rate has left but for products with th. The stages are
+//! found by fixed-point passes; what modes need of a stage is Gt, three numbers, and s where there is any.
+
+use nalgebra::{Matrix3, Quaternion, Vector2};
+
+use super::model::{Model, Surroundings, tensor};
+use super::response::Response;
+use super::rotation::Bend;
+use super::state::State;
+use crate::body::spatial::{Vector, rotation};
+use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
+
+/// Passes after which the stages are taken as they are.
+const PASSES: u32 = 60;
+
+/// Passes end when the next would change less than this part of the state.
+const SETTLED: f64 = 1e-18;
+
+/// A step: what moves, for how long, and what acts.
+pub(super) struct Step<'a> {
+    pub model: &'a Model,
+    /// The modes' responses over the step.
+    pub responses: &'a [Response],
+    /// Length (s).
+    pub h: f64,
+    /// Torque on the hub in its axes (N m).
+    pub torque: Vector,
+    /// Modal forces, without what the torque gives (N/sqrt(kg)).
+    pub forces: &'a [f64],
+    /// Momentum of the rotors at the start of the step (N m s), and its rate (N m).
+    pub rotors: (Vector, Vector),
+    /// The surroundings, and the time since the start of the run (s).
+    pub around: Option<(&'a dyn Surroundings, f64)>,
+}
+
+/// The memory of steps: what they keep of each mode.
+#[derive(Clone, Debug)]
+pub(super) struct Work(Vec<Memory>);
+
+#[derive(Clone, Debug, Default)]
+struct Memory {
+    /// q and P/W at the nodes and the end, but for g and s.
+    known: [[f64; 2]; 4],
+    /// phi' Gt, and the varying force s, at the nodes.
+    g: [f64; 3],
+    s: [f64; 3],
+    /// P of the stage at hand, then q'.
+    rate: f64,
+}
+
+/// How the modes are at an instant: sum phi q, sum phi P, and the change of the inertia.
+struct Shape {
+    bent: Vector,
+    elastic: Vector,
+    changed: Matrix3<f64>,
+}
+
+/// What a stage comes to.
+#[derive(Copy, Clone)]
+struct Stage {
+    /// H_m'.
+    push: Vector,
+    /// Q_m'.
+    turn: Quaternion<f64>,
+    /// J^-1 Gt.
+    rigid: Vector,
+}
+
+/// Gt, the hub's rate and the surroundings' tide, which modes feel.
+struct Felt {
+    turning: Vector,
+    rate: Vector,
+    tide: Option<Matrix3<f64>>,
+}
+
+impl Work {
+    /// Memory for so many modes.
+    pub fn new(modes: usize) -> Self {
+        Self(vec![Memory::default(); modes])
+    }
+}
+
+impl Step<'_> {
+    /// Takes the step; tells the number of passes.
+    pub fn take(&self, state: &mut State, work: &mut Work) -> u32 {
+        let modes = &mut work.0[..];
+        let mut stages = self.guess(state, modes);
+        let speed =
+            modes.iter().fold(0.0, |most, mode| mode.rate.abs().max(self.h * mode.s[0].abs()).max(most));
+        let size = state.momentum.norm() + self.h * self.torque.norm();
+        let (mut before, mut passes) = (0.0, 0);
+        while passes < PASSES {
+            passes += 1;
+            let mut change = 0.0_f64;
+            for node in 0..3 {
+                let (found, forced) = self.stage(node, state, &stages, modes);
+                let last = &stages[node];
+                if size > 0.0 {
+                    change = change.max((found.push - last.push).norm() * self.h / size);
+                }
+                if speed > 0.0 {
+                    change = change.max(forced * self.h / speed);
+                }
+                change = change.max((found.turn - last.turn).norm() * self.h);
+                stages[node] = found;
+            }
+            // What the next pass changes, at the rate of the last two.
+            if change <= SETTLED || change * change <= SETTLED * before {
+                break;
+            }
+            before = change;
+        }
+        self.end(state, &stages, modes);
+        passes
+    }
+
+    /// Whether modes are forced by more than Gt and constants.
+    fn is_loud(&self) -> bool {
+        self.model.stretches || self.model.beside.is_some()
+    }
+
+    /// What the state comes to by itself, and the first guess: all stages are like the start.
+    fn guess(&self, state: &State, modes: &mut [Memory]) -> [Stage; 3] {
+        let mut sums = Sums::default();
+        for (index, (memory, response)) in modes.iter_mut().zip(self.responses).enumerate() {
+            let [q, p, ..] = state.modes[index];
+            let force = self.forces.get(index).copied().unwrap_or(0.0);
+            for (known, (free, constant)) in
+                memory.known.iter_mut().zip(response.free.iter().zip(&response.of_constant))
+            {
+                let [a, b, c, d] = free;
+                *known = [a * q + b * p + constant[0] * force, c * q + d * p + constant[1] * force];
+            }
+            memory.rate = self.model.modes[index].frequency * p;
+            sums.add(self.model, index, q, memory.rate);
+        }
+        let (stage, felt) = self.turning(0.0, &sums.shape(), &state.momentum, &state.attitude);
+        self.feel(&felt, modes, 0);
+        for mode in modes {
+            (mode.g, mode.s) = ([mode.g[0]; 3], [mode.s[0]; 3]);
+        }
+        [stage; 3]
+    }
+
+    /// The stage at a node, and by how much the forces on modes changed.
+    fn stage(&self, node: usize, state: &State, stages: &[Stage; 3], modes: &mut [Memory]) -> (Stage, f64) {
+        let mut sums = Sums::default();
+        let loud = self.is_loud();
+        for (index, (memory, response)) in modes.iter_mut().zip(self.responses).enumerate() {
+            let [mut q, mut p] = memory.known[node];
+            let [of_q, of_p] = &response.of_rate[node];
+            q += dot(of_q, &memory.g);
+            p += dot(of_p, &memory.g);
+            if loud {
+                let [of_q, of_p] = &response.of_force[node];
+                q += dot(of_q, &memory.s);
+                p += dot(of_p, &memory.s);
+            }
+            memory.rate = self.model.modes[index].frequency * p;
+            sums.add(self.model, index, q, memory.rate);
+        }
+        let [a, b, c] = MATRIX[node].map(|weight| weight * self.h);
+        let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
+        let facing = state.attitude + stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
+        let (stage, felt) = self.turning(NODES[node] * self.h, &sums.shape(), &momentum, &facing);
+        (stage, self.feel(&felt, modes, node))
+    }
+
+    /// How the body turns `t` seconds after the start of the step.
+    fn turning(&self, t: f64, shape: &Shape, momentum: &Vector, facing: &Quaternion<f64>) -> (Stage, Felt) {
+        let model = self.model;
+        let bend = Bend::new(shape.bent);
+        let (rotors, change) = &self.rotors;
+        let free = bend.back(momentum) - (rotors + change * t);
+        let (turning, rigid, rate) = if model.stretches {
+            let (turning, rate) = model.rates(&free, &shape.elastic, &shape.changed);
+            (turning, model.inverse * turning, rate)
+        } else {
+            let rigid = model.inverse * free;
+            (free, rigid, rigid + shape.elastic + model.bending * free)
+        };
+        let (mut torque, mut tide) = (self.torque, None);
+        if let Some((around, since)) = self.around {
+            let hub = facing * rotation(&shape.bent);
+            torque += around.torque(since + t, &hub, &(model.inertia + shape.changed));
+            tide = if model.stretches { around.tide(since + t, &hub) } else { None };
+        }
+        let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
+        let stage =
+            Stage { push: bend.forward(&torque) - mean.cross(momentum), turn: spin(facing, &mean), rigid };
+        (stage, Felt { turning, rate, tide })
+    }
+
+    /// Gives the modes what they feel at a node; tells by how much their forces changed.
+    fn feel(&self, felt: &Felt, modes: &mut [Memory], node: usize) -> f64 {
+        for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
+            memory.g[node] = of.rotation.dot(&felt.turning);
+            memory.rate += memory.g[node];
+        }
+        let mut change = 0.0_f64;
+        if self.is_loud() {
+            for index in 0..modes.len() {
+                let mode = &self.model.modes[index];
+                let mut force = mode.centrifugal(&felt.rate);
+                if let Some(tide) = &felt.tide {
+                    force += mode.pulled(tide);
+                }
+                if let Some(beside) = &self.model.beside {
+                    force -= modes
+                        .iter()
+                        .enumerate()
+                        .map(|(other, of)| beside[(index, other)] * of.rate)
+                        .sum::<f64>();
+                }
+                change = change.max((force - modes[index].s[node]).abs());
+                modes[index].s[node] = force;
+            }
+        }
+        change
+    }
+
+    /// The state at the end.
+    fn end(&self, state: &mut State, stages: &[Stage; 3], modes: &[Memory]) {
+        let [a, b, c] = WEIGHTS.map(|weight| weight * self.h);
+        let push = stages[0].push * a + stages[1].push * b + stages[2].push * c;
+        let turn = stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
+        let rigid = stages[0].rigid * a + stages[1].rigid * b + stages[2].rigid * c;
+        let State { attitude, momentum, turned, lost, modes: states } = state;
+        (attitude.coords, lost.0.coords) = exact_sum(attitude.coords, turn.coords + lost.0.coords);
+        (*momentum, lost.1) = exact_sum(*momentum, push + lost.1);
+        (*turned, lost.2) = exact_sum(*turned, rigid + lost.2);
+        // The method keeps the length but for rounding, of which this removes what is left.
+        let excess = attitude.norm_squared() - 1.0;
+        if excess.abs() > 4.0 * f64::EPSILON {
+            *attitude *= 1.0 - 0.5 * excess;
+        }
+        let loud = self.is_loud();
+        for ((memory, response), mode) in modes.iter().zip(self.responses).zip(states) {
+            let [of_q, of_p] = &response.of_rate[3];
+            let mut end = Vector2::from(memory.known[3]);
+            end += Vector2::new(dot(of_q, &memory.g), dot(of_p, &memory.g));
+            if loud {
+                let [of_q, of_p] = &response.of_force[3];
+                end += Vector2::new(dot(of_q, &memory.s), dot(of_p, &memory.s));
+            }
+            // What was left out moves on with the mode, with what the rounded transition makes too long.
+            let [a, b, c, d] = response.free[3];
+            let left = Vector2::new(a * mode[2] + b * mode[3], c * mode[2] + d * mode[3]);
+            let (end, left) = exact_sum(end, left - end * response.excess);
+            *mode = [end.x, end.y, left.x, left.y];
+        }
+    }
+}
+
+/// Sums over the modes.
+#[derive(Default)]
+struct Sums {
+    bent: Vector,
+    elastic: Vector,
+    changed: [f64; 6],
+}
+
+impl Sums {
+    #[inline]
+    fn add(&mut self, model: &Model, index: usize, q: f64, p: f64) {
+        let of = &model.modes[index];
+        self.bent += of.rotation * q;
+        self.elastic += of.rotation * p;
+        if model.stretches {
+            self.changed.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
+        }
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { bent: self.bent, elastic: self.elastic, changed: tensor(self.changed) }
+    }
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Q' = 1/2 Q o (0, w).
+fn spin(attitude: &Quaternion<f64>, rate: &Vector) -> Quaternion<f64> {
+    *attitude * Quaternion::from_imag(rate * 0.5)
+}

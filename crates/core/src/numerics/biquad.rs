@@ -1,0 +1,54 @@
+//! A digital filter of second order.
+
+/// y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2, of the samples x and y now, one and two before, in direct form II transposed.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Biquad {
+    numerator: [f64; 3],
+    denominator: [f64; 2],
+    state: [f64; 2],
+}
+
+impl Biquad {
+    /// The filter with b0, b1, b2 and a1, a2, at rest.
+    pub fn new(numerator: [f64; 3], denominator: [f64; 2]) -> Self {
+        Self { numerator, denominator, state: [0.0; 2] }
+    }
+
+    /// The filter (n0 + n1 s + n2 s²)/(d0 + d1 s + d2 s²) at samples this far apart (s): s = K (z - 1)/(z + 1), with the
+    /// K at which both have the same gain and phase at a frequency below pi/period (rad/s).
+    pub fn tustin(numerator: [f64; 3], denominator: [f64; 3], frequency: f64, period: f64) -> Self {
+        let k = frequency / libm::tan(0.5 * frequency * period);
+        let of = |[c0, c1, c2]: [f64; 3]| {
+            let (first, second) = (c1 * k, c2 * k * k);
+            [second + first + c0, 2.0 * (c0 - second), second - first + c0]
+        };
+        let (b, [a0, a1, a2]) = (of(numerator), of(denominator));
+        Self::new(b.map(|b| b / a0), [a1 / a0, a2 / a0])
+    }
+
+    /// Whether what goes into it dies away.
+    pub fn is_stable(&self) -> bool {
+        let [a1, a2] = self.denominator;
+        a2.abs() < 1.0 && a1.abs() < 1.0 + a2
+    }
+
+    /// Takes a sample, and gives one.
+    pub fn filter(&mut self, sample: f64) -> f64 {
+        let ([b0, b1, b2], [a1, a2]) = (self.numerator, self.denominator);
+        let output = b0 * sample + self.state[0];
+        self.state = [b1 * sample - a1 * output + self.state[1], b2 * sample - a2 * output];
+        output
+    }
+
+    /// Gain and phase (rad) at a frequency, for samples this far apart.
+    pub fn response(&self, frequency: f64, period: f64) -> [f64; 2] {
+        let (sin, cos) = libm::sincos(frequency * period);
+        // z^-1 = cos - i sin, z^-2 = z^-1 squared.
+        let of = |[c0, c1, c2]: [f64; 3]| {
+            [c0 + c1 * cos + c2 * (cos * cos - sin * sin), -c1 * sin - c2 * 2.0 * sin * cos]
+        };
+        let ([nr, ni], [dr, di]) = (of(self.numerator), of([1.0, self.denominator[0], self.denominator[1]]));
+        let phase = libm::atan2(ni * dr - nr * di, nr * dr + ni * di);
+        [libm::hypot(nr, ni) / libm::hypot(dr, di), phase]
+    }
+}

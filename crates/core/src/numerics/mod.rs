@@ -1,0 +1,14 @@
+//! Numbers: special functions, quadrature, integration, roots. Nothing here knows a spacecraft.
+
+pub(crate) mod biquad;
+pub mod delay_margin;
+pub mod elliptic;
+pub mod exponential;
+pub(crate) mod extrapolation;
+pub(crate) mod gauss_legendre;
+pub mod phasor;
+pub(crate) mod phi;
+pub(crate) mod polynomial;
+pub(crate) mod quadrature;
+pub(crate) mod stumpff;
+pub mod swing_integral;

@@ -1,0 +1,146 @@
+//! What does not fit of an estimator, or of an adaptation: its own keys, the modes that it knows, the law that it tunes.
+
+use super::Scenario;
+use crate::adaptation::Adaptation;
+use crate::body::{Body, Drive};
+use crate::document::Fault;
+use crate::estimator::{Estimator, Form};
+use crate::quantity::{Finite, Positive};
+
+/// No filter of an axis of three estimates more modes: its matrices are full.
+const MOST_FILTERED: usize = 24;
+
+/// Why an array is refused for one angle.
+const ONE_NUMBER: &str = "must be one number for a body with one angle, got one for each of three axes";
+
+impl Scenario {
+    pub(super) fn estimator_inconsistency(&self) -> Option<Fault> {
+        let envelope = match self.estimator.as_ref()? {
+            Estimator::Envelope(envelope) => envelope,
+            estimator => return self.filter_inconsistency(estimator),
+        };
+        if envelope.form == Form::Truth && envelope.modes.is_some() {
+            let why = "must be left out for the form `truth`, which reads the body's".to_owned();
+            return Some(Fault::new("estimator.envelope.modes", why));
+        }
+        let own = envelope.modes.as_ref().map(|modes| ("estimator.envelope", modes.as_slice()));
+        let (place, modes) = own.unwrap_or(("body.planar", &self.model.modes));
+        modes.iter().enumerate().find(|(_, mode)| mode.damping.get() >= 1.0).map(|(index, mode)| {
+            let why = format!("must be below 1 for a mode to have an envelope, got {}", mode.damping.get());
+            match (&self.body, own) {
+                (Body::Matrices(_) | Body::Panels(_) | Body::Spatial(_) | Body::Spacecraft(_), None) => {
+                    Fault::new(format!("{}.damping", self.body.key()), why)
+                }
+                _ => Fault::new(format!("{place}.modes[{index}].damping"), why),
+            }
+        })
+    }
+
+    /// What is wrong with an estimator that acts at each sample.
+    pub(super) fn filter_inconsistency(&self, estimator: &Estimator) -> Option<Fault> {
+        let kind = estimator.kind();
+        let at = |key: &str, why: String| Some(Fault::new(format!("estimator.{kind}{key}"), why));
+        if let Estimator::Own(_) = estimator {
+            return None;
+        }
+        if let Estimator::RigidRate(rates) = estimator {
+            let three = self.axis_count() == 1 && rates.rate.is_three();
+            return three.then(|| Fault::new("estimator.rigid_rate.rate", ONE_NUMBER));
+        }
+        let [from, to] = estimator.assess();
+        if from >= to {
+            return at(".assess", format!("must be [from, to] in this order, got [{from}, {to}]"));
+        }
+        if estimator.attitude().is_some() {
+            return None;
+        }
+        let modes = self.mode_count();
+        if modes == 0 {
+            return at("", "has no modes to estimate: the body has none".to_owned());
+        }
+        if self.model.drive == Drive::Motion {
+            let why = "sees the modes in the hub's angle, and with `drive = \"motion\"` they do not show";
+            return at("", why.to_owned());
+        }
+        if self.chain.is_some() {
+            let why = "must be \"linear\" for an estimator of modes";
+            return Some(Fault::new("body.panels.kinematics", why));
+        }
+        if let Some(modes) = estimator.modes().filter(|modes| modes.len() != self.mode_count()) {
+            let (found, own) = (modes.len(), self.mode_count());
+            return at(".modes", format!("must be as many as the body's, {own}, got {found}"));
+        }
+        let silent = estimator.angle_noise().is_none() && self.sensor.angle_noise() == 0.0;
+        if estimator.filters() && silent {
+            let why = "must be given where the sensor has neither noise nor a resolution".to_owned();
+            return at(".angle_noise", why);
+        }
+        if self.axis_count() == 3 && estimator.filters() && modes > MOST_FILTERED {
+            let why = format!(
+                "estimates at most {MOST_FILTERED} modes about each of three axes, and the body has {modes}"
+            );
+            return at("", why);
+        }
+        if self.axis_count() == 3 && estimator.modes().is_some() {
+            return at(
+                ".modes",
+                "are those of one angle: about three axes a filter knows the body's".to_owned(),
+            );
+        }
+        let (Estimator::ExtendedKalman(filter) | Estimator::UnscentedKalman(filter)) = estimator else {
+            return None;
+        };
+        let [low, high] = filter.bounds.map(Positive::get);
+        if low >= high {
+            return at(".bounds", format!("must be [low, high] in this order, got [{low}, {high}]"));
+        }
+        let ratio = filter.ratio.get();
+        if !(low..=high).contains(&ratio) {
+            return at(".ratio", format!("must lie within the bounds [{low}, {high}], got {ratio}"));
+        }
+        None
+    }
+
+    pub(super) fn adaptation_inconsistency(&self) -> Option<Fault> {
+        let Some(Adaptation::RandomSearch(search)) = &self.adaptation else { return None };
+        let [low, high] = search.bounds.map(Finite::get);
+        let tunable = self.law.tunable();
+        let Some(gain) = tunable.iter().find(|(key, _)| *key == search.tunes).map(|(_, value)| *value) else {
+            let known: Vec<_> = tunable.iter().map(|(key, _)| format!("`{key}`")).collect();
+            let why = match (known.is_empty(), search.tunes.as_str()) {
+                (true, "k_t") => "adapts the gain k_t of a law `relay`, and there is none".to_owned(),
+                (true, _) => format!("tunes a number of the law, and the law `{}` has none", self.law.kind()),
+                (false, tunes) => {
+                    format!(
+                        "must name a number of the law `{}`, {}, got `{tunes}`",
+                        self.law.kind(),
+                        known.join(" or ")
+                    )
+                }
+            };
+            let key =
+                if known.is_empty() { "adaptation.random_search" } else { "adaptation.random_search.tunes" };
+            return Some(Fault::new(key, why));
+        };
+        let bounds = "adaptation.random_search.bounds".to_owned();
+        if self.estimator.as_ref().is_none_or(|estimator| estimator.envelope().is_none()) {
+            let why = "needs the window means of an `[estimator.envelope]`, and there is none";
+            return Some(Fault::new("adaptation.random_search", why));
+        }
+        if low >= high {
+            return Some(Fault::new(
+                bounds,
+                format!("must be [low, high] in this order, got [{low}, {high}]"),
+            ));
+        }
+        if search.tunes == "k_t" && (low <= 0.0 || high >= 1.0) {
+            let why = format!("must lie between 0 and 1, as k_t itself, got [{low}, {high}]");
+            return Some(Fault::new(bounds, why));
+        }
+        if !(low..=high).contains(&gain) {
+            let why = format!("must lie within the adaptation's bounds [{low}, {high}], got {gain}");
+            return Some(Fault::new(format!("law.{}.{}", self.law.kind(), search.tunes), why));
+        }
+        None
+    }
+}

@@ -1,0 +1,307 @@
+//! Which parts go together: what does not is refused here, with the reason and what would do.
+
+use super::{Scenario, Study};
+use crate::actuator::Actuator;
+use crate::document::Fault;
+use crate::estimator::Estimator;
+use crate::law::{Itinerary, Law, Reads, Target};
+use crate::sensor::Sensor;
+
+impl Scenario {
+    /// Puts the parts together.
+    ///
+    /// # Errors
+    /// A key that does not fit the others, and why.
+    pub(super) fn fit(&mut self) -> Result<(), Fault> {
+        let faults = [
+            self.axes_fault(),
+            self.target_fault(),
+            self.law_fault(),
+            self.sensor_fault(),
+            self.actuator_fault(),
+            self.reading_fault(),
+        ];
+        if let Some(fault) = faults.into_iter().flatten().next() {
+            return Err(fault);
+        }
+        self.study = Study::of(self)?;
+        Ok(())
+    }
+
+    /// How many axes the body has.
+    pub fn axis_count(&self) -> usize {
+        if self.body.spatial().is_some() { 3 } else { 1 }
+    }
+
+    /// A part for bodies with one angle, or with three axes, of a scenario with the other.
+    fn axes_fault(&self) -> Option<Fault> {
+        let refused = |key: &str, why: &str| Some(Fault::new(key, why));
+        if self.axis_count() == 1 {
+            let kind = self.body.kind();
+            let key = match (&self.law, &self.actuator) {
+                (Law::PerAxis(_), _) => "law.per_axis",
+                (_, Actuator::Jets(_)) => "actuator.jets",
+                _ if !self.target.is_empty() => "target",
+                _ if self.environment.is_some() => "environment",
+                _ => "",
+            };
+            let instead = match key {
+                "" => None,
+                "actuator.jets" => Some(": `[actuator.thrusters]` push a body with one angle"),
+                "target" => Some(": a `[manoeuvre]` turns a body with one angle"),
+                "environment" => Some(": a `[[disturbance]]` acts on a body with one angle"),
+                _ => Some(""),
+            };
+            if let Some(instead) = instead {
+                return Some(Fault::new(
+                    key,
+                    format!("is for a body with three axes, and the body is `{kind}`{instead}"),
+                ));
+            }
+            if let Some(index) = self.sensor.iter().position(|sensor| sensor.point().is_some()) {
+                let why = format!("is for a body with three axes, and the body is `{kind}`");
+                return Some(Fault::new(format!("{}.point", self.sensor_key(index)), why));
+            }
+            let measured = self.sensor.iter().enumerate().find_map(|(index, sensor)| {
+                let Sensor::Gyro(gyro) = sensor else { return None };
+                gyro.three().map(|key| format!("{}.{key}", self.sensor_key(index)))
+            });
+            if matches!(self.estimator, Some(Estimator::Attitude(_))) {
+                let why = "estimates three axes: a body with one angle has `[estimator.kalman]`";
+                return refused("estimator.attitude", why);
+            }
+            if matches!(self.actuator, Actuator::Wheels(_)) {
+                let why = "turn three axes: a body with one angle has `[actuator.wheel]`";
+                return refused("actuator.wheels", why);
+            }
+            let trackers = |sensor: &Sensor| matches!(sensor, Sensor::StarTracker(_));
+            if let Some(index) = self.sensor.iter().position(trackers) {
+                let why = "measures three axes: the angle of a body with one is that of a `sampled` sensor";
+                return refused(&self.sensor_key(index), why);
+            }
+            let pushed = match &self.actuator {
+                Actuator::Thrusters(thrusters) if thrusters.torque.is_three() => {
+                    Some("actuator.thrusters.torque".to_owned())
+                }
+                _ => None,
+            };
+            if let Some(key) = measured.or(pushed) {
+                return refused(
+                    &key,
+                    "must be one number for a body with one angle, got one for each of three axes",
+                );
+            }
+            let about = self.disturbance.iter().position(|disturbance| disturbance.about.is_some())?;
+            return refused(&format!("disturbance[{about}].about"), "names an axis of a body with three");
+        }
+        if self.manoeuvre.is_some() {
+            return refused(
+                "manoeuvre",
+                "is for bodies with one angle: one with three axes has `[[target]]`",
+            );
+        }
+        if self.drift.is_some() {
+            return refused("drift", "is for bodies with one angle: the modes of three axes keep theirs");
+        }
+        if let Some(index) = self.disturbance.iter().position(|disturbance| disturbance.about.is_none()) {
+            let why = "must be given for a body with three axes: `roll`, `pitch` or `yaw`";
+            return refused(&format!("disturbance[{index}].about"), why);
+        }
+        if self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) {
+            let why = "follows the modes of one angle: the modes of three axes are in the log";
+            return refused("estimator.envelope", why);
+        }
+        if let Actuator::Wheel(wheel) = &self.actuator
+            && wheel.back_emf.get() > 0.0
+        {
+            let why = "couples the modes of one angle: about three axes a wheel has none";
+            return refused("actuator.wheel.back_emf", why);
+        }
+        None
+    }
+
+    fn target_fault(&self) -> Option<Fault> {
+        if matches!(&self.law, Law::PhasePlane(law) if !law.targets.is_empty()) {
+            let why = "are those of the scenario: leave out `law.phase_plane.targets`";
+            return (!self.target.is_empty()).then(|| Fault::new("target", why));
+        }
+        if let Some((late, why)) = Target::disorder(&self.target) {
+            return Some(Fault::new(format!("target[{late}].from"), why));
+        }
+        Itinerary::fault(&self.target).map(|fault| fault.within("target"))
+    }
+
+    fn law_fault(&self) -> Option<Fault> {
+        for axis in 0..self.axis_count() {
+            let (law, key) = (self.law.about(axis), self.law_key(axis));
+            let at = |inner: &str, why: String| Some(Fault::new(inner, why).within(&key));
+            match law {
+                Law::PerAxis(_) => return at("", "must be a law of one axis".to_owned()),
+                Law::Relay(relay) => {
+                    let (eps, gamma) = (relay.dead_zone.get(), relay.hysteresis.get());
+                    if gamma >= 2.0 * eps {
+                        let width = 2.0 * eps;
+                        return at(
+                            "hysteresis",
+                            format!("must be less than the dead zone's width of {width}, got {gamma}"),
+                        );
+                    }
+                    if self.axis_count() == 3 && self.sensor.iter().any(Sensor::is_continuous) {
+                        let why = "finds its crossings in closed form, which three axes do not have: give it a `[sensor.sampled]`";
+                        return at("", why.to_owned());
+                    }
+                }
+                Law::PhasePlane(law) => {
+                    if let Some(fault) = law.inconsistency() {
+                        return Some(fault.within(&key));
+                    }
+                    if self.axis_count() == 1 && !law.targets.is_empty() {
+                        let why =
+                            "are for a body with three axes: a `[manoeuvre]` turns a body with one angle";
+                        return at("targets", why.to_owned());
+                    }
+                    if matches!(self.law, Law::PerAxis(_)) && !law.targets.is_empty() {
+                        return at("targets", "are those of all axes: write them as `[[target]]`".to_owned());
+                    }
+                    let period = law.period;
+                    let why = match &self.actuator {
+                        Actuator::Jets(jets) if jets.period.is_none_or(|own| own == period) => None,
+                        Actuator::Thrusters(thrusters) if thrusters.period == period => None,
+                        Actuator::Jets(_) | Actuator::Thrusters(_) => {
+                            Some("needs thrusters with the law's own period")
+                        }
+                        Actuator::Wheel(wheel) if wheel.delay.get() > 0.0 => {
+                            Some("needs a wheel without delay, whose commands it does not see")
+                        }
+                        Actuator::Wheel(wheel) if wheel.limit.is_some() => None,
+                        Actuator::Wheels(wheels) if wheels.torque.is_some() => None,
+                        Actuator::Own(own) if own.limit(axis).is_some() => None,
+                        Actuator::Ideal
+                        | Actuator::Hold(_)
+                        | Actuator::Wheel(_)
+                        | Actuator::Wheels(_)
+                        | Actuator::Own(_) => Some(
+                            "needs the largest torque, on which its switching lines depend: thrusters, jets, a wheel with a \
+                             `limit`, or wheels with a `torque`",
+                        ),
+                    };
+                    if let Some(why) = why {
+                        return at("", why.to_owned());
+                    }
+                }
+                Law::Attitude(law) => {
+                    if let Some(fault) = law.inconsistency() {
+                        return Some(fault.within(&key));
+                    }
+                }
+                Law::Pd(_) | Law::Open(_) | Law::Own(_) => {}
+            }
+        }
+        None
+    }
+
+    fn sensor_fault(&self) -> Option<Fault> {
+        let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
+        for (index, sensor) in self.sensor.iter().enumerate() {
+            if !sensor.is_continuous() && sensor.period(self.law.period()).is_none() {
+                return at(index, "must have a `period` with a law that has none of its own");
+            }
+            if let Sensor::Gyro(gyro) = sensor
+                && let Some(fault) = gyro.inconsistency()
+            {
+                return Some(fault.within(&self.sensor_key(index)));
+            }
+            if self.sensor.len() > 1 && sensor.is_continuous() {
+                return at(index, "knows the motion at every instant, and there is nothing that others add");
+            }
+        }
+        if self.sensor.len() == 1 || self.estimator.as_ref().is_some_and(Estimator::combines) {
+            return None;
+        }
+        if let Some(estimator) = self.estimator.as_ref().filter(|estimator| !estimator.reads_rates_alone()) {
+            let why = "takes the samples of one sensor, and there are several";
+            return Some(Fault::new(format!("estimator.{}", estimator.kind()), why));
+        }
+        let of =
+            |measures: &dyn Fn(usize) -> bool| (0..self.sensor.len()).filter(|index| measures(*index)).nth(1);
+        let rates = of(&|index| self.sensor[index].rate_noise(0).is_some());
+        if let Some(index) = rates.or(of(&|index| self.sensor.orients(index))) {
+            return at(index, "measures what another sensor measures too, and no estimator combines them");
+        }
+        None
+    }
+
+    /// The key of a sensor, its kind included.
+    pub fn sensor_key(&self, index: usize) -> String {
+        format!("{}.{}", self.sensor.key("sensor", index), self.sensor[index].kind())
+    }
+
+    fn actuator_fault(&self) -> Option<Fault> {
+        let Actuator::Jets(jets) = &self.actuator else { return None };
+        let at = |key: &str, why: String| Some(Fault::new(format!("actuator.jets.{key}"), why));
+        let laws = (0..3).map(|axis| self.law.about(axis).period());
+        let own: Vec<_> = laws.collect();
+        let Some(period) = jets.period.or(own[0]) else {
+            return at("period", "must be given with a law that has none of its own".to_owned());
+        };
+        if jets.period.is_none() && own.iter().any(|other| *other != own[0]) {
+            return at(
+                "period",
+                "must be given where the laws of the axes have periods that differ".to_owned(),
+            );
+        }
+        let period = period.seconds();
+        for (key, value) in [("minimum_on", jets.minimum_on.get()), ("quantum", jets.quantum.get())] {
+            if value > period {
+                let whose = if jets.period.is_some() { "" } else { "law's " };
+                return at(key, format!("must be at most the {whose}period of {period} s, got {value}"));
+            }
+        }
+        (jets.delay > 1)
+            .then(|| Fault::new("actuator.jets.delay", format!("must be 0 or 1 cycles, got {}", jets.delay)))
+    }
+
+    /// An estimator that nothing reads, or a law that reads what no estimator tells.
+    fn reading_fault(&self) -> Option<Fault> {
+        let reads: Vec<Reads> = (0..self.axis_count()).map(|axis| self.law.about(axis).reads()).collect();
+        if let Some(axis) = reads.iter().position(|reads| *reads == Reads::DominantMode) {
+            let blind = match &self.estimator {
+                None | Some(Estimator::Envelope(_) | Estimator::RigidRate(_) | Estimator::Attitude(_)) => {
+                    true
+                }
+                Some(estimator) => estimator.watches_only(),
+            };
+            if blind && !self.estimator.as_ref().is_some_and(Estimator::watches_only) {
+                let why = "feeds back the dominant mode, which an `[estimator]` that acts at samples (`truth`, `kalman`, \
+                           `extended_kalman`, `unscented_kalman`, `adaptive`) tells, and there is none";
+                return Some(Fault::new(format!("{}.extra", self.law_key(axis)), why));
+            }
+        }
+        let estimator = self.estimator.as_ref()?;
+        let (kind, watching) = (estimator.kind(), estimator.watches_only());
+        let at = |key: &str, why: String| Some(Fault::new(format!("estimator.{kind}{key}"), why));
+        if matches!(estimator, Estimator::Envelope(_)) {
+            return None;
+        }
+        if self.sensor.period(self.law.period()).or(self.law.period()).is_none() {
+            return at("", Estimator::AT_SAMPLES.to_owned());
+        }
+        if watching {
+            let reader = reads.iter().position(|reads| *reads == Reads::DominantMode)?;
+            return at(
+                ".watch_only",
+                format!("must be left out where `{}.extra` reads the filter", self.law_key(reader)),
+            );
+        }
+        let unread = reads.iter().all(|reads| *reads == Reads::Nothing);
+        if unread && !matches!(estimator, Estimator::Adaptive(_) | Estimator::Own(_)) {
+            let instead = if estimator.filters() || matches!(estimator, Estimator::Attitude(_)) {
+                "with `watch_only = true` the filter is assessed and changes nothing"
+            } else {
+                "leave it out"
+            };
+            return at("", format!("is read by nothing, for the law is `open`: {instead}"));
+        }
+        None
+    }
+}

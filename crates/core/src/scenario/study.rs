@@ -1,0 +1,371 @@
+//! A scenario solved: its body as laws and estimators of one axis know it, and its parts as they fit each other.
+
+use nalgebra::{Cholesky, Matrix3};
+
+use super::Scenario;
+use crate::actuator::{
+    Actuate, Actuator, Allocation, Group, Opposes, PulseWidth, Pulsing, Setting, Torquers,
+};
+use crate::body::spatial::{Vector, beyond};
+use crate::body::{Drive, Mode, Planar, Spatial};
+use crate::craft::Rotor;
+use crate::document::Fault;
+use crate::environment::Around;
+use crate::estimator::{Estimator, adaptive, attitude};
+use crate::law::{ActiveDamping, Authority, Distribution, Law, PhasePlane, Promise, Target, band, targeted};
+use crate::quantity::{Finite, Positive};
+use crate::time::{Instant, Span};
+
+/// A run without a period of its own is assessed once in so long (s).
+const TICK: f64 = 1.0;
+
+/// What the parts of a scenario come to together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Study {
+    /// The body about each of its axes, as if that axis were alone.
+    pub axes: Vec<Planar>,
+    /// What the actuator can do about each.
+    pub authorities: Vec<Authority>,
+    /// The law's period, if it has one.
+    pub cycle: Option<Span>,
+    /// The period of the samples; none where the angle is known at every instant.
+    pub sampling: Option<Span>,
+    /// How often a body with three axes is assessed.
+    pub tick: Span,
+    /// The points of a body with three axes at which each sensor is.
+    pub sensed_at: Vec<String>,
+    /// The point of a body with three axes at which torques act.
+    pub acts_at: String,
+    /// What is around a body with three axes.
+    pub around: Option<Around>,
+    /// Attitudes to turn to.
+    pub targets: Vec<Target>,
+    /// What each group of jets by which laws act does: for each axis, plus and minus.
+    pub groups: Option<[[Group; 2]; 3]>,
+    /// The same of jets that unload wheels.
+    pub unloading: Option<[[Group; 2]; 3]>,
+    /// How a torque is allocated to wheels about axes of their own.
+    pub wheels: Option<Allocation>,
+    /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.
+    pub back_emf: (f64, bool),
+    /// The adaptive observers.
+    pub adaptive: Option<Box<adaptive::ObserverDesign>>,
+    /// What the sensors are to an attitude filter.
+    pub attitude: Option<attitude::Setting>,
+    /// How near to its target the law of each axis promises to keep the body (rad), if it does.
+    pub bands: Vec<Option<f64>>,
+}
+
+impl Study {
+    /// The study of a scenario whose body is solved and whose parts were checked one by one.
+    ///
+    /// # Errors
+    /// A key that does not fit the others, and why.
+    pub fn of(scenario: &Scenario) -> Result<Self, Fault> {
+        let body = scenario.body.spatial();
+        let cycle = scenario.law.period();
+        let samples = scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_none());
+        let mut study = Self {
+            cycle,
+            // A continuous sensor is read in the cycles of the law, where an estimator acts at samples.
+            sampling: scenario.sensor.period(cycle).or(cycle.filter(|_| samples)),
+            targets: scenario.targets().to_vec(),
+            back_emf: match &scenario.actuator {
+                Actuator::Wheel(wheel) => (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate),
+                _ => (0.0, true),
+            },
+            ..Self::default()
+        };
+        study.tick = study.cycle.or(study.sampling).unwrap_or(Span::from_seconds(TICK));
+        match body {
+            None => study.axes.push(scenario.model.clone()),
+            Some(body) => study.place(scenario, body)?,
+        }
+        study.authorities = (0..study.axes.len()).map(|axis| study.authority(scenario, axis)).collect();
+        if let Some(Estimator::Adaptive(spec)) = &scenario.estimator {
+            let Some(period) = study.sampling else {
+                return Err(Fault::new("estimator.adaptive", Estimator::AT_SAMPLES));
+            };
+            let measured = body.map_or_else(|| of_one_angle(&scenario.model), |body| study.measured(body));
+            let plan = adaptive::ObserverDesign::of(spec, &measured, period.seconds());
+            study.adaptive = Some(Box::new(plan.map_err(|fault| fault.within("estimator.adaptive"))?));
+        }
+        if let Some(spec) = scenario.estimator.as_ref().and_then(Estimator::attitude) {
+            let setting = spec.setting(&scenario.sensor, cycle);
+            study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
+        }
+        for axis in 0..study.axes.len() {
+            study.authorities[axis].threshold = study.threshold(scenario, axis)?;
+        }
+        study.bands = (0..study.axes.len()).map(|axis| study.band(scenario, body, axis)).collect();
+        Ok(study)
+    }
+
+    /// The places of sensor and actuator on a body with three axes, its groups of jets, and its axes as if each were alone.
+    fn place(&mut self, scenario: &Scenario, body: &Spatial) -> Result<(), Fault> {
+        let first = body.points.first().map_or(String::new(), |point| point.name.clone());
+        let named = |key: &str, point: Option<&str>| {
+            let Some(name) = point else { return Ok(first.clone()) };
+            if body.point(name).is_some() {
+                return Ok(name.to_owned());
+            }
+            let points = body.point_names();
+            Err(Fault::new(key, format!("must be one of the body's points, {points}, got `{name}`")))
+        };
+        for (index, sensor) in scenario.sensor.iter().enumerate() {
+            let key = format!("{}.{}.point", scenario.sensor.key("sensor", index), sensor.kind());
+            self.sensed_at.push(named(&key, sensor.point())?);
+        }
+        self.acts_at.clone_from(&first);
+        if let Some((jets, key)) = scenario.actuator.jets() {
+            let groups = Some(jets.groups_on(body).map_err(|fault| fault.within(key))?);
+            if let Actuator::Jets(_) = &scenario.actuator {
+                self.groups = groups;
+            } else {
+                self.unloading = groups;
+            }
+        }
+        if let Actuator::Wheels(wheels) = &scenario.actuator {
+            let allocation = wheels.allocation().map_err(|fault| fault.within("actuator.wheels"))?;
+            self.wheels = Some(allocation);
+        }
+        self.around = surroundings(scenario, body)?;
+        let measured = self.measured(body);
+        let angles = beyond(&targeted(&self.targets, Instant::START), &body.attitude.get());
+        for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.seen).enumerate() {
+            let mode = |(index, mode): (usize, &crate::body::spatial::SpatialMode)| {
+                let shape = seen[index];
+                let scaled = |value: Finite| Finite::new(shape * value.get()).unwrap_or_default();
+                let gain = shape * input.forces[index] / input.acceleration;
+                Mode {
+                    displacement: scaled(mode.displacement),
+                    rate: scaled(mode.rate),
+                    ..Mode::at_rest(mode.frequency, Finite::new(gain).unwrap_or_default(), mode.damping)
+                }
+            };
+            self.axes.push(Planar {
+                inertia: Positive::new(body.tensor()[(axis, axis)]).unwrap_or(Positive::ONE),
+                angle: Finite::new(angles[axis]).unwrap_or_default(),
+                rate: body.rate[axis],
+                modes: body.modes.iter().enumerate().map(mode).collect(),
+                ..Planar::default()
+            });
+        }
+        Ok(())
+    }
+
+    /// What is measured of a body with three axes, and what its actuators do to it.
+    pub fn measured(&self, body: &Spatial) -> adaptive::Measured {
+        let (seen, hub) = (rotations(body, &self.sensed_at[0]), rotations(body, &self.acts_at));
+        let tensor = body.tensor();
+        let input = |axis: usize| {
+            let (forces, torque, acceleration) = if let Some(groups) = &self.groups {
+                let group = &groups[axis][0];
+                (group.forces.clone(), group.torque, group.acceleration)
+            } else {
+                let forces = hub.iter().map(|rotation| rotation[axis]).collect();
+                let torque = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+                (forces, torque, 1.0 / tensor[(axis, axis)])
+            };
+            let turned = Cholesky::new(tensor).map_or_else(Vector::zeros, |of| of.solve(&torque));
+            let turning = turned.iter().map(|rate| rate / acceleration).collect();
+            adaptive::Input { forces, acceleration, turning }
+        };
+        adaptive::Measured {
+            frequencies: body.modes.iter().map(|mode| mode.frequency).collect(),
+            seen: (0..3).map(|axis| seen.iter().map(|rotation| rotation[axis]).collect()).collect(),
+            inputs: (0..3).map(input).collect(),
+        }
+    }
+
+    fn authority(&self, scenario: &Scenario, axis: usize) -> Authority {
+        let inertia = self.axes[axis].commanded_inertia();
+        let (accelerations, width, delay) = match &scenario.actuator {
+            Actuator::Ideal | Actuator::Hold(_) => ([f64::INFINITY; 2], PulseWidth::default(), 0.0),
+            Actuator::Own(own) => {
+                let most = own.limit(axis).map_or(f64::INFINITY, |limit| limit / inertia);
+                ([most; 2], PulseWidth::default(), 0.0)
+            }
+            Actuator::Thrusters(thrusters) => {
+                ([thrusters.torque.about(axis).get() / inertia; 2], thrusters.width(), 0.0)
+            }
+            Actuator::Wheel(wheel) => {
+                let most = wheel.limit.map_or(f64::INFINITY, Positive::get) * wheel.gain.get() / inertia;
+                ([most; 2], PulseWidth::default(), wheel.delay.get())
+            }
+            Actuator::Wheels(wheels) => {
+                let limit = wheels.torque.map_or(f64::INFINITY, Positive::get);
+                let most = self.wheels.as_ref().map_or(f64::INFINITY, |wheels| wheels.most(axis, limit));
+                ([most / inertia; 2], PulseWidth::default(), 0.0)
+            }
+            Actuator::Jets(jets) => {
+                let groups = self.groups.as_ref().map(|groups| &groups[axis]);
+                let of = |sign: usize| groups.map_or(f64::INFINITY, |groups| groups[sign].acceleration);
+                let period = jets.period.or(self.cycle).unwrap_or(self.tick);
+                ([of(0), of(1)], jets.width(), f64::from(jets.delay) * period.seconds())
+            }
+        };
+        Authority { accelerations, width, delay, threshold: 0.0 }
+    }
+
+    /// The elastic rate beyond which the active damping of an axis acts (rad/s); 0 of a law without it.
+    fn threshold(&self, scenario: &Scenario, axis: usize) -> Result<f64, Fault> {
+        let Law::PhasePlane(PhasePlane { damping: Some(damping), .. }) = scenario.law.about(axis) else {
+            return Ok(0.0);
+        };
+        let key = format!("{}.damping", scenario.law_key(axis));
+        let Some(plan) = &self.adaptive else {
+            let why = "needs the elastic rates of an `[estimator.adaptive]`, and there is none";
+            return Err(Fault::new(key, why));
+        };
+        let threshold = threshold(damping, plan, &self.authorities[axis], axis);
+        if damping.threshold.is_none() && threshold >= NO_MOTION {
+            let name = if self.axes.len() == 1 { "the law" } else { crate::body::spatial::AXES[axis] };
+            return Err(Fault::new(
+                key,
+                format!(
+                    "gives {name} a threshold of {threshold:e} rad/s, which is never reached: with this delay an undamped mode \
+                     has no stable gain; give `threshold`, or the estimator a damping ratio above 0"
+                ),
+            ));
+        }
+        Ok(threshold)
+    }
+
+    fn band(&self, scenario: &Scenario, body: Option<&Spatial>, axis: usize) -> Option<f64> {
+        match (scenario.law.about(axis), body) {
+            (Law::PhasePlane(law), _) => Some(band(law, &self.authorities[axis])),
+            (law, Some(body)) => match law.promise() {
+                Promise::Nothing => None,
+                Promise::Within(band) => Some(band),
+                Promise::Part(part) => {
+                    // Of the whole turn to the last target.
+                    let end = Instant::START + scenario.duration;
+                    let goal = targeted(&self.targets, end);
+                    let from = self.targets.iter().rev().nth(1).map_or_else(
+                        || body.attitude.get(),
+                        |target| targeted(&self.targets, target.begins()),
+                    );
+                    let distance = beyond(&goal, &from).norm();
+                    (distance > 0.0).then_some(part * distance)
+                }
+            },
+            _ => None,
+        }
+    }
+
+    /// How near to a target the body has arrived, about each axis (rad).
+    pub fn zones(&self, scenario: &Scenario) -> [f64; 3] {
+        let mut zones = [f64::NAN; 3];
+        for (axis, (zone, band)) in zones.iter_mut().zip(&self.bands).enumerate() {
+            *zone = match scenario.law.about(axis) {
+                Law::PhasePlane(law) => law.dead_zone.get(),
+                _ => band.unwrap_or(f64::NAN),
+            };
+        }
+        zones
+    }
+
+    /// Whether jets fire.
+    pub fn fires(&self) -> bool {
+        self.groups.is_some() || self.unloading.is_some()
+    }
+
+    /// When the last target begins that does so before an instant; the start without one.
+    pub fn last_target(&self, before: Instant) -> Instant {
+        let begins = self.targets.iter().rev().map(Target::begins);
+        begins.into_iter().find(|from| *from < before).unwrap_or(Instant::START)
+    }
+
+    /// What turns the body as laws command.
+    pub fn distribution(&self, scenario: &Scenario) -> Distribution {
+        match scenario.body.spatial() {
+            None => Distribution::of_one_angle(scenario.model.commanded_inertia()),
+            Some(body) => Distribution::of_three_axes(body.tensor()),
+        }
+    }
+
+    /// The actuator of a run.
+    pub fn actuator(&self, scenario: &Scenario) -> Box<dyn Actuate> {
+        let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
+        let setting = |(axis, model): (usize, &Planar)| Setting {
+            axis,
+            inertia: model.commanded_inertia(),
+            planned_inertia: scenario.planned_for().commanded_inertia(),
+            rate: model.rate.get(),
+            cycle: scenario.law.about(axis).period(),
+            waveform: waveform.clone(),
+        };
+        let settings: Vec<Setting> = self.axes.iter().enumerate().map(setting).collect();
+        match (&scenario.actuator, &self.groups, &self.wheels) {
+            (Actuator::Jets(jets), Some(groups), _) => Box::new(Pulsing::new(jets, groups, self.tick)),
+            (Actuator::Wheels(wheels), _, Some(allocation)) => {
+                let spinning = wheels.start(allocation, &settings);
+                match (&wheels.unloading, &self.unloading) {
+                    (Some(unloading), Some(groups)) => Box::new(unloading.start(spinning, groups)),
+                    _ => Box::new(spinning),
+                }
+            }
+            (Actuator::Own(own), ..) => own.start(&settings),
+            (kind, ..) => Box::new(Torquers::new(kind, settings)),
+        }
+    }
+}
+
+/// What is around a body, of which wheels are a part that its inertia is without.
+fn surroundings(scenario: &Scenario, body: &Spatial) -> Result<Option<Around>, Fault> {
+    let Some(environment) = &scenario.environment else { return Ok(None) };
+    if let Some(fault) = environment.fault() {
+        return Err(fault.within("environment"));
+    }
+    let rotors = match &scenario.actuator {
+        Actuator::Wheels(wheels) => wheels.rotors().map_err(|fault| fault.within("actuator.wheels"))?,
+        _ => Vec::new(),
+    };
+    let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
+    let centre = scenario.body.craft().map_or_else(Vector::zeros, |craft| craft.centre);
+    Ok(Some(Around::new(environment, [body.tensor(), spinning], &centre)))
+}
+
+/// No structure has elastic rates like this (rad/s).
+const NO_MOTION: f64 = 1.0;
+
+/// The threshold of active damping about an axis, for the modes of the design.
+fn threshold(
+    damping: &ActiveDamping,
+    plan: &adaptive::ObserverDesign,
+    authority: &Authority,
+    axis: usize,
+) -> f64 {
+    let ratio = match &plan.form {
+        adaptive::Form::Gradient(form) => form.damping.get(),
+        adaptive::Form::Recurrence(form) => form.damping.get(),
+    };
+    let design = &plan.axes[axis];
+    let own = design.own(axis);
+    let mode = |mode: &adaptive::Merged| {
+        let influence = mode.tracker.influence.get(own).map_or(0.0, |influence| influence.get());
+        [mode.tracker.frequency.get(), influence.max(0.0) * authority.accelerations[0]]
+    };
+    let modes: Vec<_> = design.modes.iter().map(mode).collect();
+    damping.threshold(axis, &modes, plan.period, authority.delay, ratio)
+}
+
+/// Rotations of the modes at a point (rad/(m sqrt(kg))).
+fn rotations(body: &Spatial, point: &str) -> Vec<Vector> {
+    body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect()
+}
+
+/// What is measured of a body with one angle: the modes show in the angle as they are.
+fn of_one_angle(model: &Planar) -> adaptive::Measured {
+    let visible = if model.drive == Drive::Torque { 1.0 } else { 0.0 };
+    adaptive::Measured {
+        frequencies: model.modes.iter().map(|mode| mode.frequency).collect(),
+        seen: vec![vec![visible; model.modes.len()]],
+        inputs: vec![adaptive::Input {
+            forces: model.modes.iter().map(|mode| mode.gain.get()).collect(),
+            acceleration: 1.0,
+            turning: vec![1.0],
+        }],
+    }
+}

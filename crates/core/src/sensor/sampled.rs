@@ -1,0 +1,129 @@
+//! A sampled sensor of the angle, or about three axes of the attitude: noise, bias, resolution, faults, and maybe a rate gyro.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Reading, Sense, Truth, stream};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
+use crate::random::{Seed, Stream};
+use crate::time::{Instant, Span};
+
+/// A sampled angle sensor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sampled {
+    /// Period of the samples (s).
+    pub period: Span,
+    /// Standard deviation of the white noise (rad).
+    #[serde(default)]
+    pub noise: NonNegative,
+    /// Constant error (rad).
+    #[serde(default)]
+    pub bias: Finite,
+    /// Quantum of the output (rad); 0 for none.
+    #[serde(default)]
+    pub resolution: NonNegative,
+    /// Standard deviation of the white noise of a rate gyro (rad/s); left out, there is no gyro, and the rate is the
+    /// difference of the last two angles over the period.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_noise: Option<Positive>,
+    /// The point of the structure at which it is, on a body with three axes; left out, the first of the body's points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub point: Option<String>,
+    /// Times at which the sensor fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
+}
+
+/// A failure of the sensor, gyro included.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Fault {
+    /// It repeats the last measurement before the failure.
+    Stuck(Outage),
+    /// It gives no number.
+    Silent(Outage),
+}
+
+/// How long a failure lasts.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Outage {
+    /// When it begins (s).
+    pub from: Time,
+    /// When it ends (s); left out, with the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<Time>,
+}
+
+impl Fault {
+    /// How long it lasts.
+    pub fn outage(&self) -> Outage {
+        let (Self::Stuck(outage) | Self::Silent(outage)) = self;
+        *outage
+    }
+}
+
+impl Outage {
+    /// Whether it lasts at an instant.
+    pub(super) fn lasts(self, now: Instant) -> bool {
+        let at = |time: Time| Instant::START + Span::from_seconds(time.get());
+        at(self.from) <= now && self.to.is_none_or(|to| now < at(to))
+    }
+}
+
+impl Sampled {
+    /// The sensor in a run of a body with so many axes, after so many others of its kind.
+    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> AtSamples {
+        let draws = |axis: usize| stream("sensor", (axis, axes), ordinal, seed);
+        AtSamples { sampled: self.clone(), noise: (0..axes).map(draws).collect() }
+    }
+
+    /// Standard deviation of the measured angle (rad), that of its quantisation included.
+    pub fn angle_noise(&self) -> f64 {
+        let (noise, resolution) = (self.noise.get(), self.resolution.get());
+        libm::sqrt(noise * noise + resolution * resolution / 12.0)
+    }
+
+    fn measure(&self, angle: f64, noise: &mut Stream) -> f64 {
+        let mut output = angle + self.bias.get();
+        if self.noise.get() > 0.0 {
+            output += self.noise.get() * noise.normal();
+        }
+        let quantum = self.resolution.get();
+        if quantum > 0.0 { libm::round(output / quantum) * quantum } else { output }
+    }
+}
+
+/// The sensor at work: each axis has a stream of noise of its own.
+#[derive(Clone, Debug)]
+pub struct AtSamples {
+    sampled: Sampled,
+    noise: Vec<Stream>,
+}
+
+impl Sense for AtSamples {
+    fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
+        let Self { sampled, noise } = self;
+        // Draws are made in a failure too: those after it do not depend on it.
+        let mut angles = truth.seen();
+        let mut rate = truth.rate;
+        let gyro = sampled.rate_noise.map(Positive::get);
+        for ((angle, rate), noise) in angles.iter_mut().zip(&mut rate).zip(noise) {
+            *angle = sampled.measure(*angle, noise);
+            if let Some(sd) = gyro {
+                *rate += sd * noise.normal();
+            }
+        }
+        let reading = Reading { at: truth.orientation.at(angles), rate: gyro.map(|_| rate) };
+        match sampled.faults.iter().find(|fault| fault.outage().lasts(now)) {
+            None => Some(reading),
+            Some(Fault::Stuck(_)) => Some(last.copied().unwrap_or(reading)),
+            Some(Fault::Silent(_)) => None,
+        }
+    }
+
+    fn copy(&self) -> Box<dyn Sense> {
+        Box::new(self.clone())
+    }
+}

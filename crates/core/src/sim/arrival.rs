@@ -1,0 +1,48 @@
+//! The end of the manoeuvre: how far from the goal, and what vibration is left.
+
+use crate::body::{Drive, Planar, State};
+use crate::law::Goal;
+use crate::record::{self, Residual};
+use crate::scenario::Scenario;
+use crate::sensor::Truth;
+use crate::time::Instant;
+
+/// The end of a manoeuvre that lies ahead.
+#[derive(Clone, Debug)]
+pub struct Arrival {
+    /// When.
+    pub at: Instant,
+    goal: Goal,
+    model: Planar,
+}
+
+impl Arrival {
+    /// The end of a scenario's manoeuvre, if it has one.
+    pub fn new(scenario: &Scenario, goal: &Goal) -> Option<Self> {
+        let (goal, model) = (*goal, scenario.model.clone());
+        scenario.plan.as_ref().map(|_| Self { at: goal.from, goal, model })
+    }
+
+    /// What is logged, for a body in this state.
+    pub fn row(&self, truth: &Truth, state: &State) -> record::Arrival {
+        let modes = || self.model.modes.iter().zip(&state.modes);
+        let amplitudes: Vec<f64> = modes().map(|(mode, phase)| mode.amplitude(*phase)).collect();
+        let visible = if self.model.drive == Drive::Torque { 1.0 } else { 0.0 };
+        let outputs = self.model.outputs.iter().map(|output| {
+            let parts = output.modes.iter().zip(&amplitudes);
+            Residual {
+                amplitude: parts.map(|(weight, amplitude)| weight.get().abs() * amplitude).sum(),
+                unit: output.unit.clone(),
+            }
+        });
+        record::Arrival {
+            angle_error_rad: truth.seen()[0] - self.goal.angle,
+            rate_error_rad_s: truth.rate[0] - self.goal.rate,
+            angle_residual_rad: visible * amplitudes.iter().sum::<f64>(),
+            elastic_energy_j: modes()
+                .map(|(mode, phase)| mode.energy(*phase, self.model.inertia.get()))
+                .sum(),
+            outputs: outputs.collect(),
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! What drives the body: the actuator, which executes laws and manoeuvre, and the surroundings.
+
+use crate::actuator::Actuate;
+use crate::belief::Belief;
+use crate::body::{Drift, Wrench};
+use crate::disturbance::{Disturbance, Disturbing};
+use crate::environment::Environment;
+use crate::law::{Command, Distribution};
+use crate::random::Seed;
+use crate::scenario::Scenario;
+use crate::time::{Instant, Span};
+
+/// All that acts on the body.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    /// The actuator at work.
+    pub actuator: Box<dyn Actuate>,
+    distribution: Distribution,
+    disturbances: Vec<Disturbing>,
+    /// The instants, latest first, at which the waveform breaks, a disturbance or what is around changes, or the drift has a
+    /// kink.
+    edges: Vec<Instant>,
+    /// The next instant at which anything changes by itself.
+    pub due: Option<Instant>,
+    wrench: Wrench,
+}
+
+impl Drive {
+    /// The drive of a scenario, before its start.
+    pub fn new(scenario: &Scenario, seed: Seed) -> Self {
+        let at = |t: f64| Instant::START + Span::from_seconds(t);
+        let breaks = scenario.plan.iter().flat_map(|plan| plan.waveform.breaks()).map(at);
+        let kinks = scenario.drift.iter().flat_map(Drift::kinks).map(at);
+        let disturbed = scenario.disturbance.iter().flat_map(Disturbance::edges);
+        let around = scenario.environment.iter().flat_map(Environment::edges);
+        let mut edges: Vec<Instant> = breaks.chain(disturbed).chain(kinks).chain(around).collect();
+        edges.sort_by(|a, b| b.cmp(a));
+        edges.dedup();
+        let stream = |index: usize| seed.stream(&format!("disturbance {index}"));
+        let disturbances = scenario.disturbance.iter().enumerate();
+        let mut drive = Self {
+            actuator: scenario.study.actuator(scenario),
+            distribution: scenario.study.distribution(scenario),
+            disturbances: disturbances.map(|(index, of)| Disturbing::new(of, stream(index))).collect(),
+            edges,
+            due: None,
+            wrench: Wrench::default(),
+        };
+        drive.due = drive.next();
+        drive
+    }
+
+    fn next(&self) -> Option<Instant> {
+        let drawn = self.disturbances.iter().filter_map(Disturbing::due).min();
+        [self.edges.last().copied(), self.actuator.due(), drawn].into_iter().flatten().min()
+    }
+
+    /// Takes over what laws command from now on, of a body that is believed to move so, and turns at these rigid rates
+    /// (rad/s).
+    pub fn command(&mut self, now: Instant, commands: [Command; 3], beliefs: &[Belief], rigid: [f64; 3]) {
+        let actuator = &mut self.actuator;
+        let demands = self.distribution.demands(commands, beliefs, || actuator.stored(now));
+        actuator.command(now, &demands, rigid);
+        self.due = self.next();
+    }
+
+    /// Does what is due now, after laws have decided, for a body that turns at these rigid rates (rad/s).
+    pub fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
+        while self.edges.last().is_some_and(|edge| *edge <= now) {
+            self.edges.pop();
+        }
+        self.disturbances.iter_mut().for_each(|disturbance| disturbance.serve(now));
+        self.actuator.serve(now, rigid);
+        self.due = self.next();
+    }
+
+    /// All that acts from now on.
+    pub fn wrench(&mut self, now: Instant) -> &Wrench {
+        self.wrench.clear();
+        self.actuator.exert(now, &mut self.wrench);
+        if !self.disturbances.is_empty() {
+            for axis in 0..3 {
+                self.wrench.hub[axis] += self.disturbance(now, axis);
+            }
+        }
+        &self.wrench
+    }
+
+    /// The disturbances about an axis (N m).
+    pub fn disturbance(&self, now: Instant, axis: usize) -> f64 {
+        let about = self.disturbances.iter().filter(|disturbance| disturbance.axis() == axis);
+        about.map(|disturbance| disturbance.torque(now)).sum()
+    }
+}

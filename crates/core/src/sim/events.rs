@@ -1,0 +1,168 @@
+//! What is new in a run, for its journal: its start and end, targets, arrivals, active damping, trust in estimators.
+
+use crate::body::spatial::{AXES, angles};
+use crate::law::Damped;
+use crate::record::foxglove::Level;
+use crate::record::row::Stamp;
+use crate::record::{Adaptation, Arrival, Record, RecordError};
+use crate::scenario::Scenario;
+use crate::sensor::Orientation;
+use crate::sim::journal::{Journal, adapted, opening};
+use crate::time::Instant;
+
+/// What was known before.
+#[derive(Clone, Debug)]
+pub struct Events {
+    journal: Journal,
+    opening: String,
+    target: Option<Orientation>,
+    /// Whether the body is on its way to the target.
+    travelling: bool,
+    /// How near to a target it arrives, about each axis (rad).
+    zones: [f64; 3],
+    latched: [bool; 3],
+    resting: [bool; 3],
+    trusted: [bool; 3],
+    /// Whether filters had lost the body.
+    lost: [bool; 3],
+}
+
+impl Events {
+    /// Nothing is known.
+    pub fn new(scenario: &Scenario, run: u64) -> Self {
+        Self {
+            journal: Journal::new(scenario),
+            opening: opening(scenario, run),
+            target: None,
+            travelling: false,
+            zones: scenario.study.zones(scenario),
+            latched: [false; 3],
+            resting: [false; 3],
+            trusted: [true; 3],
+            lost: [false; 3],
+        }
+    }
+
+    /// An instant as a date.
+    pub fn stamp(&self, now: Instant) -> Stamp {
+        self.journal.stamp(now)
+    }
+
+    /// The run begins.
+    pub fn begin(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        self.journal.tell(now, (Level::Info, "run"), self.opening.clone(), record)
+    }
+
+    /// The run ends.
+    pub fn end(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        self.journal.tell(now, (Level::Info, "run"), "the end of the run".to_owned(), record)
+    }
+
+    /// The manoeuvre ends.
+    pub fn arrived(&self, now: Instant, row: &Arrival, record: &mut impl Record) -> Result<(), RecordError> {
+        let line = format!(
+            "the manoeuvre ends {:.3e} rad from its goal, with a vibration of {:.3e} rad",
+            row.angle_error_rad, row.angle_residual_rad
+        );
+        self.journal.tell(now, (Level::Info, "manoeuvre"), line, record)
+    }
+
+    /// The adaptation takes a step.
+    pub fn adapted(
+        &self,
+        now: Instant,
+        row: &Adaptation,
+        before: f64,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        let line = adapted(row.window, row.decision, before, row.gain);
+        self.journal.tell(now, (Level::Info, "adaptation"), line, record)
+    }
+
+    /// Filters of so many axes lose the body, or follow it again.
+    pub fn lost(
+        &mut self,
+        now: Instant,
+        lost: [bool; 3],
+        axes: usize,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        let before = std::mem::replace(&mut self.lost, lost);
+        for axis in (0..3).filter(|axis| before[*axis] != lost[*axis]) {
+            let (level, line) = if lost[axis] {
+                (Level::Warning, "the filter has lost the body")
+            } else {
+                (Level::Info, "the filter follows the body again")
+            };
+            let line = if axes == 1 { line.to_owned() } else { format!("{}: {line}", AXES[axis]) };
+            self.journal.tell(now, (level, "estimator"), line, record)?;
+        }
+        Ok(())
+    }
+
+    /// A new target of three axes, or the attitude comes near to it.
+    pub fn target(
+        &mut self,
+        now: Instant,
+        target: &Orientation,
+        error: [f64; 3],
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        let manoeuvre = (Level::Info, "manoeuvre");
+        let Orientation::Attitude(attitude) = target else { return Ok(()) };
+        if self.target.as_ref() != Some(target) {
+            self.target = Some(*target);
+            let [roll, pitch, yaw] = angles(attitude);
+            let line = format!("the target is roll {roll:.5}, pitch {pitch:.5}, yaw {yaw:.5} rad");
+            self.journal.tell(now, manoeuvre, line, record)?;
+            self.travelling = true;
+        }
+        if self.travelling && error.iter().zip(self.zones).all(|(error, zone)| error.abs() <= zone) {
+            self.travelling = false;
+            let line = "the attitude is within the dead zone about its target".to_owned();
+            self.journal.tell(now, manoeuvre, line, record)?;
+        }
+        Ok(())
+    }
+
+    /// What has changed in active damping, and in the trust in what it acts on.
+    pub fn damping(
+        &mut self,
+        now: Instant,
+        damped: &[Damped],
+        trusted: [bool; 3],
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        let (debug, info, warning) = (Level::Debug, Level::Info, Level::Warning);
+        for (axis, name) in AXES.into_iter().enumerate() {
+            let changed = |before: &mut bool, now: bool| std::mem::replace(before, now) != now;
+            let Damped { latched, resting, .. } = damped[axis];
+            let mut lines = Vec::new();
+            if changed(&mut self.trusted[axis], trusted[axis]) {
+                lines.push(if trusted[axis] {
+                    (info, "estimator", "the observer follows again")
+                } else {
+                    (warning, "estimator", "the observer does not follow: no active damping")
+                });
+            }
+            if changed(&mut self.resting[axis], resting) {
+                lines.push(if resting {
+                    (warning, "damping", "the pushes do not help: the watchdog lets them rest")
+                } else {
+                    (info, "damping", "the watchdog lets the pushes go on")
+                });
+            }
+            if changed(&mut self.latched[axis], latched) {
+                lines.push(if latched {
+                    (debug, "damping", "the elastic rate is beyond its threshold")
+                } else {
+                    (debug, "damping", "the elastic rate is damped")
+                });
+            }
+            for (level, part, line) in lines {
+                self.journal.tell(now, (level, part), format!("{name}: {line}"), record)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,118 @@
+//! The body on its way: one angle in closed form wherever there is one, or three axes.
+
+mod planar;
+mod spatial;
+mod two_way;
+
+use std::borrow::Cow;
+
+use super::SimulationError;
+use crate::body::{Sensed, State, Wrench};
+use crate::guard::Guard;
+use crate::record::{Course, Record, RecordError};
+use crate::scenario::Scenario;
+use crate::sensor::{Orientation, Truth};
+use crate::time::{Instant, Span};
+
+pub use planar::{Exerted, PlanarPlant};
+pub use spatial::SpatialPlant;
+
+/// A body that moves.
+#[derive(Clone, Debug)]
+pub enum Plant {
+    /// With one angle.
+    Planar(Box<PlanarPlant>),
+    /// With three axes.
+    Spatial(Box<SpatialPlant>),
+}
+
+impl Plant {
+    /// The body of a scenario at the start, under nothing.
+    pub fn new(scenario: &Scenario) -> Self {
+        match scenario.body.spatial() {
+            None => Self::Planar(Box::new(PlanarPlant::new(scenario))),
+            Some(body) => {
+                Self::Spatial(Box::new(SpatialPlant::new(body, scenario.body.flexible(), &scenario.study)))
+            }
+        }
+    }
+
+    /// Integrates up to an instant what has no closed form, as long as the record lets it.
+    pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        match self {
+            Self::Planar(plant) => plant.approach(now, record),
+            Self::Spatial(plant) => plant.approach(now, record),
+        }
+    }
+
+    /// What there is to measure at an instant, to which the body is brought.
+    pub fn view(&mut self, now: Instant) -> Result<Truth, SimulationError> {
+        let truth = match self {
+            Self::Planar(plant) => {
+                let Sensed { angle, rate, .. } = plant.view(now);
+                let is_finite = angle.is_finite() && rate.is_finite();
+                is_finite.then(|| Truth {
+                    orientation: Orientation::Angle(angle),
+                    elastic: [0.0; 3],
+                    rate: [rate, 0.0, 0.0],
+                    rigid: [plant.state().rigid_rate, 0.0, 0.0],
+                    turned: [angle, 0.0, 0.0],
+                })
+            }
+            Self::Spatial(plant) => plant.view(),
+        };
+        truth.ok_or(SimulationError::NonFinite { at: now })
+    }
+
+    /// The same at a sensor other than the first, which may be elsewhere.
+    pub fn at_sensor(&self, sensor: usize, truth: &Truth) -> Truth {
+        match self {
+            Self::Spatial(plant) if sensor > 0 => plant.at_sensor(sensor, truth),
+            _ => *truth,
+        }
+    }
+
+    /// Begins a new motion at the instant seen last, under what acts from now on.
+    pub fn depart(&mut self, wrench: &Wrench) {
+        match self {
+            Self::Planar(plant) => plant.depart(wrench),
+            Self::Spatial(plant) => plant.depart(wrench),
+        }
+    }
+
+    /// The instant and index of the guard that trips first on this motion, within a span; known in closed form alone.
+    pub fn trip(
+        &mut self,
+        guards: &[Guard],
+        horizon: Span,
+        record: &mut impl Record,
+    ) -> Result<Option<(Instant, usize)>, RecordError> {
+        match self {
+            Self::Planar(plant) => plant.trip(guards, horizon, record),
+            Self::Spatial(_) => Ok(None),
+        }
+    }
+
+    /// Tells the motion that ends now, stretch by stretch, where the record wants it and the body has one angle.
+    pub fn tell_course(
+        &self,
+        now: Instant,
+        exerted: &Exerted,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        let Self::Planar(plant) = self else { return Ok(()) };
+        match record.course() {
+            Course::None => Ok(()),
+            Course::Beyond(band) if plant.stays_within(band, now, record)? => Ok(()),
+            _ => plant.walk(now, exerted, |stretch| record.stretch(now, stretch)),
+        }
+    }
+
+    /// The motion about an axis, of three axes beyond a target, as if that axis were alone.
+    pub fn about(&self, axis: usize, target: &Orientation) -> Cow<'_, State> {
+        match self {
+            Self::Planar(plant) => Cow::Borrowed(plant.state()),
+            Self::Spatial(plant) => Cow::Owned(plant.about(axis, target)),
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! A body with one angle on its way: its motion since the last event, and what is seen of it now.
+
+use crate::body::{
+    Coupling, Expansion, Flight, Flown, Input, Output, Segment, Sensed, State, Stretch, Unfolding, Wrench,
+};
+use crate::crossing::locate;
+use crate::guard::Guard;
+use crate::numerics::polynomial::{Polynomial, Series, TERMS};
+use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
+use crate::scenario::Scenario;
+use crate::time::{Instant, Span};
+
+/// The body, the motion that it is in, and the trip that lies ahead.
+#[derive(Clone, Debug)]
+pub struct PlanarPlant {
+    motion: Motion,
+    departed: Instant,
+    /// State and sight at `seen`.
+    state: State,
+    sight: Sensed,
+    seen: Instant,
+    /// State, sight and instant of the next trip, found ahead of time.
+    ahead: (State, Sensed, Instant),
+    frequencies: Vec<f64>,
+    outputs: Vec<Output>,
+}
+
+/// A motion under one input.
+#[derive(Clone, Debug)]
+enum Motion {
+    /// In closed form.
+    Planar(Segment),
+    /// Integrated.
+    Chain(Box<Flight>),
+    /// Of coupled or drifting modes.
+    Coupled(Box<Coupling>),
+}
+
+/// The torques of one motion, as metrics take them.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Exerted {
+    /// Of the actuator, beside the waveform of the command and the back-EMF (N m).
+    pub constant: f64,
+    /// What the law asks for (N m).
+    pub feedback: f64,
+    /// Back-EMF for each unit of the rate (N m s), and whether it is that of the elastic body.
+    pub back_emf: (f64, bool),
+}
+
+/// A motion that is taken apart from its departure on.
+enum Unfolded<'a> {
+    Planar(&'a Segment, State),
+    Chain(Flown<'a>),
+    Coupled(Unfolding),
+}
+
+impl PlanarPlant {
+    /// The body of a scenario at the start, under no input.
+    pub fn new(scenario: &Scenario) -> Self {
+        let (model, state) = (&scenario.model, scenario.model.start());
+        let mut arc = Segment::new(model);
+        arc.depart(&state, &Input::default());
+        let sight = arc.origin();
+        let motion = match (&scenario.chain, scenario.coupling()) {
+            (Some(chain), _) => Motion::Chain(Box::new(Flight::new(chain, sight.angle, sight.rate))),
+            (None, Some(coupling)) => Motion::Coupled(Box::new(coupling)),
+            (None, None) => Motion::Planar(arc),
+        };
+        Self {
+            motion,
+            departed: Instant::START,
+            sight,
+            seen: Instant::START,
+            ahead: (state.clone(), Sensed::default(), Instant::START),
+            frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
+            outputs: model.outputs.clone(),
+            state,
+        }
+    }
+
+    /// The state at the instant seen last.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Integrates up to an instant what has no closed form, as long as the record lets it: seeing the body there is then soon
+    /// done.
+    pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        record.poll()?;
+        let h = now.since(self.departed).seconds();
+        loop {
+            let is_there = match &mut self.motion {
+                Motion::Planar(_) => true,
+                Motion::Chain(flight) => flight.approach(h),
+                Motion::Coupled(coupling) => coupling.approach(h),
+            };
+            if is_there {
+                return Ok(());
+            }
+            record.poll()?;
+        }
+    }
+
+    /// What a sensor sees at an instant, to which the body is brought.
+    pub fn view(&mut self, now: Instant) -> Sensed {
+        if self.seen != now {
+            self.seen = now;
+            let (ahead, sight, at) = &mut self.ahead;
+            if *at == now {
+                std::mem::swap(&mut self.state, ahead);
+                self.sight = *sight;
+            } else {
+                let h = now.since(self.departed).seconds();
+                self.sight = match &mut self.motion {
+                    Motion::Planar(arc) => arc.at(h, &mut self.state),
+                    Motion::Chain(flight) => flight.at(h, &mut self.state),
+                    Motion::Coupled(coupling) => coupling.at(h, &mut self.state),
+                };
+            }
+        }
+        self.sight
+    }
+
+    /// Whether the angle is certain to stay within so much of 0 on this motion until an instant: as bounds tell, which cost
+    /// next to nothing, or the search for a crossing.
+    ///
+    /// # Errors
+    /// The record ends the search.
+    pub fn stays_within(
+        &self,
+        band: f64,
+        until: Instant,
+        record: &mut impl Record,
+    ) -> Result<bool, RecordError> {
+        let Motion::Planar(arc) = &self.motion else { return Ok(false) };
+        let span = until.since(self.departed);
+        let guards = [Guard::at_least(band), Guard::at_most(-band)];
+        Ok(arc.stays_within(band, span.seconds())
+            || arc.knows_bounds() && locate(arc, &guards, span, &mut self.state.clone(), record)?.is_none())
+    }
+
+    /// Takes the motion apart, from its departure to an instant.
+    pub fn walk(
+        &self,
+        until: Instant,
+        exerted: &Exerted,
+        mut take: impl FnMut(&Stretch) -> Result<(), RecordError>,
+    ) -> Result<(), RecordError> {
+        let span = until.since(self.departed).seconds();
+        let mut unfolded = match &self.motion {
+            Motion::Planar(arc) => Unfolded::Planar(arc, self.state.clone()),
+            Motion::Chain(flight) => Unfolded::Chain(flight.unfold()),
+            Motion::Coupled(coupling) => Unfolded::Coupled(coupling.unfold()),
+        };
+        let coordinates = match &self.motion {
+            Motion::Chain(flight) => flight.coordinates(),
+            Motion::Planar(_) | Motion::Coupled(_) => self.state.modes.len() + 1,
+        };
+        let mut series = Expansion::new(coordinates);
+        let mut h = 0.0;
+        while h < span {
+            let reach = match &mut unfolded {
+                Unfolded::Planar(arc, state) => arc.expand(h, 0.5 * span, state, &mut series),
+                Unfolded::Chain(flown) => flown.expand(h, 0.5 * span, &mut series),
+                Unfolded::Coupled(unfolding) => unfolding.expand(h, &mut series),
+            };
+            // What does not move, or is no number, is one stretch.
+            let next = if reach > 0.0 && h + reach > h { span.min(h + reach) } else { span };
+            take(&self.observed(&series, (h, next - h), exerted))?;
+            h = next;
+        }
+        Ok(())
+    }
+
+    /// What is observed over a stretch that begins so long after departure and is so long (s).
+    fn observed(&self, series: &Expansion, (after, length): (f64, f64), exerted: &Exerted) -> Stretch {
+        let Expansion { coordinates, command } = series;
+        let add = |sum: &mut Series, weight: f64, of: &Series| {
+            sum.iter_mut().zip(of).for_each(|(sum, c)| *sum += weight * c);
+        };
+        let mut angle = coordinates[0];
+        let shows = match &self.motion {
+            Motion::Planar(arc) => arc.shows_modes(),
+            Motion::Coupled(_) => true,
+            Motion::Chain(_) => false,
+        };
+        if shows {
+            coordinates[1..].iter().for_each(|mode| add(&mut angle, 1.0, mode));
+        }
+        let mut applied = *command;
+        applied[0] += exerted.constant;
+        let (back_emf, total) = exerted.back_emf;
+        if back_emf != 0.0 {
+            let felt = if total { &angle } else { &coordinates[0] };
+            for n in 0..TERMS - 1 {
+                applied[n] -= back_emf * (n + 1) as f64 * felt[n + 1];
+            }
+        }
+        let output = |index: usize, output: &Output| {
+            let mut sum = [0.0; TERMS];
+            if let Motion::Chain(_) = &self.motion {
+                // Of a chain, the angles of the sections relative to the hub.
+                add(&mut sum, 1.0, &coordinates[index + 1]);
+                add(&mut sum, -1.0, &coordinates[0]);
+            } else {
+                add(&mut sum, output.rigid.get(), &coordinates[0]);
+                let modes = output.modes.iter().zip(&coordinates[1..]);
+                modes.for_each(|(weight, mode)| add(&mut sum, weight.get(), mode));
+            }
+            Polynomial::of(&sum, length)
+        };
+        Stretch {
+            from: self.departed.seconds() + after,
+            length,
+            angle: Polynomial::of(&angle, length),
+            outputs: self.outputs.iter().enumerate().map(|(index, of)| output(index, of)).collect(),
+            applied: Polynomial::of(&applied, length),
+            feedback: exerted.feedback,
+        }
+    }
+
+    /// Begins a new motion at the instant seen last.
+    pub fn depart(&mut self, wrench: &Wrench) {
+        let input = Input { constant: wrench.hub[0], waveform: wrench.waveform.clone() };
+        match &mut self.motion {
+            Motion::Planar(arc) => arc.depart(&self.state, &input),
+            Motion::Chain(flight) => flight.depart(&input),
+            Motion::Coupled(coupling) => coupling.depart(self.seen.seconds(), input.constant),
+        }
+        self.departed = self.seen;
+    }
+
+    /// The instant and index of the guard that trips first on this motion, within a span.
+    pub fn trip(
+        &mut self,
+        guards: &[Guard],
+        horizon: Span,
+        record: &mut impl Record,
+    ) -> Result<Option<(Instant, usize)>, RecordError> {
+        let departed = self.departed;
+        let arc = match &mut self.motion {
+            Motion::Planar(arc) => arc,
+            Motion::Coupled(coupling) => {
+                let trip = coupling.trip(guards, horizon, record)?;
+                return Ok(trip.map(|trip| (departed + trip.after, trip.guard)));
+            }
+            // No law with guards acts on a body without a closed form.
+            Motion::Chain(_) => return Ok(None),
+        };
+        let trip = locate(arc, guards, horizon, &mut self.ahead.0, record)?;
+        Ok(trip.map(|trip| {
+            let at = departed + trip.after;
+            (self.ahead.1, self.ahead.2) = (trip.sight, at);
+            (at, trip.guard)
+        }))
+    }
+
+    /// The motion at the instant seen last, as logged; `measured` is the held measurement of a sampled sensor.
+    pub fn motion(&self, measured: Option<f64>) -> (Attitude, Rate, Modes) {
+        let Self { state, sight, frequencies, .. } = self;
+        let modes: Vec<_> = state
+            .modes
+            .iter()
+            .zip(frequencies)
+            .map(|(phase, w)| ModeMotion {
+                displacement_rad: phase.displacement,
+                rate_rad_s: w * phase.quadrature,
+            })
+            .collect();
+        (
+            Attitude {
+                angle_rad: sight.angle,
+                rigid_rad: state.rigid_angle,
+                measured_rad: measured.unwrap_or(sight.angle),
+            },
+            Rate { rate_rad_s: sight.rate, rigid_rad_s: state.rigid_rate },
+            Modes { elastic_rad: modes.iter().map(|mode| mode.displacement_rad).sum(), modes },
+        )
+    }
+
+    /// The observed coordinates at the instant seen last, as logged; none if the body has none.
+    pub fn outputs(&self) -> Option<Outputs> {
+        let motion = |(value, rate)| OutputMotion { value, rate };
+        let outputs: Vec<_> = match &self.motion {
+            Motion::Planar(_) | Motion::Coupled(_) => {
+                let of = |output: &Output| {
+                    (output.of(&self.state), output.rate_of(&self.state, &self.frequencies))
+                };
+                self.outputs.iter().map(of).map(motion).collect()
+            }
+            Motion::Chain(flight) => flight.outputs().map(motion).collect(),
+        };
+        (!outputs.is_empty()).then_some(Outputs { outputs })
+    }
+}

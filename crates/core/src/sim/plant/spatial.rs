@@ -1,0 +1,310 @@
+//! A body with three axes on its way, from one change of what acts on it to the next.
+
+use super::two_way::TwoWay;
+use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState, Vector, beyond};
+use crate::body::{Phase, State, Wrench};
+use crate::environment::Around;
+use crate::motion::turning::{Flexible, Rotor, Surroundings};
+use crate::record::{Energy, Pointing, Record, RecordError, Vibration, Vibrations};
+use crate::scenario::Study;
+use crate::sensor::{Orientation, Truth};
+use crate::time::{Instant, Span};
+
+/// A mode is seen by a sensor that it turns by at least such a part of what the mode does that turns it most.
+const VISIBLE: f64 = 0.1;
+
+/// A motion under what is constant begins anew after so long (s): looking at it is then soon done.
+const LONGEST: f64 = 20.0;
+
+/// The body, and what pushes it.
+#[derive(Clone, Debug)]
+pub struct SpatialPlant {
+    rigid: Rigid,
+    /// What is around it, and the disturbance of its own.
+    around: Option<Around>,
+    disturbance: Option<Periodic>,
+    elastic: Elastic,
+    /// Rotations of the modes at the first sensor, and where torques act.
+    sensed: Vec<Vector>,
+    hub: Vec<Vector>,
+    /// By how much the rotations of the modes at all other sensors differ from those at the first.
+    elsewhere: Vec<Vec<Vector>>,
+    /// Whether the sensor sees each mode.
+    visible: Vec<bool>,
+    /// The state when the motion began.
+    departed: Instant,
+    origin: SpatialState,
+    /// Torque about the centre of mass (N m), and modal forces (N/sqrt(kg)).
+    torque: Vector,
+    forces: Vec<f64>,
+    /// Momentum of rotors (N m s), since when, and its rate (N m); none if there are none.
+    rotors: Option<(Instant, Vector, Vector)>,
+    /// The motion, where modes act back on the rotation: `state` then is what it looks like from the mean axes.
+    two_way: Option<Box<TwoWay>>,
+    /// The state at the instant seen last, and what there is to measure, once it was asked for.
+    seen: Instant,
+    state: SpatialState,
+    truth: Option<Truth>,
+    /// Rigid rates, and their elastic part at the sensor (rad/s), as far as `truth` is known.
+    rates: (Vector, Vector),
+}
+
+impl SpatialPlant {
+    /// The body of a study at the start, which nothing pushes; if it is `flexible`, its modes act back on its rotation.
+    pub fn new(body: &crate::body::Spatial, flexible: Option<&Flexible>, study: &Study) -> Self {
+        let rigid = Rigid::new(body);
+        let origin = SpatialState::start(body, &rigid);
+        let rotations = |point: &str| -> Vec<Vector> {
+            body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect()
+        };
+        let (first, others) =
+            study.sensed_at.split_first().map_or(("", &[][..]), |(first, others)| (first, others));
+        let sensed = rotations(first);
+        let beyond_first = |point: &String| -> Vec<Vector> {
+            rotations(point).iter().zip(&sensed).map(|(there, first)| there - first).collect()
+        };
+        let elsewhere = others.iter().map(beyond_first).collect();
+        let hub = rotations(&study.acts_at);
+        let around = study.around.clone();
+        let two_way = flexible.map(|of| Box::new(TwoWay::new(body, of, around.clone(), [&sensed, &hub])));
+        let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
+        Self {
+            rigid,
+            around,
+            disturbance: body.disturbance.clone(),
+            elastic: Elastic::new(body, study.tick.seconds()),
+            visible: sensed.iter().map(|rotation| rotation.norm() >= VISIBLE * most).collect(),
+            sensed,
+            hub,
+            elsewhere,
+            departed: Instant::START,
+            torque: Vector::zeros(),
+            forces: Vec::new(),
+            rotors: None,
+            two_way,
+            seen: Instant::START,
+            state: origin.clone(),
+            truth: None,
+            rates: (Vector::zeros(), Vector::zeros()),
+            origin,
+        }
+    }
+
+    /// Brings the body to an instant, as long as the record lets it. What is seen on the way does not change the motion.
+    pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        record.poll()?;
+        if self.two_way.is_some() {
+            return self.go(now, record);
+        }
+        let longest = Span::from_seconds(LONGEST);
+        while now > self.departed + longest {
+            self.go(self.departed + longest, record)?;
+            self.origin.clone_from(&self.state);
+            self.departed = self.seen;
+        }
+        self.go(now, record)
+    }
+
+    fn go(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        if self.seen != now {
+            let h = now.since(self.departed).seconds();
+            let began = self.departed.seconds();
+            if let Some(two_way) = &mut self.two_way {
+                two_way.advance(h, began, || record.poll())?;
+                two_way.show(&self.rigid, &mut self.state);
+            } else {
+                let rotors = self.rotors(self.departed);
+                let turn = &mut self.state.turn;
+                turn.clone_from(&self.origin.turn);
+                let around = self.around.as_ref().map(|around| around as &dyn Surroundings);
+                self.rigid.advance(turn, &self.torque, rotors, around, (began, h), || record.poll())?;
+                self.state.modes.clone_from(&self.origin.modes);
+                self.elastic.advance(&mut self.state.modes, &self.forces, h);
+            }
+            self.seen = now;
+            self.truth = None;
+        }
+        Ok(())
+    }
+
+    /// What there is to measure at the instant reached; none if the state is no longer finite.
+    pub fn view(&mut self) -> Option<Truth> {
+        if self.truth.is_none() && self.state.is_finite() {
+            let (truth, elastic) = match self.two_way.as_deref() {
+                None => self.measurable(),
+                Some(two_way) => two_way.measurable(&self.sensed),
+            };
+            self.rates = (truth.rigid.into(), elastic);
+            self.truth = Some(truth);
+        }
+        self.truth
+    }
+
+    /// What there is to measure at another sensor, beside what there is at the first.
+    pub fn at_sensor(&self, sensor: usize, first: &Truth) -> Truth {
+        let shapes = &self.elsewhere[sensor - 1];
+        let (angle, rate) = (self.turned(shapes), self.elastic.rate_at(shapes, &self.state.modes));
+        Truth {
+            elastic: (Vector::from(first.elastic) + angle).into(),
+            rate: (Vector::from(first.rate) + rate).into(),
+            turned: (Vector::from(first.turned) + angle).into(),
+            ..*first
+        }
+    }
+
+    /// Rotation of a point by all modes (rad).
+    fn turned(&self, shapes: &[Vector]) -> Vector {
+        let displacements = self.state.modes.iter().map(|phase| phase.displacement);
+        displacements.zip(shapes).fold(Vector::zeros(), |sum, (q, shape)| sum + shape * q)
+    }
+
+    /// What there is to measure at the first sensor, and the elastic part of the rates (rad/s).
+    fn measurable(&self) -> (Truth, Vector) {
+        let rigid = self.rigid.rate(&self.state.turn);
+        let elastic = self.elastic.rate_at(&self.sensed, &self.state.modes);
+        let angle = self.turned(&self.sensed);
+        let truth = Truth {
+            orientation: Orientation::Attitude(self.state.turn.attitude),
+            elastic: angle.into(),
+            rate: (rigid + elastic).into(),
+            rigid: rigid.into(),
+            turned: (Rigid::turned(&self.state.turn) + angle).into(),
+        };
+        (truth, elastic)
+    }
+
+    /// Begins a new motion at the instant seen last, under what acts from now on.
+    pub fn depart(&mut self, wrench: &Wrench) {
+        self.origin.clone_from(&self.state);
+        self.departed = self.seen;
+        if let Some(two_way) = &mut self.two_way {
+            two_way.depart(wrench);
+            two_way.show(&self.rigid, &mut self.state);
+            return;
+        }
+        let sum = |of: fn(&Rotor) -> f64| -> Vector {
+            wrench.rotors.iter().fold(Vector::zeros(), |sum, rotor| sum + rotor.axis * of(rotor))
+        };
+        let (stored, change) = (sum(|rotor| rotor.momentum), sum(|rotor| rotor.torque));
+        self.rotors = (!wrench.rotors.is_empty()).then_some((self.seen, stored, change));
+        // What turns rotors one way turns the body the other.
+        let hub = Vector::from(wrench.hub) - change;
+        self.torque = wrench.torque + hub;
+        self.forces.clear();
+        self.forces.extend_from_slice(&wrench.forces);
+        if hub != Vector::zeros() {
+            self.forces.resize(self.hub.len(), 0.0);
+            self.forces.iter_mut().zip(&self.hub).for_each(|(force, shape)| *force += shape.dot(&hub));
+        }
+    }
+
+    /// Momentum of the rotors of a body whose modes do not act back (N m s), and its rate (N m).
+    fn rotors(&self, now: Instant) -> Option<(Vector, Vector)> {
+        self.rotors.map(|(since, momentum, rate)| (momentum + rate * now.since(since).seconds(), rate))
+    }
+
+    /// Whether the scenario has an environment.
+    pub fn is_surrounded(&self) -> bool {
+        self.around.is_some()
+    }
+
+    /// The torque of the surroundings at the instant seen last, in the body's axes (N m); none if there is nothing around.
+    pub fn surroundings(&self) -> Option<Vector> {
+        let t = self.seen.seconds();
+        if self.around.is_none() && self.disturbance.is_none() {
+            return None;
+        }
+        Some(self.two_way.as_deref().map_or_else(
+            || {
+                let own = self.disturbance.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
+                let turn = &self.state.turn;
+                self.around
+                    .as_ref()
+                    .map_or(own, |of| own + of.torque(t, &turn.attitude, self.rigid.inertia()))
+            },
+            |two_way| two_way.exerted(t),
+        ))
+    }
+
+    /// The motion about an axis beyond a target, as if that axis were alone: the modes by the angles that they make at the
+    /// sensor.
+    pub fn about(&self, axis: usize, target: &Orientation) -> State {
+        let Orientation::Attitude(goal) = target else { return State::default() };
+        let phase = |(phase, shape): (&Phase, &Vector)| Phase {
+            displacement: shape[axis] * phase.displacement,
+            quadrature: shape[axis] * phase.quadrature,
+        };
+        State {
+            rigid_angle: beyond(goal, &self.state.turn.attitude)[axis],
+            rigid_rate: self.rigid.rate(&self.state.turn)[axis],
+            modes: self.state.modes.iter().zip(&self.sensed).map(phase).collect(),
+        }
+    }
+
+    /// The state at the instant seen last, in axes that no mode turns.
+    pub fn state(&self) -> &SpatialState {
+        &self.state
+    }
+
+    /// Rigid rates, and their elastic part at the sensor (rad/s), at the instant viewed last.
+    pub fn rates(&self) -> (Vector, Vector) {
+        self.rates
+    }
+
+    /// Rates of the modes (m sqrt(kg)/s) at the instant seen last.
+    pub fn modal_rates(&self) -> Vec<f64> {
+        self.elastic.rates(&self.state.modes).collect()
+    }
+
+    /// Energy of the elastic modes at the instant seen last (J), and of those that the sensor sees: the slow ones that it
+    /// hardly sees keep theirs whatever the law does.
+    pub fn elastic_energies(&self) -> (f64, f64) {
+        let energies = self.elastic.energies(&self.state.modes).zip(&self.visible);
+        energies.fold((-0.0, -0.0), |(all, visible), (energy, seen)| {
+            (all + energy, if *seen { visible + energy } else { visible })
+        })
+    }
+
+    /// The energies, as logged.
+    pub fn energy(&self) -> Energy {
+        let one_way = || {
+            let momentum = Rigid::momentum(&self.state.turn);
+            let whole = self.rotors(self.seen).map_or(momentum, |(rotors, _)| momentum + rotors);
+            (self.rigid.energy(&self.state.turn), whole.norm())
+        };
+        let (rotational_j, momentum_nm_s) = self.two_way.as_deref().map_or_else(one_way, TwoWay::energy);
+        let (elastic_j, visible_j) = self.elastic_energies();
+        Energy { rotational_j, elastic_j, visible_j, momentum_nm_s }
+    }
+
+    /// The modes, as logged.
+    pub fn vibrations(&self) -> Vibrations {
+        let modes = &self.state.modes;
+        let rates = self.elastic.rates(modes).zip(self.elastic.energies(modes));
+        let of = |(phase, (rate, energy_j)): (&Phase, (f64, f64))| Vibration {
+            displacement: phase.displacement,
+            rate,
+            energy_j,
+        };
+        Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
+    }
+
+    /// The attitude, as logged, with the angles by which it is beyond its target (rad).
+    pub fn pointing(&self, error: [f64; 3]) -> Pointing {
+        let q = self.two_way.as_deref().map_or(&self.state.turn.attitude, TwoWay::attitude);
+        let [roll_rad, pitch_rad, yaw_rad] = crate::body::spatial::angles(q);
+        let [roll_error_rad, pitch_error_rad, yaw_error_rad] = error;
+        Pointing {
+            q_w: q.w,
+            q_x: q.i,
+            q_y: q.j,
+            q_z: q.k,
+            roll_rad,
+            pitch_rad,
+            yaw_rad,
+            roll_error_rad,
+            pitch_error_rad,
+            yaw_error_rad,
+        }
+    }
+}

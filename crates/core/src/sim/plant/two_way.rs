@@ -1,0 +1,145 @@
+//! A body with three axes whose modes act back on its rotation, on its way.
+
+use nalgebra::{Matrix3, Quaternion};
+
+use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState, Vector, vector};
+use crate::body::{Phase, Wrench};
+use crate::environment::Around;
+use crate::motion::turning::{Acting, Flexible, Surroundings, Turning};
+use crate::sensor::{Orientation, Truth};
+
+/// The motion, and what the plant needs to turn what acts and what is seen into its terms.
+#[derive(Clone, Debug)]
+pub struct TwoWay {
+    turning: Turning,
+    frequencies: Vec<f64>,
+    /// Rotations of the hub in each mode, and by how much those at the sensor and where torques act differ.
+    hub: Vec<Vector>,
+    sensed: Vec<Vector>,
+    acts: Vec<Vector>,
+    outside: Outside,
+    acting: Acting,
+}
+
+/// The disturbance of the body, and what is around it.
+#[derive(Clone, Debug)]
+struct Outside {
+    own: Option<Periodic>,
+    around: Option<Around>,
+}
+
+impl Surroundings for Outside {
+    fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
+        let own = self.own.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
+        self.around.as_ref().map_or(own, |around| own + around.torque(t, attitude, inertia))
+    }
+
+    fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
+        self.around.as_ref()?.tide(t, attitude)
+    }
+
+    fn bound(&self) -> f64 {
+        let own = self.own.as_ref().map_or(0.0, Periodic::bound);
+        own + self.around.as_ref().map_or(0.0, Surroundings::bound)
+    }
+
+    fn frequency(&self) -> f64 {
+        let own = self.own.as_ref().map_or(0.0, Periodic::frequency);
+        own + self.around.as_ref().map_or(0.0, Surroundings::frequency)
+    }
+}
+
+impl TwoWay {
+    /// The body at the start, which nothing pushes but what is around it, with the rotations of each mode at the sensor and
+    /// where torques act.
+    pub fn new(
+        body: &Spatial,
+        flexible: &Flexible,
+        around: Option<Around>,
+        [sensed, acts]: [&[Vector]; 2],
+    ) -> Self {
+        let frequencies: Vec<f64> = flexible.modes.iter().map(|mode| mode.frequency).collect();
+        let start = Elastic::start(body);
+        let modes = start.iter().zip(&frequencies);
+        let modes: Vec<_> = modes.map(|(phase, w)| [phase.displacement, w * phase.quadrature]).collect();
+        let hub: Vec<Vector> = flexible.modes.iter().map(|mode| mode.rotation).collect();
+        let beyond = |at: &[Vector]| at.iter().zip(&hub).map(|(at, hub)| at - hub).collect();
+        Self {
+            turning: Turning::new(flexible, body.attitude.get(), vector(&body.rate), &modes),
+            sensed: beyond(sensed),
+            acts: beyond(acts),
+            outside: Outside { own: body.disturbance.clone(), around },
+            acting: Acting::default(),
+            frequencies,
+            hub,
+        }
+    }
+
+    /// Brings the body to `h` seconds after its departure, which was so long after the start (s), as long as it may `go_on`.
+    pub fn advance<E>(&mut self, h: f64, began: f64, go_on: impl FnMut() -> Result<(), E>) -> Result<(), E> {
+        let Outside { own, around } = &self.outside;
+        let acts = own.is_some() || around.is_some();
+        self.turning.advance(h, acts.then_some((&self.outside as &dyn Surroundings, began)), go_on)
+    }
+
+    /// The torque of the surroundings at the instant seen last, which is so long after the start (s), in the hub's axes (N m).
+    pub fn exerted(&self, t: f64) -> Vector {
+        self.outside.torque(t, self.attitude(), &self.turning.inertia())
+    }
+
+    /// Begins a new motion at the instant seen last, under what acts from now on.
+    pub fn depart(&mut self, wrench: &Wrench) {
+        let (push, hub) = (wrench.torque, Vector::from(wrench.hub));
+        let Acting { torque, forces, rotors } = &mut self.acting;
+        *torque = push + hub;
+        rotors.clone_from(&wrench.rotors);
+        // The motion gives modes their part of the torque on the hub: what jets and torques elsewhere give differs from it.
+        let given = wrench.forces.iter().copied().chain(std::iter::repeat(0.0));
+        let beyond = self.hub.iter().zip(&self.acts).zip(given);
+        forces.clear();
+        forces.extend(beyond.map(|((of_hub, acts), force)| force - of_hub.dot(&push) + acts.dot(&hub)));
+        self.turning.depart(&self.acting);
+    }
+
+    /// Puts the state as seen from the mean axes into another.
+    pub fn show(&self, rigid: &Rigid, state: &mut SpatialState) {
+        let seen = self.turning.seen();
+        state.turn = rigid.start(seen.mean, seen.rigid);
+        let modes = seen.displacements.iter().zip(&seen.rates).zip(&self.frequencies);
+        for (phase, ((displacement, rate), w)) in state.modes.iter_mut().zip(modes) {
+            *phase = Phase { displacement: *displacement, quadrature: rate / w };
+        }
+    }
+
+    /// What there is to measure where the modes make these rotations, and the elastic part of the rates (rad/s): the attitude
+    /// is that of the hub.
+    pub fn measurable(&self, sensed: &[Vector]) -> (Truth, Vector) {
+        let seen = self.turning.seen();
+        let sum = |shapes: &[Vector], of: &[f64]| -> Vector {
+            shapes.iter().zip(of).fold(Vector::zeros(), |sum, (shape, q)| sum + shape * *q)
+        };
+        let elastic = sum(sensed, &seen.rates);
+        let truth = Truth {
+            orientation: Orientation::Attitude(seen.attitude),
+            elastic: sum(&self.sensed, &seen.displacements).into(),
+            rate: (seen.rigid + elastic).into(),
+            rigid: seen.rigid.into(),
+            turned: (seen.turned + sum(sensed, &seen.displacements)).into(),
+        };
+        (truth, elastic)
+    }
+
+    /// The attitude of the hub.
+    pub fn attitude(&self) -> &Quaternion<f64> {
+        &self.turning.seen().attitude
+    }
+
+    /// Energy of the rotation (J), and angular momentum (N m s), rotors included.
+    pub fn energy(&self) -> (f64, f64) {
+        let seen = self.turning.seen();
+        (seen.rotational, seen.momentum.norm())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,182 @@
+//! Both motions of a body with three axes through the same plant.
+
+use nalgebra::{Matrix3, Quaternion};
+
+use crate::body::spatial::{Spatial, Vector, rotation};
+use crate::body::{Phase, Wrench};
+use crate::motion::turning::{Flexible, FreeMode, Rotor};
+use crate::numerics::gauss_legendre::{NODES, WEIGHTS};
+use crate::scenario::Study;
+use crate::sensor::{Orientation, Truth};
+use crate::sim::plant::SpatialPlant;
+use crate::time::{Instant, Span};
+
+/// Two modes, which turn the hub by these angles or not at all, and a bench a little further.
+fn body(disturbed: bool, coupled: bool) -> Spatial {
+    let torque = "disturbance = { constant = [1e-3, 0, 0], amplitude = [0.02, -0.01, 0.03], period = 7.0 }";
+    let hub = if coupled { ["[0.02, 1e-3, -0.01]", "[1e-3, 0.03, 2e-3]"] } else { ["[0, 0, 0]"; 2] };
+    let text = format!(
+        "inertia = [[1100.0, 6.0, 0.5], [6.0, 310.0, 5.0], [0.5, 5.0, 1090.0]]
+        rate = [0.02, 0.03, -0.01]
+        points = [{{ name = 'hub' }}, {{ name = 'bench' }}]
+        {}
+        [[modes]]
+        frequency = 1.15
+        damping = 0.005
+        displacement = 0.01
+        shapes.hub.rotation = {}
+        shapes.bench.rotation = [0.02, 1.5e-3, -0.01]
+        [[modes]]
+        frequency = 4.3
+        rate = 0.05
+        shapes.hub.rotation = {}
+        shapes.bench.rotation = [1e-3, 0.03, 1e-3]",
+        if disturbed { torque } else { "" },
+        hub[0],
+        hub[1]
+    );
+    toml::from_str(&text).expect("a body")
+}
+
+fn flexible(body: &Spatial) -> Flexible {
+    let mode = |(mode, (_, rotation)): (&crate::body::spatial::SpatialMode, (Vector, Vector))| FreeMode {
+        frequency: mode.frequency.get(),
+        damping: mode.damping.get(),
+        rotation,
+        moments: Matrix3::from_diagonal_element(if rotation.norm() > 0.0 { 0.5 } else { 0.0 }),
+    };
+    let modes = body.modes.iter().zip(body.shapes("hub")).map(mode).collect();
+    Flexible { inertia: body.tensor(), modes, damping: None }
+}
+
+fn study(sensed_at: &str) -> Study {
+    Study {
+        tick: Span::from_seconds(0.25),
+        sensed_at: vec![sensed_at.to_owned()],
+        acts_at: "hub".to_owned(),
+        ..Study::default()
+    }
+}
+
+fn at(seconds: f64) -> Instant {
+    Instant::START + Span::from_seconds(seconds)
+}
+
+fn seen(plant: &mut SpatialPlant, seconds: f64) -> Truth {
+    plant.approach(at(seconds), &mut ()).expect("nothing stops it");
+    plant.view().expect("finite")
+}
+
+fn apart(a: &Truth, b: &Truth) -> f64 {
+    a.orientation.beyond(&b.orientation).into_iter().fold(0.0, |most, part| part.abs().max(most))
+}
+
+fn wheel(momentum: f64, torque: f64) -> Vec<Rotor> {
+    vec![Rotor { axis: Vector::new(0.6, 0.0, 0.8), momentum, torque }]
+}
+
+/// Where modes do not turn the hub, both motions are one: under the surroundings, torques, and rotors.
+#[test]
+fn without_coupling_both_are_one() {
+    let body = body(true, false);
+    let mut one_way = SpatialPlant::new(&body, None, &study("bench"));
+    let mut two_way = SpatialPlant::new(&body, Some(&flexible(&body)), &study("bench"));
+    let mut momentum = 20.0;
+    for leg in 0..4 {
+        let began = 25.0 * f64::from(leg);
+        let torque = 0.1 - 0.05 * f64::from(leg);
+        let wrench = Wrench {
+            hub: [0.0, 0.2 * f64::from(leg), -0.1],
+            rotors: wheel(momentum, torque),
+            ..Wrench::default()
+        };
+        momentum += 25.0 * torque;
+        one_way.depart(&wrench);
+        two_way.depart(&wrench);
+        for t in [3.0, 25.0] {
+            let (a, b) = (seen(&mut one_way, began + t), seen(&mut two_way, began + t));
+            let off = |x: [f64; 3], y: [f64; 3]| (Vector::from(x) - Vector::from(y)).norm();
+            let attitudes = off(a.orientation.at(a.elastic).beyond(&b.orientation.at(b.elastic)), [0.0; 3]);
+            let found = [attitudes, off(a.rigid, b.rigid), off(a.rate, b.rate), off(a.turned, b.turned)];
+            assert!(found.into_iter().all(|off| off < 1e-12), "{found:?}");
+            let (a, b) = (one_way.energy(), two_way.energy());
+            assert!((a.rotational_j - b.rotational_j).abs() < 1e-11, "{a:?} {b:?}");
+            assert!((a.momentum_nm_s - b.momentum_nm_s).abs() < 1e-10, "{a:?} {b:?}");
+        }
+    }
+}
+
+/// A torque on the hub is the same as jets with its torque and what that gives the modes.
+#[test]
+fn what_acts_on_modes_is_told_from_what_turns_the_hub() {
+    let body = body(false, true);
+    let flexible = flexible(&body);
+    let torque = Vector::new(3.0, -2.0, 1.0);
+    let forces = flexible.modes.iter().map(|mode| mode.rotation.dot(&torque)).collect();
+    let wrenches =
+        [Wrench { hub: torque.into(), ..Wrench::default() }, Wrench { torque, forces, ..Wrench::default() }];
+    let [first, second] = wrenches.map(|wrench| {
+        let mut plant = SpatialPlant::new(&body, Some(&flexible), &study("bench"));
+        plant.depart(&wrench);
+        let truth = seen(&mut plant, 10.0);
+        (plant.state().clone(), truth)
+    });
+    assert!(apart(&first.1, &second.1) < 1e-14);
+    for (Phase { displacement: a, .. }, Phase { displacement: b, .. }) in
+        first.0.modes.iter().zip(&second.0.modes)
+    {
+        assert!((a - b).abs() < 1e-14 && a.abs() > 1e-4);
+    }
+}
+
+/// What a gyro counts is the integral of the rate at it, on both motions.
+#[test]
+fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
+    let body = body(true, true);
+    for flexible in [None, Some(flexible(&body))] {
+        let mut plant = SpatialPlant::new(&body, flexible.as_ref(), &study("bench"));
+        plant.depart(&Wrench { hub: [0.5, 0.0, -1.0], rotors: wheel(3.0, 0.1), ..Wrench::default() });
+        let h = 1.0 / 16.0;
+        let mut integral = Vector::zeros();
+        let before = seen(&mut plant, 0.0).turned;
+        // Past the instant at which a one-way motion begins anew.
+        for step in 0..400 {
+            for (node, weight) in NODES.into_iter().zip(WEIGHTS) {
+                integral += Vector::from(seen(&mut plant, h * (f64::from(step) + node)).rate) * (weight * h);
+            }
+        }
+        let turned = Vector::from(seen(&mut plant, 25.0).turned) - Vector::from(before);
+        assert!((turned - integral).norm() < 1e-9, "{turned} {integral}");
+        assert!(turned.norm() > 0.1);
+    }
+}
+
+/// The bench turns beyond the hub by its own part of each mode, and looking changes nothing.
+#[test]
+fn a_bench_is_seen_beside_the_hub() {
+    let body = body(true, true);
+    let flexible = flexible(&body);
+    let run = |looks: &[f64], point: &str| {
+        let mut plant = SpatialPlant::new(&body, Some(&flexible), &study(point));
+        plant.depart(&Wrench { hub: [0.5, 0.0, -1.0], ..Wrench::default() });
+        for t in looks {
+            seen(&mut plant, *t);
+        }
+        let truth = seen(&mut plant, 30.0);
+        (plant, truth)
+    };
+    let ((plant, hub), (bench_plant, bench)) = (run(&[], "hub"), run(&[0.1, 20.0, 29.999_999], "bench"));
+    assert_eq!(hub.orientation, bench.orientation);
+    assert_eq!(plant.state(), bench_plant.state());
+    assert!(Vector::from(hub.elastic).norm() < 1e-18);
+    let displacements: Vec<f64> = plant.state().modes.iter().map(|phase| phase.displacement).collect();
+    let beyond =
+        Vector::new(0.0, 5e-4, 0.0) * displacements[0] - Vector::new(0.0, 0.0, 1e-3) * displacements[1];
+    assert!((Vector::from(bench.elastic) - beyond).norm() < 1e-17);
+    // The mean axes and the modes' angles make the hub's attitude.
+    let Orientation::Attitude(attitude) = hub.orientation else { panic!("three axes") };
+    let angles =
+        body.shapes("hub").iter().zip(&displacements).fold(Vector::zeros(), |sum, ((_, r), q)| sum + r * *q);
+    let made: Quaternion<f64> = plant.state().turn.attitude * rotation(&angles);
+    assert!((made - attitude).norm() < 1e-15);
+}

@@ -1,0 +1,98 @@
+//! Where the body shall be: on a manoeuvre and at its end, or at targets of three axes.
+
+use std::sync::Arc;
+
+use crate::belief::Belief;
+use crate::body::spatial::Vector;
+use crate::law::{Control, Goal, Itinerary};
+use crate::scenario::Scenario;
+use crate::sensor::Orientation;
+use crate::time::{Instant, Span};
+use crate::waveform::Waveform;
+
+/// Where the body shall be.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// The end of the manoeuvre, or angle 0.
+    pub goal: Goal,
+    /// The manoeuvre's command.
+    waveform: Option<Arc<Waveform>>,
+    /// Angle (rad) and rate (rad/s) at which the manoeuvre begins, and what a unit of its command accelerates (kg m²).
+    from: (f64, f64),
+    inertia: f64,
+    /// The way to the targets of a body with three axes.
+    way: Option<Itinerary>,
+}
+
+impl Reference {
+    /// That of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            goal: scenario.goal(),
+            waveform: scenario.plan.as_ref().map(|plan| Arc::new(plan.waveform.clone())),
+            from: (scenario.model.angle.get(), scenario.model.rate.get()),
+            inertia: scenario.planned_for().commanded_inertia(),
+            way: scenario.body.spatial().map(|_| Itinerary::new(&scenario.study.targets)),
+        }
+    }
+
+    /// Angle (rad) and rate (rad/s) where a body with one angle shall be: on the manoeuvre, where it would be if it were rigid.
+    pub fn at(&self, now: Instant) -> (f64, f64) {
+        match &self.waveform {
+            Some(waveform) if now < self.goal.from => {
+                let ((angle, rate), t) = (self.from, now.seconds());
+                let (travel, impulse) = (waveform.travel(0.0, t), waveform.impulse(0.0, t));
+                (angle + rate * t + travel / self.inertia, rate + impulse / self.inertia)
+            }
+            _ => self.goal.at(now),
+        }
+    }
+
+    /// What a law about an axis aims at, where the reference of three axes leads it or not: one that tracks follows the manoeuvre.
+    pub fn aim(&self, law: &dyn Control, now: Instant, led: Option<Goal>) -> Goal {
+        if let Some(goal) = led {
+            return goal;
+        }
+        if now < self.goal.from && law.tracks() {
+            let (angle, rate) = self.at(now);
+            return Goal { from: now, angle, rate, acceleration: 0.0 };
+        }
+        self.goal
+    }
+
+    /// From where angles count: from the target of three axes, or from 0.
+    pub fn origin(&self, now: Instant) -> Orientation {
+        match &self.way {
+            None => Orientation::Angle(0.0),
+            Some(way) => Orientation::Attitude(way.at(now).attitude),
+        }
+    }
+
+    /// The target that the body is on its way to, of three axes, or 0.
+    pub fn target(&self, now: Instant) -> Orientation {
+        match &self.way {
+            None => Orientation::Angle(0.0),
+            Some(way) => Orientation::Attitude(way.target(now)),
+        }
+    }
+
+    /// What each of three axes is led along, while the reference moves, of a body that is believed to be where it is.
+    pub fn led(&self, now: Instant, beliefs: &[Belief]) -> Option<[Goal; 3]> {
+        let way = self.way.as_ref().filter(|way| way.moves(now))?;
+        let beyond = Vector::from_fn(|axis, _| beliefs.get(axis).map_or(0.0, |belief| belief.angle));
+        let [rate, acceleration] = way.at(now).seen_from(&beyond);
+        let goal =
+            |axis: usize| Goal { from: now, angle: 0.0, rate: rate[axis], acceleration: acceleration[axis] };
+        Some([0, 1, 2].map(goal))
+    }
+
+    /// When the origin changes after an instant: at once while the reference moves, else when the next target begins.
+    pub fn next_target(&self, now: Instant) -> Option<Instant> {
+        self.way.as_ref().and_then(|way| if way.moves(now) { Some(now + Span::TICK) } else { way.next(now) })
+    }
+
+    /// What the manoeuvre commands (N m).
+    pub fn feedforward(&self, now: Instant) -> f64 {
+        self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds()))
+    }
+}

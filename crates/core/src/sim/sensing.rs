@@ -1,0 +1,118 @@
+//! The sensors of a run: when each is due, and what their readings come to about each axis.
+
+use crate::random::Seed;
+use crate::scenario::Scenario;
+use crate::sensor::{Orientation, Reading, Sense, Truth};
+use crate::time::{Instant, Span};
+
+/// The sensors at work.
+#[derive(Clone, Debug)]
+pub struct Sensing {
+    sensors: Vec<Due>,
+    /// What was read at the last samples, of each sensor; nothing of one that was not due, or silent.
+    pub fresh: Vec<Option<Reading>>,
+    /// What all readings so far come to: the last orientation, and the last rates.
+    pub reading: Option<Reading>,
+    /// The same about each axis: angle (rad) and rate (rad/s).
+    pub measured: Vec<[f64; 2]>,
+    /// When the next is due; none of a continuous sensor.
+    pub next: Option<Instant>,
+}
+
+/// A sensor, and when it is due.
+#[derive(Clone, Debug)]
+struct Due {
+    sensor: Box<dyn Sense>,
+    /// Whether it tells where the body points, or the rates alone.
+    orients: bool,
+    period: Option<Span>,
+    next: Option<Instant>,
+    last: Option<Reading>,
+    /// Whether rates are the differences of its angles.
+    differs: bool,
+}
+
+impl Sensing {
+    /// The sensors of a scenario, before its start.
+    pub fn new(scenario: &Scenario, seed: Seed) -> Self {
+        let (study, axes) = (&scenario.study, scenario.study.axes.len());
+        let all = &scenario.sensor;
+        let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
+        let due = |(index, sensor): (usize, &crate::sensor::Sensor)| {
+            let period = if all.len() == 1 { study.sampling } else { sensor.period(study.cycle) };
+            Due {
+                sensor: sensor.start(axes, seed, all.ordinal(index)),
+                orients: all.orients(index),
+                period,
+                next: period.map(|period| Instant::START + period),
+                last: None,
+                differs: all.orients(index) && !rates,
+            }
+        };
+        let sensors: Vec<Due> = all.iter().enumerate().map(due).collect();
+        Self {
+            fresh: vec![None; sensors.len()],
+            reading: None,
+            measured: vec![[0.0; 2]; axes],
+            next: sensors.iter().filter_map(|due| due.next).min(),
+            sensors,
+        }
+    }
+
+    /// Reads what is due now, of what there is to measure at each sensor, with angles beyond an origin; tells whether
+    /// anything was measured.
+    pub fn read(&mut self, now: Instant, truth: impl Fn(usize) -> Truth, origin: &Orientation) -> bool {
+        let mut any = false;
+        for (index, due) in self.sensors.iter_mut().enumerate() {
+            self.fresh[index] = None;
+            if now > Instant::START && due.next.is_some_and(|next| next != now) {
+                continue;
+            }
+            let truth = truth(index);
+            let reading = due.sensor.read(now, &truth, due.last.as_ref());
+            if let Some(period) = due.period.filter(|_| now > Instant::START) {
+                due.next = Some(due.sensor.after(now, period));
+            }
+            let Some(reading) = reading else { continue };
+            any = true;
+            self.fresh[index] = Some(reading);
+            let rates = reading.rate.or_else(|| due.differences(now, &reading, &truth));
+            if due.orients {
+                let angles = reading.at.beyond(origin);
+                self.measured.iter_mut().zip(angles).for_each(|(measured, angle)| measured[0] = angle);
+            }
+            if let Some(rates) = rates {
+                self.measured.iter_mut().zip(rates).for_each(|(measured, rate)| measured[1] = rate);
+            }
+            due.last = Some(reading);
+            let before = self.reading.unwrap_or(reading);
+            self.reading = Some(Reading {
+                at: if due.orients { reading.at } else { before.at },
+                rate: reading.rate.or(before.rate),
+            });
+        }
+        self.next = self.sensors.iter().filter_map(|due| due.next).min();
+        any
+    }
+
+    /// The true bias of the first gyro now (rad/s).
+    pub fn bias(&self) -> [f64; 3] {
+        self.sensors.iter().find_map(|due| due.sensor.bias()).unwrap_or_default()
+    }
+}
+
+impl Due {
+    /// Rates of a sensor of angles alone: their differences over the period, and at first the true ones.
+    fn differences(&self, now: Instant, reading: &Reading, truth: &Truth) -> Option<[f64; 3]> {
+        if !self.differs {
+            return None;
+        }
+        let (Some(period), true) = (self.period, now > Instant::START) else { return Some(truth.rate) };
+        let nowhere = match reading.at {
+            Orientation::Angle(_) => Orientation::Angle(0.0),
+            attitude @ Orientation::Attitude(_) => attitude,
+        };
+        let last = self.last.map_or(nowhere, |last| last.at);
+        Some(reading.at.beyond(&last).map(|difference| difference / period.seconds()))
+    }
+}

@@ -1,0 +1,66 @@
+//! The scene of a run: its parts, its frames when they are due, its plumes when they are new.
+
+use super::plant::Plant;
+use super::{Simulation, SimulationError};
+use crate::body::spatial::SpatialState;
+use crate::record::{Record, Sample};
+use crate::scene::{PlanarView, Scene};
+
+impl Simulation {
+    /// What the scene consists of; a scene that no record wants is dropped.
+    pub(super) fn set_the_scene(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let (now, telling) = (self.now, &mut self.telling);
+        match &telling.scene {
+            Some(scene) if record.scene() => {
+                record.record(now, Sample::Scene(&scene.parts(telling.events.stamp(now))))?;
+                telling.next_frames = Some(now);
+            }
+            _ => telling.scene = None,
+        }
+        Ok(())
+    }
+
+    /// Frames and plumes.
+    pub(super) fn show(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        if self.telling.scene.is_none() {
+            return Ok(());
+        }
+        let now = self.now;
+        let stamp = self.telling.events.stamp(now);
+        let truth = self.plant.view(now)?;
+        let frames = self.telling.next_frames == Some(now);
+        let Some(scene) = &mut self.telling.scene else { return Ok(()) };
+        if frames {
+            self.telling.next_frames = Some(now + scene.period());
+        }
+        let plumes = match (&mut **scene, &self.plant) {
+            (Scene::Planar(scene), Plant::Planar(plant)) => {
+                let state = plant.state();
+                if frames {
+                    let sections = plant.outputs().map_or_else(Vec::new, |outputs| outputs.outputs);
+                    let sections: Vec<f64> = sections.into_iter().map(|output| output.value).collect();
+                    let view = PlanarView {
+                        time: now.seconds(),
+                        angle: truth.seen()[0],
+                        rigid_angle: state.rigid_angle,
+                        modes: &state.modes,
+                        sections: &sections,
+                    };
+                    record.record(now, Sample::Frames(scene.frames(stamp, view)))?;
+                }
+                let torque = self.drive.actuator.applied(now, 0, [truth.rate[0], truth.rigid[0]]);
+                scene.plumes(stamp, torque)
+            }
+            (Scene::Spatial(scene), Plant::Spatial(plant)) => {
+                if frames {
+                    let SpatialState { turn, modes } = plant.state();
+                    record.record(now, Sample::Frames(scene.frames(stamp, &turn.attitude, modes)))?;
+                }
+                let burning = self.drive.actuator.cycle().map_or([0.0; 3], |cycle| cycle.burning);
+                scene.plumes(stamp, burning)
+            }
+            _ => None,
+        };
+        Ok(plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Plumes(&plumes)))?)
+    }
+}

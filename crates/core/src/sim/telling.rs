@@ -1,0 +1,315 @@
+//! The rows of a run: when records get them, and what they hold.
+
+use super::arrival::Arrival;
+use super::events::Events;
+use super::plant::{Plant, SpatialPlant};
+use super::reference::Reference;
+use super::{Simulation, SimulationError};
+use crate::estimator::Closed;
+use crate::law::{Cause, Phase};
+use crate::record::{
+    self, AxisRate, Command, Cycle, Estimates, GoalMotion, Jets, Motion, Rates, Record, RecordError, Sample,
+    SpatialMotion, Torques, Trigger, Wheels,
+};
+use crate::scenario::Scenario;
+use crate::scene::Scene;
+use crate::sensor::Truth;
+use crate::time::{Instant, Span};
+
+/// What is told of a run, and when.
+#[derive(Clone, Debug)]
+pub struct Telling {
+    /// The journal.
+    pub events: Events,
+    /// The scene, and when its frames are due.
+    pub scene: Option<Box<Scene>>,
+    /// See `scene`.
+    pub next_frames: Option<Instant>,
+    log_period: Span,
+    next_dense: Option<Instant>,
+    next_law: Instant,
+    /// The cycles of a body with three axes.
+    cycle: Option<Span>,
+    /// Pulses of jets that were told.
+    pulses: u64,
+    next_cycle: Option<Instant>,
+    /// The end of the manoeuvre that lies ahead, if any.
+    arrival: Option<Arrival>,
+    /// Whether the torque has more to it than switchings.
+    tells_torque: bool,
+    stage: Stage,
+}
+
+/// How far the journal is.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Stage {
+    Before,
+    Within,
+    After,
+}
+
+impl Telling {
+    /// What is told of a scenario's run, before its start.
+    pub fn new(scenario: &Scenario, reference: &Reference, run: u64) -> Self {
+        Self {
+            events: Events::new(scenario, run),
+            scene: None,
+            next_frames: None,
+            log_period: scenario.log_period(),
+            next_dense: None,
+            next_law: Instant::START,
+            cycle: scenario.body.spatial().map(|_| scenario.study.tick),
+            pulses: 0,
+            next_cycle: None,
+            arrival: Arrival::new(scenario, &reference.goal),
+            tells_torque: scenario.tells_torque(),
+            stage: Stage::Before,
+        }
+    }
+
+    /// Makes it draw the scene of a scenario.
+    pub fn draw(&mut self, scenario: &Scenario) {
+        self.scene = Some(Box::new(Scene::new(scenario)));
+    }
+
+    /// Opens the journal, once; tells whether this is the start.
+    pub fn open(&mut self, now: Instant, record: &mut impl Record) -> Result<bool, RecordError> {
+        if self.stage != Stage::Before {
+            return Ok(false);
+        }
+        self.stage = Stage::Within;
+        self.events.begin(now, record)?;
+        Ok(true)
+    }
+
+    /// Whether this is the end, once.
+    pub fn close(&mut self) -> bool {
+        std::mem::replace(&mut self.stage, Stage::After) != Stage::After
+    }
+
+    /// The last line of the journal.
+    pub fn journal_end(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        self.events.end(now, record)
+    }
+
+    /// When anything is due.
+    pub fn due(&self) -> Option<Instant> {
+        let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
+        [arrives, self.next_dense, self.next_frames, self.next_cycle].into_iter().flatten().min()
+    }
+
+    /// A window that ended, and what the adaptation made of it.
+    pub fn window(&self, now: Instant, closed: &Closed, record: &mut impl Record) -> Result<(), RecordError> {
+        record.record(now, Sample::Window(&closed.mean))?;
+        let Some((row, before)) = &closed.step else { return Ok(()) };
+        record.record(now, Sample::Adaptation(row))?;
+        self.events.adapted(now, row, *before, record)
+    }
+}
+
+impl Simulation {
+    /// The rows of the start.
+    pub(super) fn tell_begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        if let Plant::Planar(_) = self.plant {
+            record.record(now, Sample::Begin(&self.law_row()))?;
+        }
+        if record.dense() {
+            self.telling.next_dense = Some(now);
+            self.telling.next_law = now + Span::from_seconds(1.0);
+        }
+        self.telling.next_cycle = self.telling.cycle.map(|_| now);
+        self.set_the_scene(record)
+    }
+
+    /// The rows that are due now, after all parts have acted.
+    pub(super) fn tell(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        if self.telling.next_cycle == Some(now) {
+            self.telling.next_cycle = self.telling.cycle.map(|cycle| now + cycle);
+            self.tell_cycle(record)?;
+        }
+        if self.telling.next_dense == Some(now) {
+            self.telling.next_dense = Some(now + self.telling.log_period);
+            let truth = self.plant.view(now)?;
+            match &self.plant {
+                Plant::Planar(_) => self.tell_motion(record)?,
+                Plant::Spatial(plant) => {
+                    record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant, &truth)))?;
+                }
+            }
+            if now >= self.telling.next_law {
+                if let Plant::Planar(_) = self.plant {
+                    record.record(now, Sample::Law(&self.law_row()))?;
+                }
+                self.telling.next_law += Span::from_seconds(1.0);
+            }
+        }
+        Ok(())
+    }
+
+    /// The end of the manoeuvre, if that is now.
+    pub(super) fn tell_arrival(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        let Some(arrival) = self.telling.arrival.take_if(|arrival| arrival.at == now) else { return Ok(()) };
+        let truth = self.plant.view(now)?;
+        let row = arrival.row(&truth, &self.plant.about(0, &self.origin));
+        record.record(now, Sample::Arrival(&row))?;
+        Ok(self.telling.events.arrived(now, &row, record)?)
+    }
+
+    /// A switching of the law of one angle: its state was another before.
+    pub(super) fn tell_switching(
+        &self,
+        before: Phase,
+        cause: Option<Cause>,
+        truth: &Truth,
+        record: &mut impl Record,
+    ) -> Result<(), SimulationError> {
+        let (now, state) = (self.now, self.laws.about(0).state());
+        let Plant::Planar(plant) = &self.plant else { return Ok(()) };
+        if before == state {
+            return Ok(());
+        }
+        let (time_s, time_whole_s, time_fs) = Command::times(now);
+        let command = Command {
+            time_s,
+            time_whole_s,
+            time_fs,
+            state,
+            cause: if cause == Some(Cause::Timeout) { Trigger::Timeout } else { Trigger::Guard },
+            torque_nm: self.drive.actuator.asked(0),
+            angle_rad: truth.seen()[0],
+            rate_rad_s: truth.rate[0],
+            gain: self.laws.about(0).tuned(),
+        };
+        record.record(now, Sample::Switching(&command, plant.state()))?;
+        if record.dense() {
+            self.tell_motion(record)?;
+        }
+        Ok(())
+    }
+
+    /// What filters made of the sample that was just taken.
+    pub(super) fn tell_estimates(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        self.telling.events.lost(now, self.estimator.lost(), self.beliefs.len(), record)?;
+        if !record.estimates() {
+            return Ok(());
+        }
+        let truth = self.plant.view(now)?.orientation;
+        if let Some(row) = self.estimator.attitude(now, &truth, self.sensing.bias()) {
+            return Ok(record.record(now, Sample::AttitudeEstimate(&row))?);
+        }
+        let of = |axis: usize| self.estimator.estimate(axis, now, &self.plant.about(axis, &self.origin));
+        if self.beliefs.len() == 1 {
+            return Ok(of(0).map_or(Ok(()), |row| record.record(now, Sample::Estimate(&row)))?);
+        }
+        let axes: Option<Vec<_>> = (0..self.beliefs.len()).map(of).collect();
+        Ok(axes.map_or(Ok(()), |axes| record.record(now, Sample::Estimates(&Estimates { axes })))?)
+    }
+
+    fn law_row(&self) -> record::Law {
+        let law = self.laws.about(0);
+        record::Law { state: law.state(), torque_nm: self.drive.actuator.asked(0), gain: law.tuned() }
+    }
+
+    /// The motion of a body with one angle now, for a dense record.
+    fn tell_motion(&self, record: &mut impl Record) -> Result<(), RecordError> {
+        let (Plant::Planar(plant), now) = (&self.plant, self.now) else { return Ok(()) };
+        let sampled = self.sensing.next.is_some();
+        let measured = self.sensing.reading.map_or(0.0, |_| self.sensing.measured[0][0]);
+        let (attitude, rate, modes) = plant.motion(sampled.then_some(measured));
+        let envelope = self.monitor.as_ref().map(|monitor| monitor.envelope(now));
+        let (actuator, rates) = (&self.drive.actuator, [rate.rate_rad_s, rate.rigid_rad_s]);
+        let drive = self.telling.tells_torque.then(|| {
+            let (angle_rad, rate_rad_s) = self.reference.at(now);
+            let torque = record::Torque {
+                feedforward_nm: self.reference.feedforward(now),
+                feedback_nm: actuator.asked(0),
+                applied_nm: actuator.applied(now, 0, rates),
+                disturbance_nm: self.drive.disturbance(now, 0),
+            };
+            (GoalMotion { angle_rad, rate_rad_s }, torque)
+        });
+        let wheel = actuator.wheel(0, rate.rigid_rad_s);
+        let motion = Motion { attitude, rate, modes, outputs: plant.outputs(), drive, wheel, envelope };
+        record.record(now, Sample::Motion(&motion))
+    }
+
+    /// A cycle of a body with three axes, or of adaptive observers.
+    fn tell_cycle(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        let truth = self.plant.view(now)?;
+        // A law that is never asked aims at the targets all the same.
+        self.turn_to_target(now);
+        let origin = self.origin;
+        if let Plant::Spatial(plant) = &self.plant {
+            let error = truth.orientation.beyond(&origin);
+            let (rigid, elastic) = plant.rates();
+            let jets = self.drive.actuator.cycle();
+            let (on, fuel_kg, pulses) =
+                jets.map_or(([0.0; 3], f64::NAN, 0), |cycle| (cycle.on, cycle.fuel, cycle.pulses));
+            let [roll_on_s, pitch_on_s, yaw_on_s] = on;
+            // Jets may have cycles of their own, which are longer.
+            let pulses = pulses - std::mem::replace(&mut self.telling.pulses, pulses);
+            let (elastic_energy_j, visible_energy_j) = plant.elastic_energies();
+            let cycle = Cycle {
+                jets: Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg },
+                pulses,
+                elastic_energy_j,
+                visible_energy_j,
+                rigid_rate_rad_s: rigid.into(),
+                elastic_rate_rad_s: elastic.into(),
+                error_rad: error,
+            };
+            record.record(now, Sample::Cycle(&cycle))?;
+            let target = self.reference.target(now);
+            self.telling.events.target(now, &target, truth.orientation.beyond(&target), record)?;
+            if self.estimates {
+                let damped = || self.laws.damped();
+                let Some(tracking) = self.estimator.tracking(&|| plant.modal_rates(), &damped) else {
+                    return Ok(());
+                };
+                record.record(now, Sample::Tracking(&tracking))?;
+                let trusted = |axis: usize| self.beliefs[axis].trusted;
+                self.telling.events.damping(now, &damped(), [0, 1, 2].map(trusted), record)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn spatial_motion(&self, plant: &SpatialPlant, truth: &Truth) -> SpatialMotion {
+        let (rigid, elastic) = plant.rates();
+        let axis = |axis: usize| AxisRate {
+            rate_rad_s: rigid[axis] + elastic[axis],
+            rigid_rad_s: rigid[axis],
+            elastic_rad_s: elastic[axis],
+            measured_rad_s: self.sensing.measured[axis][1],
+            believed_rad_s: self.beliefs[axis].rate,
+        };
+        let actuator = &self.drive.actuator;
+        let around = plant.surroundings();
+        let torque = |axis: usize| record::Torque {
+            feedforward_nm: 0.0,
+            feedback_nm: actuator.asked(axis),
+            applied_nm: actuator.applied(self.now, axis, [rigid[axis] + elastic[axis], rigid[axis]]),
+            disturbance_nm: {
+                let others = self.drive.disturbance(self.now, axis);
+                around.map_or(others, |around| others + around[axis])
+            },
+        };
+        let wheels = actuator.wheels(self.now, (rigid + elastic).into());
+        // Of jets on which nothing else acts their pulses tell.
+        let alone = actuator.cycle().is_some() && wheels.is_empty() && !plant.is_surrounded();
+        let torques = (!alone).then(|| Torques { axes: [0, 1, 2].map(torque).into() });
+        SpatialMotion {
+            pointing: plant.pointing(truth.orientation.beyond(&self.reference.origin(self.now))),
+            rates: Rates { axes: [0, 1, 2].map(axis).into() },
+            vibrations: plant.vibrations(),
+            energy: plant.energy(),
+            torques,
+            wheels: (!wheels.is_empty()).then_some(Wheels { wheels }),
+        }
+    }
+}

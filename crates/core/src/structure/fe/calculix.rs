@@ -1,0 +1,100 @@
+//! The tables (.dat) of a frequency step of CalculiX.
+//!
+//! Participation factors leave out the mass that couples clamped and free nodes: their error falls with the third power of
+//! the size of elements at the clamp.
+
+use std::io::BufRead;
+
+use super::tables::{Table, of_factors};
+use super::text::{Line, Lines};
+use super::{Natural, Results, lowest};
+
+/// The table that the lines are of.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum At {
+    Elsewhere,
+    Eigenvalues,
+    Factors,
+    Masses,
+    TotalMass,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// What is wrong with it, with its line.
+pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> {
+    let mut at = At::Elsewhere;
+    let mut natural: Vec<Natural> = Vec::new();
+    let mut factors = Table::new("participation factors");
+    let mut masses = Table::new("effective modal masses");
+    let mut mass = None;
+    let mut lines = Lines::of(text);
+    while let Some(line) = lines.next()? {
+        if line.is_row() {
+            match at {
+                At::Eigenvalues => natural.push(eigenvalue(&line, natural.last())?),
+                At::Factors => factors.take(&line)?,
+                At::Masses => masses.take(&line)?,
+                At::TotalMass | At::Elsewhere => {}
+            }
+            continue;
+        }
+        let squeezed = line.squeezed();
+        at = match squeezed.as_str() {
+            "EIGENVALUEOUTPUT" => At::Eigenvalues,
+            "PARTICIPATIONFACTORS" => At::Factors,
+            "EFFECTIVEMODALMASS" => At::Masses,
+            "TOTALEFFECTIVEMASS" => At::TotalMass,
+            _ if at == At::TotalMass
+                && squeezed.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) =>
+            {
+                mass = Some(total(&line)?);
+                At::Elsewhere
+            }
+            _ if squeezed.is_empty()
+                || ["MODE", "REAL", "("].iter().any(|head| squeezed.starts_with(head)) =>
+            {
+                at
+            }
+            _ => At::Elsewhere,
+        };
+    }
+    if natural.is_empty() {
+        return Err(
+            "must have a table `E I G E N V A L U E   O U T P U T`, which a step `*FREQUENCY` prints"
+                .to_owned(),
+        );
+    }
+    let natural = lowest(natural, [&factors, &masses], keep)?;
+    if factors.is_empty() {
+        return Err(
+            "must have a table `P A R T I C I P A T I O N   F A C T O R S`, which a step `*FREQUENCY` prints"
+                .to_owned(),
+        );
+    }
+    Ok(Results { modes: of_factors(&natural, &factors, &masses, 1.0)?, mass })
+}
+
+fn eigenvalue(line: &Line, last: Option<&Natural>) -> Result<Natural, String> {
+    let fields = line.fields(["MODE NO", "EIGENVALUE", "RAD/TIME", "CYCLES/TIME", "IMAGINARY PART"])?;
+    let (number, mode, imaginary) = (line.number, fields.whole(0)?, fields.real(4)?);
+    if last.is_some_and(|last| last.mode >= mode) {
+        return Err(format!("line {number}: must have one step `*FREQUENCY`, got mode {mode} again"));
+    }
+    if imaginary != 0.0 {
+        return Err(format!(
+            "line {number}: mode {mode} must be stable, got an imaginary part of {imaginary} rad/time"
+        ));
+    }
+    // Shapes are normalised by mass.
+    let natural = Natural { line: number, mode, frequency: fields.real(2)?, generalised_mass: 1.0 };
+    natural.checked(fields.real(1)?, fields.real(3)?)
+}
+
+/// The mass of the free nodes: what moves along one axis, in the direction with most of it.
+fn total(line: &Line) -> Result<f64, String> {
+    let fields =
+        line.fields(["X-COMPONENT", "Y-COMPONENT", "Z-COMPONENT", "X-ROTATION", "Y-ROTATION", "Z-ROTATION"])?;
+    Ok(fields.six(0)?[..3].iter().fold(0.0, |most: f64, part| most.max(*part)))
+}

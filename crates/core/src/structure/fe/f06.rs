@@ -1,0 +1,255 @@
+//! The printed results (.f06) of Nastran and MYSTRAN: eigenvalues, participation factors, effective masses.
+//!
+//! Nastran breaks tables into pages, and heads each page of an eigenvalue table with its title, but those of `MEFFMASS` with the
+//! headings of the columns alone. So a table goes on until another text begins.
+
+use std::io::BufRead;
+
+use super::mystran::Reactions;
+use super::tables::{Table, of_factors, of_masses};
+use super::text::{Line, Lines, real};
+use super::{Natural, Results, lowest};
+
+const ASK: &str = "ask for `MEFFMASS(ALL) = YES`, in MYSTRAN for `MPFACTOR = ALL`";
+const NO_EIGENVALUES: &str =
+    "must have a table `R E A L   E I G E N V A L U E S`: run normal modes (SOL 103)";
+
+/// The table that the lines are of.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum At {
+    Elsewhere,
+    Eigenvalues,
+    Factors,
+    Masses,
+    /// Forces at the clamp in a mode, as MYSTRAN prints them.
+    Reactions,
+    /// A matrix whose first number is the mass.
+    MassMatrix,
+}
+
+/// An eigenvalue table, and what it says of residual vectors.
+#[derive(Default)]
+struct Eigenvalues {
+    remark: Remark,
+    rows: Vec<Natural>,
+}
+
+/// Which of the tables of a run with residual vectors it is.
+#[derive(Copy, Clone, Default, PartialEq, Eq)]
+enum Remark {
+    #[default]
+    None,
+    Before,
+    After,
+}
+
+struct Reader {
+    at: At,
+    /// Lines of a page's head that are still to come.
+    head: usize,
+    eigenvalues: Vec<Eigenvalues>,
+    /// A title was read, and the rows have not begun.
+    titled: Option<Remark>,
+    factors: Table,
+    masses: Table,
+    /// Whether the factors are MYSTRAN's.
+    mystran: bool,
+    /// The mode that MYSTRAN's lines are about.
+    eigenvector: Option<usize>,
+    reactions: Reactions,
+    mass: Option<f64>,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// What is wrong with it, with its line.
+pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> {
+    let mut reader = Reader {
+        at: At::Elsewhere,
+        head: 0,
+        eigenvalues: Vec::new(),
+        titled: None,
+        factors: Table::new("participation factors"),
+        masses: Table::new("effective masses"),
+        mystran: false,
+        eigenvector: None,
+        reactions: Reactions::default(),
+        mass: None,
+    };
+    let mut lines = Lines::of(text);
+    while let Some(line) = lines.next()? {
+        reader.take(&line)?;
+    }
+    reader.results(keep)
+}
+
+impl Reader {
+    fn take(&mut self, line: &Line) -> Result<(), String> {
+        let text = &line.text;
+        if text.contains("FATAL MESSAGE") || text.trim_start().starts_with("*ERROR") {
+            let shown: String = text.trim().chars().take(80).collect();
+            return Err(format!("line {}: the run failed: `{shown}`", line.number));
+        }
+        if text.starts_with('1') && text.contains("PAGE") {
+            self.head = 3;
+        }
+        if self.head > 0 {
+            // A title, a subtitle, a label: the label is behind a 0.
+            self.head = if text.starts_with('0') { 0 } else { self.head - 1 };
+            return Ok(());
+        }
+        // A digit in the first column controls the printer.
+        if text.starts_with(' ') && line.is_row() {
+            return self.row(line);
+        }
+        let squeezed = line.squeezed();
+        if let Some(rest) = squeezed.strip_prefix("OUTPUTFOREIGENVECTOR") {
+            self.eigenvector = rest.parse().ok();
+            self.at = At::Elsewhere;
+        } else if let Some(at) = title(&squeezed) {
+            self.at = at;
+            match at {
+                At::Eigenvalues => self.titled = Some(remark(&squeezed)),
+                At::Factors => self.mystran = text.contains("M O D A L"),
+                _ => {}
+            }
+        } else if self.at == At::Eigenvalues && remark(&squeezed) != Remark::None {
+            self.titled = Some(remark(&squeezed));
+        } else if self.at == At::MassMatrix {
+            self.mass_row(line)?;
+        } else if !heading(&squeezed) {
+            self.at = At::Elsewhere;
+        }
+        Ok(())
+    }
+
+    fn row(&mut self, line: &Line) -> Result<(), String> {
+        match self.at {
+            At::Eigenvalues => self.eigenvalue(line),
+            At::Factors => self.factors.take_with_cycles(line),
+            At::Masses => self.masses.take_with_cycles(line),
+            At::Reactions => match self.eigenvector {
+                Some(mode) => self.reactions.take(mode, line),
+                None => Ok(()),
+            },
+            At::MassMatrix | At::Elsewhere => Ok(()),
+        }
+    }
+
+    fn eigenvalue(&mut self, line: &Line) -> Result<(), String> {
+        let fields = line.fields([
+            "MODE",
+            "ORDER",
+            "EIGENVALUE",
+            "RADIANS",
+            "CYCLES",
+            "GENERALIZED MASS",
+            "GENERALIZED STIFFNESS",
+        ])?;
+        let natural = Natural {
+            line: line.number,
+            mode: fields.whole(0)?,
+            frequency: fields.real(3)?,
+            generalised_mass: fields.real(5)?,
+        };
+        fields.real(6)?;
+        let natural = natural.checked(fields.real(2)?, fields.real(4)?)?;
+        // The title of a next page is no new table.
+        let goes_on = self.eigenvalues.last().is_some_and(|table| {
+            let rises = table.rows.last().is_some_and(|last| last.mode < natural.mode);
+            rises && self.titled.is_none_or(|remark| remark == table.remark)
+        });
+        let remark = self.titled.take().unwrap_or_default();
+        if !goes_on {
+            self.eigenvalues.push(Eigenvalues { remark, rows: Vec::new() });
+        }
+        if let Some(table) = self.eigenvalues.last_mut() {
+            table.rows.push(natural);
+        }
+        Ok(())
+    }
+
+    /// The first row of a matrix in stars, which begins with the mass.
+    fn mass_row(&mut self, line: &Line) -> Result<(), String> {
+        let Some(row) = line.text.trim_start().strip_prefix('*').filter(|row| !row.starts_with('*')) else {
+            return Ok(());
+        };
+        self.at = At::Elsewhere;
+        let first = row.split_whitespace().next().unwrap_or_default();
+        let mass = real(first).ok_or_else(|| {
+            let shown: String = first.chars().take(40).collect();
+            format!("line {}: the mass matrix must begin with a finite number, got `{shown}`", line.number)
+        })?;
+        self.mass = Some(mass);
+        Ok(())
+    }
+
+    fn results(mut self, keep: Option<usize>) -> Result<Results, String> {
+        let natural = self.chosen()?;
+        if natural.is_empty() {
+            return Err(NO_EIGENVALUES.to_owned());
+        }
+        let natural = lowest(natural, [&self.factors, &self.masses], keep)?;
+        let modes = if self.factors.is_empty() {
+            if self.masses.is_empty() {
+                return Err(format!("must have modal participation factors: {ASK}"));
+            }
+            of_masses(&natural, &self.masses, ASK)?
+        } else if self.mystran {
+            // MYSTRAN's factors are those of forces on the clamp.
+            let modes = of_factors(&natural, &self.factors, &self.masses, -1.0)?;
+            self.reactions.confirm(&natural, &modes)?;
+            modes
+        } else {
+            of_factors(&natural, &self.factors, &self.masses, 1.0)?
+        };
+        Ok(Results { modes, mass: self.mass })
+    }
+
+    /// The modes of one table: the one that residual vectors were added to, if there is such a one.
+    fn chosen(&mut self) -> Result<Vec<Natural>, String> {
+        let mut tables = std::mem::take(&mut self.eigenvalues);
+        if tables.iter().any(|table| table.remark == Remark::After) {
+            tables.retain(|table| table.remark == Remark::After);
+        }
+        if let [_, second, ..] = &tables[..] {
+            let line = second.rows.first().map_or(0, |row| row.line);
+            return Err(format!(
+                "line {line}: must have one table of eigenvalues, and another begins here: several subcases?"
+            ));
+        }
+        Ok(tables.pop().map(|table| table.rows).unwrap_or_default())
+    }
+}
+
+/// The table that a title without its blanks begins, if it is one that could be taken for another.
+fn title(squeezed: &str) -> Option<At> {
+    Some(match squeezed {
+        "MODALPARTICIPATIONFACTORS" => At::Factors,
+        "MODALEFFECTIVEMASS" | "EFFECTIVEMODALMASSESORWEIGHTS" => At::Masses,
+        "SPCFORCES" => At::Reactions,
+        "A-SETRIGIDBODYMASSMATRIX" => At::MassMatrix,
+        "MODALEFFECTIVEMASSFRACTION" | "MODALEFFECTIVEWEIGHT" => At::Elsewhere,
+        _ if squeezed.starts_with("6x6Rigidbodymassmatrix") => At::MassMatrix,
+        _ if squeezed.starts_with("REALEIGENVALUES") => At::Eigenvalues,
+        _ => return None,
+    })
+}
+
+fn remark(squeezed: &str) -> Remark {
+    if squeezed.contains("BEFOREAUGMENTATION") {
+        Remark::Before
+    } else if squeezed.contains("AFTERAUGMENTATION") {
+        Remark::After
+    } else {
+        Remark::None
+    }
+}
+
+/// Whether a line may stand between the title of a table and its rows, or between rows.
+fn heading(squeezed: &str) -> bool {
+    const BEGINNINGS: [&str; 11] =
+        ["MODE", "NO.", "NUM", "ORDER", "MASS", "GRID", "SYS", "(", "Reference", "REFERENCE", "Units"];
+    squeezed.is_empty() || BEGINNINGS.iter().any(|beginning| squeezed.starts_with(beginning))
+}

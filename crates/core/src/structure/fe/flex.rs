@@ -1,0 +1,285 @@
+//! A flexible body of 42: mass, stiffness and damping matrices of its modes, and their integrals, in SI.
+//!
+//! Headings begin with stars, values end where a `!` begins a comment, and elements that are not there are 0.
+
+use std::io::BufRead;
+
+use nalgebra::DMatrix;
+
+use super::text::{Line, Lines};
+use super::{Mode, Results, kept};
+use crate::structure::eigen::{self, Unsolved};
+use crate::structure::mode_table::MOST_MODES;
+
+/// Angular integrals and linear ones agree to this part.
+const AGREEMENT: f64 = 1e-4;
+/// Matrices are symmetric to this part of their largest element, as they are printed.
+const PRINTED: f64 = 1e-6;
+/// Damping couples modes by no more than this part of what it does to each.
+const MODAL: f64 = 0.1;
+
+/// What a section holds.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Holds {
+    Mass,
+    Stiffness,
+    Damping,
+    /// The integral of phi dm.
+    Pf,
+    /// The integral of r x phi dm.
+    Hf,
+    /// The integral of phi r' dm.
+    L,
+}
+
+/// A section that is being read.
+struct Section {
+    holds: Holds,
+    /// How many elements it says it has.
+    count: Option<usize>,
+    taken: usize,
+}
+
+struct Reader {
+    modes: usize,
+    section: Option<Section>,
+    mass: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    damping: DMatrix<f64>,
+    /// For each mode t, r x phi and r phi', row by row.
+    integrals: DMatrix<f64>,
+    complete: Vec<Holds>,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// What is wrong with it, with its line.
+pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> {
+    let mut lines = Lines::of(text);
+    let first = lines.next()?.map(|line| line.squeezed()).unwrap_or_default();
+    if !first.contains("Flex") {
+        return Err("line 1: must be the heading of a flexible body of 42".to_owned());
+    }
+    lines.next()?;
+    let count = lines.next()?.ok_or("must have the number of modes in line 3")?;
+    let modes = values(&count).fields(["number of modes"])?.whole(0)?;
+    if !(1..=MOST_MODES).contains(&modes) {
+        return Err(format!("line 3: must have 1 to {MOST_MODES} modes, got {modes}"));
+    }
+    let square = || DMatrix::zeros(modes, modes);
+    let mut reader = Reader {
+        modes,
+        section: None,
+        mass: square(),
+        stiffness: square(),
+        damping: square(),
+        integrals: DMatrix::zeros(modes, 15),
+        complete: Vec::new(),
+    };
+    while let Some(line) = lines.next()? {
+        reader.take(&line)?;
+    }
+    reader.close("at its end")?;
+    reader.results(keep)
+}
+
+/// A line without its comment.
+fn values(line: &Line) -> Line {
+    let text = line.text.split('!').next().unwrap_or_default().trim_end().to_owned();
+    Line { number: line.number, text, ended: line.ended }
+}
+
+impl Holds {
+    /// How often a section has a row: once a mode, or as often as it says.
+    const fn is_full(self) -> bool {
+        matches!(self, Self::Pf | Self::Hf)
+    }
+
+    fn of(heading: &str) -> Option<Self> {
+        let known = [
+            ("MassMatrix", Self::Mass),
+            ("StiffnessMatrix", Self::Stiffness),
+            ("DampingMatrix", Self::Damping),
+            ("LinearMomentumModalIntegral", Self::Pf),
+            ("AngularMomentumModalIntegral", Self::Hf),
+            ("LinearModalIntegral", Self::L),
+        ];
+        known.iter().find(|(words, _)| heading.contains(words)).map(|(_, holds)| *holds)
+    }
+}
+
+impl Reader {
+    fn take(&mut self, line: &Line) -> Result<(), String> {
+        let squeezed = line.squeezed();
+        if squeezed.starts_with('*') || squeezed.starts_with("[EOF]") {
+            self.close(&format!("before line {}", line.number))?;
+            let count = |holds: Holds| if holds.is_full() { Some(self.modes) } else { None };
+            self.section = Holds::of(&squeezed).map(|holds| Section { holds, count: count(holds), taken: 0 });
+            return Ok(());
+        }
+        let Some(section) = &mut self.section else { return Ok(()) };
+        let line = values(line);
+        if line.text.is_empty() {
+            return Ok(());
+        }
+        let Some(count) = section.count else {
+            section.count = Some(line.fields(["number of elements"])?.whole(0)?);
+            return Ok(());
+        };
+        if section.taken == count {
+            return Err(format!("line {}: must end after {count} elements", line.number));
+        }
+        section.taken += 1;
+        let (holds, row) = (section.holds, section.taken - 1);
+        self.element(&line, holds, row)
+    }
+
+    fn element(&mut self, line: &Line, holds: Holds, row: usize) -> Result<(), String> {
+        let within = |index: usize, size: usize, name: &str| {
+            let found = format!("line {}: `{name}` must be 0 to {}, got {index}", line.number, size - 1);
+            if index < size { Ok(index) } else { Err(found) }
+        };
+        match holds {
+            Holds::Mass | Holds::Stiffness | Holds::Damping => {
+                let fields = line.fields(["Row", "Col", "Value"])?;
+                let place = (
+                    within(fields.whole(0)?, self.modes, "Row")?,
+                    within(fields.whole(1)?, self.modes, "Col")?,
+                );
+                let matrix = match holds {
+                    Holds::Mass => &mut self.mass,
+                    Holds::Stiffness => &mut self.stiffness,
+                    _ => &mut self.damping,
+                };
+                matrix[place] = fields.real(2)?;
+            }
+            Holds::Pf | Holds::Hf => {
+                let fields = line.fields(["x", "y", "z"])?;
+                let from = if holds == Holds::Pf { 0 } else { 3 };
+                for axis in 0..3 {
+                    self.integrals[(row, from + axis)] = fields.real(axis)?;
+                }
+            }
+            Holds::L => {
+                let fields = line.fields(["i", "j", "Mode", "Value"])?;
+                let (i, j) = (within(fields.whole(0)?, 3, "i")?, within(fields.whole(1)?, 3, "j")?);
+                let mode = within(fields.whole(2)?, self.modes, "Mode")?;
+                // phi r' there, r phi' here.
+                self.integrals[(mode, 6 + 3 * j + i)] = fields.real(3)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends a section.
+    fn close(&mut self, place: &str) -> Result<(), String> {
+        let Some(Section { holds, count, taken }) = self.section.take() else { return Ok(()) };
+        let Some(count) = count.filter(|count| *count == taken) else {
+            let count = count.map_or_else(|| "a count".to_owned(), |count| format!("{count} elements"));
+            return Err(format!("must have {count} in its section {holds:?}, got {taken} elements {place}"));
+        };
+        if self.complete.contains(&holds) {
+            return Err(format!("must have its section {holds:?} once, and another ends {place}"));
+        }
+        if holds == Holds::Mass && count == 0 {
+            return Err(format!("must have a mass matrix, got no elements {place}"));
+        }
+        self.complete.push(holds);
+        Ok(())
+    }
+
+    fn results(self, keep: Option<usize>) -> Result<Results, String> {
+        let needed = [Holds::Mass, Holds::Stiffness, Holds::Damping, Holds::Pf, Holds::Hf, Holds::L];
+        if let Some(holds) = needed.iter().find(|holds| !self.complete.contains(holds)) {
+            return Err(format!("must have a section {holds:?}: is the file cut?"));
+        }
+        for (name, matrix) in
+            [("mass", &self.mass), ("stiffness", &self.stiffness), ("damping", &self.damping)]
+        {
+            if (matrix - matrix.transpose()).amax() > PRINTED * matrix.amax() {
+                return Err(format!("must have a symmetric {name} matrix"));
+            }
+        }
+        let (modes, count) = (self.modes, kept(self.modes, keep)?);
+        let integrals = self.integrals()?;
+        let knows_moments = integrals.columns(6, 9).amax() > 0.0;
+        let mut functionals = DMatrix::zeros(modes, modes + 15);
+        functionals.columns_mut(0, modes).fill_with_identity();
+        functionals.columns_mut(modes, 15).copy_from(&integrals);
+        let solved = eigen::modes(self.stiffness, self.mass, &functionals).map_err(unsolved)?;
+        let shapes = solved.values.columns(0, modes);
+        let damping = shapes * &self.damping * shapes.transpose();
+        let modal = is_modal(&damping);
+        let mode = |index: usize| {
+            let frequency = solved.frequencies[index];
+            let three = |from: usize| std::array::from_fn(|axis| solved.values[(index, modes + from + axis)]);
+            Mode {
+                frequency,
+                translation: three(0),
+                rotation: three(3),
+                moments: knows_moments.then(|| [three(6), three(9), three(12)]),
+                damping: modal.then(|| damping[(index, index)] / (2.0 * frequency)),
+            }
+        };
+        Ok(Results { modes: (0..count).map(mode).collect(), mass: None })
+    }
+
+    /// The integrals, of which rotations follow from first moments where these are there.
+    fn integrals(&self) -> Result<DMatrix<f64>, String> {
+        let mut integrals = self.integrals.clone();
+        if integrals.columns(0, 3).amax() == 0.0 {
+            return Err("must have participations, and its section Pf is all 0: its modes are free, or their integrals \
+                        were not computed"
+                .to_owned());
+        }
+        let knows_rotations = integrals.columns(3, 3).amax() > 0.0;
+        let largest = integrals.columns(6, 9).amax();
+        if !knows_rotations && largest == 0.0 {
+            return Err(
+                "must have participations in rotation, and its sections Hf and L are all 0".to_owned()
+            );
+        }
+        if largest == 0.0 {
+            return Ok(integrals);
+        }
+        for mode in 0..self.modes {
+            let n = |row: usize, column: usize| self.integrals[(mode, 6 + 3 * row + column)];
+            let follows = [n(1, 2) - n(2, 1), n(2, 0) - n(0, 2), n(0, 1) - n(1, 0)];
+            for (axis, follows) in follows.into_iter().enumerate() {
+                let given = self.integrals[(mode, 3 + axis)];
+                if knows_rotations && (given - follows).abs() > AGREEMENT * largest {
+                    return Err(format!(
+                        "must have the same rotation of mode {mode} about axis {axis} in Hf, {given}, and from L, {follows}"
+                    ));
+                }
+                integrals[(mode, 3 + axis)] = follows;
+            }
+        }
+        Ok(integrals)
+    }
+}
+
+/// Whether a damping matrix of modes is that of each alone, and not nothing.
+fn is_modal(damping: &DMatrix<f64>) -> bool {
+    let order = damping.nrows();
+    let coupled = |i: usize, j: usize| {
+        damping[(i, j)].abs() > MODAL * libm::sqrt((damping[(i, i)] * damping[(j, j)]).abs())
+    };
+    damping.amax() > 0.0 && !(0..order).any(|i| (0..i).any(|j| coupled(i, j)))
+}
+
+fn unsolved(why: Unsolved) -> String {
+    match why {
+        Unsolved::Mass => "must have a positive definite mass matrix".to_owned(),
+        Unsolved::Stiffness => {
+            "must have a positive definite stiffness matrix: are its modes clamped?".to_owned()
+        }
+        Unsolved::Range => crate::structure::TOO_FAR_APART.to_owned(),
+        #[cfg(not(feature = "matrices"))]
+        Unsolved::LeftOut => {
+            let (most, why) = (eigen::SMALL, crate::structure::left_out::LEFT_OUT);
+            format!("has coupled modes: more than {most} {why}")
+        }
+    }
+}

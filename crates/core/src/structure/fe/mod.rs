@@ -1,0 +1,160 @@
+//! Clamped modes out of the results of finite-element programs: Nastran, MYSTRAN, CalculiX, and files of 42.
+//!
+//! Modes are about the point that the file's participations are about, in its axes, normalised by mass.
+
+mod calculix;
+mod f06;
+mod flex;
+mod mystran;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use std::path::Path;
+
+use super::file::open_text_up_to;
+use super::mode_table::MOST_MODES;
+use tables::Table;
+
+/// Files are no longer (bytes): what is has shapes or stresses of thousands of nodes, of which nothing is read.
+const LONGEST: u64 = 64 << 20;
+/// A mode that is this much below the next is none of a clamped structure.
+const MECHANISM: f64 = 1e-3;
+/// A frequency and its square, printed beside each other, agree to this part.
+const PRINTED: f64 = 1e-5;
+
+/// A format of results.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// The printed results of Nastran or MYSTRAN.
+    F06,
+    /// The tables of CalculiX.
+    CalculiX,
+    /// A flexible body of 42.
+    Flex,
+}
+
+/// A mode of a clamped structure, in the file's units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Natural frequency (rad/s).
+    pub frequency: f64,
+    /// The integral of phi dm (sqrt(mass)).
+    pub translation: [f64; 3],
+    /// The integral of r x phi dm (sqrt(mass) length).
+    pub rotation: [f64; 3],
+    /// The integral of r phi' dm (sqrt(mass) length), row by row, where the file has it.
+    pub moments: Option<[[f64; 3]; 3]>,
+    /// Damping ratio, where the file has it.
+    pub damping: Option<f64>,
+}
+
+/// What a file has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Results {
+    /// The modes with the lowest frequencies, increasing.
+    pub modes: Vec<Mode>,
+    /// The mass of the structure, where the file has it: that of the nodes that are free, or of all.
+    pub mass: Option<f64>,
+}
+
+impl Format {
+    /// The format of a file, by the end of its name.
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_ascii_lowercase().to_str()? {
+            "f06" => Some(Self::F06),
+            "dat" => Some(Self::CalculiX),
+            "flex" | "txt" => Some(Self::Flex),
+            _ => None,
+        }
+    }
+
+    /// Reads the lowest modes of a file, all of them without a number.
+    ///
+    /// # Errors
+    /// What is wrong with it, with its line.
+    pub fn read(self, path: &Path, keep: Option<usize>) -> Result<Results, String> {
+        let text = open_text_up_to(path, LONGEST)?;
+        match self {
+            Self::F06 => f06::read(text, keep),
+            Self::CalculiX => calculix::read(text, keep),
+            Self::Flex => flex::read(text, keep),
+        }
+    }
+}
+
+/// A natural frequency of a file's table of eigenvalues.
+#[derive(Clone, Debug)]
+struct Natural {
+    line: usize,
+    mode: usize,
+    /// Natural frequency (rad/s).
+    frequency: f64,
+    generalised_mass: f64,
+}
+
+impl Natural {
+    /// The mode with its participations.
+    fn with(&self, [a, b, c, d, e, f]: [f64; 6]) -> Mode {
+        let (translation, rotation) = ([a, b, c], [d, e, f]);
+        Mode { frequency: self.frequency, translation, rotation, moments: None, damping: None }
+    }
+
+    /// The numbers of its row, printed as eigenvalue, rad/s and Hz, which have to say the same.
+    fn checked(self, eigenvalue: f64, cycles: f64) -> Result<Self, String> {
+        let Self { line, mode, frequency, generalised_mass } = self;
+        if eigenvalue <= 0.0 || frequency <= 0.0 {
+            return Err(format!(
+                "line {line}: the eigenvalue of mode {mode} must be positive, got {eigenvalue}: is the root clamped?"
+            ));
+        }
+        if generalised_mass <= 0.0 {
+            return Err(format!(
+                "line {line}: the generalised mass of mode {mode} must be positive, got {generalised_mass}"
+            ));
+        }
+        let agrees = |other: f64| (other - frequency).abs() <= PRINTED * frequency;
+        if !agrees(libm::sqrt(eigenvalue)) || !agrees(2.0 * std::f64::consts::PI * cycles) {
+            return Err(format!(
+                "line {line}: mode {mode} must have one frequency, got an eigenvalue of {eigenvalue}, {frequency} rad/s and {cycles} Hz"
+            ));
+        }
+        Ok(self)
+    }
+}
+
+/// The modes with the lowest frequencies, increasing, out of all that the other tables of a file may name.
+fn lowest(
+    mut natural: Vec<Natural>,
+    tables: [&Table; 2],
+    keep: Option<usize>,
+) -> Result<Vec<Natural>, String> {
+    if let Some(pair) = natural.windows(2).find(|pair| pair[1].mode != pair[0].mode + 1) {
+        let (line, expected, found) = (pair[1].line, pair[0].mode + 1, pair[1].mode);
+        return Err(format!("line {line}: must be mode {expected}, got mode {found}"));
+    }
+    let modes = natural.first().map_or(0, |first| first.mode)..=natural.last().map_or(0, |last| last.mode);
+    tables.iter().try_for_each(|table| table.is_within(&modes))?;
+    natural.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    if let Some(pair) = natural.windows(2).find(|pair| pair[0].frequency < MECHANISM * pair[1].frequency) {
+        return Err(format!(
+            "line {}: mode {} at {} rad/s is none of a clamped structure, as the next is at {} rad/s: clamp the root, \
+             or look for a mechanism",
+            pair[0].line, pair[0].mode, pair[0].frequency, pair[1].frequency
+        ));
+    }
+    natural.truncate(kept(natural.len(), keep)?);
+    Ok(natural)
+}
+
+/// How many of the modes of a file are kept.
+fn kept(there: usize, keep: Option<usize>) -> Result<usize, String> {
+    match keep {
+        None if there > MOST_MODES => {
+            Err(format!("has {there} modes: `keep` must say how many, at most {MOST_MODES}"))
+        }
+        Some(keep) if keep > there => Err(format!("has {there} modes, and `keep` asks for {keep}")),
+        keep => Ok(keep.unwrap_or(there)),
+    }
+}

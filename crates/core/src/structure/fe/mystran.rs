@@ -1,0 +1,91 @@
+//! What MYSTRAN's participation factors are right for: forces at the clamp that are those of one grid.
+//!
+//! The rotation columns sum moments at clamped grids and leave out the arms of forces there. With one clamped grid they
+//! are right about it; with several nothing in the file tells the arms.
+
+use std::collections::BTreeMap;
+
+use super::text::Line;
+use super::{Mode, Natural};
+
+/// A grid is clamped if its force or moment is more than this part of the largest.
+const CLAMPED: f64 = 1e-6;
+/// Factors and forces agree to this part of a mode's largest.
+const AGREEMENT: f64 = 1e-4;
+
+/// Forces and moments at the clamp, mode by mode.
+#[derive(Default)]
+pub struct Reactions {
+    modes: BTreeMap<usize, Vec<(usize, [f64; 6])>>,
+}
+
+impl Reactions {
+    /// Takes a row `grid, system, three forces, three moments`.
+    ///
+    /// # Errors
+    /// Fields that are not of this form.
+    pub fn take(&mut self, mode: usize, line: &Line) -> Result<(), String> {
+        let fields = line.fields(["GRID", "COORD", "T1", "T2", "T3", "R1", "R2", "R3"])?;
+        self.modes.entry(mode).or_default().push((fields.whole(0)?, fields.six(2)?));
+        Ok(())
+    }
+
+    /// Whether the modes are about the grid that is clamped, the only one, and push it as they should.
+    ///
+    /// # Errors
+    /// No forces, several grids, or other forces.
+    pub fn confirm(&self, natural: &[Natural], modes: &[Mode]) -> Result<(), String> {
+        let mut grids: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+        for (natural, mode) in natural.iter().zip(modes) {
+            let Some(rows) = self.modes.get(&natural.mode) else {
+                return Err(format!(
+                    "must have the forces at the clamp in mode {}: ask for `SPCFORCES = ALL`, as they alone tell whether \
+                     MYSTRAN's factors in rotation are right",
+                    natural.mode
+                ));
+            };
+            let scale = -1.0 / (natural.frequency * natural.frequency * libm::sqrt(natural.generalised_mass));
+            let mut sum = [0.0; 6];
+            for (grid, forces) in rows {
+                let forces = forces.map(|force| scale * force);
+                sum.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force);
+                let most = grids.entry(*grid).or_default();
+                *most = [most[0].max(largest(&forces[..3])), most[1].max(largest(&forces[3..]))];
+            }
+            let parts = [mode.translation, mode.rotation].concat();
+            for kind in [0..3, 3..6] {
+                let bound = AGREEMENT * largest(&parts[kind.clone()]).max(largest(&sum[kind.clone()]));
+                if let Some(index) =
+                    kind.into_iter().find(|index| (parts[*index] - sum[*index]).abs() > bound)
+                {
+                    let (axis, is, follows) =
+                        (["T1", "T2", "T3", "R1", "R2", "R3"][index], parts[index], sum[index]);
+                    return Err(format!(
+                        "must have the same participation of mode {} from its factor {axis}, {is}, and from the forces at \
+                         the clamp, {follows}",
+                        natural.mode
+                    ));
+                }
+            }
+        }
+        let most = |kind: usize| grids.values().fold(0.0, |most: f64, grid| most.max(grid[kind]));
+        let bounds = [CLAMPED * most(0), CLAMPED * most(1)];
+        let clamped: Vec<_> = grids
+            .iter()
+            .filter(|(_, most)| most[0] > bounds[0] || most[1] > bounds[1])
+            .map(|(grid, _)| grid)
+            .collect();
+        if let [first, second, ..] = clamped[..] {
+            return Err(format!(
+                "must have one clamped grid, and has {} (first {first}, {second}): MYSTRAN leaves the arms of forces out \
+                 of its factors in rotation; clamp one grid at the root, and tie the others to it by an RBE2",
+                clamped.len()
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn largest(parts: &[f64]) -> f64 {
+    parts.iter().fold(0.0, |most: f64, part| most.max(part.abs()))
+}

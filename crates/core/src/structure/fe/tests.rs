@@ -1,0 +1,294 @@
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use super::*;
+
+fn golden(name: &str) -> PathBuf {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/fe")).join(name)
+}
+
+fn bytes(name: &str) -> Vec<u8> {
+    std::fs::read(golden(name)).expect("there")
+}
+
+fn parse(format: Format, text: &[u8], keep: Option<usize>) -> Result<Results, String> {
+    match format {
+        Format::F06 => f06::read(text, keep),
+        Format::CalculiX => calculix::read(text, keep),
+        Format::Flex => flex::read(text, keep),
+    }
+}
+
+fn file(name: &str) -> Results {
+    let path = golden(name);
+    Format::of(&path).expect("a format").read(&path, None).expect("modes")
+}
+
+/// The modes of a structure by another computation: frequency, t, r, r phi'.
+fn expected(structure: &str) -> Vec<[f64; 16]> {
+    let text = String::from_utf8(bytes("expected.csv")).expect("text");
+    let rows = text.lines().filter_map(|line| line.strip_prefix(&format!("{structure},")));
+    let row = |row: &str| row.split(',').map(|field| field.parse().expect("a number")).collect::<Vec<f64>>();
+    rows.map(|line| row(line).try_into().expect("16 numbers")).collect()
+}
+
+/// The largest deviations in frequency (relative), of t in sqrt(mass) and of r in sqrt(inertia).
+fn deviations(modes: &[Mode], structure: &str, mass: f64, inertia: f64) -> [f64; 3] {
+    let expected = expected(structure);
+    let mut worst = [0.0_f64; 3];
+    for (mode, row) in modes.iter().zip(&expected) {
+        worst[0] = worst[0].max((mode.frequency / row[0] - 1.0).abs());
+        for axis in 0..3 {
+            worst[1] = worst[1].max((mode.translation[axis] - row[1 + axis]).abs() / mass.sqrt());
+            worst[2] = worst[2].max((mode.rotation[axis] - row[4 + axis]).abs() / inertia.sqrt());
+        }
+    }
+    assert!(modes.len() <= expected.len());
+    worst
+}
+
+#[test]
+fn participations_are_those_of_shapes_and_masses() {
+    // CalculiX leaves out the mass between clamped and free nodes: a coarse panel has t to 3e-3.
+    let cases = [
+        ("bars.F06", "bars", 14.4, 116.95, [1e-7, 3e-7, 2e-7]),
+        ("barsmax.F06", "barsmax", 14.4, 116.95, [1e-7, 3e-7, 2e-7]),
+        ("bars-msc.f06", "bars", 14.4, 116.95, [1e-7, 3e-7, 2e-7]),
+        ("bars.flex", "bars", 14.4, 116.95, [2e-7, 3e-7, 2e-7]),
+        ("boom.dat", "boom", 14.8, 125.914, [1e-7, 1e-3, 1e-6]),
+        ("beam.dat", "beam", 3.66, 35.52, [1e-7, 1e-3, 2e-6]),
+        ("panel.dat", "panel", 42.48, 447.547, [1e-7, 3e-3, 1.4e-4]),
+    ];
+    for (name, structure, mass, inertia, bounds) in cases {
+        let results = file(name);
+        let worst = deviations(&results.modes, structure, mass, inertia);
+        assert!(worst.iter().zip(bounds).all(|(found, bound)| *found <= bound), "{name}: {worst:?}");
+        assert!(
+            results.mass.is_none_or(|found| (found / mass - 1.0).abs() < 0.02),
+            "{name}: {:?}",
+            results.mass
+        );
+    }
+}
+
+#[test]
+fn the_first_moments_of_42_are_turned_over() {
+    let results = file("bars.flex");
+    assert_eq!(results.modes.len(), 4);
+    for (mode, row) in results.modes.iter().zip(expected("bars")) {
+        let moments = mode.moments.expect("first moments").concat();
+        let largest = row[7..].iter().fold(0.0, |most: f64, part| most.max(part.abs()));
+        for (found, expected) in moments.iter().zip(&row[7..]) {
+            assert!((found - expected).abs() < 1e-6 * largest, "{found} {expected}");
+        }
+        assert!((mode.damping.expect("damping") - 0.005).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn matrices_of_42_that_are_not_diagonal_are_solved() {
+    // The modes q of bars, in coordinates p with q = A p: M = A'A, K = A' W² A, C = A' D A, Pf, Hf and L times A.
+    let text = String::from_utf8(bytes("bars.flex")).expect("text");
+    let rows = expected("bars");
+    let a = [[1.0, 0.5, 0.0, 0.0], [0.0, 2.0, 0.0, 0.3], [0.2, 0.0, 1.0, 0.0], [0.0, 0.0, -0.4, 3.0]];
+    let through = |of: &dyn Fn(usize) -> f64, j: usize| (0..4).map(|i| of(i) * a[i][j]).sum::<f64>();
+    let matrix = |of: &dyn Fn(f64) -> f64| {
+        let mut text = "16\n".to_owned();
+        for (i, j) in (0..16).map(|place| (place / 4, place % 4)) {
+            let element: f64 = (0..4).map(|k| a[k][i] * of(rows[k][0]) * a[k][j]).sum();
+            writeln!(text, "{i} {j} {element:e} ! [Row] [Col] Value").expect("written");
+        }
+        text
+    };
+    let three = |from: usize| {
+        let line = |j: usize| {
+            let part = |axis: usize| through(&|i| rows[i][from + axis], j);
+            format!("{:e} {:e} {:e}\n", part(0), part(1), part(2))
+        };
+        (0..4).map(line).collect::<String>()
+    };
+    let mut l = "36\n".to_owned();
+    for (i, j, mode) in (0..36).map(|place| (place / 12, place / 4 % 3, place % 4)) {
+        writeln!(l, "{i} {j} {mode} {:e}", through(&|k| rows[k][7 + 3 * j + i], mode)).expect("written");
+    }
+    let head = &text[..text.find("****************  Non-zero Mass").expect("a heading")];
+    let text = format!(
+        "{head}* Mass Matrix\n{}* Stiffness Matrix\n{}* Damping Matrix\n{}* Linear Momentum Modal Integral\n{}\
+         * Angular Momentum Modal Integral\n{}* Linear Modal Integral\n{l}[EOF]\n",
+        matrix(&|_| 1.0),
+        matrix(&|w| w * w),
+        matrix(&|w| 0.01 * w),
+        three(1),
+        three(4)
+    );
+    let modes = parse(Format::Flex, text.as_bytes(), Some(3)).expect("modes").modes;
+    assert_eq!(modes.len(), 3);
+    for (mode, row) in modes.iter().zip(&rows) {
+        assert!((mode.frequency / row[0] - 1.0).abs() < 1e-12);
+        assert!((mode.damping.expect("damping") - 0.005).abs() < 1e-12);
+        let sign = (mode.translation[1] * row[2]).signum();
+        let found =
+            [&mode.translation[..], &mode.rotation, &mode.moments.expect("moments").concat()].concat();
+        for (index, (found, expected)) in found.iter().zip(&row[1..]).enumerate() {
+            // Rotations of the other file are printed digits of the moments.
+            assert!((sign * found - expected).abs() < if (3..6).contains(&index) { 1e-6 } else { 1e-11 });
+        }
+    }
+}
+
+#[test]
+fn a_table_goes_on_over_pages_and_is_of_mass_normalised_modes() {
+    let results = file("pages-nx.f06");
+    assert_eq!(results.modes.len(), 60);
+    for (index, mode) in results.modes.iter().enumerate() {
+        let k = index as f64 + 1.0;
+        let t = [3.0 * libm::cos(k), 2.0 * libm::sin(k), libm::cos(2.0 * k)].map(|part| part / k);
+        let r = [libm::sin(3.0 * k), 4.0 * libm::cos(3.0 * k), -3.0 * libm::sin(k)].map(|part| part / k);
+        assert!((mode.frequency / (2.0 * libm::pow(k, 1.5)) - 1.0).abs() < 1e-6);
+        for (found, expected) in mode.translation.iter().chain(&mode.rotation).zip(t.iter().chain(&r)) {
+            assert!((found - expected).abs() < 1e-6 * 4.0 / k, "mode {k}: {found} {expected}");
+        }
+    }
+    let six = parse(Format::F06, &bytes("pages-nx.f06"), Some(6)).expect("modes");
+    assert_eq!(six.modes[..], results.modes[..6]);
+}
+
+#[test]
+fn numbers_are_read_as_fortran_prints_them() {
+    let cases = [
+        ("1.5D+03", 1500.0),
+        ("0.1234567-100", 1.234_567e-101),
+        ("-.5E0", -0.5),
+        ("1.+2", 100.0),
+        ("+3", 3.0),
+    ];
+    for (field, number) in cases {
+        assert_eq!(text::real(field), Some(number), "{field}");
+    }
+    for field in ["", "****", "NaN", "Infinity", "inf", "1e999", "1.0.0", "1-2-3", "--1", "0x1"] {
+        assert_eq!(text::real(field), None, "{field}");
+    }
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_line_and_field() {
+    let told = |name: &str, from: &str, to: &str| {
+        let text = String::from_utf8(bytes(name)).expect("text");
+        assert!(text.contains(from), "{name}: {from}");
+        let format = Format::of(Path::new(name)).expect("a format");
+        parse(format, text.replacen(from, to, 1).as_bytes(), None).expect_err("wrong")
+    };
+    let cases = [
+        (
+            told("bars-msc.f06", "6.227923E+00        9", "************        9"),
+            "`RADIANS` must be a finite number, got `**",
+        ),
+        (
+            told("bars-msc.f06", "6.227923E+00        9", "6.228923E+00        9"),
+            "mode 1 must have one frequency",
+        ),
+        (
+            told("bars-msc.f06", "3.878703E+01        6", "-3.87870E+01        6"),
+            "eigenvalue of mode 1 must be positive",
+        ),
+        (
+            told("bars-msc.f06", "       10        10   ", "       11        10   "),
+            "must be mode 10, got mode 11",
+        ),
+        (told("bars-msc.f06", "2.848100E+00", "2.948100E+00"), "`T2` must be the generalised mass times"),
+        (told("bars-msc.f06", "R E A L   E I G E N V A L U E S", "-"), "must have a table `R E A L"),
+        (
+            told("bars-msc.f06", "MODAL PARTICIPATION FACTORS", "-"),
+            "line 156: must have participation factors",
+        ),
+        (told("bars-msc.f06", "0\n", "0 *** USER FATAL MESSAGE 9050\n"), "the run failed"),
+        (told("bars.F06", "2.815070E-02 -2.8", "-2.81507E-02 -2.8"), "from its factor T1"),
+        (told("bars.F06", "S P C   F O R C E S", "-"), "SPCFORCES = ALL"),
+        (told("feet.F06", "CLAMPED", "CLAMPED"), "clamp one grid at the root"),
+        (told("panel.dat", "0.4817442E+01", "0.4817452E+01 NaN"), "line 8: must have 5 fields"),
+        (
+            told("panel.dat", "0.2061183E+02", "0.2061183E+0x"),
+            "line 23: `Y-ROTATION` must be a finite number",
+        ),
+        (told("panel.dat", "P A R T", "P A R"), "P A R T I C I P A T I O N"),
+        (told("bars.flex", "3 3 3.565450e+02", "3 4 3.565450e+02"), "`Col` must be 0 to 3, got 4"),
+        (told("bars.flex", "3 3 3.565450e+02", "3 3 -3.56545e+02"), "positive definite stiffness"),
+        (
+            told("bars.flex", "3 3 3.565450e+02", "! 3"),
+            "must have 4 elements in its section Stiffness, got 3",
+        ),
+        (told("bars.flex", "2 2 3  1", "2 1 3  1"), "must have the same rotation of mode 3"),
+    ];
+    for (error, why) in cases {
+        assert!(error.contains(why), "{error}");
+    }
+}
+
+#[test]
+fn effective_masses_alone_do_for_modes_of_one_direction() {
+    let text =
+        String::from_utf8(bytes("bars-msc.f06")).expect("text").replace("MODAL PARTICIPATION FACTORS", "-");
+    let (head, table) = text.split_once("MODAL EFFECTIVE MASS\n").expect("a table");
+    let rows =
+        table.lines().filter(|line| line.len() > 100 && !line.contains("TOTAL") && !line.starts_with('1'));
+    let one_way =
+        rows.skip(1).take(10).map(|line| format!("{}{}\n", &line[..42], "      0.000000E+00".repeat(5)));
+    let text = format!("{head}MODAL EFFECTIVE MASS\n\n   MODE\n{}", one_way.collect::<String>());
+    let modes = parse(Format::F06, text.as_bytes(), None).expect("modes").modes;
+    for (mode, row) in modes.iter().zip(expected("bars")) {
+        assert!((mode.translation[0] - row[1].abs()).abs() < 1e-6 && mode.translation[1] == 0.0);
+    }
+}
+
+#[test]
+fn residual_vectors_leave_one_table() {
+    let text = String::from_utf8(bytes("bars-msc.f06")).expect("text");
+    let title = "R E A L   E I G E N V A L U E S\n";
+    let from = text.find(title).expect("a title");
+    let until = text[from..].find("\n1 ").expect("a page") + from + 1;
+    let tables =
+        ["(BEFORE AUGMENTATION OF RESIDUAL VECTORS)", "", "(AFTER AUGMENTATION OF RESIDUAL VECTORS)"];
+    let tables = tables.map(|remark| text[from..until].replacen(title, &format!("{title}  {remark}\n"), 1));
+    let three = format!("{}{}\n{}", &text[..from], tables.concat(), &text[until..]);
+    assert_eq!(parse(Format::F06, three.as_bytes(), None).expect("modes").modes, file("bars-msc.f06").modes);
+    let two = format!("{}{}\n{}", &text[..from], tables[..2].concat(), &text[until..]);
+    assert!(parse(Format::F06, two.as_bytes(), None).expect_err("two").contains("several subcases"));
+}
+
+/// Numbers that look drawn.
+struct Draws(u64);
+
+impl Draws {
+    fn below(&mut self, most: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % most
+    }
+}
+
+#[test]
+fn damaged_files_are_refused_or_read_and_never_crash() {
+    let mut draws = Draws(7);
+    for name in ["bars.F06", "feet.F06", "bars-msc.f06", "pages-nx.f06", "panel.dat", "bars.flex"] {
+        let format = Format::of(Path::new(name)).expect("a format");
+        let whole = bytes(name);
+        let sound = parse(format, &whole, None).ok();
+        for _ in 0..200 {
+            // What a cut file still tells is what the whole one tells.
+            if let Ok(results) = parse(format, &whole[..draws.below(whole.len())], None) {
+                assert_eq!(Some(&results.modes), sound.as_ref().map(|sound| &sound.modes), "{name}");
+            }
+            let mut swapped = whole.clone();
+            for _ in 0..=draws.below(4) {
+                let (a, b) = (draws.below(whole.len()), draws.below(whole.len()));
+                swapped.swap(a, b);
+                let place = draws.below(whole.len());
+                swapped[place] ^= if draws.below(3) == 0 { draws.below(256) as u8 } else { 0 };
+            }
+            if let Ok(results) = parse(format, &swapped, None) {
+                assert!(results.modes.iter().all(|mode| mode.frequency.is_finite()), "{name}");
+            }
+        }
+    }
+    let long = vec![b'1'; 10_000];
+    assert!(parse(Format::F06, &long, None).expect_err("long").contains("is this a text file"));
+}

@@ -1,0 +1,142 @@
+//! Lines of a text file with their numbers, and the numbers on them as Fortran prints them.
+
+use std::io::{BufRead, Read};
+
+/// No line of a result is longer (bytes): what has longer ones is no text.
+const LONGEST: usize = 4096;
+
+/// A line.
+#[derive(Debug)]
+pub struct Line {
+    /// Its number, from 1.
+    pub number: usize,
+    /// What is on it, without its end and the blanks before that.
+    pub text: String,
+    /// Whether it has an end: the last line of a file that was cut has none.
+    pub ended: bool,
+}
+
+/// The lines of a file, one at a time.
+pub struct Lines<R> {
+    text: R,
+    number: usize,
+    bytes: Vec<u8>,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// The lines of a text.
+    pub fn of(text: R) -> Self {
+        Self { text, number: 0, bytes: Vec::new() }
+    }
+
+    /// The next line, none at the end.
+    ///
+    /// # Errors
+    /// A line that cannot be read, or is too long for one.
+    pub fn next(&mut self) -> Result<Option<Line>, String> {
+        self.number += 1;
+        let number = self.number;
+        self.bytes.clear();
+        let most = u64::try_from(LONGEST).unwrap_or(u64::MAX);
+        let read = self.text.by_ref().take(most).read_until(b'\n', &mut self.bytes);
+        if read.map_err(|error| format!("line {number}: {error}"))? == 0 {
+            return Ok(None);
+        }
+        let ended = self.bytes.last() == Some(&b'\n');
+        if !ended && self.bytes.len() >= LONGEST {
+            return Err(format!("line {number}: must be shorter than {LONGEST} bytes: is this a text file?"));
+        }
+        // Titles may be in any encoding, and nothing that is read is.
+        let text = String::from_utf8_lossy(&self.bytes).trim_end().to_owned();
+        Ok(Some(Line { number, text, ended }))
+    }
+}
+
+impl Line {
+    /// The line without blanks: titles are spaced.
+    pub fn squeezed(&self) -> String {
+        self.text.chars().filter(|c| !c.is_whitespace()).collect()
+    }
+
+    /// Whether it begins with a whole number, as the rows of tables do, after blanks.
+    pub fn is_row(&self) -> bool {
+        self.text.split_whitespace().next().is_some_and(|word| word.bytes().all(|byte| byte.is_ascii_digit()))
+    }
+
+    /// Its fields, which must be as many as there are names.
+    ///
+    /// # Errors
+    /// Another count, or a line without end.
+    pub fn fields<const N: usize>(&self, names: [&'static str; N]) -> Result<Fields<'_, N>, String> {
+        let number = self.number;
+        if !self.ended {
+            return Err(format!("line {number}: must have an end: the file was cut here"));
+        }
+        let words: Vec<&str> = self.text.split_whitespace().collect();
+        let words = <[&str; N]>::try_from(words).map_err(|words| {
+            format!("line {number}: must have {N} fields ({}), got {}", names.join(", "), words.len())
+        })?;
+        Ok(Fields { number, names, words })
+    }
+}
+
+/// The fields of a row.
+pub struct Fields<'a, const N: usize> {
+    number: usize,
+    names: [&'static str; N],
+    words: [&'a str; N],
+}
+
+impl<const N: usize> Fields<'_, N> {
+    /// A field as a number.
+    ///
+    /// # Errors
+    /// What else it is.
+    pub fn real(&self, field: usize) -> Result<f64, String> {
+        real(self.words[field]).ok_or_else(|| self.wrong(field, "a finite number"))
+    }
+
+    /// A field as a whole number of 0 or more.
+    ///
+    /// # Errors
+    /// What else it is.
+    pub fn whole(&self, field: usize) -> Result<usize, String> {
+        self.words[field].parse().map_err(|_| self.wrong(field, "a whole number"))
+    }
+
+    /// Six fields from one on, as numbers.
+    ///
+    /// # Errors
+    /// What else they are.
+    pub fn six(&self, from: usize) -> Result<[f64; 6], String> {
+        let mut six = [0.0; 6];
+        for (index, part) in six.iter_mut().enumerate() {
+            *part = self.real(from + index)?;
+        }
+        Ok(six)
+    }
+
+    fn wrong(&self, field: usize, what: &str) -> String {
+        let shown: String = self.words[field].chars().take(40).collect();
+        format!("line {}: `{}` must be {what}, got `{shown}`", self.number, self.names[field])
+    }
+}
+
+/// A number as Fortran prints it: `D` is an `E`, and an exponent of three digits has neither.
+pub fn real(field: &str) -> Option<f64> {
+    let mut plain = String::with_capacity(field.len() + 1);
+    for c in field.chars() {
+        match c {
+            '0'..='9' | '.' => plain.push(c),
+            'e' | 'E' | 'd' | 'D' => plain.push('e'),
+            '+' | '-' => {
+                if plain.ends_with(|last: char| last.is_ascii_digit() || last == '.') {
+                    plain.push('e');
+                }
+                plain.push(c);
+            }
+            _ => return None,
+        }
+    }
+    plain.parse().ok().filter(|number: &f64| number.is_finite())
+}

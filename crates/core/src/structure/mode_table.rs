@@ -1,0 +1,273 @@
+//! A list of modes: a table in the scenario, or the path of a CSV file that holds one.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::Deref;
+use std::path::Path;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{DeserializeOwned, Error, IntoDeserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::{LARGEST, csv};
+use crate::body::spatial::Shape;
+use crate::quantity::{Finite, Frequency, NonNegative};
+
+/// What a column of a point's shape ends with, after the point's name and a dot: three translations, three rotations.
+const COMPONENTS: [&str; 6] = ["tx", "ty", "tz", "rx", "ry", "rz"];
+
+/// More clamped modes than these are not made into free ones.
+pub const MOST_MODES: usize = 200;
+
+/// A mode as a line of a table gives it.
+pub trait Row: Clone + Serialize + DeserializeOwned + JsonSchema {
+    /// What a schema calls a list of such modes.
+    const LIST: &'static str;
+    /// The files that hold such modes, by the ends of their names.
+    const FILES: &'static str;
+    /// Columns that only this kind of mode has.
+    const OWN: &'static [&'static str];
+
+    /// The mode of which nothing but the natural frequency is known.
+    fn of(frequency: Frequency) -> Self;
+
+    /// What every kind of mode has.
+    fn common(&mut self) -> Common<'_>;
+
+    /// Sets the number of a column, given by its place in [`Self::OWN`].
+    fn set_own(&mut self, column: usize, value: Finite);
+}
+
+/// What every kind of mode has beside its frequency.
+pub struct Common<'a> {
+    /// Damping ratio.
+    pub damping: &'a mut NonNegative,
+    /// Modal displacement at the start.
+    pub displacement: &'a mut Finite,
+    /// Its rate at the start.
+    pub rate: &'a mut Finite,
+    /// Shapes at points, by their names.
+    pub shapes: &'a mut BTreeMap<String, Shape>,
+}
+
+/// The modes, which are a slice; those of a file once it is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeTable<M> {
+    file: Option<String>,
+    table: Vec<M>,
+}
+
+/// What a column of the file holds.
+enum Column {
+    Frequency,
+    Damping,
+    Displacement,
+    Rate,
+    /// A column of this kind of mode alone, by its place in [`Row::OWN`].
+    Own(usize),
+    /// A component of the shape at a point, by its place in [`COMPONENTS`].
+    Shape(String, usize),
+}
+
+impl<M> Default for ModeTable<M> {
+    fn default() -> Self {
+        Self { file: None, table: Vec::new() }
+    }
+}
+
+impl<M> From<Vec<M>> for ModeTable<M> {
+    fn from(table: Vec<M>) -> Self {
+        Self { file: None, table }
+    }
+}
+
+impl<M: Row> ModeTable<M> {
+    /// Makes the path of the file absolute: a relative one begins at a directory.
+    pub fn locate(&mut self, directory: &Path) {
+        if let Some(file) = &mut self.file
+            && let Ok(path) = std::path::absolute(directory.join(&*file))
+        {
+            *file = path.to_string_lossy().into_owned();
+        }
+    }
+
+    /// Reads the file, if that is where the modes are, or takes over what others read from the same file.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn read(&mut self, others: Option<&Self>) -> Result<(), String> {
+        let Some(file) = &self.file else { return Ok(()) };
+        let path = Path::new(file);
+        if let Some(others) = others.filter(|others| others.file == self.file) {
+            self.table.clone_from(&others.table);
+        } else if path.extension().is_none_or(|extension| extension != "csv") {
+            return Err(format!(
+                "must be an array of modes, or the path of a {} file, got `{file}`",
+                M::FILES
+            ));
+        } else {
+            self.table =
+                read_file(path).map_err(|why| format!("cannot be used: {}: {why}", path.display()))?;
+        }
+        Ok(())
+    }
+
+    /// Where the modes are, if they are in a file.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref().map(Path::new)
+    }
+
+    /// Takes the modes that the file holds.
+    pub fn fill(&mut self, table: Vec<M>) {
+        self.table = table;
+    }
+
+    /// Keeps the modes, and forgets where they were read.
+    pub fn forget_file(&mut self) {
+        self.file = None;
+    }
+}
+
+impl<M> Deref for ModeTable<M> {
+    type Target = [M];
+
+    fn deref(&self) -> &[M] {
+        &self.table
+    }
+}
+
+/// Reads a table of modes: a header that names the columns, then a mode a line.
+fn read_file<M: Row>(path: &Path) -> Result<Vec<M>, String> {
+    let records = csv::records(path, 1 + LARGEST, "lines")?;
+    let Some(((line, header), rows)) = records.split_first() else {
+        return Err("must have a header".to_owned());
+    };
+    let mut columns = Vec::with_capacity(header.len());
+    for (index, name) in header.iter().enumerate() {
+        if header.iter().take(index).any(|other| other == name) {
+            return Err(format!("line {line}: must have each column once, got `{name}` again"));
+        }
+        columns.push(Column::of(name, M::OWN).map_err(|why| format!("line {line}: {why}"))?);
+    }
+    let Some(frequency) = columns.iter().position(|column| matches!(column, Column::Frequency)) else {
+        return Err(format!("line {line}: must have a column `frequency`"));
+    };
+    let mut modes = Vec::with_capacity(rows.len());
+    for (line, row) in rows {
+        if row.len() != columns.len() {
+            let (expected, found) = (columns.len(), row.len());
+            return Err(format!("line {line}: must have {expected} numbers, as the header, got {found}"));
+        }
+        let told = |name: &str, why: &str| format!("line {line}: `{name}` {why}");
+        let mut mode = M::of(number(&row[frequency]).map_err(|why| told("frequency", &why))?);
+        for ((column, name), field) in columns.iter().zip(header).zip(row) {
+            column.set(&mut mode, field).map_err(|why| told(name, &why))?;
+        }
+        modes.push(mode);
+    }
+    Ok(modes)
+}
+
+impl Column {
+    fn of(name: &str, own: &[&str]) -> Result<Self, String> {
+        Ok(match name {
+            "frequency" => Self::Frequency,
+            "damping" => Self::Damping,
+            "displacement" => Self::Displacement,
+            "rate" => Self::Rate,
+            _ => {
+                if let Some(column) = own.iter().position(|known| *known == name) {
+                    return Ok(Self::Own(column));
+                }
+                let shape = name.rsplit_once('.').and_then(|(point, component)| {
+                    let index = COMPONENTS.iter().position(|known| *known == component)?;
+                    Some(Self::Shape(point.to_owned(), index))
+                });
+                return shape.ok_or_else(|| {
+                    let own = own.iter().map(|name| format!(", `{name}`")).collect::<Vec<_>>().concat();
+                    let known = COMPONENTS.map(|component| format!("`POINT.{component}`")).join(", ");
+                    format!(
+                        "must name columns `frequency`, `damping`, `displacement`, `rate`{own} or, for a point of the \
+                         body, {known}, got `{name}`"
+                    )
+                });
+            }
+        })
+    }
+
+    fn set<M: Row>(&self, mode: &mut M, field: &str) -> Result<(), String> {
+        match self {
+            Self::Frequency => {}
+            Self::Damping => *mode.common().damping = number(field)?,
+            Self::Displacement => *mode.common().displacement = number(field)?,
+            Self::Rate => *mode.common().rate = number(field)?,
+            Self::Own(column) => mode.set_own(*column, number(field)?),
+            Self::Shape(point, index) => {
+                let shape = mode.common().shapes.entry(point.clone()).or_default();
+                if *index < 3 {
+                    shape.translation[*index] = number(field)?;
+                } else {
+                    shape.rotation[*index - 3] = number(field)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A field as a quantity, or what is accepted.
+fn number<T: for<'de> Deserialize<'de>>(field: &str) -> Result<T, String> {
+    let number: f64 = field.parse().map_err(|_| format!("must be a number, got `{field}`"))?;
+    T::deserialize(number.into_deserializer()).map_err(|error: serde::de::value::Error| error.to_string())
+}
+
+impl<M: Serialize> Serialize for ModeTable<M> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.file {
+            Some(file) => serializer.serialize_str(file),
+            None => self.table.serialize(serializer),
+        }
+    }
+}
+
+impl<'de, M: Row> Deserialize<'de> for ModeTable<M> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TableOrFile(PhantomData))
+    }
+}
+
+struct TableOrFile<M>(PhantomData<M>);
+
+impl<'de, M: Row> Visitor<'de> for TableOrFile<M> {
+    type Value = ModeTable<M>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "an array of modes, or the path of a {} file", M::FILES)
+    }
+
+    fn visit_str<E: Error>(self, file: &str) -> Result<ModeTable<M>, E> {
+        Ok(ModeTable { file: Some(file.to_owned()), table: Vec::new() })
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ModeTable<M>, A::Error> {
+        let table = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
+        Ok(ModeTable { file: None, table })
+    }
+}
+
+impl<M: Row> JsonSchema for ModeTable<M> {
+    fn schema_name() -> Cow<'static, str> {
+        M::LIST.into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mode = generator.subschema_for::<M>();
+        json_schema!({
+            "description": format!("Modes, or the path of a {} file of modes", M::FILES),
+            "anyOf": [{"type": "array", "items": mode}, {"type": "string"}]
+        })
+    }
+}

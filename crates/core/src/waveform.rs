@@ -1,0 +1,250 @@
+//! Waveforms: a command over time as a sum of terms, and the exact response of a mode to it.
+
+use crate::numerics::phasor::{Complex, Phasor};
+use crate::numerics::phi::{exp, moment, phi};
+use crate::numerics::polynomial::{Series, TERMS};
+
+/// A command over time: the sum of its terms. Units are those of the command (N m, or rad/s² where the hub's motion
+/// is commanded).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Waveform {
+    /// The terms, in no order; they may overlap.
+    pub terms: Vec<Term>,
+}
+
+/// A term of a waveform: zero outside `from <= t < to`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// When it begins (s).
+    pub from: f64,
+    /// When it ends (s).
+    pub to: f64,
+    /// What it is in between.
+    pub shape: Shape,
+}
+
+/// The shape of a term, in the time t - from since it began.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// sum c\[n\] (t - from)^n.
+    Polynomial(Vec<f64>),
+    /// cosine cos(frequency (t - from)) + sine sin(frequency (t - from)).
+    Harmonic {
+        /// Frequency (rad/s).
+        frequency: f64,
+        /// Amplitude of the cosine.
+        cosine: f64,
+        /// Amplitude of the sine.
+        sine: f64,
+    },
+    /// Re(exp(pole (t - from)) sum c\[n\] (t - from)^n).
+    Exponential {
+        /// Growth (1/s) and frequency (rad/s).
+        pole: Phasor,
+        /// The coefficients c.
+        coefficients: Vec<Phasor>,
+    },
+}
+
+impl Waveform {
+    /// The value at a time (s), right-continuous.
+    pub fn at(&self, t: f64) -> f64 {
+        self.on_piece(t, t)
+    }
+
+    /// The value at a time (s) of the terms that are active around another: at a break, the limit from that side.
+    pub fn on_piece(&self, middle: f64, t: f64) -> f64 {
+        let active = self.terms.iter().filter(|term| term.from <= middle && middle < term.to);
+        active.map(|term| term.value(t)).sum()
+    }
+
+    /// The largest frequency of a term (rad/s).
+    pub fn fastest(&self) -> f64 {
+        let frequency = |term: &Term| match &term.shape {
+            Shape::Polynomial(c) => (c.len() as f64 - 1.0).max(0.0) / (term.to - term.from),
+            Shape::Harmonic { frequency, .. } => frequency.abs(),
+            Shape::Exponential { pole, .. } => crate::numerics::phasor::abs(*pole),
+        };
+        self.terms.iter().map(frequency).fold(0.0, f64::max)
+    }
+
+    /// The times at which a term begins or ends (s), in order, each once.
+    pub fn breaks(&self) -> Vec<f64> {
+        let mut breaks: Vec<f64> = self.terms.iter().flat_map(|term| [term.from, term.to]).collect();
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
+    }
+
+    /// When the last term ends (s).
+    pub fn end(&self) -> f64 {
+        self.terms.iter().map(|term| term.to).fold(0.0, f64::max)
+    }
+
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        self.terms.iter().all(|term| match &term.shape {
+            Shape::Polynomial(c) => c.iter().all(|c| c.is_finite()),
+            Shape::Harmonic { frequency, cosine, sine } => {
+                frequency.is_finite() && cosine.is_finite() && sine.is_finite()
+            }
+            Shape::Exponential { pole, coefficients } => {
+                coefficients.iter().chain([pole]).all(|c| c.re.is_finite() && c.im.is_finite())
+            }
+        })
+    }
+
+    /// The integral of exp(pole (to - t)) u(t) from one time to another (s): what drives a mode of this pole.
+    ///
+    /// A mode x'' + 2 zeta w x' + w² x = g u with pole s = -zeta w + i w_d, w_d = w sqrt(1 - zeta²), that rests at
+    /// `from` has x(to) = g Im(Z)/w_d and x'(to) = g Im(s Z)/w_d, Z being this integral.
+    pub fn response(&self, pole: Phasor, from: f64, to: f64) -> Phasor {
+        self.terms.iter().fold(Phasor::default(), |sum, term| sum + term.response(pole, from, to))
+    }
+
+    /// The integral of u(t) from one time to another (s).
+    pub fn impulse(&self, from: f64, to: f64) -> f64 {
+        self.response(Phasor::default(), from, to).re
+    }
+
+    /// The integral of (to - t) u(t) from one time to another (s): the angle that a unit inertia gains from it.
+    pub fn travel(&self, from: f64, to: f64) -> f64 {
+        self.terms.iter().map(|term| term.travel(from, to)).sum()
+    }
+
+    /// The Taylor series at a time (s) of the terms that are active around another.
+    pub fn series(&self, middle: f64, t: f64) -> Series {
+        let mut series = [0.0; TERMS];
+        for term in self.terms.iter().filter(|term| term.from <= middle && middle < term.to) {
+            let (pole, coefficients) = term.about(t);
+            // exp(pole t) times each power of t.
+            let mut factor = Phasor::new(1.0, 0.0);
+            for k in 0..TERMS {
+                for (n, c) in coefficients.iter().enumerate().take(TERMS - k) {
+                    series[n + k] += (c * factor).re;
+                }
+                factor = factor * pole / (k + 1) as f64;
+            }
+        }
+        series
+    }
+
+    /// The same command later (s) and larger.
+    #[must_use]
+    pub fn shifted(&self, delay: f64, factor: f64) -> Self {
+        let shift = |term: &Term| Term {
+            from: term.from + delay,
+            to: term.to + delay,
+            shape: match &term.shape {
+                Shape::Polynomial(c) => Shape::Polynomial(c.iter().map(|c| c * factor).collect()),
+                Shape::Harmonic { frequency, cosine, sine } => {
+                    Shape::Harmonic { frequency: *frequency, cosine: cosine * factor, sine: sine * factor }
+                }
+                Shape::Exponential { pole, coefficients } => Shape::Exponential {
+                    pole: *pole,
+                    coefficients: coefficients.iter().map(|c| c * factor).collect(),
+                },
+            },
+        };
+        Self { terms: self.terms.iter().map(shift).collect() }
+    }
+}
+
+impl Term {
+    /// The value that the shape has at a time (s), within the window or not.
+    pub fn value(&self, t: f64) -> f64 {
+        let t = t - self.from;
+        match &self.shape {
+            Shape::Polynomial(c) => c.iter().rev().fold(0.0, |sum, c| sum * t + c),
+            Shape::Harmonic { frequency, cosine, sine } => {
+                let (s, c) = libm::sincos(frequency * t);
+                cosine * c + sine * s
+            }
+            Shape::Exponential { pole, coefficients } => {
+                let sum = coefficients.iter().rev().fold(Phasor::default(), |sum, c| sum * t + c);
+                (exp(pole * t) * sum).re
+            }
+        }
+    }
+
+    fn response(&self, pole: Phasor, from: f64, to: f64) -> Phasor {
+        let Some((start, end)) = self.within(from, to) else { return Phasor::default() };
+        let h = end - start;
+        let part = |own: Phasor, coefficients: Vec<Phasor>| {
+            let mut power = h; // n! h^(n + 1)
+            let mut sum = Phasor::default();
+            for (n, c) in coefficients.into_iter().enumerate() {
+                sum += phi(n + 1, (pole - own) * h) * c * power;
+                power *= h * (n + 1) as f64;
+            }
+            exp(own * h) * sum
+        };
+        let (own, coefficients) = self.about(start);
+        let driven = if matches!(self.shape, Shape::Polynomial(_)) {
+            part(own, coefficients)
+        } else {
+            // The real part of the shape is half the sum of it and its conjugate.
+            let conjugate = coefficients.iter().map(Phasor::conj).collect();
+            (part(own, coefficients) + part(own.conj(), conjugate)) * 0.5
+        };
+        if end < to { driven * exp(pole * (to - end)) } else { driven }
+    }
+
+    fn travel(&self, from: f64, to: f64) -> f64 {
+        let Some((start, end)) = self.within(from, to) else { return 0.0 };
+        let h = end - start;
+        let (own, coefficients) = self.about(start);
+        let (mut impulse, mut travel) = (0.0, 0.0);
+        let mut power = h;
+        for (n, c) in coefficients.into_iter().enumerate() {
+            // Integrals of t^n exp(z t) and of (1 - t) t^n exp(z t) from 0 to 1.
+            let z = own * h;
+            let (whole, left) = match (n, &self.shape) {
+                (_, Shape::Polynomial(_)) => {
+                    let n = n as f64;
+                    (Phasor::new(1.0 / (n + 1.0), 0.0), Phasor::new(1.0 / ((n + 1.0) * (n + 2.0)), 0.0))
+                }
+                (0, _) => (phi(1, z), phi(2, z)),
+                _ => (moment(n, z), moment(n, z) - moment(n + 1, z)),
+            };
+            impulse += (c * whole).re * power;
+            travel += (c * left).re * power * h;
+            power *= h;
+        }
+        travel + impulse * (to - end)
+    }
+
+    /// The part of an interval that lies within the term's window.
+    fn within(&self, from: f64, to: f64) -> Option<(f64, f64)> {
+        let (start, end) = (from.max(self.from), to.min(self.to));
+        (start < end).then_some((start, end))
+    }
+
+    /// The shape as Re(exp(pole t) sum c\[n\] t^n) in the time t since another origin: its pole and c.
+    fn about(&self, origin: f64) -> (Phasor, Vec<Phasor>) {
+        let since = origin - self.from;
+        let (pole, coefficients) = match &self.shape {
+            Shape::Polynomial(c) => (Phasor::default(), c.iter().map(|c| Phasor::new(*c, 0.0)).collect()),
+            Shape::Harmonic { frequency, cosine, sine } => {
+                (Complex { re: 0.0, im: *frequency }, vec![Complex { re: *cosine, im: -sine }])
+            }
+            Shape::Exponential { pole, coefficients } => (*pole, coefficients.clone()),
+        };
+        if since == 0.0 {
+            return (pole, coefficients);
+        }
+        let turn = exp(pole * since);
+        (pole, rebased(coefficients, since).into_iter().map(|c| c * turn).collect())
+    }
+}
+
+/// The coefficients of a polynomial about another origin.
+fn rebased(mut c: Vec<Phasor>, origin: f64) -> Vec<Phasor> {
+    for low in 0..c.len() {
+        for n in (low..c.len() - 1).rev() {
+            let above = c[n + 1];
+            c[n] += above * origin;
+        }
+    }
+    c
+}

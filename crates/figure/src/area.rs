@@ -1,0 +1,45 @@
+//! Areas made fit to draw: polygons cut at gaps, held within a panel, with no more points than it can show.
+
+use crate::line::{Point, Window, drop_close};
+
+/// The polygon between two lines over the same abscissae; where a point is not finite it has a gap.
+pub fn band(lower: &[Point], upper: &[Point]) -> Vec<Point> {
+    let finite = |(a, b): &(&Point, &Point)| [a.0, a.1, b.1].iter().all(|value| value.is_finite());
+    let pairs: Vec<_> = lower.iter().zip(upper).collect();
+    let runs = pairs.split(|pair| !finite(pair)).filter(|run| !run.is_empty());
+    let mut polygons = Vec::new();
+    for run in runs {
+        polygons.extend(run.iter().map(|(lower, _)| **lower));
+        polygons.extend(run.iter().rev().map(|(_, upper)| **upper));
+        polygons.push((f64::NAN, f64::NAN));
+    }
+    polygons
+}
+
+/// The polygons of an area that a window shows. What lies outside is moved to the border: right for areas between lines,
+/// and for those within the window.
+pub fn polygons(points: &[Point], window: &Window, pixels: u32) -> Vec<Vec<Point>> {
+    let size = (window.x.end - window.x.start, window.y.end - window.y.start);
+    let hold =
+        |(x, y): &Point| (x.clamp(window.x.start, window.x.end), y.clamp(window.y.start, window.y.end));
+    let parts = points.split(|(x, y)| !x.is_finite() || !y.is_finite());
+    let held = parts.map(|part| part.iter().map(hold).collect::<Vec<_>>());
+    held.map(|part| drop_close(&part, size, pixels)).filter(|part| part.len() > 2).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_have_gaps_and_end_at_the_border() {
+        let window = Window { x: 0.0..4.0, y: 0.0..1.0 };
+        let lower = [(0.0, 0.2), (1.0, 0.2), (2.0, f64::NAN), (3.0, -5.0), (9.0, 0.1)];
+        let upper = [(0.0, 0.4), (1.0, 0.6), (2.0, 0.5), (3.0, 0.8), (9.0, 7.0)];
+        let found = polygons(&band(&lower, &upper), &window, 1000);
+        assert_eq!(found.len(), 2);
+        assert_eq!(found[0], [(0.0, 0.2), (1.0, 0.2), (1.0, 0.6), (0.0, 0.4)]);
+        assert_eq!(found[1], [(3.0, 0.0), (4.0, 0.1), (4.0, 1.0), (3.0, 0.8)]);
+        assert!(polygons(&band(&[], &[]), &window, 1000).is_empty());
+    }
+}

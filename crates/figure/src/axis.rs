@@ -1,0 +1,282 @@
+//! Axes: a range, its unit with a prefix that keeps numbers short, and ticks at 1-2-5 steps or at powers of ten.
+
+use std::ops::Range;
+
+/// An axis.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// What is along it; empty for an axis that another panel names.
+    pub name: String,
+    /// Unit of its values; empty for a ratio.
+    pub unit: &'static str,
+    /// What it shows, in that unit.
+    pub range: Range<f64>,
+    /// How values lie along it.
+    pub scale: Scale,
+}
+
+/// How values lie along an axis.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// In proportion.
+    Linear,
+    /// By their logarithms: only positive values have a place.
+    Logarithmic,
+}
+
+/// The ticks of an axis.
+#[derive(Clone, Debug)]
+pub struct Ticks {
+    /// Where they are, in the axis' unit.
+    pub at: Vec<f64>,
+    form: Form,
+}
+
+/// How ticks are written.
+#[derive(Copy, Clone, Debug)]
+enum Form {
+    /// In a prefixed unit, which is `factor` times the axis' own.
+    Decimal { factor: f64, decimals: usize },
+    /// As powers of ten.
+    Power,
+}
+
+/// No logarithmic axis shows more decades: far below the largest value there is only rounding.
+const DECADES: f64 = 8.0;
+
+/// Prefixes, from the smallest.
+const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
+
+impl Axis {
+    /// An axis that shows exactly this range.
+    pub fn exact(name: &str, unit: &'static str, range: Range<f64>) -> Self {
+        let size = range.start.abs().max(range.end.abs());
+        // An axis needs a width, which a range of a single value does not have, or of none.
+        let wide = size.is_finite() && range.end - range.start > 1e-9 * size;
+        let middle = if range.start.is_finite() { range.start } else { 0.0 };
+        let half = if middle == 0.0 { 1.0 } else { 0.05 * middle.abs() };
+        let range = if wide { range } else { middle - half..middle + half };
+        Self { name: name.to_owned(), unit, range, scale: Scale::Linear }
+    }
+
+    /// An axis that shows all of these values, and a little more.
+    pub fn around(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        let finite = values.into_iter().filter(|value| value.is_finite());
+        let (low, high) =
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        let margin = 0.06 * (high - low);
+        Self::exact(name, unit, low - margin..high + margin)
+    }
+
+    /// An axis from zero to the largest of these values, and a little more.
+    pub fn from_zero(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        let highest = values.into_iter().filter(|value| value.is_finite()).fold(0.0, f64::max);
+        Self::exact(name, unit, 0.0..1.06 * highest)
+    }
+
+    /// A logarithmic axis of whole decades that shows all of these values that are positive, but no more than eight decades.
+    pub fn decades(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
+        let (low, high) = positive.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = if high > 0.0 { (low.log10().floor(), high.log10().ceil()) } else { (-1.0, 0.0) };
+        let low = low.min(high - 1.0).max(high - DECADES);
+        let range = 10_f64.powf(low)..10_f64.powf(high);
+        Self { name: name.to_owned(), unit, range, scale: Scale::Logarithmic }
+    }
+
+    /// Where a value lies, in the numbers of [`Axis::extent`]; not finite if it has no place.
+    pub fn place(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => value,
+            Scale::Logarithmic => value.log10(),
+        }
+    }
+
+    /// Where the ends of the range lie.
+    pub fn extent(&self) -> Range<f64> {
+        self.place(self.range.start)..self.place(self.range.end)
+    }
+
+    /// The same axis, named by another panel.
+    #[must_use]
+    pub fn unnamed(&self) -> Self {
+        Self { name: String::new(), ..self.clone() }
+    }
+
+    /// The name with the prefixed unit.
+    pub fn label(&self) -> String {
+        match (self.name.as_str(), self.unit) {
+            ("", _) | (_, "") => self.name.clone(),
+            // The kilogram has a prefix of its own.
+            (name, "kg") => match self.prefix().0 {
+                "M" => format!("{name}, t"),
+                prefix => format!("{name}, {prefix}g"),
+            },
+            (name, unit) => format!("{name}, {}{unit}", self.prefix().0),
+        }
+    }
+
+    /// How many of its own units the prefixed one is.
+    pub fn factor(&self) -> f64 {
+        10_f64.powi(self.prefix().1 - self.own())
+    }
+
+    /// At most about `most` ticks.
+    pub fn ticks(&self, most: u32) -> Ticks {
+        if self.scale == Scale::Logarithmic {
+            let Range { start, end } = self.extent();
+            let (first, last) = (start.round() as i32, end.round() as i32);
+            let step = (last - first).unsigned_abs().div_ceil(most.max(1)).max(1);
+            let at = (first..=last).rev().step_by(step as usize).map(|power| 10_f64.powi(power));
+            return Ticks { at: at.collect(), form: Form::Power };
+        }
+        let factor = self.factor();
+        let (low, high) = (self.range.start / factor, self.range.end / factor);
+        let rough = (high - low) / f64::from(most.max(1));
+        let power = 10_f64.powf(rough.log10().floor());
+        // A tick at an end of the range may lie a rounding beyond it.
+        let ends = |step: f64| ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        let steps = [0.5, 1.0, 2.0, 5.0, 10.0].map(|nice| nice * power);
+        let place = steps.iter().position(|step| *step >= rough).unwrap_or(4);
+        // One tick does not tell how far a value is.
+        let (first, last) = ends(steps[place]);
+        let step = if place > 0 && last - first < 1 { steps[place - 1] } else { steps[place] };
+        let (first, last) = ends(step);
+        // A little tolerance: the logarithm of a power of ten may be rounded.
+        let decimals = (-1e-9 - step.log10()).ceil().clamp(0.0, 12.0) as usize;
+        Ticks {
+            at: (first..=last).map(|i| i as f64 * step * factor).collect(),
+            form: Form::Decimal { factor, decimals },
+        }
+    }
+
+    fn prefix(&self) -> (&'static str, i32) {
+        if self.unit.is_empty() || self.scale == Scale::Logarithmic {
+            return ("", self.own());
+        }
+        let size = self.range.start.abs().max(self.range.end.abs()) * 10_f64.powi(self.own());
+        let half = (self.range.end - self.range.start) / 2.0;
+        // Times are told in seconds up to 2500 s, and however late they are.
+        let measure = if self.unit == "s" { half } else { size };
+        let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(measure / 10_f64.powi(*power)));
+        PREFIXES.iter().find(fits).copied().unwrap_or(("", self.own()))
+    }
+
+    /// The power of ten of the prefix that the unit has of its own.
+    fn own(&self) -> i32 {
+        if self.unit == "kg" { 3 } else { 0 }
+    }
+}
+
+impl Ticks {
+    /// The text of a tick.
+    pub fn text(&self, at: f64) -> String {
+        let Form::Decimal { factor, decimals } = self.form else {
+            return format!("10{}", superscript(at.log10().round() as i32));
+        };
+        let value = at / factor;
+        let plain = decimals <= 6 && value.abs() < 1e7;
+        let text = if plain { format!("{value:.decimals$}") } else { format!("{value:.1e}") };
+        let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.' | 'e'));
+        if zero { "0".to_owned() } else { text.replace('-', "−") }
+    }
+}
+
+/// A whole number as an exponent.
+fn superscript(number: i32) -> String {
+    let raised = |character: char| match character {
+        '-' => '⁻',
+        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
+    };
+    number.to_string().chars().map(raised).collect()
+}
+
+/// The name and the unit that an axis of a quantity has: prefixes are those of SI units, so that any other unit stands
+/// in the name.
+pub fn name_and_unit(name: &str, unit: &str) -> (String, &'static str) {
+    if unit == "rad" { (name.to_owned(), "rad") } else { (format!("{name}, {unit}"), "") }
+}
+
+/// The number of 1, 2 or 5 times a power of ten that is nearest to a positive one.
+pub fn round_to_nice(value: f64) -> f64 {
+    let power = 10_f64.powf(value.log10().floor());
+    let nice = [1.0, 2.0, 5.0, 10.0].map(|nice| nice * power);
+    let distance = |nice: &f64| (nice / value).ln().abs();
+    nice.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(axis: &Axis, most: u32) -> Vec<String> {
+        let ticks = axis.ticks(most);
+        ticks.at.iter().map(|at| ticks.text(*at)).collect()
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let angle = Axis::exact("angle x", "rad", -6.2e-4..6.2e-4);
+        assert_eq!(angle.label(), "angle x, µrad");
+        assert_eq!(texts(&angle, 7), ["−600", "−400", "−200", "0", "200", "400", "600"]);
+        let time = Axis::exact("time", "s", 0.0..20_000.0);
+        assert_eq!(time.label(), "time, ks");
+        assert_eq!(texts(&time, 4), ["0", "5", "10", "15", "20"]);
+        let short = Axis::exact("time", "s", 0.0..3.0);
+        assert_eq!(texts(&short, 4), ["0", "1", "2", "3"]);
+        let late = Axis::exact("time", "s", 19_900.0..20_000.0);
+        assert_eq!(late.label(), "time, s");
+        assert_eq!(texts(&late, 2), ["19900", "19950", "20000"]);
+        let gain = Axis::exact("k_t", "", 0.305..0.325);
+        assert_eq!(gain.label(), "k_t");
+        assert_eq!(texts(&gain, 5), ["0.305", "0.310", "0.315", "0.320", "0.325"]);
+        let turn = Axis::exact("angle", "rad", -0.1..1.67);
+        assert_eq!(
+            (turn.label().as_str(), texts(&turn, 4)),
+            ("angle, rad", ["0", "0.5", "1.0", "1.5"].map(str::to_owned).to_vec())
+        );
+        let propellant = |most: f64| Axis::exact("propellant", "kg", 0.0..most);
+        assert_eq!(propellant(0.19).label(), "propellant, g");
+        assert_eq!(texts(&propellant(0.19), 4), ["0", "50", "100", "150"]);
+        assert_eq!(propellant(3.7).label(), "propellant, kg");
+        assert_eq!(texts(&propellant(3.7), 4), ["0", "1", "2", "3"]);
+        assert_eq!(propellant(4200.0).label(), "propellant, t");
+        // Two ticks at least.
+        assert_eq!(texts(&Axis::exact("x", "m", -45.0..45.0), 4), ["−40", "−20", "0", "20", "40"]);
+        let huge = Axis::exact("", "", -2e9..2e9);
+        assert_eq!(texts(&huge, 2), ["−2.0e9", "0", "2.0e9"]);
+    }
+
+    #[test]
+    fn decades_are_whole_and_at_most_eight() {
+        let residual = Axis::decades("phi4 left", "rad", [3e-5, 0.0, f64::NAN, 4e-2]);
+        assert_eq!(residual.label(), "phi4 left, rad");
+        assert_eq!(texts(&residual, 8), ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"]);
+        assert_eq!(texts(&residual, 2), ["10⁻¹", "10⁻³", "10⁻⁵"]);
+        // Values are as far from one another as their logarithms, and zero is nowhere.
+        let extent = residual.extent();
+        assert!((extent.start + 5.0).abs() < 1e-12 && (extent.end + 1.0).abs() < 1e-12);
+        assert!((residual.place(1e-3) + 3.0).abs() < 1e-12);
+        assert!(!residual.place(0.0).is_finite() && !residual.place(-1.0).is_finite());
+        let deep = Axis::decades("x", "m", [1e-17, 2e3]).extent();
+        assert!((deep.start + 4.0).abs() < 1e-12 && (deep.end - 4.0).abs() < 1e-12);
+        for values in [vec![], vec![0.0], vec![1.0], vec![1e300], vec![-3.0, f64::NAN]] {
+            let extent = Axis::decades("x", "m", values.clone()).extent();
+            assert!((extent.end - extent.start - 1.0).abs() < 1e-9, "{values:?}: {extent:?}");
+        }
+    }
+
+    #[test]
+    fn any_values_make_an_axis() {
+        for values in [vec![], vec![f64::NAN], vec![0.0], vec![3.0, 3.0], vec![-1e300, 1e300]] {
+            let axis = Axis::around("x", "m", values.clone());
+            assert!(axis.range.start < axis.range.end, "{values:?}");
+            assert!(axis.ticks(5).at.len() <= 7, "{values:?}");
+        }
+    }
+
+    #[test]
+    fn nice_numbers_are_nearest() {
+        assert_eq!([3.1, 3.2, 99.96, 220.0, 0.07].map(round_to_nice), [2.0, 5.0, 100.0, 200.0, 0.05]);
+    }
+}

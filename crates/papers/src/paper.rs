@@ -1,0 +1,99 @@
+//! The papers that the studies come from.
+
+use clap::ValueEnum;
+
+/// A paper, or two on the same spacecraft.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Paper {
+    /// Silaev: a relay law adapted to the envelope of the elastic modes
+    Relay,
+    /// Rotation: finite rotation with vibration suppressed at the end
+    Rotation,
+    /// Wheel11 and Sukhanov: wheels, drifting frequencies and a scheduled gain
+    Wheel,
+    /// Timakov14: a space station damped by its own thrusters
+    Station,
+}
+
+impl Paper {
+    /// The template of its page.
+    pub fn template(self) -> &'static str {
+        match self {
+            Self::Relay => include_str!("../templates/relay.md"),
+            Self::Rotation => include_str!("../templates/rotation.md"),
+            Self::Wheel => include_str!("../templates/wheel.md"),
+            Self::Station => include_str!("../templates/station.md"),
+        }
+    }
+
+    /// What the command calls it.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The parts of a template between one mark and the next of another.
+    fn between<'a>(text: &'a str, from: &str, to: &str) -> Vec<&'a str> {
+        text.split(from).skip(1).filter_map(|rest| rest.split(to).next()).collect()
+    }
+
+    /// A text without what is between two marks.
+    fn without(text: &str, from: &str, to: &str) -> String {
+        let mut parts = text.split(from);
+        let first = parts.next().unwrap_or_default().to_owned();
+        parts.fold(first, |kept, part| kept + part.split_once(to).map_or("", |(_, rest)| rest))
+    }
+
+    #[test]
+    fn what_a_template_computes_it_uses() {
+        for paper in Paper::value_variants() {
+            let template = paper.template();
+            for set in between(template, "{% set ", " %}") {
+                let name = set.split(" =").next().unwrap_or_default();
+                let word = |c: char| c.is_alphanumeric() || c == '_';
+                let uses = template.match_indices(name).filter(|(at, _)| {
+                    let (before, after) = (&template[..*at], &template[at + name.len()..]);
+                    !before.ends_with(|c| word(c) || c == '"') && !after.starts_with(word)
+                });
+                assert!(uses.count() > 1, "{}.md: `{name}` is not used", paper.name());
+            }
+        }
+    }
+
+    /// In a column of what we measure stand no numbers but those that were computed, and whole ones that say what was run.
+    #[test]
+    fn no_measured_number_is_typed() {
+        let mut measured = None;
+        let mut cells = 0;
+        for line in Paper::value_variants().iter().flat_map(|paper| paper.template().lines()) {
+            let plain = without(&without(&without(line, "{{", "}}"), "{%", "%}"), "`", "`");
+            let row: Vec<&str> = plain.split('|').collect();
+            if row.len() < 4 {
+                measured = None;
+            } else if let Some(column) = row.iter().position(|cell| cell.trim() == "we measure") {
+                measured = Some(column);
+            } else if let Some(cell) = measured.and_then(|column| row.get(column)) {
+                cells += 1;
+                let is_small =
+                    |word: &str| word.contains(|c: char| c.is_ascii_digit()) && word.contains(['.', 'e']);
+                let typed: Vec<&str> = cell.split_whitespace().filter(|word| is_small(word)).collect();
+                let given = typed
+                    .iter()
+                    .filter(|word| !GIVEN.contains(&word.trim_end_matches([',', ';', ':', '.'])))
+                    .count();
+                assert_eq!(given, 0, "{typed:?} in {cell}");
+            }
+        }
+        assert!(cells > 30, "{cells}");
+    }
+
+    /// Numbers within those columns that say what was run, and are not what came out.
+    const GIVEN: &[&str] = &[
+        "0.003", "0.02", "0.1", "0.12", "0.15", "0.3", "0.30", "0.31", "0.3389", "0.35", "0.6", "14.5",
+        "1e-3", "1e-4",
+    ];
+}

@@ -1,0 +1,202 @@
+//! Which parts go together: every combination of law, sensor, estimator and actuator is tried, on one angle and on three axes.
+//!
+//! What is accepted runs for 50 s, and what is refused names a key and a reason. The table in docs/combinations.md is made here.
+
+use std::fmt::Write as _;
+
+use flexsc_core::record::{Detail, Trace};
+use flexsc_core::{Scenario, ScenarioError, Simulation};
+
+/// A kind: its name, its letter in the table, and its text.
+type Kind = (&'static str, &'static str, &'static str);
+
+const LAWS: [Kind; 7] = [
+    ("relay", "", "relay = { dead_zone = 5e-4, hysteresis = 1e-4, strong = 4e-3, weak = 1e-4, k_t = 0.3 }"),
+    ("pd", "", "pd = { k_p = 0.4, k_d = 6.0, period = 0.2 }"),
+    ("pd with an extra loop", "", "pd = { k_p = 0.4, k_d = 6.0, period = 0.2, extra = { gain = 0.1 } }"),
+    ("attitude", "", "attitude = { period = 0.2, bandwidth = 0.06 }"),
+    ("open", "", "open = {}"),
+    (
+        "phase_plane",
+        "",
+        "phase_plane = { period = 0.2, dead_zone = 5e-4, rate_limit = 1e-3, switch_on = 1e-4, switch_off = 3e-5 }",
+    ),
+    (
+        "phase_plane with damping",
+        "",
+        "phase_plane = { period = 0.2, dead_zone = 5e-4, rate_limit = 1e-3, switch_on = 1e-4, switch_off = 3e-5, damping = {} }",
+    ),
+];
+
+const SENSORS: [Kind; 5] = [
+    ("continuous", "c", "sensor = \"continuous\""),
+    ("sampled", "s", "sensor = { sampled = { period = 0.2, noise = 1e-6 } }"),
+    ("gyro", "g", "sensor = { gyro = { period = 0.2, noise = 1e-6 } }"),
+    ("star_tracker", "t", "sensor = { star_tracker = { period = 0.2, noise = [1e-6, 1e-6, 1e-6] } }"),
+    (
+        "gyro and star_tracker",
+        "b",
+        "sensor = [{ gyro = { period = 0.2, angle_random_walk = 1e-6 } }, { star_tracker = { period = 1.0, noise = [1e-6, 1e-6, 1e-6], latency = 0.3 } }]",
+    ),
+];
+
+const ESTIMATORS: [Kind; 9] = [
+    ("none", "-", ""),
+    ("envelope", "E", "envelope = { window = 10.0 }"),
+    ("truth", "T", "truth = {}"),
+    ("kalman", "K", "kalman = { angle_noise = 1e-6 }"),
+    ("extended_kalman", "X", "extended_kalman = { angle_noise = 1e-6 }"),
+    ("unscented_kalman", "U", "unscented_kalman = { angle_noise = 1e-6 }"),
+    ("attitude", "Q", "attitude = {}"),
+    ("rigid_rate", "R", "rigid_rate = { correction = 0.05 }"),
+    ("adaptive", "A", "adaptive = {}"),
+];
+
+const ACTUATORS: [Kind; 6] = [
+    ("ideal", "", "\"ideal\""),
+    ("hold", "", "{ hold = { period = 0.2 } }"),
+    ("thrusters", "", "{ thrusters = { torque = 0.05, period = 0.2 } }"),
+    ("wheel", "", "{ wheel = { gain = 1.0, limit = 0.05 } }"),
+    ("wheels", "", "{ wheels = { arrangement = \"pyramid\", inertia = 0.01, torque = 0.05 } }"),
+    (
+        "jets",
+        "",
+        "{ jets = { period = 0.2, specific_impulse = 270.0, thrusters = [
+    { name = \"a\", point = \"hub\", offset = [0.0, 1.0, 0.0], direction = [0.0, 0.0, 1.0], thrust = 0.05 },
+    { name = \"b\", point = \"hub\", offset = [0.0, 1.0, 0.0], direction = [0.0, 0.0, -1.0], thrust = 0.05 },
+    { name = \"c\", point = \"hub\", offset = [0.0, 0.0, 1.0], direction = [1.0, 0.0, 0.0], thrust = 0.05 },
+    { name = \"d\", point = \"hub\", offset = [0.0, 0.0, 1.0], direction = [-1.0, 0.0, 0.0], thrust = 0.05 },
+    { name = \"e\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], thrust = 0.05 },
+    { name = \"f\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, -1.0, 0.0], thrust = 0.05 },
+], groups = { roll = { plus = [\"a\"], minus = [\"b\"] }, pitch = { plus = [\"c\"], minus = [\"d\"] }, yaw = { plus = [\"e\"], minus = [\"f\"] } } } }",
+    ),
+];
+
+const ONE_ANGLE: &str = "[body.planar]
+inertia = 100.0
+angle = 1e-3
+modes = [
+    { frequency = 1.0, gain = 0.3, damping = 0.01, displacement = 1e-5 },
+    { frequency = 2.5, gain = 0.1, damping = 0.01 },
+]
+";
+
+const THREE_AXES: &str = "[body.spatial]
+inertia = [[100.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 60.0]]
+rate = [1e-5, -2e-5, 1e-5]
+points = [{ name = \"hub\" }]
+modes = [
+    { frequency = 1.0, damping = 0.01, displacement = 1e-4, shapes.hub = { rotation = [0.05, 0.02, 0.01] } },
+    { frequency = 2.5, damping = 0.01, shapes.hub = { rotation = [0.01, 0.04, -0.03] } },
+]
+";
+
+const SPACECRAFT: &str = "[spacecraft]
+mass = 200.0
+inertia = [[80.0, 1.0, 0.0], [1.0, 70.0, 0.0], [0.0, 0.0, 60.0]]
+rate = [1e-5, -2e-5, 1e-5]
+points = [{ name = \"hub\" }]
+[[appendage]]
+name = \"panel\"
+mass = 10.0
+centre = [0.0, 1.5, 0.0]
+inertia = [[10.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 10.0]]
+at = [0.0, 0.5, 0.0]
+plate = \"y\"
+modes = [
+    { frequency = 1.0, damping = 0.01, translation = [0.0, 0.0, 2.0], rotation = [4.0, 0.0, 0.0], displacement = 1e-4 },
+    { frequency = 2.5, damping = 0.01, rotation = [0.0, 0.8, 0.0] },
+]
+";
+
+/// A combination as a scenario.
+fn combined(
+    body: &str,
+    law: Kind,
+    sensor: Kind,
+    estimator: Kind,
+    actuator: Kind,
+) -> Result<Scenario, ScenarioError> {
+    let estimator = match (estimator.0, law.0) {
+        ("none", _) => String::new(),
+        // A filter that an open loop does not read is there to be assessed.
+        ("attitude", "open") => "estimator = { attitude = { watch_only = true } }\n".to_owned(),
+        (kind, "open") if kind.contains("kalman") => {
+            format!("estimator = {{ {} }}\n", estimator.2.replace(" }", ", watch_only = true }"))
+        }
+        _ => format!("estimator = {{ {} }}\n", estimator.2),
+    };
+    let text = format!(
+        "duration = 50.0\nseed = 3\nlaw = {{ {} }}\n{}\nactuator = {}\n{estimator}{body}",
+        law.2, sensor.2, actuator.2
+    );
+    Scenario::parse("combination.toml", &text)
+}
+
+/// The table of what is accepted on a body, and how many combinations that are; each is run.
+fn table(body: &str) -> (String, usize) {
+    let mut accepted = 0;
+    let mut table = format!("| law |{}\n|---|", ACTUATORS.map(|kind| format!(" {} |", kind.0)).concat());
+    writeln!(table, "{}", "---|".repeat(ACTUATORS.len())).expect("a text");
+    for law in LAWS {
+        write!(table, "| {} |", law.0).expect("a text");
+        for actuator in ACTUATORS {
+            let mut cell = String::new();
+            for estimator in ESTIMATORS {
+                let mut with = String::new();
+                for sensor in SENSORS {
+                    match combined(body, law, sensor, estimator, actuator) {
+                        Ok(scenario) => {
+                            let name = [law.0, sensor.0, estimator.0, actuator.0].join(", ");
+                            run(&scenario, &name);
+                            accepted += 1;
+                            with += sensor.1;
+                        }
+                        Err(error) => {
+                            let text = error.to_string();
+                            assert!(text.contains('`') && text.len() > 40, "no reason: {text}");
+                        }
+                    }
+                }
+                if !with.is_empty() {
+                    write!(cell, " {}:{with}", estimator.1).expect("a text");
+                }
+            }
+            write!(table, "{cell} |").expect("a text");
+        }
+        table.push('\n');
+    }
+    (table, accepted)
+}
+
+/// Runs a combination to its end, with all that a full log holds.
+fn run(scenario: &Scenario, name: &str) {
+    let mut trace = Trace::new(Detail::Full);
+    let mut simulation = Simulation::new(scenario, 0);
+    simulation.run(&mut trace).unwrap_or_else(|error| panic!("{name}: {error}"));
+}
+
+#[test]
+fn parts_combine_as_the_documents_say() {
+    let all = LAWS.len() * SENSORS.len() * ESTIMATORS.len() * ACTUATORS.len();
+    let bodies = [
+        ("One angle", ONE_ANGLE, 338),
+        ("Three axes", THREE_AXES, 377),
+        ("A spacecraft from parts", SPACECRAFT, 377),
+    ];
+    let tables: Vec<_> = std::thread::scope(|scope| {
+        let threads: Vec<_> = bodies.iter().map(|(_, body, _)| scope.spawn(|| table(body))).collect();
+        threads.into_iter().map(|thread| thread.join().expect("a table")).collect()
+    });
+    let mut made = Vec::new();
+    for ((name, _, least), (table, accepted)) in bodies.iter().zip(tables) {
+        assert!(accepted >= *least, "{name}: {accepted}");
+        made.push(format!("## {name}\n\n{accepted} of {all} combinations.\n\n{table}"));
+    }
+    let made = made.join("\n");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/combinations.md");
+    let kept = std::fs::read_to_string(path).expect("the document");
+    let made_file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("combinations.md");
+    std::fs::write(&made_file, &made).expect("a file");
+    assert!(kept.ends_with(&made), "docs/combinations.md is not what {} holds", made_file.display());
+}

@@ -1,0 +1,509 @@
+//! A spacecraft from its parts: hub, appendages with clamped modes, rotors.
+//!
+//! Golden numbers: tests/golden/craft_oracle.py, mpmath; the reference spacecraft is tests/golden/craft.toml.
+
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
+use std::collections::BTreeMap;
+
+use flexsc_core::body::spatial::Vector;
+use flexsc_core::craft::{Craft, Rotor};
+use flexsc_core::{Document, Scenario, ScenarioError};
+use nalgebra::{DMatrix, Matrix3, Matrix3xX, matrix, vector};
+
+use crate::util::Dir;
+
+/// The reference spacecraft.
+pub const CRAFT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/craft.toml");
+
+/// A hub with a panel of one bending mode.
+const ONE: &str = r#"duration = 10.0
+[spacecraft]
+mass = 400.0
+inertia = [[300.0, 0.0, 0.0], [0.0, 200.0, 0.0], [0.0, 0.0, 250.0]]
+[[appendage]]
+name = "panel"
+mass = 20.0
+centre = [0.0, 2.0, 0.0]
+inertia = [[30.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 33.0]]
+at = [0.0, 1.0, 0.0]
+points = [{ name = "tip", position = [0.0, 4.0, 0.0] }]
+modes = [
+    { frequency = 2.0, damping = 0.01, translation = [0.0, 0.0, 3.5], rotation = [9.0, 0.0, 0.0], shapes = { tip = { translation = [0.0, 0.0, 0.5] } } },
+]
+[law.pd]
+k_p = 1.0
+k_d = 20.0
+period = 0.5
+"#;
+
+/// The reference spacecraft with some keys set.
+fn reference(set: &[(&str, &str)]) -> Result<Scenario, ScenarioError> {
+    let mut document = Document::load(CRAFT.as_ref()).expect("a scenario");
+    for (key, value) in set {
+        document.set_text(key, value).expect("a key");
+    }
+    Scenario::from_document(&document)
+}
+
+fn craft(scenario: &Scenario) -> &Craft {
+    scenario.body.craft().expect("a spacecraft")
+}
+
+/// The four wheels of the oracle, a pyramid of 35 degrees.
+fn wheels() -> Vec<Rotor> {
+    let cant = 35_f64.to_radians();
+    let axis = |degrees: f64| {
+        let around = degrees.to_radians();
+        vector![cant.cos() * around.cos(), cant.cos() * around.sin(), cant.sin()]
+    };
+    [45.0, 135.0, 225.0, 315.0].map(|at| Rotor { axis: axis(at), spin_inertia: 0.04 }).to_vec()
+}
+
+/// The reference spacecraft with wheels that turn freely.
+fn open() -> Craft {
+    let scenario = reference(&[]).expect("valid");
+    let hub = scenario.spacecraft.as_ref().expect("a hub");
+    Craft::assemble(hub, &scenario.appendage, &wheels()).expect("valid")
+}
+
+/// The rows of the oracle for wheels that are open or locked.
+fn golden(wheels: &str) -> Vec<BTreeMap<String, f64>> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/craft.csv");
+    let mut rows = csv::Reader::from_path(path).expect("golden");
+    let rows = rows.deserialize().map(|row| row.expect("a whole row"));
+    let of = |row: &BTreeMap<String, String>| row["wheels"] == wheels;
+    let numbers = |row: BTreeMap<String, String>| {
+        row.into_iter().filter_map(|(name, value)| Some((name, value.parse().ok()?))).collect()
+    };
+    rows.filter(of).map(numbers).collect()
+}
+
+fn three(row: &BTreeMap<String, f64>, name: &str) -> Vector {
+    Vector::from_fn(|axis, _| row[&format!("{name}_{}", ["x", "y", "z"][axis])])
+}
+
+#[track_caller]
+fn near(found: f64, exact: f64, error: f64) {
+    assert!((found - exact).abs() <= error, "{found:e} is off {exact:e} by {:e}", found - exact);
+}
+
+/// Every number of the free modes, with wheels free and locked, against 50 digits of the whole problem of 6 + n.
+#[test]
+fn free_modes_agree_with_the_whole_problem() {
+    let scenario = reference(&[]).expect("valid");
+    for (wheels, craft) in [("open", &open()), ("locked", craft(&scenario))] {
+        let rows = golden(wheels);
+        assert_eq!(craft.flexible.modes.len(), 8);
+        let mut worst = [0.0_f64; 3];
+        for (index, row) in rows.iter().enumerate() {
+            let (mode, shown) = (&craft.flexible.modes[index], &craft.spatial.modes[index]);
+            worst[0] = worst[0].max((mode.frequency / row["frequency"] - 1.0).abs());
+            worst[1] = worst[1].max((mode.rotation - three(row, "phi")).norm());
+            assert_eq!((shown.frequency.get(), shown.damping.get()), (mode.frequency, mode.damping));
+            near(mode.damping / row["damping"], 1.0, 1e-12);
+            for (at, name) in ["x", "y", "z"].iter().enumerate() {
+                for (column, other) in ["x", "y", "z"].iter().enumerate() {
+                    let exact = row[&format!("j_{name}{other}")];
+                    near(mode.moments[(at, column)], exact, 1e-12 * exact.abs().max(1.0));
+                }
+            }
+            let shapes = |point: &str| craft.spatial.shapes(point)[index];
+            for (found, exact) in [
+                (shapes("jet").0, three(row, "hub")),
+                (shapes("jet").1, three(row, "phi")),
+                (shapes("tip").0, three(row, "tip")),
+                (shapes("tip").1, three(row, "tip_turn")),
+            ] {
+                worst[2] = worst[2].max((found - exact).norm());
+            }
+        }
+        assert!(worst.iter().all(|error| *error < 1e-12), "{wheels}: {worst:?}");
+        near(craft.damping_coupling / rows[0]["kappa"], 1.0, 1e-9);
+        assert!(craft.flexible.damping.is_none(), "1.7e-3 is small");
+    }
+}
+
+/// Rotations delta of the clamped modes about the centre of mass, from their first moments.
+fn rotations(craft: &Craft) -> Matrix3xX<f64> {
+    let of = |n: &Matrix3<f64>| vector![n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)]];
+    let columns: Vec<_> = craft.parts.iter().map(|part| of(&part.moments)).collect();
+    Matrix3xX::from_columns(&columns)
+}
+
+fn translations(craft: &Craft) -> Matrix3xX<f64> {
+    let columns: Vec<_> = craft.parts.iter().map(|part| part.translation).collect();
+    Matrix3xX::from_columns(&columns)
+}
+
+fn increasing(matrix: &DMatrix<f64>) -> Vec<f64> {
+    let mut values = matrix.symmetric_eigenvalues().as_slice().to_vec();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// What the parts come to on the way, with wheels that turn freely; the numbers are of two other programs.
+#[test]
+fn the_parts_come_to_the_right_sums() {
+    let craft = open();
+    near(craft.mass, 660.0, 0.0);
+    let centre = vector![0.0454545454545, -0.0181818181818, 0.1090909090909];
+    near((craft.centre - centre).norm(), 0.0, 1e-12);
+    let inertia = craft.flexible.inertia;
+    let exact = matrix![
+        1112.5229116171, 6.0545454545, 0.5817272652715;
+        6.0545454545, 311.87813737609, 4.8909090909;
+        0.5817272652715, 4.8909090909, 1089.3462237341
+    ];
+    near((inertia - exact).norm(), 0.0, 2e-10);
+    let first = craft.parts[0].moments;
+    let exact = matrix![
+        -0.082385588142, 0.0, -0.176676463921;
+        8.428561837519, 0.0, 18.075109190502;
+        0.164771176284, 0.0, 0.353352927842
+    ];
+    near((first - exact).norm(), 0.0, 2e-12);
+    let stretching = |index: usize| {
+        let n: Matrix3<f64> = craft.parts[index].moments;
+        2.0 * n.trace() * Matrix3::identity() - n - n.transpose()
+    };
+    near(stretching(0)[(0, 0)], 0.7067058556844, 1e-12);
+    near(stretching(0)[(1, 2)], -18.07510919050, 1e-11);
+    near(stretching(1)[(0, 0)], 1.635734699392, 1e-12);
+    near(stretching(1)[(0, 2)], 1.372544382964, 1e-12);
+    near(stretching(1).column(1).norm(), 0.0, 1e-15);
+    let (t, delta) = (translations(&craft), rotations(&craft));
+    near((delta.column(0) - vector![18.0751091905024, 0.3414476402054, -8.4285618375191]).norm(), 0.0, 2e-13);
+
+    // The first jet pushes 5 N along z: half of a pair of panels moves each clamped mode.
+    let pushed = t.tr_mul(&vector![0.0, 0.0, -5.0]) / craft.mass;
+    for (found, exact) in pushed.iter().zip([-0.02944608, 0.0, -0.01631835, 0.01373093]) {
+        near(*found, exact, 5e-9);
+    }
+    near(pushed[7], -0.01373093, 5e-9);
+
+    let e = DMatrix::identity(8, 8) - t.tr_mul(&t) / craft.mass;
+    let inverse = inertia.try_inverse().expect("definite");
+    let found = increasing(&(&e - delta.tr_mul(&(inverse * &delta))));
+    let exact =
+        [0.243720072316, 0.279403101175, 0.9254706099614, 0.9433988123306, 0.9718565445801, 1.0, 1.0, 1.0];
+    for (found, exact) in found.iter().zip(exact) {
+        near(*found, exact, 1e-12);
+    }
+    let carried = &delta * e.try_inverse().expect("definite") * delta.transpose();
+    let left = DMatrix::from_fn(3, 3, |row, column| inertia[(row, column)] - carried[(row, column)]);
+    for (found, exact) in increasing(&left).iter().zip([268.85973971, 296.68953622, 312.67719513]) {
+        near(*found, exact, 1e-8);
+    }
+}
+
+/// Free modes give the clamped ones back: W² x = O² (1 + phi' J phi + m u' u) x.
+#[test]
+fn free_modes_lead_back_to_clamped_ones() {
+    let craft = open();
+    let at = craft.spatial.point("jet").expect("a point");
+    let modes = craft.spatial.shapes("jet");
+    let order = modes.len();
+    let (phi, u): (Vec<_>, Vec<_>) = modes.iter().map(|(f, phi)| (*phi, f - phi.cross(&at))).unzip();
+    let matrix = DMatrix::from_fn(order, order, |row, column| {
+        let own = if row == column { 1.0 } else { 0.0 };
+        let sum =
+            own + phi[row].dot(&(craft.flexible.inertia * phi[column])) + craft.mass * u[row].dot(&u[column]);
+        sum / (craft.flexible.modes[row].frequency * craft.flexible.modes[column].frequency)
+    });
+    let mut clamped: Vec<f64> = craft.parts.iter().map(|part| part.frequency).collect();
+    clamped.sort_by(f64::total_cmp);
+    for (square, exact) in increasing(&matrix).iter().rev().zip(clamped) {
+        near(1.0 / square.sqrt() / exact, 1.0, 1e-12);
+    }
+}
+
+#[test]
+fn one_mode_is_solved_by_hand() {
+    let scenario = Scenario::parse("one.toml", ONE).expect("valid");
+    let craft = craft(&scenario);
+    // 400 kg at O and 20 kg 3 m out; t = 3.5 at b from the common centre of mass.
+    let (centre, mass) = (60.0 / 420.0, 420.0);
+    let inertia = 300.0 + 30.0 + 400.0 * centre * centre + 20.0 * (3.0 - centre) * (3.0 - centre);
+    let delta: f64 = 9.0 + (1.0 - centre) * 3.5;
+    let s = 1.0 - 3.5 * 3.5 / mass - delta * delta / inertia;
+    let mode = &craft.flexible.modes[0];
+    near(mode.frequency, 2.0 / s.sqrt(), 1e-14 * mode.frequency);
+    near(mode.damping, 0.01 / s.sqrt(), 1e-15);
+    near(mode.rotation.x, -delta / inertia / s.sqrt(), 1e-15);
+    assert_eq!(craft.damping_coupling.to_bits(), 0);
+    // Without first moments nothing but the offset of the root is known of them.
+    assert!(!craft.parts[0].knows_moments);
+    near(mode.moments[(1, 2)], -(1.0 - centre) * 3.5 / s.sqrt(), 1e-14);
+}
+
+/// A mass on a spring, along whose way lies the centre of mass: two bodies on a spring.
+#[test]
+fn a_sloshing_mass_is_an_appendage() {
+    let text = "duration = 1.0\n[spacecraft]\nmass = 400.0\ninertia = [[90, 0, 0], [0, 80, 0], [0, 0, 70]]\n[[appendage]]\n\
+                name = \"propellant\"\nmass = 50.0\ncentre = [0.5, 0, 0]\nmodes = [\n\
+                { frequency = 3.0, translation = [7.0710678118654755, 0, 0] },\n\
+                { frequency = 3.0, translation = [0, 7.0710678118654755, 0] }]\n[law.pd]\nk_p = 1\nk_d = 20\nperiod = 0.5\n";
+    let scenario = Scenario::parse("slosh.toml", text).expect("valid");
+    let craft = craft(&scenario);
+    let modes = &craft.flexible.modes;
+    let along = 3.0 * (450.0_f64 / 400.0).sqrt();
+    near(modes[0].frequency, along, 1e-13);
+    // Across, the hub turns too: 1/m_hub + 1/m_mass + b²/J_hub, the mass at b from the hub's own centre.
+    let across = 3.0 * (50.0 * (1.0 / 50.0 + 1.0 / 400.0 + 0.25 / 70.0_f64)).sqrt();
+    near(modes[1].frequency, across, 1e-13);
+    assert!(craft.parts.iter().all(|part| part.knows_moments));
+    // Farther out along x, the mass adds 2 m b to the inertia about y and z.
+    let b = 0.5 * 400.0 / 450.0;
+    let grown = 2.0 * b * 50.0_f64.sqrt();
+    let share = modes[0].moments[(1, 1)] / grown;
+    near(modes[0].moments[(2, 2)], share * grown, 1e-13);
+    near(modes[0].moments[(0, 0)], 0.0, 1e-13);
+    near(share.abs(), along / 3.0, 1e-13);
+}
+
+/// What does not change the spacecraft changes no number but by rounding: order of the appendages, point O, axes.
+#[test]
+fn order_origin_and_axes_do_not_matter() {
+    let scenario = reference(&[]).expect("valid");
+    let (hub, panels) = (scenario.spacecraft.as_ref().expect("a hub"), &scenario.appendage);
+    let exact = craft(&scenario);
+    let put = |text: &str| {
+        let scenario = Scenario::parse("again.toml", text).expect("valid");
+        craft(&scenario).clone()
+    };
+    let swapped = Craft::assemble(hub, &[panels[1].clone(), panels[0].clone()], &[]).expect("valid");
+    // O is moved by (1, -2, 0.5), and with it everything that is given from there.
+    let mut moved = scenario.clone();
+    let mut document = Document::from_table("moved.toml", moved.to_table());
+    for (key, value) in [
+        ("spacecraft.centre", "[1.05, -2.02, 0.6]"),
+        (
+            "spacecraft.points",
+            "[{ name = \"bus\", position = [1, -2, 0.5] }, { name = \"jet\", position = [1.8, -1.5, 0.5] }]",
+        ),
+        ("appendage[0].at", "[1.0, -1.0, 0.7]"),
+        ("appendage[1].at", "[1.0, -3.0, 0.7]"),
+    ] {
+        document.set_text(key, value).expect("a key");
+    }
+    moved = Scenario::from_document(&document).expect("valid");
+    // The body's axes are turned a quarter about z: x is now where y was.
+    let turned = std::fs::read_to_string(CRAFT)
+        .expect("a scenario")
+        .replace("centre = [0.05, -0.02, 0.10]", "centre = [-0.02, -0.05, 0.10]")
+        .replace(
+            "[[250.0, 6.0, -4.0], [6.0, 300.0, 5.0], [-4.0, 5.0, 220.0]]",
+            "[[300.0, -6.0, 5.0], [-6.0, 250.0, 4.0], [5.0, 4.0, 220.0]]",
+        )
+        .replace("[0.0, 1.0, 0.2]", "[1.0, 0.0, 0.2]")
+        .replace("[0.0, -1.0, 0.2]", "[-1.0, 0.0, 0.2]")
+        .replace("position = [0.8, 0.5, 0.0]", "position = [0.5, -0.8, 0.0]")
+        .replace(
+            "turned = { about = [0, 1, 0]",
+            "turned = [{ about = [0, 0, -3], by = 1.5707963267948966 }, { about = [0, 1, 0]",
+        )
+        .replace("by = 0.4363323129985824 }  ", "by = 0.4363323129985824 }]  ")
+        .replace("by = 3.141592653589793", "by = 1.5707963267948966");
+    let back = matrix![0.0, -1.0, 0.0; 1.0, 0.0, 0.0; 0.0, 0.0, 1.0];
+    for (name, again, back) in [
+        ("swapped", &swapped, Matrix3::identity()),
+        ("moved", craft(&moved), Matrix3::identity()),
+        ("turned", &put(&turned), back),
+    ] {
+        for (index, (mode, exact)) in again.flexible.modes.iter().zip(&exact.flexible.modes).enumerate() {
+            near(mode.frequency / exact.frequency, 1.0, 2e-13);
+            near(mode.damping / exact.damping, 1.0, 2e-12);
+            near((back * mode.rotation - exact.rotation).norm(), 0.0, 1e-13);
+            near((back * mode.moments * back.transpose() - exact.moments).norm(), 0.0, 1e-11);
+            for point in ["jet", "tip"] {
+                let of = |craft: &Craft| craft.spatial.shapes(point)[index];
+                let ((f, phi), (exact_f, exact_phi)) = (of(again), of(self::craft(&scenario)));
+                near((back * f - exact_f).norm() + (back * phi - exact_phi).norm(), 0.0, 1e-12);
+            }
+        }
+        near((back * again.flexible.inertia * back.transpose() - exact.flexible.inertia).norm(), 0.0, 1e-11);
+        assert_eq!(again.flexible.modes.len(), 8, "{name}");
+    }
+}
+
+/// A start of clamped modes is one of free modes: at the tip the panel is bent as it was written.
+#[test]
+fn clamped_starts_become_free_ones() {
+    let scenario = reference(&[
+        ("appendage[0].modes[0].displacement", "0.02"),
+        ("appendage[0].modes[3].displacement", "-0.01"),
+        ("appendage[0].modes[0].rate", "0.3"),
+        ("appendage[1].modes[1].rate", "0.1"),
+    ])
+    .expect("valid");
+    let craft = craft(&scenario);
+    let tip = craft.spatial.point("tip").expect("a point");
+    let hub = craft.spatial.point("jet").expect("a point");
+    let (mut bent, mut moving) = (Vector::zeros(), Vector::zeros());
+    for (index, mode) in craft.spatial.modes.iter().enumerate() {
+        let ((end, _), (jet, phi)) = (craft.spatial.shapes("tip")[index], craft.spatial.shapes("jet")[index]);
+        let against_hub = end - jet - phi.cross(&(tip - hub));
+        bent += against_hub * mode.displacement.get();
+        moving += against_hub * mode.rate.get();
+    }
+    let (sin, cos) = 0.4363323129985824_f64.sin_cos();
+    let axes = |x: f64, z: f64| vector![cos * x + sin * z, 0.0, cos * z - sin * x];
+    near((bent - axes(0.7 * -0.01, 0.7 * 0.02)).norm(), 0.0, 1e-15);
+    near((moving - axes(0.0, 0.7 * 0.3)).norm(), 0.0, 1e-14);
+}
+
+/// Damping that couples near modes is kept whole.
+#[test]
+fn damping_that_couples_modes_is_kept_whole() {
+    let near_modes =
+        [("appendage[1].modes[1].frequency", "4.301"), ("appendage[1].modes[1].damping", "0.05")];
+    let scenario = reference(&near_modes).expect("valid");
+    let flexible = scenario.body.flexible().expect("a spacecraft");
+    let damping = flexible.damping.as_ref().expect("coupled");
+    assert!(craft(&scenario).damping_coupling > 0.05);
+    for (index, mode) in flexible.modes.iter().enumerate() {
+        near(damping[(index, index)] / (2.0 * mode.damping * mode.frequency), 1.0, 1e-14);
+    }
+    assert!(damping[(2, 3)].abs() > 0.01 && damping[(2, 3)].to_bits() == damping[(3, 2)].to_bits());
+}
+
+/// Modes of a file are those of the scenario, a scenario that is written again is the same spacecraft, keys can be drawn.
+#[test]
+fn files_tables_and_texts_are_the_same_spacecraft() {
+    let dir = Dir::new();
+    let text = std::fs::read_to_string(CRAFT).expect("a scenario");
+    let start = text.rfind("modes = [").expect("the second panel's");
+    let end = text.find("[law.pd]").expect("a law");
+    dir.write("craft.toml", format!("{}modes = \"panel.csv\"\n{}", &text[..start], &text[end..]));
+    dir.write(
+        "panel.csv",
+        "frequency,damping,tx,tz,rx,ry,rz\n# in bending, torsion, bending, in plane\n1.13,0.005,0,4.2887,15.577,0,0\n\
+         4.36,0.005,0,0,0,2.1353,0\n7.05,0.005,0,2.3767,2.4866,0,0\n50.0,0.005,4.2887,0,0,0,-15.577\n",
+    );
+    let table = reference(&[]).expect("valid");
+    let file = Scenario::load(&dir.path("craft.toml")).expect("valid");
+    assert_eq!(craft(&file), craft(&table));
+    assert!(file.to_toml().contains("panel.csv") && !file.self_contained().to_toml().contains("panel.csv"));
+    let again = Scenario::parse("again.toml", &file.self_contained().to_toml()).expect("valid");
+    assert_eq!(craft(&again), craft(&table));
+
+    // First moments in place of rotations, as they follow for a plate.
+    let given = text.replacen(
+        "rotation = [15.577, 0.0, 0.0] ",
+        "moments = [[0, 0, 0], [0, 0, 15.577], [0, 0, 0]] ",
+        1,
+    );
+    assert_ne!(given, text);
+    assert_eq!(craft(&Scenario::parse("moments.toml", &given).expect("valid")), craft(&table));
+
+    dir.write(
+        "drawn.toml",
+        format!("{text}[uncertain]\n\"appendage[1].modes[0].frequency\" = {{ uniform = [1.0, 1.2] }}\n\"spacecraft.mass\" = {{ relative_normal = 0.1 }}\n"),
+    );
+    dir.run("simulate drawn.toml --runs 3").exits(0);
+}
+
+#[test]
+fn modes_shows_parts_and_whole() {
+    let dir = Dir::new();
+    dir.write("craft.toml", std::fs::read(CRAFT).expect("a scenario"));
+    dir.run("check craft.toml").exits(0).says(&["accepted: 100 s, 8 modes"]);
+    let words = ["660 kg", "panel -y", "1.147503", "242.6429", "tip"];
+    dir.run("modes craft.toml").exits(0).says(&words);
+    let json = dir.run("modes craft.toml --json").exits(0).json();
+    let at = |key: &str| json.pointer(key).and_then(serde_json::Value::as_f64).expect("a number");
+    near(at("/clamped/0/effective_mass_kg/2"), 4.2887 * 4.2887, 1e-12);
+    near(at("/clamped/4/frequency_rad_s"), 1.13, 0.0);
+    let phi = three(&golden("locked")[1], "phi");
+    near(at("/frequencies_rad_s/1"), golden("locked")[1]["frequency"], 1e-12);
+    // Of the hub: phi² J at its points, and at the sensor, which is there.
+    near(at("/points/0/influences/0/1"), phi.x * phi.x * 1112.576592422786, 1e-10);
+    near(at("/influences/0/1"), phi.x * phi.x * 1112.576592422786, 1e-10);
+    let tip = three(&golden("locked")[1], "tip_turn");
+    assert_eq!(json["points"][2]["appendage"], "panel +y");
+    near(at("/points/2/influences/0/1"), tip.x * phi.x * 1112.576592422786, 1e-10);
+}
+
+/// A spacecraft without modes is rigid.
+#[test]
+fn appendages_may_be_rigid() {
+    let rigid = [("appendage[0].modes", "[]"), ("appendage[1].modes", "[]"), ("appendage[0].points", "[]")];
+    let scenario = reference(&rigid).expect("valid");
+    assert_eq!(scenario.mode_count(), 0);
+    near(
+        (craft(&scenario).flexible.inertia - craft(&reference(&[]).expect("valid")).flexible.inertia).norm(),
+        0.0,
+        0.0,
+    );
+}
+
+/// What is replaced by what, the line of the file that the error points at, and words of the error.
+type Case = (&'static str, &'static str, usize, &'static [&'static str]);
+
+#[rustfmt::skip] // One case a line.
+const CASES: &[Case] = &[
+    ("mass = 400.0", "mass = 0", 3, &["`spacecraft.mass`", "must be a positive number, got 0"]),
+    ("[[300.0, 0.0", "[[300.0, 1.0", 4, &["`spacecraft.inertia` must be symmetric"]),
+    ("[[300.0, 0.0", "[[-300.0, 0.0", 4, &["`spacecraft.inertia` must be positive definite"]),
+    ("[[300.0, 0.0, 0.0], [0.0, 200.0, 0.0], [0.0, 0.0, 250.0]]", "[[3e8, 0, 0], [0, 2e8, 0], [0, 0, 5e8]]", 4, &["`spacecraft.inertia` must be that of a body within 1000 m", "is it in kg mm²?"]),
+    ("mass = 400.0", "mass = 400.0\ncentre = [2000, 0, 0]", 4, &["`spacecraft.centre` must be within 1000 m, got 2000 m: is it in mm?"]),
+    ("mass = 400.0", "mass = 400.0\npoints = [{ name = \"tip\" }]", 12, &["`appendage[0].points[0].name` must differ", "got `tip` again"]),
+    ("mass = 400.0", "mass = 400.0\npoints = [{ name = \"a\" }, { name = \"a\" }]", 4, &["`spacecraft.points[1].name` must differ", "got `a` again"]),
+    ("mass = 400.0", "mass = 400.0\ntensor = 1", 4, &["unknown key `tensor`"]),
+    ("mass = 20.0", "mass = -1", 7, &["`appendage[0].mass`", "must be a positive number, got -1"]),
+    ("[[30.0, 0.0", "[[30.0, 1.0", 9, &["`appendage[0].inertia` must be symmetric"]),
+    ("[[30.0, 0.0", "[[-30.0, 0.0", 9, &["`appendage[0].inertia` must have no negative moment, got one of -30 kg m²"]),
+    ("centre = [0.0, 2.0, 0.0]", "centre = [0.0, 2000.0, 0.0]", 8, &["`appendage[0].centre` must be within 1000 m"]),
+    ("at = [0.0, 1.0, 0.0]", "at = [0.0, 1500.0, 0.0]", 10, &["`appendage[0].at` must be within 1000 m, got 1500 m: is it in mm?"]),
+    ("at = [0.0, 1.0, 0.0]", "turned = { about = [0, 0, 0], by = 1 }", 10, &["`appendage[0].turned.about` must have a length"]),
+    ("at = [0.0, 1.0, 0.0]", "turned = [{ about = [0, 1, 0], by = 1 }, { about = [0, 1, 0], by = 25 }]", 10, &["`appendage[0].turned[1].by` must be an angle of -2 pi to 2 pi, in rad, got 25"]),
+    ("at = [0.0, 1.0, 0.0]", "turned = 25.0", 10, &["`appendage[0].turned`", "a turn `{ about = [x, y, z], by = ANGLE }`, or an array of turns"]),
+    ("translation = [0.0, 0.0, 3.5]", "translation = [0.0, 0.0, 4.5]", 13, &["`appendage[0].modes[0].translation` must carry no more than the appendage: its effective mass is 20.25 kg, the appendage's mass 20 kg"]),
+    ("translation = [0.0, 0.0, 3.5]", "translation = [0.0, 0.0, 3500]", 13, &["`appendage[0].modes[0].translation`", "mass-normalised, in kg and m?"]),
+    ("rotation = [9.0, 0.0, 0.0]", "rotation = [10.6, 0.0, 0.0]", 13, &["`appendage[0].modes[0].rotation` must carry no more than the appendage: its effective inertia about its axis is 112.36 kg m²", "about the root, 110 kg m²"]),
+    ("rotation = [9.0, 0.0, 0.0]", "rotation = [9000.0, 0.0, 0.0]", 13, &["`appendage[0].modes[0].rotation`", "is it in sqrt(kg) mm?"]),
+    ("rotation = [9.0, 0.0, 0.0]", "moments = [[0, 0, 0], [0, 0, 10.6], [0, 0, 0]]", 13, &["`appendage[0].modes[0].moments` must carry no more"]),
+    ("rotation = [9.0, 0.0, 0.0]", "rotation = [-9.0, 0.0, 0.0]", 13, &["`appendage[0].modes[0]` must leave the appendage mass and inertia"]),
+    ("rotation = [9.0, 0.0, 0.0]", "rotation = [9.0, 0.0, 0.0], moments = [[0, 0, 0], [0, 0, 8], [0, 0, 0]]", 13, &["`appendage[0].modes[0].rotation` must be that of the first moments, [8.000000, 0.000000, 0.000000], or left out"]),
+    ("inertia = [[30.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 33.0]]", "", 13, &["`appendage[0].modes[0].rotation` must be left out", "a point mass"]),
+    ("modes = [\n", "modes = [\n{ frequency = 1.0, translation = [0.0, 0.0, 3.0], rotation = [7.0, 0.0, 0.0], shapes.tip = {} },\n", 14, &["`appendage[0].modes[1]` must leave the appendage mass and inertia: with the modes before it carries"]),
+    ("shapes = { tip", "shapes = { top", 13, &["`appendage[0].modes[0].shapes.top` must be at one of the appendage's `points`"]),
+    ("points = [{ name = \"tip\", position = [0.0, 4.0, 0.0] }]", "points = [{ name = \"tip\" }, { name = \"root\" }]", 13, &["`appendage[0].modes[0].shapes` must have a shape at each point, and `root` is missing"]),
+    ("frequency = 2.0", "frequency = 0.0", 13, &["`appendage[0].modes[0].frequency`", "must be a natural frequency"]),
+    ("[law.pd]", "[[appendage]]\nname = \"panel\"\nmass = 1\n[law.pd]", 16, &["`appendage[1].name` must differ from the other names, got `panel` again"]),
+    ("[law.pd]", "[body.planar]\n[law.pd]", 2, &["`spacecraft` is a body: leave out `body`, which is another"]),
+    ("modes = [", "plate = \"z\"\nmodes = [", 12, &["`appendage[0].plate`", "`x`"]),
+];
+
+#[test]
+fn impossible_spacecraft_are_refused() {
+    let dir = Dir::new();
+    for (from, to, line, words) in CASES {
+        assert!(ONE.contains(from), "{from}");
+        dir.write("bad.toml", ONE.replacen(from, to, 1));
+        let place = format!("bad.toml:{line}:");
+        dir.run("check bad.toml").exits(2).says(&[&place]).says(words);
+    }
+    let alone = "duration = 1\n[body.planar]\n[[appendage]]\nname = \"a\"\nmass = 1\n";
+    dir.write("alone.toml", alone);
+    dir.run("check alone.toml").exits(2).says(&["`appendage` is clamped to the hub of a `[spacecraft]`"]);
+    dir.write(
+        "file.toml",
+        ONE.split("modes = [").next().expect("a part").to_owned()
+            + "modes = \"none.csv\"\n[law.pd]\nk_p = 1\nk_d = 1\nperiod = 1\n",
+    );
+    dir.run("check file.toml").exits(2).says(&["`appendage[0].modes` cannot be used", "none.csv"]);
+    dir.write("one.toml", ONE);
+    dir.run("cycle one.toml").exits(2).says(&["spacecraft: turns about three axes"]);
+}
+
+/// Wheels that spin with more inertia than the hub has leave no spacecraft.
+#[test]
+fn rotors_are_part_of_the_hub() {
+    let scenario = reference(&[]).expect("valid");
+    let hub = scenario.spacecraft.as_ref().expect("a hub");
+    let heavy = [Rotor { axis: Vector::z(), spin_inertia: 400.0 }];
+    let fault = Craft::assemble(hub, &scenario.appendage, &heavy).expect_err("impossible");
+    assert_eq!(fault.key, "spacecraft.inertia");
+}

@@ -1,0 +1,100 @@
+//! The Earth observer that ships: a spacecraft from parts, wheels, gyro, star tracker, attitude filter, law and turn together.
+
+use flexsc_core::Simulation;
+use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::scenario::Scenario;
+
+use crate::util::SCENARIOS;
+
+/// The scenario with some of its words changed.
+fn observer(change: &[(&str, &str)]) -> Scenario {
+    let mut text = std::fs::read_to_string(format!("{SCENARIOS}/earth-observer.toml")).expect("a file");
+    for (from, to) in change {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    Scenario::parse("observer.toml", &text).expect("a scenario")
+}
+
+/// Its metrics, and its full log.
+fn flown(scenario: &Scenario, run: u64) -> (Metrics, Trace) {
+    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(Detail::Full));
+    Simulation::new(scenario, run).run(&mut (&mut gather, &mut trace)).expect("a run");
+    (gather.finish(scenario), trace)
+}
+
+fn numbers<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
+    trace
+        .topic(topic)
+        .and_then(|rows: &Columns| rows.numbers(name))
+        .unwrap_or_else(|| panic!("{topic} {name}"))
+}
+
+/// The largest error of an axis between two times (rad).
+fn worst(trace: &Trace, from: f64, to: f64) -> f64 {
+    // Rows come with the period of the log.
+    let times: Vec<f64> = (0..=1200).map(|row| 0.25 * f64::from(row)).collect();
+    let errors =
+        ["roll", "pitch", "yaw"].map(|axis| numbers(trace, "/pointing", &format!("{axis}_error_rad")));
+    let within = times.iter().enumerate().filter(|(_, t)| (from..=to).contains(*t));
+    within.flat_map(|(row, _)| errors.map(|error| error[row].abs())).fold(0.0, f64::max)
+}
+
+/// The turn lasts from 30 s to 200.9 s: 1.0472 rad at 8e-3 rad/s and 2e-4 rad/s².
+#[test]
+fn it_does_what_its_comment_says() {
+    let scenario = observer(&[]);
+    for run in 0..5 {
+        let (metrics, trace) = flown(&scenario, run);
+        assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "run {run}");
+        let (turning, pointing) = (worst(&trace, 30.0, 200.9), worst(&trace, 240.9, 300.0));
+        assert!(turning < 5e-4 && pointing < 1e-4, "run {run}: {turning} {pointing}");
+        let Some(Column::Rows(_, wheels)) = trace.topic("/wheels").and_then(|rows| rows.get("wheels")) else {
+            panic!("wheels")
+        };
+        let most = |name: &str| {
+            wheels.numbers(name).expect("rows").iter().fold(0.0_f64, |most, x| most.max(x.abs()))
+        };
+        assert!(most("speed_rad_s") < 600.0 && most("torque_nm") <= 0.4, "run {run}");
+    }
+    let silent = observer(&[
+        (
+            "angle_random_walk = 3e-6, rate_random_walk = 1e-8",
+            "angle_random_walk = 1e-12, rate_random_walk = 1e-16",
+        ),
+        ("noise = [2.4e-5, 2.4e-5, 1.5e-4]", "noise = [1e-10, 1e-10, 1e-10]"),
+        ("initial = { angle = 1e-3, bias = 1e-5 }", "initial = { angle = 1e-9, bias = 1e-12 }"),
+    ]);
+    let (_, trace) = flown(&silent, 0);
+    let (turning, pointing) = (worst(&trace, 30.0, 300.0), worst(&trace, 280.0, 300.0));
+    assert!(turning < 3e-4 && pointing < 1e-6, "{turning} {pointing}");
+}
+
+/// The innovations of a filter that knows its noise have the variance that it expects, over many runs.
+#[test]
+fn its_filter_is_as_good_as_it_says() {
+    let scenario = observer(&[]);
+    let runs = 12;
+    let mean = |name: &str| {
+        (0..runs).map(|run| flown(&scenario, run).0.number(name).expect("a number")).sum::<f64>()
+            / runs as f64
+    };
+    // 480 innovations a run of three numbers: the mean is 1 within 1.96 sqrt(2/(3 480 12)) = 0.021; errors of a run are
+    // hardly independent, of runs they are.
+    let (nis, nees) = (mean("nis_mean"), mean("nees_mean"));
+    assert!((nis - 1.0).abs() < 0.03, "NIS {nis}");
+    assert!((0.6..1.4).contains(&nees), "NEES {nees}");
+}
+
+/// Nothing outside acts: the momentum of body, panels and wheels together stays as it is, whatever the wheels do.
+#[test]
+fn wheels_and_panels_change_no_momentum() {
+    let (_, trace) =
+        flown(&observer(&[("speeds = [200, -200, 200, -200]", "speeds = [200, -150, 120, -90]")]), 0);
+    let momentum = numbers(&trace, "/energy", "momentum_nm_s");
+    let first = momentum[0];
+    assert!(first > 1.0, "{first}");
+    let off = momentum.iter().map(|h| (h / first - 1.0).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-12, "{off}");
+}

@@ -1,0 +1,66 @@
+//! docs/extending.md: which files a new kind of a role appears in, counted in the code for kinds that there are.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+
+/// The row of the document, the folder of the role, how code names a kind of it, and in how many files elsewhere it may.
+const KINDS: [(&str, &str, &str, usize); 6] = [
+    ("| a law |", "law", "Law::Attitude", 2),
+    ("| a sensor |", "sensor", "Sensor::StarTracker", 2),
+    ("| a sensor |", "sensor", "Sensor::Gyro", 2),
+    ("| an estimator |", "estimator", "Estimator::RigidRate", 2),
+    ("| an estimator |", "estimator", "Estimator::Attitude", 2),
+    ("| an actuator about each axis |", "actuator", "Actuator::Hold", 4),
+];
+
+/// The sources under a directory.
+fn sources(directory: &Path, found: &mut Vec<(String, String)>) {
+    for entry in fs::read_dir(directory).expect("a directory").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let name = path.strip_prefix(ROOT).expect("within").to_string_lossy().replace('\\', "/");
+            found.push((name, fs::read_to_string(&path).expect("text")));
+        }
+    }
+}
+
+#[test]
+fn a_new_kind_is_named_where_the_document_says_and_nowhere_else() {
+    let document = fs::read_to_string(format!("{ROOT}/docs/extending.md")).expect("the document");
+    let mut all = Vec::new();
+    for part in ["core", "cli", "figure", "papers", "py"] {
+        sources(Path::new(&format!("{ROOT}/crates/{part}/src")), &mut all);
+    }
+    assert!(all.len() > 300, "{}", all.len());
+    for (row, folder, kind, most) in KINDS {
+        let row =
+            document.lines().find(|line| line.starts_with(row)).unwrap_or_else(|| panic!("no row {row}"));
+        let names = |(_, text): &&(String, String)| {
+            // `Law::Attitude` is not `Law::AttitudeX`.
+            text.match_indices(kind).any(|(at, _)| {
+                !text[at + kind.len()..].starts_with(|next: char| next.is_alphanumeric() || next == '_')
+            })
+        };
+        let own = format!("crates/core/src/{folder}/");
+        let elsewhere: BTreeSet<&str> = all
+            .iter()
+            .filter(names)
+            .map(|(name, _)| name.as_str())
+            .filter(|name| !name.starts_with(&own))
+            .collect();
+        for name in &elsewhere {
+            let short = name.strip_prefix("crates/core/src/").unwrap_or(name);
+            assert!(
+                row.contains(&format!("`{short}`")),
+                "{kind} is in {short}, of which its row says nothing"
+            );
+        }
+        assert!(elsewhere.len() <= most, "{kind} is named in {} files: {elsewhere:?}", elsewhere.len());
+        assert!(!elsewhere.is_empty(), "{kind} is named nowhere: a wrong name?");
+    }
+}

@@ -1,0 +1,57 @@
+//! An actuator from outside: a servo that gives torques in whole steps up to a limit, about each axis.
+
+use flexsc_core::actuator::{Actuate, Demand, Effector, Setting};
+use flexsc_core::body::Wrench;
+use flexsc_core::time::Instant;
+
+/// The servo: its largest torque and its step (N m).
+#[derive(Copy, Clone, Debug)]
+pub struct Servo {
+    pub most: f64,
+    pub step: f64,
+}
+
+/// The servo at work: what is asked for and what it gives about each axis (N m), and the inertias (kg m²).
+#[derive(Clone, Debug)]
+struct Turning(Servo, [[f64; 2]; 3], Vec<f64>);
+
+impl Effector for Servo {
+    fn start(&self, settings: &[Setting]) -> Box<dyn Actuate> {
+        Box::new(Turning(*self, [[0.0; 2]; 3], settings.iter().map(|setting| setting.inertia).collect()))
+    }
+
+    fn limit(&self, _: usize) -> Option<f64> {
+        Some(self.most)
+    }
+}
+
+impl Actuate for Turning {
+    fn command(&mut self, _: Instant, demands: &[Demand], _: [f64; 3]) {
+        let Self(servo, torques, _) = self;
+        for (torque, demand) in torques.iter_mut().zip(demands) {
+            if let Demand::Torque(asked) = *demand {
+                *torque = [asked, ((asked / servo.step).round() * servo.step).clamp(-servo.most, servo.most)];
+            }
+        }
+    }
+
+    fn exert(&self, _: Instant, onto: &mut Wrench) {
+        onto.hub.iter_mut().zip(&self.1).for_each(|(hub, [_, given])| *hub += given);
+    }
+
+    fn asked(&self, axis: usize) -> f64 {
+        self.1[axis][0]
+    }
+
+    fn torque(&self, axis: usize) -> f64 {
+        self.1[axis][1]
+    }
+
+    fn moment(&self, axis: usize) -> f64 {
+        self.1[axis][1] / self.2[axis]
+    }
+
+    fn copy(&self) -> Box<dyn Actuate> {
+        Box::new(self.clone())
+    }
+}

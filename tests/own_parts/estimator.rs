@@ -1,0 +1,46 @@
+//! An estimator from outside: an alpha-beta filter of angle and rate about each axis.
+
+use flexsc_core::Scenario;
+use flexsc_core::belief::Belief;
+use flexsc_core::estimator::{Estimate, Observe, Taken};
+use flexsc_core::random::Seed;
+use flexsc_core::time::Instant;
+
+/// The parts of an innovation by which angle and rate are corrected.
+#[derive(Copy, Clone, Debug)]
+pub struct AlphaBeta {
+    pub alpha: f64,
+    pub beta: f64,
+}
+
+/// The filter at work: angle (rad) and rate (rad/s) about each axis after the last sample.
+#[derive(Clone, Debug)]
+struct Filtering(AlphaBeta, Vec<[f64; 2]>, Option<Instant>);
+
+impl Observe for AlphaBeta {
+    fn start(&self, scenario: &Scenario, _: Seed) -> Box<dyn Estimate> {
+        Box::new(Filtering(*self, vec![[0.0; 2]; scenario.axis_count()], None))
+    }
+}
+
+impl Estimate for Filtering {
+    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]) {
+        let Self(gains, states, last) = self;
+        let Some(measured) = taken.measured else { return };
+        let since = last.replace(taken.now).map(|last| taken.now.since(last).seconds());
+        for ((state, measured), belief) in states.iter_mut().zip(measured).zip(beliefs) {
+            if let Some(h) = since {
+                let predicted = state[0] + h * state[1];
+                let innovation = measured[0] - predicted;
+                *state = [predicted + gains.alpha * innovation, state[1] + gains.beta * innovation / h];
+            } else {
+                *state = *measured;
+            }
+            [belief.angle, belief.rate] = *state;
+        }
+    }
+
+    fn copy(&self) -> Box<dyn Estimate> {
+        Box::new(self.clone())
+    }
+}

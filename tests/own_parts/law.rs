@@ -1,0 +1,48 @@
+//! A law from outside: proportional, integral and derivative feedback.
+
+use flexsc_core::belief::Belief;
+use flexsc_core::law::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Rule};
+use flexsc_core::time::{Instant, Span};
+
+/// u = -k_p e - k_i (integral of e) - k_d e', held between samples (N m/rad, N m/(rad s), N m s/rad, s).
+#[derive(Copy, Clone, Debug)]
+pub struct Pid {
+    pub k_p: f64,
+    pub k_i: f64,
+    pub k_d: f64,
+    pub period: f64,
+}
+
+/// The law at work, with the integral of the error (rad s).
+#[derive(Copy, Clone, Debug)]
+struct Integrating(Pid, f64);
+
+impl Rule for Pid {
+    fn start(&self, _: &Authority) -> Box<dyn Control> {
+        Box::new(Integrating(*self, 0.0))
+    }
+
+    fn period(&self) -> Option<Span> {
+        Some(Span::from_seconds(self.period))
+    }
+}
+
+impl Control for Integrating {
+    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+        let Self(law, integral) = self;
+        let (angle, rate) = goal.at(now);
+        let error = belief.angle - angle;
+        *integral += error * law.period;
+        let torque = -law.k_p * error - law.k_i * *integral - law.k_d * (belief.rate - rate);
+        let until = Some(now + Span::from_seconds(law.period));
+        Hold { command: Command::Torque(torque), until, guards: Guards::NONE }
+    }
+
+    fn state(&self) -> Phase {
+        Phase::Feedback
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(*self)
+    }
+}
