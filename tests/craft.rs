@@ -6,8 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use flexsc_core::body::spatial::Vector;
-use flexsc_core::craft::{Craft, Rotor};
+use flexsc_core::attitude::Vector;
+use flexsc_core::body::craft::{Craft, Rotor};
 use flexsc_core::{Document, Scenario, ScenarioError};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, matrix, vector};
 

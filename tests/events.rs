@@ -1,10 +1,13 @@
 //! The rules of time: no crossing is missed, and nothing that watches a run changes it.
 
+use std::convert::Infallible;
+
 use flexsc_core::belief::Belief;
-use flexsc_core::body::{Input, Planar, Segment, State};
-use flexsc_core::crossing::locate;
+use flexsc_core::body::{Input, Planar, Segment};
 use flexsc_core::guard::Guard;
 use flexsc_core::law::{Cause, Command, Goal};
+use flexsc_core::motion::State;
+use flexsc_core::motion::crossing::locate;
 use flexsc_core::random::{Seed, Stream};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::time::{Instant, Span};
@@ -56,7 +59,8 @@ fn no_crossing_is_missed() {
         }
         let horizon = Span::from_seconds(5.0);
         let mut there = state.clone();
-        let trip = locate(&segment, &guards, horizon, &mut there, &mut ()).expect("not stopped");
+        let trip =
+            locate(&segment, &guards, horizon, &mut there, || Ok::<_, Infallible>(())).expect("not stopped");
         let until = trip.map_or(5.0, |trip| trip.after.seconds());
         // Nothing was crossed before, seen at 20 000 instants, within the rounding of the angle.
         let mut probe = state.clone();
@@ -94,10 +98,12 @@ fn a_tangent_touch_is_found() {
     let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
     let mut there = state.clone();
     let horizon = Span::from_seconds(100.0);
-    let below = locate(&segment, &[Guard::at_least(peak - 1e-18)], horizon, &mut there, &mut ());
+    let below =
+        locate(&segment, &[Guard::at_least(peak - 1e-18)], horizon, &mut there, || Ok::<_, Infallible>(()));
     let below = below.expect("not stopped").expect("a touch");
     assert!((below.after.seconds() - 10.0).abs() < 2e-6, "{}", below.after.seconds());
-    let above = locate(&segment, &[Guard::at_least(peak + 1e-18)], horizon, &mut there, &mut ());
+    let above =
+        locate(&segment, &[Guard::at_least(peak + 1e-18)], horizon, &mut there, || Ok::<_, Infallible>(()));
     assert_eq!(above.expect("not stopped"), None);
 }
 
@@ -109,7 +115,7 @@ fn a_guard_that_holds_trips_at_once() {
     segment.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
-    let trip = locate(&segment, &guards, Span::from_seconds(1.0), &mut there, &mut ());
+    let trip = locate(&segment, &guards, Span::from_seconds(1.0), &mut there, || Ok::<_, Infallible>(()));
     let trip = trip.expect("not stopped").expect("a trip");
     assert_eq!((trip.after, trip.guard), (Span::ZERO, 1));
 }
@@ -123,10 +129,10 @@ fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     segment.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];
-    let trip = locate(&segment, &guards, Span::from_seconds(1e6), &mut there, &mut ());
+    let trip = locate(&segment, &guards, Span::from_seconds(1e6), &mut there, || Ok::<_, Infallible>(()));
     let trip = trip.expect("not stopped").expect("a trip");
     assert!((trip.after.seconds() - 5e5).abs() < 1e-9);
-    let none = locate(&segment, &guards, Span::from_seconds(4.9e5), &mut there, &mut ());
+    let none = locate(&segment, &guards, Span::from_seconds(4.9e5), &mut there, || Ok::<_, Infallible>(()));
     assert_eq!(none.expect("not stopped"), None);
 }
 

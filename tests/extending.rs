@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use crate::rooms::sources;
+
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 /// The row of the document, the folder of the role, how code names a kind of it, and in how many files elsewhere it may.
@@ -15,19 +17,6 @@ const KINDS: [(&str, &str, &str, usize); 6] = [
     ("| an estimator |", "estimator", "Estimator::Attitude", 2),
     ("| an actuator about each axis |", "actuator", "Actuator::Hold", 4),
 ];
-
-/// The sources under a directory.
-fn sources(directory: &Path, found: &mut Vec<(String, String)>) {
-    for entry in fs::read_dir(directory).expect("a directory").flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let name = path.strip_prefix(ROOT).expect("within").to_string_lossy().replace('\\', "/");
-            found.push((name, fs::read_to_string(&path).expect("text")));
-        }
-    }
-}
 
 #[test]
 fn a_new_kind_is_named_where_the_document_says_and_nowhere_else() {

@@ -1,10 +1,11 @@
 //! The linear flow at its limits: poles that nearly coalesce, levels that are just touched, bounds, inputs as more states.
 
 use std::cell::Cell;
+use std::convert::Infallible;
 use std::sync::Arc;
 
-use flexsc_core::crossing::locate;
 use flexsc_core::guard::Guard;
+use flexsc_core::motion::crossing::locate;
 use flexsc_core::motion::linear::{Level, Linear, Seen, Segment, System};
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
@@ -95,7 +96,9 @@ fn a_touch_is_found_and_none_is_invented() {
         segment.depart(&flow.modal(&DVector::from_fn(6, |i, _| number(4 + i))), &[number(3)]);
         let guards = [Level { output: 0, guard: Guard::at_least(level) }];
         let count = Cell::new(0);
-        let trip = locate(&Counted(&segment, &count), &guards, horizon, &mut Seen::default(), &mut ());
+        let trip = locate(&Counted(&segment, &count), &guards, horizon, &mut Seen::default(), || {
+            Ok::<_, Infallible>(())
+        });
         let trip = trip.expect("not stopped");
         assert!(count.get() < 60, "{} evaluations", count.get());
         if d == 0.0 {

@@ -53,6 +53,7 @@ mod plot;
 mod relay;
 mod reproduce;
 mod rivals;
+mod rooms;
 mod rotation;
 mod scene;
 mod several_sensors;

@@ -1,10 +1,11 @@
 //! Coupled plants, and the relay law of the study flown on any of their axes.
 
 use std::cell::Cell;
+use std::convert::Infallible;
 use std::sync::Arc;
 
-use flexsc_core::crossing::{Approach, locate};
 use flexsc_core::guard::Guard;
+use flexsc_core::motion::crossing::{Approach, locate};
 use flexsc_core::motion::linear::{Form, Level, Linear, Modal, SecondOrder, Seen, Segment, System};
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
@@ -144,7 +145,8 @@ pub fn fly(
         let trip = if levels.is_empty() {
             None
         } else {
-            locate(&Counted(&segment, &counter), &levels, horizon, &mut seen, &mut ()).expect("not stopped")
+            locate(&Counted(&segment, &counter), &levels, horizon, &mut seen, || Ok::<_, Infallible>(()))
+                .expect("not stopped")
         };
         let after = trip.map_or(horizon, |trip| trip.after);
         while flight.states.len() < times.len() && times[flight.states.len()] <= (now + after).seconds() {

@@ -2,8 +2,9 @@
 //!
 //! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
 
+use flexsc_core::attitude::Vector;
 use flexsc_core::body::Body;
-use flexsc_core::body::spatial::{Elastic, Rigid, Spatial, SpatialState, Turn, Vector};
+use flexsc_core::body::spatial::{Elastic, Rigid, Spatial, SpatialState, Turn};
 use flexsc_core::quantity::Finite;
 use flexsc_core::{Document, Scenario};
 

@@ -1,7 +1,7 @@
 //! Nothing that watches a run changes it, and a copy of a run goes on as the run itself, whatever parts it is made of.
 
 use flexsc_core::body::spatial::SpatialState;
-use flexsc_core::body::{State, Stretch};
+use flexsc_core::motion::{State, Stretch};
 use flexsc_core::record::{Course, Detail, Record, RecordError, Sample, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Document, Scenario, Simulation};

@@ -1,8 +1,7 @@
 //! An estimator from outside: an alpha-beta filter of angle and rate about each axis.
 
-use flexsc_core::Scenario;
 use flexsc_core::belief::Belief;
-use flexsc_core::estimator::{Estimate, Observe, Taken};
+use flexsc_core::estimator::{Estimate, Known, Observe, Taken};
 use flexsc_core::random::Seed;
 use flexsc_core::time::Instant;
 
@@ -18,8 +17,8 @@ pub struct AlphaBeta {
 struct Filtering(AlphaBeta, Vec<[f64; 2]>, Option<Instant>);
 
 impl Observe for AlphaBeta {
-    fn start(&self, scenario: &Scenario, _: Seed) -> Box<dyn Estimate> {
-        Box::new(Filtering(*self, vec![[0.0; 2]; scenario.axis_count()], None))
+    fn start(&self, known: &Known<'_>, _: Seed) -> Box<dyn Estimate> {
+        Box::new(Filtering(*self, vec![[0.0; 2]; known.axes.len()], None))
     }
 }
 

@@ -8,8 +8,8 @@ use flexsc_core::Scenario;
 use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::parts::Parts;
+use flexsc_core::attitude::AXES;
 use flexsc_core::body::Drive;
-use flexsc_core::body::spatial::AXES;
 use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::body::Stretch;
+use flexsc_core::motion::Stretch;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use indicatif::{ProgressBar, ProgressStyle};

@@ -7,7 +7,7 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, Once, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::body::Stretch;
+use flexsc_core::motion::Stretch;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 

@@ -1,4 +1,4 @@
-//! What the control system believes of the motion about one axis: the only thing that a law reads.
+//! What the control system believes of the motion about one axis: the only thing that a law reads, and what it asks for.
 
 /// Written by sensor and estimator, read by the law of the axis.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,4 +37,34 @@ pub struct Dominant {
     pub rate: f64,
     /// Estimated natural frequency (rad/s).
     pub frequency: f64,
+}
+
+/// What a law reads of an estimator.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Reads {
+    /// Nothing.
+    Nothing,
+    /// Angle and rate.
+    Motion,
+    /// Angle and rate as measured, and the dominant mode.
+    DominantMode,
+    /// Rates, and all elastic modes.
+    ElasticRates,
+}
+
+/// What active damping does about an axis.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Damped {
+    /// Elastic rate on which it acts (rad/s).
+    pub rate: f64,
+    /// Threshold (rad/s).
+    pub threshold: f64,
+    /// Whether the elastic rate has been beyond the threshold and is not yet back.
+    pub latched: bool,
+    /// Whether the watchdog keeps it quiet.
+    pub resting: bool,
+    /// Signed on-time of its pulse (s).
+    pub on: f64,
+    /// Change of the rigid rate that the pulse makes (rad/s).
+    pub change: f64,
 }

@@ -41,12 +41,11 @@
 pub mod actuator;
 pub mod adaptation;
 pub mod analysis;
+pub mod attitude;
 pub mod axes;
 pub mod belief;
 pub mod body;
 pub mod campaign;
-pub mod craft;
-pub mod crossing;
 pub mod disturbance;
 pub mod document;
 pub mod environment;

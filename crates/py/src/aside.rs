@@ -6,7 +6,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::body::Stretch;
+use flexsc_core::motion::Stretch;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 use pyo3::exceptions::PyRuntimeError;

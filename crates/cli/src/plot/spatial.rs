@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use flexsc_core::Simulation;
-use flexsc_core::body::spatial::AXES;
+use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
     AttitudeEstimate, ChannelState, Cycle, Log, Record, RecordError, Sample, SpatialMotion, TrackedMode,
     Tracking, Wheels,

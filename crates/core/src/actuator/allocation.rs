@@ -4,7 +4,7 @@ use nalgebra::{Cholesky, Matrix3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 
 /// Which of all torques of wheels that give what is wanted are taken.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::PulseWidth;
-use crate::body::spatial::{AXES, Spatial, Vector, vector};
+use crate::attitude::{AXES, Vector, vector};
+use crate::body::spatial::Spatial;
 use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::Span;

@@ -20,7 +20,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Wrench;
-use crate::estimator::adaptive::Pulse;
 use crate::own::Own;
 use crate::record::{self, WheelMotion};
 use crate::time::{Instant, Span};
@@ -30,7 +29,7 @@ pub use hold::ZeroOrderHold;
 pub use jets::{Group, Groups, Jets, Pair, Thruster};
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
-pub use pulsing::Pulsing;
+pub use pulsing::{Pulse, Pulsing};
 pub use spinning::Spinning;
 pub use thrusters::Thrusters;
 pub use torquers::{AxisActuate, Setting, Torquers};

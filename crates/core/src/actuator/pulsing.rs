@@ -1,10 +1,32 @@
 //! Jets at work: what is commanded, what waits, what burns, and the propellant.
 
 use super::{Actuate, Cycle, Demand, Group, Jets, PulseWidth};
+use crate::attitude::Vector;
 use crate::body::Wrench;
-use crate::body::spatial::Vector;
-use crate::estimator::adaptive::Pulse;
 use crate::time::{Instant, Span};
+
+/// A pulse of thrusters, as one that was executed or is about to be.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Pulse {
+    /// Index of the input: the group of thrusters.
+    pub input: usize,
+    /// Rigid acceleration about the group's own axis, signed (rad/s²).
+    pub acceleration: f64,
+    /// When it begins, after the last sample (s).
+    pub start: f64,
+    /// How long it lasts (s).
+    pub duration: f64,
+}
+
+impl Pulse {
+    /// Whether it is a pulse, and not nonsense.
+    pub fn is_sound(&self) -> bool {
+        self.acceleration.is_finite()
+            && self.start.is_finite()
+            && self.duration.is_finite()
+            && self.duration > 0.0
+    }
+}
 
 /// The jets of a body.
 #[derive(Clone, Debug)]

@@ -7,8 +7,8 @@
 use super::allocation::Allocation;
 use super::wheels::{SpeedBias, Wheels};
 use super::{Actuate, Demand, Setting};
+use crate::attitude::Vector;
 use crate::body::Wrench;
-use crate::body::spatial::Vector;
 use crate::motion::turning::Rotor;
 use crate::quantity::Positive;
 use crate::record;

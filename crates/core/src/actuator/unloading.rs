@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Actuate, Cycle, Demand, Group, Jets, Pulsing, Spinning};
+use crate::attitude::Vector;
 use crate::body::Wrench;
-use crate::body::spatial::Vector;
 use crate::document::Fault;
 use crate::quantity::{NonNegative, Positive};
 use crate::record;

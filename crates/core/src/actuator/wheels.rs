@@ -7,8 +7,8 @@ use super::Setting;
 use super::allocation::{Allocation, Choice};
 use super::spinning::Spinning;
 use super::unloading::Unloading;
-use crate::body::spatial::Vector;
-use crate::craft::Rotor;
+use crate::attitude::Vector;
+use crate::body::craft::Rotor;
 use crate::document::Fault;
 use crate::quantity::{Finite, Positive};
 

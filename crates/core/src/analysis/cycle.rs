@@ -9,8 +9,9 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, RowDVector, Schur};
 
-use crate::body::{Input, Planar, Segment, State};
+use crate::body::{Input, Planar, Segment};
 use crate::law::Phase;
+use crate::motion::State;
 use crate::record::{Command, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
 
@@ -186,7 +187,7 @@ fn symmetric(one: &[Switching]) -> bool {
             .state
             .modes
             .iter()
-            .map(|m| crate::body::Phase { displacement: -m.displacement, quadrature: -m.quadrature })
+            .map(|m| crate::motion::Phase { displacement: -m.displacement, quadrature: -m.quadrature })
             .collect(),
     };
     same(&mirrored, &first.state)

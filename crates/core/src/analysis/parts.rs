@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::influence::Influences;
-use crate::body::spatial::{Vector, vector};
-use crate::craft::Craft;
+use crate::attitude::{Vector, vector};
+use crate::body::craft::Craft;
 use crate::scenario::Scenario;
 
 /// A spacecraft's modes, clamped and free.

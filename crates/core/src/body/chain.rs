@@ -12,8 +12,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::forced::{Forced, Input};
-use super::stretch::{Expansion, REACH};
-use super::{Mode, Planar, Sensed, State};
+use super::{Mode, Planar};
+use crate::motion::stretch::{Expansion, REACH};
+use crate::motion::{Sensed, State};
 use crate::numerics::extrapolation::{Field, Trajectory};
 use crate::numerics::polynomial::{Series, TERMS};
 use crate::structure::Structure;

@@ -5,8 +5,9 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::{Phase, Planar, State};
+use super::Planar;
 use crate::motion::linear::{Linear, System};
+use crate::motion::{Phase, State};
 use crate::numerics::exponential::exponential;
 
 /// The matrices of a body at constant frequencies.

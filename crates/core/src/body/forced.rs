@@ -3,7 +3,7 @@
 use std::sync::Arc as Shared;
 
 use super::mode::Flow;
-use super::spatial::Vector;
+use crate::attitude::Vector;
 use crate::motion::turning::Rotor;
 use crate::numerics::phasor::Phasor;
 use crate::numerics::polynomial::Series;

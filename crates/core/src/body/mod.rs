@@ -1,7 +1,8 @@
-//! What is controlled: a state, and its exact flow under a constant input.
+//! What is controlled: the ways to describe a body, and its exact flow under a constant input.
 
 mod chain;
 mod coupled;
+pub mod craft;
 mod damping;
 mod drift;
 mod drifting;
@@ -15,7 +16,6 @@ mod planar;
 mod reduction;
 mod segment;
 pub mod spatial;
-mod stretch;
 mod weights;
 mod wheeled;
 
@@ -24,12 +24,12 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::craft::Craft;
 use crate::document::Fault;
 use crate::motion::turning::Flexible;
 
 pub use chain::{Chain, Flight, Flown};
 pub use coupled::Coupled;
+pub use craft::Craft;
 pub use damping::Damping;
 pub use drift::{Drift, Point, Profile, Ramp, SERIES, Sinusoid};
 pub use drifting::Drifting;
@@ -42,7 +42,6 @@ pub use panels::{Kinematics, Panels, Section};
 pub use planar::{Drive, Planar};
 pub use segment::Segment;
 pub use spatial::Spatial;
-pub use stretch::{Expansion, Linear, Stretch};
 pub use weights::Weights;
 pub use wheeled::{Coupling, Unfolding};
 
@@ -159,49 +158,4 @@ impl Body {
             Self::Planar(_) | Self::Matrices(_) | Self::Spatial(_) | Self::Spacecraft(_) => None,
         }
     }
-}
-
-/// Where a body is.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct State {
-    /// Angle of the body as if it were rigid (rad).
-    pub rigid_angle: f64,
-    /// Rate of the body as if it were rigid (rad/s).
-    pub rigid_rate: f64,
-    /// One phase for each elastic mode.
-    pub modes: Vec<Phase>,
-}
-
-/// The phase of one elastic mode.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Phase {
-    /// Displacement (rad).
-    pub displacement: f64,
-    /// Rate divided by the natural frequency (rad), so that an undamped mode runs on a circle.
-    pub quadrature: f64,
-}
-
-impl State {
-    /// The angle that a sensor sees (rad): rigid angle and all modes.
-    pub fn angle(&self) -> f64 {
-        self.modes.iter().fold(self.rigid_angle, |sum, mode| sum + mode.displacement)
-    }
-
-    /// Whether every number is finite.
-    pub fn is_finite(&self) -> bool {
-        self.rigid_angle.is_finite()
-            && self.rigid_rate.is_finite()
-            && self.modes.iter().all(|m| m.displacement.is_finite() && m.quadrature.is_finite())
-    }
-}
-
-/// What is measurable at one instant.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Sensed {
-    /// Angle, elastic part included (rad).
-    pub angle: f64,
-    /// Rate, elastic part included (rad/s).
-    pub rate: f64,
-    /// Acceleration, elastic part included (rad/s²).
-    pub acceleration: f64,
 }

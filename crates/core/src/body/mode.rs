@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Phase, Sensed};
+use crate::motion::{Phase, Sensed};
 use crate::numerics::phasor::Phasor;
 use crate::quantity::{Finite, Frequency, NonNegative};
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::State;
+use crate::motion::State;
 use crate::quantity::Finite;
 
 /// A coordinate that is observed beside the hub's angle: y = rigid x_r + sum modes\[i\] x_i.

@@ -7,8 +7,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Mode, Output, State};
+use super::{Mode, Output};
 use crate::document::Fault;
+use crate::motion::State;
 use crate::quantity::{Finite, Positive};
 
 /// A planar body as a scenario describes it.

@@ -4,11 +4,13 @@ use nalgebra::DVector;
 
 use super::forced::{Forced, Input, Push};
 use super::mode::Flow;
-use super::stretch::{Expansion, REACH};
-use super::{Drive, Phase, Planar, Sensed, State};
-use crate::crossing::first_root;
+use super::{Drive, Planar};
 use crate::guard::Guard;
+use crate::motion::crossing::{Approach, first_root};
+use crate::motion::stretch::{Expansion, REACH};
+use crate::motion::{Phase, Sensed, State};
 use crate::numerics::polynomial::TERMS;
+use crate::time::Span;
 
 /// The motion under one input, from the state in which it began.
 #[derive(Clone, Debug)]
@@ -250,5 +252,52 @@ impl Segment {
             velocity.extend(swing.flow.velocity(from_rest, phase.quadrature));
         }
         DVector::from_vec(velocity)
+    }
+}
+
+impl Approach for Segment {
+    type Guard = Guard;
+    type State = State;
+    type Sensed = Sensed;
+
+    #[inline]
+    fn begin(&self, _: &mut State) -> Sensed {
+        self.origin()
+    }
+
+    #[allow(clippy::inline_always, reason = "the search calls it")]
+    #[inline(always)]
+    fn go(&self, h: f64, state: &mut State) -> Sensed {
+        self.at(h, state)
+    }
+
+    #[inline]
+    fn is_finite(_: &State, sensed: Sensed) -> bool {
+        sensed.angle.is_finite()
+    }
+
+    #[inline]
+    fn holds(guard: Guard, _: &State, sensed: Sensed) -> bool {
+        guard.holds(sensed.angle)
+    }
+
+    #[inline]
+    fn window(_: &State) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline]
+    fn earliest(&self, guard: Guard, _: Span, _: &State) -> f64 {
+        Self::earliest(self, guard)
+    }
+
+    #[inline]
+    fn stride(&self, guard: Guard, _: &State, sensed: Sensed) -> f64 {
+        Self::stride(self, guard, sensed)
+    }
+
+    #[inline]
+    fn is_clear(&self, guard: Guard, _: &State, sensed: Sensed, time: f64) -> bool {
+        Self::is_clear(self, guard, sensed, time)
     }
 }

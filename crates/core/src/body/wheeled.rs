@@ -7,13 +7,13 @@ use std::sync::Arc as Shared;
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::stretch::{self, Expansion};
-use super::{Coupled, Drift, Drifting, Planar, Sensed, State};
-use crate::crossing::{Trip, locate};
+use super::{Coupled, Drift, Drifting, Planar};
 use crate::guard::Guard;
+use crate::motion::crossing::{Trip, locate};
 use crate::motion::linear::{Level, Linear, Modal, Seen, Segment};
+use crate::motion::stretch::{self, Expansion};
+use crate::motion::{Sensed, State};
 use crate::numerics::phasor::abs;
-use crate::record::{Record, RecordError};
 use crate::time::Span;
 
 /// So many transitions are kept, the newest last: the periods of a run are few.
@@ -171,17 +171,17 @@ impl Coupling {
     /// with guards of a continuous sensor gets.
     ///
     /// # Errors
-    /// The record ends the search.
-    pub fn trip(
+    /// What `go_on` answers ends the search.
+    pub fn trip<E>(
         &mut self,
         guards: &[Guard],
         horizon: Span,
-        record: &mut impl Record,
-    ) -> Result<Option<Trip<()>>, RecordError> {
+        go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Option<Trip<()>>, E> {
         let Flow::Linear(poles) = &mut self.flow else { return Ok(None) };
         poles.levels.clear();
         poles.levels.extend(guards.iter().map(|guard| Level { output: 0, guard: *guard }));
-        locate(&poles.segment, &poles.levels, horizon, &mut poles.seen, record)
+        locate(&poles.segment, &poles.levels, horizon, &mut poles.seen, go_on)
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Quaternion};
 
 use super::Environment;
 use super::orbit::into;
-use crate::body::spatial::{Vector, vector};
+use crate::attitude::{Vector, vector};
 use crate::motion::turning::Surroundings;
 
 /// The surroundings of a body.

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::{Orbit, into};
-use crate::body::spatial::{Attitude, Vector, vector};
+use crate::attitude::{Attitude, Vector, vector};
 use crate::quantity::{Finite, Positive};
 
 /// A magnetic moment in the field of a dipole.

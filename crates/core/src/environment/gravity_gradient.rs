@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::Orbit;
-use crate::body::spatial::{Attitude, Vector};
+use crate::attitude::{Attitude, Vector};
 use crate::quantity::Positive;
 
 /// Gravity gradient.

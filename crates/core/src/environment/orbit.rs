@@ -5,7 +5,7 @@
 
 use nalgebra::Quaternion;
 
-use crate::body::spatial::{Attitude, Vector};
+use crate::attitude::{Attitude, Vector};
 use crate::quantity::Positive;
 
 /// A circular orbit.

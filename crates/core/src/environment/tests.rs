@@ -5,8 +5,9 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::{Around, Environment};
+use crate::attitude::{Vector, beyond, rotation};
 use crate::body::Spatial;
-use crate::body::spatial::{Rigid, Turn, Vector, beyond, rotation};
+use crate::body::spatial::{Rigid, Turn};
 use crate::motion::turning::{Acting, Flexible, FreeMode, Rotor, Surroundings, Turning};
 use crate::time::Instant;
 

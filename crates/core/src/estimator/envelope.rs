@@ -7,7 +7,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::body::{Mode, State};
+use crate::body::Mode;
+use crate::motion::State;
 use crate::numerics::phasor::{Complex, Phasor, abs, polar};
 use crate::numerics::swing_integral;
 use crate::time::{Instant, Span};

@@ -17,16 +17,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::Actuate;
-use crate::belief::Belief;
-use crate::body::{Mode, State};
-use crate::law::Damped;
+use crate::belief::{Belief, Damped, Reads};
+use crate::body::{Drift, Mode, Planar};
+use crate::motion::State;
 use crate::own::Own;
 use crate::quantity::{NonNegative, Positive};
 use crate::random::Seed;
 use crate::record;
-use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Reading};
-use crate::time::Instant;
+use crate::time::{Instant, Span};
 
 pub use adaptive::Adaptive;
 pub use attitude::AttitudeFilter;
@@ -62,8 +61,8 @@ pub enum Estimator {
 
 /// What an estimator from outside tells of itself before a run. It acts at samples.
 pub trait Observe: Send + Sync {
-    /// The estimator of a scenario at work.
-    fn start(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Estimate>;
+    /// The estimator at work, in what it is told of a scenario.
+    fn start(&self, known: &Known<'_>, seed: Seed) -> Box<dyn Estimate>;
 }
 
 /// What an ideal observer knows.
@@ -74,6 +73,31 @@ pub struct Truth {
     /// out, `modes` for a law that reads the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feeds: Option<Feeds>,
+}
+
+/// What an estimator knows of a scenario before a run.
+#[derive(Clone, Debug)]
+pub struct Known<'a> {
+    /// The estimator that the scenario asks for.
+    pub estimator: Option<&'a Estimator>,
+    /// The body about each of its axes, as if that axis were alone.
+    pub axes: &'a [Planar],
+    /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.
+    pub back_emf: (f64, bool),
+    /// How the natural frequencies drift.
+    pub drift: Option<&'a Drift>,
+    /// The period of the samples, if there are any.
+    pub sampling: Option<Span>,
+    /// Standard deviation of the measured angle (rad).
+    pub angle_noise: f64,
+    /// The same of the measured rate (rad/s) about each axis, if it is measured.
+    pub rate_noise: Vec<Option<f64>>,
+    /// What the law about each axis reads.
+    pub reads: Vec<Reads>,
+    /// The design of adaptive observers.
+    pub adaptive: Option<&'a adaptive::ObserverDesign>,
+    /// What the sensors are to an attitude filter.
+    pub attitude: Option<&'a attitude::Setting>,
 }
 
 /// A sample of the sensor, and what is around it.
@@ -151,17 +175,17 @@ impl Clone for Box<dyn Estimate> {
 }
 
 /// The estimator of a scenario at work.
-pub fn start(scenario: &Scenario, seed: Seed) -> Box<dyn Estimate> {
-    if let Some(sampled) = sampled::AtSamples::new(scenario, seed) {
+pub fn start(known: &Known<'_>, seed: Seed) -> Box<dyn Estimate> {
+    if let Some(sampled) = sampled::AtSamples::new(known, seed) {
         return Box::new(sampled);
     }
-    match (&scenario.estimator, &scenario.study.adaptive) {
-        (Some(Estimator::Own(own)), _) => own.start(scenario, seed),
-        (Some(Estimator::Attitude(spec)), _) if scenario.study.attitude.is_some() => {
-            let setting = scenario.study.attitude.clone().unwrap_or_default();
+    match (known.estimator, known.adaptive) {
+        (Some(Estimator::Own(own)), _) => own.start(known, seed),
+        (Some(Estimator::Attitude(spec)), _) if known.attitude.is_some() => {
+            let setting = known.attitude.cloned().unwrap_or_default();
             Box::new(attitude::Tracking::new(spec, setting, seed.stream("prior")))
         }
-        (Some(Estimator::RigidRate(spec)), _) => Box::new(spec.start(scenario.study.axes.len())),
+        (Some(Estimator::RigidRate(spec)), _) => Box::new(spec.start(known.axes.len())),
         (Some(Estimator::Adaptive(_)), Some(plan)) => Box::new(adaptive::Observers::new(plan)),
         _ => Box::new(direct::Direct),
     }

@@ -1,11 +1,11 @@
 //! The envelope monitor: its observer, its windows, and the adaptation that learns from them.
 
+use super::{Envelope, EnvelopeMonitor};
 use crate::adaptation::{Adaptation, Search};
-use crate::body::State;
-use crate::estimator::{EnvelopeMonitor, Estimator};
+use crate::body::Planar;
+use crate::motion::State;
 use crate::random::{Seed, Stream};
 use crate::record::{self, ModeEnvelope, WindowMean};
-use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
 /// The observer at work, window by window.
@@ -42,24 +42,28 @@ pub struct Closed {
 }
 
 impl Monitor {
-    /// The monitor that a scenario asks for, if any.
-    pub fn new(scenario: &Scenario, seed: Seed) -> Option<Self> {
-        let spec = scenario.estimator.as_ref().and_then(Estimator::envelope)?;
-        let search = scenario.adaptation.clone().map(|Adaptation::RandomSearch(constants)| {
+    /// The monitor of a body, whose adaptation tunes one of these numbers of the law.
+    pub fn new(
+        spec: &Envelope,
+        model: &Planar,
+        adaptation: Option<&Adaptation>,
+        tunable: &[(&str, f64)],
+        seed: Seed,
+    ) -> Self {
+        let search = adaptation.cloned().map(|Adaptation::RandomSearch(constants)| {
             let key = constants.tunes.clone();
-            let tunable = scenario.law.tunable().into_iter().find(|(known, _)| *known == key);
-            let value = tunable.map_or(f64::NAN, |(_, value)| value);
+            let value = tunable.iter().find(|(known, _)| *known == key).map_or(f64::NAN, |(_, value)| *value);
             Searching { search: Search::new(constants, value), draws: seed.stream("adaptation"), key, value }
         });
-        Some(Self {
-            observer: EnvelopeMonitor::new(spec, &scenario.model.modes, scenario.model.inertia.get()),
+        Self {
+            observer: EnvelopeMonitor::new(spec, &model.modes, model.inertia.get()),
             window: spec.window,
             opened: Instant::START,
             closes: Instant::START + spec.window,
             index: 0,
             mean: f64::NAN,
             search,
-        })
+        }
     }
 
     /// Takes over a torque that is commanded from now on.

@@ -1,13 +1,12 @@
 //! Estimators that act at each sample of an axis: what the actuator gave and the sensor measured become a belief of the motion.
 
 use super::kalman::{Filter, Innovation, Prediction, Setting};
-use super::{Estimate, Estimator, Feeds, Taken};
-use crate::belief::{Belief, Dominant};
-use crate::body::{Drift, State};
-use crate::law::Reads;
+use super::{Estimate, Estimator, Feeds, Known, Taken};
+use crate::belief::{Belief, Dominant, Reads};
+use crate::body::Drift;
+use crate::motion::State;
 use crate::random::Seed;
 use crate::record::{self, ModeEstimate};
-use crate::scenario::Scenario;
 use crate::time::Instant;
 
 /// The estimators of all axes.
@@ -43,9 +42,9 @@ enum Eye {
 
 impl AtSamples {
     /// The estimators that a scenario asks for, if they act at samples.
-    pub fn new(scenario: &Scenario, seed: Seed) -> Option<Self> {
-        let axes = 0..scenario.study.axes.len();
-        axes.map(|axis| Track::new(scenario, axis, seed)).collect::<Option<_>>().map(Self)
+    pub fn new(known: &Known<'_>, seed: Seed) -> Option<Self> {
+        let axes = 0..known.axes.len();
+        axes.map(|axis| Track::new(known, axis, seed)).collect::<Option<_>>().map(Self)
     }
 }
 
@@ -92,16 +91,15 @@ impl Estimate for AtSamples {
 }
 
 impl Track {
-    fn new(scenario: &Scenario, axis: usize, seed: Seed) -> Option<Self> {
-        let study = &scenario.study;
-        let model = &study.axes[axis];
-        let back_emf = study.back_emf;
+    fn new(known: &Known<'_>, axis: usize, seed: Seed) -> Option<Self> {
+        let model = &known.axes[axis];
+        let back_emf = known.back_emf;
         let setting = Setting {
             body: model,
             back_emf: (back_emf.0 / model.inertia.get(), back_emf.1),
-            period: study.sampling?.seconds(),
-            angle_noise: scenario.sensor.angle_noise(),
-            rate_noise: scenario.sensor.rate_noise(axis),
+            period: known.sampling?.seconds(),
+            angle_noise: known.angle_noise,
+            rate_noise: known.rate_noise[axis],
         };
         let stream = match axis {
             0 => "prior".to_owned(),
@@ -109,7 +107,7 @@ impl Track {
         };
         let draws = &mut seed.stream(&stream);
         let filter = |filter| Eye::Filter(Box::new(filter));
-        let estimator = scenario.estimator.as_ref()?;
+        let estimator = known.estimator?;
         let eye = match estimator {
             Estimator::Envelope(_)
             | Estimator::Attitude(_)
@@ -123,10 +121,10 @@ impl Track {
         };
         Some(Self {
             eye,
-            feeds: estimator.feeds(scenario.law.about(axis).reads() == Reads::DominantMode),
+            feeds: estimator.feeds(known.reads[axis] == Reads::DominantMode),
             frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
             excitability: model.modes.iter().map(|mode| mode.excitability().abs()).collect(),
-            drift: scenario.drift.clone(),
+            drift: known.drift.cloned(),
             moment: 0.0,
             since: Instant::START,
             impulse: 0.0,

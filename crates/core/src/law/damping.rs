@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::Authority;
 use super::phase_plane::is_beyond;
 use crate::actuator::PulseTiming;
-use crate::belief::{Belief, ElasticRate};
+use crate::belief::{Belief, Damped, ElasticRate};
 use crate::numerics::delay_margin::delay_margin;
 use crate::quantity::{Fraction, Positive};
 
@@ -86,23 +86,6 @@ impl ActiveDamping {
         let excited = |[frequency, acceleration]: &[f64; 2]| acceleration / frequency;
         modes.iter().max_by(|a, b| excited(a).total_cmp(&excited(b))).map_or(0.0, of)
     }
-}
-
-/// What active damping does about an axis.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Damped {
-    /// Elastic rate on which it acts (rad/s).
-    pub rate: f64,
-    /// Threshold (rad/s).
-    pub threshold: f64,
-    /// Whether the elastic rate has been beyond the threshold and is not yet back.
-    pub latched: bool,
-    /// Whether the watchdog keeps it quiet.
-    pub resting: bool,
-    /// Signed on-time of its pulse (s).
-    pub on: f64,
-    /// Change of the rigid rate that the pulse makes (rad/s).
-    pub change: f64,
 }
 
 /// Active damping about one axis at work.

@@ -4,8 +4,8 @@ use nalgebra::Matrix3;
 
 use super::Command;
 use crate::actuator::Demand;
+use crate::attitude::Vector;
 use crate::belief::Belief;
-use crate::body::spatial::Vector;
 
 /// What it takes to turn the body as laws command.
 #[derive(Clone, Debug, PartialEq)]

@@ -109,7 +109,7 @@ mod tests {
         );
         assert_eq!(Itinerary::fault(&two), None);
         let way = Itinerary::new(&two);
-        let yaw = |seconds: f64| crate::body::spatial::angles(&way.at(at(seconds)).attitude)[2];
+        let yaw = |seconds: f64| crate::attitude::angles(&way.at(at(seconds)).attitude)[2];
         // 0.02 rad/s after 10 s; 0.4 rad take 30 s.
         for (seconds, exact) in
             [(9.0, 0.0), (10.0, 0.5), (20.0, 0.5), (30.0, 0.6), (35.0, 0.7), (50.0, 0.9), (90.0, 0.9)]

@@ -22,15 +22,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::PulseWidth;
-use crate::belief::Belief;
+pub use crate::belief::Reads;
+use crate::belief::{Belief, Damped};
 use crate::guard::Guard;
-use crate::label::labels;
 use crate::own::Own;
 use crate::time::{Instant, Span};
 
+pub use crate::record::Phase;
 pub use attitude::{AttitudeLaw, Integral};
 pub use controls::{Controls, Event};
-pub use damping::{ActiveDamping, Damped, DampingGuards, DampingRelay};
+pub use damping::{ActiveDamping, DampingGuards, DampingRelay};
 pub use distribution::Distribution;
 pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
 pub use itinerary::Itinerary;
@@ -90,19 +91,6 @@ pub trait Rule {
     fn tunable(&self) -> Vec<(&'static str, f64)> {
         Vec::new()
     }
-}
-
-/// What a law reads of an estimator.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Reads {
-    /// Nothing.
-    Nothing,
-    /// Angle and rate.
-    Motion,
-    /// Angle and rate as measured, and the dominant mode.
-    DominantMode,
-    /// Rates, and all elastic modes.
-    ElasticRates,
 }
 
 /// A law at work about one axis.
@@ -244,41 +232,6 @@ impl Promise {
             Self::Within(band) => band,
             Self::Part(part) => part * distance,
         }
-    }
-}
-
-labels! {
-    /// The states of all laws, by the names under which they are logged.
-    Phase {
-        /// Open loop: no feedback acts.
-        Open = "OPEN",
-        /// PD: the sampled feedback acts.
-        Feedback = "PD",
-        /// Relay: weak push before the first boundary is reached.
-        Start = "W0",
-        /// Relay: strong push to the left, from beyond the right boundary.
-        RightPush = "RACC",
-        /// Relay: strong timed brake of the leftward motion.
-        RightBrake = "RBRK",
-        /// Relay: weak push to the right, while coasting inside the dead zone.
-        WeakRight = "W+",
-        /// Relay: strong push to the right, from beyond the left boundary.
-        LeftPush = "LACC",
-        /// Relay: strong timed brake of the rightward motion.
-        LeftBrake = "LBRK",
-        /// Relay: weak push to the left, while coasting inside the dead zone.
-        WeakLeft = "W-",
-        /// Phase plane: the rate is within what is allowed.
-        Coasting = "COAST",
-        /// Phase plane: pulses bring the rate back.
-        Firing = "FIRE",
-    }
-}
-
-impl Phase {
-    /// Whether the strong torque is on.
-    pub const fn is_strong(self) -> bool {
-        matches!(self, Self::RightPush | Self::RightBrake | Self::LeftPush | Self::LeftBrake)
     }
 }
 

@@ -8,12 +8,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::damping::{ActiveDamping, Damped, DampingRelay};
+use super::damping::{ActiveDamping, DampingRelay};
 use super::{
     Authority, Cause, Command, Control, Goal, Guards, Hold, Itinerary, Phase, Reads, Rule, SwitchingLines,
 };
-use crate::belief::Belief;
-use crate::body::spatial::turned;
+use crate::attitude::turned;
+use crate::belief::{Belief, Damped};
 use crate::document::Fault;
 use crate::manoeuvre::Profile;
 use crate::quantity::{Finite, Fraction, Positive, Time};

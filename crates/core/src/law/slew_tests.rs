@@ -4,9 +4,9 @@ use nalgebra::{DMatrix, Matrix3, Quaternion};
 
 use super::{AttitudeLaw, Authority, Cause, Control, Distribution, Goal, Itinerary, Rule};
 use crate::actuator::{Actuate, PulseWidth, Setting, Spinning, Wheels};
+use crate::attitude::{Vector, beyond, rotation};
 use crate::belief::Belief;
 use crate::body::Wrench;
-use crate::body::spatial::{Vector, beyond, rotation};
 use crate::manoeuvre::{Profile, Slew};
 use crate::motion::turning::{Acting, Flexible, FreeMode, Turning};
 use crate::time::{Instant, Span};

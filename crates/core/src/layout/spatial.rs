@@ -3,8 +3,8 @@
 use super::panel::{Line, MOST_LINES, Panel, line};
 use super::{Tab, metrics};
 use crate::actuator::Actuator;
+use crate::attitude::AXES;
 use crate::body::Spatial;
-use crate::body::spatial::AXES;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
 

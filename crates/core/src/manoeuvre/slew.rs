@@ -4,7 +4,7 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::body::spatial::{Vector, rotation};
+use crate::attitude::{Vector, rotation};
 
 /// How the rate of a turn rises to its limit, and falls.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -8,12 +8,12 @@ mod spatial;
 mod switchings;
 mod tracking;
 
-use serde_json::{Map, Value as Json, json};
-
-use crate::body::Stretch;
+use crate::motion::Stretch;
 use crate::record::{self, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
+
+pub use record::measured::{Meaning, Metrics, Quantity, Told, Value};
 
 use attitude::Known;
 use filter::Filter;
@@ -21,41 +21,6 @@ use rotation::Rotation;
 use spatial::Spatial;
 use switchings::Switchings;
 use tracking::Tracked;
-
-/// What a metric means.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Meaning {
-    /// Name.
-    pub name: &'static str,
-    /// Unit; empty for a count, a ratio or a word.
-    pub unit: &'static str,
-    /// What it tells.
-    pub doc: &'static str,
-}
-
-/// The value of a metric.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Value {
-    /// A count.
-    Count(u64),
-    /// A number; NaN where there is none.
-    Number(f64),
-    /// Numbers.
-    Numbers(Vec<f64>),
-    /// Numbers, each with its own unit.
-    Quantities(Vec<Quantity>),
-    /// A word.
-    Word(&'static str),
-}
-
-/// A number with its unit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
-    /// The number; NaN where there is none.
-    pub value: f64,
-    /// Its unit.
-    pub unit: String,
-}
 
 /// Declares the metrics: a constant for each, and the list of all.
 macro_rules! metrics {
@@ -200,87 +165,6 @@ pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meani
     let accelerations = model.filter(|model| model.commands_acceleration()).and_then(|_| of(ACCELERATIONS));
     let unit_inertia = model.filter(|model| model.has_unit_inertia()).and_then(|_| of(UNIT_INERTIA));
     accelerations.or(unit_inertia).or_else(|| of(ALL))
-}
-
-/// A metric and its value.
-pub type Told = (&'static Meaning, Value);
-
-/// The metrics of one run.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Metrics(pub Vec<Told>);
-
-impl Metrics {
-    /// The value of a metric.
-    pub fn get(&self, name: &str) -> Option<&Value> {
-        self.0.iter().find(|(meaning, _)| meaning.name == name).map(|(_, value)| value)
-    }
-
-    /// The value of a metric that is a number or a count.
-    pub fn number(&self, name: &str) -> Option<f64> {
-        match self.get(name)? {
-            Value::Number(number) => Some(*number),
-            Value::Count(count) => Some(*count as f64),
-            _ => None,
-        }
-    }
-
-    /// The metrics as a JSON object. What is not a number is null.
-    pub fn to_json(&self) -> Json {
-        let object = self.0.iter().map(|(meaning, value)| (meaning.name.to_owned(), value.to_json()));
-        Json::Object(object.collect::<Map<_, _>>())
-    }
-
-    /// The metrics as a log holds them.
-    pub fn to_row(&self) -> record::Metrics {
-        let mut metrics = Vec::new();
-        for (meaning, value) in &self.0 {
-            let mut push = |index: usize, value: f64, text: &str, unit: &str| {
-                metrics.push(record::Metric {
-                    name: meaning.name.to_owned(),
-                    unit: unit.to_owned(),
-                    index: index as u64,
-                    value,
-                    text: text.to_owned(),
-                });
-            };
-            match value {
-                Value::Count(count) => push(0, *count as f64, "", meaning.unit),
-                Value::Number(number) => push(0, *number, "", meaning.unit),
-                Value::Word(word) => push(0, f64::NAN, word, meaning.unit),
-                Value::Numbers(numbers) => {
-                    let each = numbers.iter().enumerate();
-                    each.for_each(|(index, number)| push(index, *number, "", meaning.unit));
-                }
-                Value::Quantities(quantities) => {
-                    let each = quantities.iter().enumerate();
-                    each.for_each(|(index, of)| push(index, of.value, "", &of.unit));
-                }
-            }
-        }
-        record::Metrics { metrics }
-    }
-}
-
-impl Value {
-    /// The numbers of a metric that has several; none of another.
-    pub fn numbers(&self) -> Vec<f64> {
-        match self {
-            Self::Numbers(numbers) => numbers.clone(),
-            Self::Quantities(quantities) => quantities.iter().map(|of| of.value).collect(),
-            Self::Count(_) | Self::Number(_) | Self::Word(_) => Vec::new(),
-        }
-    }
-
-    /// The value as JSON; NaN is null.
-    pub fn to_json(&self) -> Json {
-        match self {
-            Self::Count(count) => json!(count),
-            Self::Number(number) => json!(number),
-            Self::Numbers(numbers) => json!(numbers),
-            Self::Quantities(_) => json!(self.numbers()),
-            Self::Word(word) => json!(word),
-        }
-    }
 }
 
 /// Gathers the metrics of a run.

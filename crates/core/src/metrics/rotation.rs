@@ -10,8 +10,8 @@ use super::{
     SPECTRAL_RADIUS, Told, Value,
 };
 use crate::analysis::sampled_loop::{Held, Loop};
-use crate::body::Stretch;
 use crate::law::{Goal, Law, Promise};
+use crate::motion::Stretch;
 use crate::numerics::polynomial::Polynomial;
 use crate::record::{Arrival, Course, Record, RecordError, Sample};
 use crate::scenario::Scenario;
@@ -259,7 +259,7 @@ mod tests {
     use nalgebra::{DMatrix, DVector, RowDVector};
 
     use super::*;
-    use crate::body::Linear;
+    use crate::motion::stretch::Linear;
 
     /// What a motion comes to: largest and smallest value, integral, ITAE, time outside a band, zeros.
     struct Arc {

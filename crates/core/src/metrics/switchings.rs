@@ -9,8 +9,8 @@ use super::{
     Told, Value, WINDOW_MEANS,
 };
 use crate::analysis::cycle::CycleWatch;
-use crate::body::Stretch;
 use crate::law::{Goal, Phase};
+use crate::motion::Stretch;
 use crate::record::{Course, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};

@@ -7,9 +7,9 @@ use std::path::Path;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{McapError, WriteOptions, Writer};
 
+use super::measured::Metrics;
 use super::message::{Encode, Message, Messages};
 use super::{Attachment, Detail, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
-use crate::metrics::Metrics;
 use crate::time::Instant;
 use crate::whole::Partial;
 

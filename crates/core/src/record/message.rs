@@ -1,11 +1,11 @@
 //! Messages: the rows of a run as the bytes that every log of it holds, wherever they go.
 
 use super::foxglove::{Level, Log};
+use super::measured::Metrics;
 use super::proto::Encoder;
 use super::row::{Stamp, TopicRow};
 use super::topics::index_of;
 use super::{Detail, OutputName, Params, Record, RecordError, Sample, Summary, TakeRow};
-use crate::metrics::Metrics;
 use crate::time::Instant;
 
 /// The provenance of a log.

@@ -5,6 +5,7 @@ mod columns;
 pub mod foxglove;
 mod log;
 mod mcap;
+pub mod measured;
 mod message;
 mod origin;
 mod proto;
@@ -22,7 +23,7 @@ use std::io;
 
 use thiserror::Error;
 
-use crate::body::{State, Stretch};
+use crate::motion::{State, Stretch};
 use crate::time::Instant;
 
 pub use columns::{Column, Columns};
@@ -31,7 +32,7 @@ pub use mcap::{LogFile, McapLog};
 pub use message::{Attachment, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;
-pub use states::{Gate, Latch, Lock, Trust, Use, Watch};
+pub use states::{Gate, Latch, Lock, Phase, Trust, Use, Watch};
 pub use topics::{
     Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, ChannelState, Command, Energy,
     Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Metric, MetricLine, MetricPage, Metrics,

@@ -1,4 +1,4 @@
-//! States of filters, observers and dampers that are one thing or the other, with the names that a log has for them.
+//! The states of laws, filters, observers and dampers, with the names that a log has for them.
 
 use super::row::label_cells;
 use crate::label::labels;
@@ -72,3 +72,40 @@ states! {
         Resting = "resting",
     }
 }
+
+labels! {
+    /// The states of all laws, by the names under which they are logged.
+    Phase {
+        /// Open loop: no feedback acts.
+        Open = "OPEN",
+        /// PD: the sampled feedback acts.
+        Feedback = "PD",
+        /// Relay: weak push before the first boundary is reached.
+        Start = "W0",
+        /// Relay: strong push to the left, from beyond the right boundary.
+        RightPush = "RACC",
+        /// Relay: strong timed brake of the leftward motion.
+        RightBrake = "RBRK",
+        /// Relay: weak push to the right, while coasting inside the dead zone.
+        WeakRight = "W+",
+        /// Relay: strong push to the right, from beyond the left boundary.
+        LeftPush = "LACC",
+        /// Relay: strong timed brake of the rightward motion.
+        LeftBrake = "LBRK",
+        /// Relay: weak push to the left, while coasting inside the dead zone.
+        WeakLeft = "W-",
+        /// Phase plane: the rate is within what is allowed.
+        Coasting = "COAST",
+        /// Phase plane: pulses bring the rate back.
+        Firing = "FIRE",
+    }
+}
+
+impl Phase {
+    /// Whether the strong torque is on.
+    pub const fn is_strong(self) -> bool {
+        matches!(self, Self::RightPush | Self::RightBrake | Self::LeftPush | Self::LeftBrake)
+    }
+}
+
+label_cells!(Phase);

@@ -1,7 +1,7 @@
 //! The metrics of a run in words, for the tables of viewers.
 
+use super::measured::{Metrics, Told, Value};
 use super::{MetricLine, MetricPage, Summary};
-use crate::metrics::{Metrics, Told, Value};
 
 /// Of a longer list no more values are written.
 const MOST_VALUES: usize = 6;
@@ -59,8 +59,8 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::measured::Meaning;
     use super::*;
-    use crate::metrics::Meaning;
 
     static MEANING: Meaning = Meaning { name: "a", unit: "s", doc: "" };
 

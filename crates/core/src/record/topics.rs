@@ -2,10 +2,9 @@
 
 use super::foxglove::{self, Level, Plumes};
 use super::row::{Topic, TopicRow, label_cells, rows};
-use super::states::{Gate, Latch, Lock, Trust, Use, Watch};
+use super::states::{Gate, Latch, Lock, Phase, Trust, Use, Watch};
 use crate::adaptation::Decision;
 use crate::label::{Labels, labels};
-use crate::law::Phase;
 use crate::time::Instant;
 
 labels! {
@@ -18,7 +17,7 @@ labels! {
     }
 }
 
-label_cells!(Phase, Trigger, Decision);
+label_cells!(Trigger, Decision);
 
 rows! {
     package "flexsc.v1";

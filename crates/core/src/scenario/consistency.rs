@@ -3,9 +3,9 @@
 use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
 use crate::actuator::{Actuator, Wheel};
-use crate::body::spatial::vector;
+use crate::attitude::vector;
+use crate::body::craft::Limit;
 use crate::body::{Drift, Drive, Planar, Profile};
-use crate::craft::Limit;
 use crate::disturbance::Disturbance;
 use crate::document::Fault;
 use crate::document::key;

@@ -3,8 +3,9 @@
 
 use super::Scenario;
 use crate::actuator::{Actuator, Jets};
+use crate::attitude::vector;
 use crate::body::Spatial;
-use crate::body::spatial::{LONGEST_TURN, Periodic, vector};
+use crate::body::spatial::{LONGEST_TURN, Periodic};
 use crate::document::Fault;
 use crate::estimator::Estimator;
 use crate::law::Law;

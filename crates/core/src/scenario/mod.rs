@@ -3,6 +3,7 @@
 mod consistency;
 mod cost;
 mod epoch;
+mod known;
 mod learning;
 mod log;
 mod parts;
@@ -21,8 +22,8 @@ use toml::value::Datetime;
 
 use crate::actuator::{Actuator, Opposes};
 use crate::adaptation::Adaptation;
+use crate::body::craft::{Appendage, Spacecraft};
 use crate::body::{Body, Chain, Coupled, Coupling, Drift, Planar};
-use crate::craft::{Appendage, Spacecraft};
 use crate::disturbance::Disturbance;
 use crate::document::{Document, Fault, Parts, ScenarioError};
 use crate::environment::Environment;
@@ -250,7 +251,7 @@ impl Scenario {
     pub fn law_key(&self, axis: usize) -> String {
         match &self.law {
             Law::PerAxis(laws) => {
-                format!("law.per_axis.{}.{}", crate::body::spatial::AXES[axis], laws.about(axis).kind())
+                format!("law.per_axis.{}.{}", crate::attitude::AXES[axis], laws.about(axis).kind())
             }
             law => format!("law.{}", law.kind()),
         }

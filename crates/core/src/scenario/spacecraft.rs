@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Scenario;
 use crate::actuator::Actuator;
 use crate::body::Body;
-use crate::craft::Craft;
+use crate::body::craft::Craft;
 use crate::document::{Document, Fault, ScenarioError};
 
 impl Scenario {

@@ -6,9 +6,9 @@ use super::Scenario;
 use crate::actuator::{
     Actuate, Actuator, Allocation, Group, Opposes, PulseWidth, Pulsing, Setting, Torquers,
 };
-use crate::body::spatial::{Vector, beyond};
+use crate::attitude::{Vector, beyond};
+use crate::body::craft::Rotor;
 use crate::body::{Drive, Mode, Planar, Spatial};
-use crate::craft::Rotor;
 use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
@@ -220,7 +220,7 @@ impl Study {
         };
         let threshold = threshold(damping, plan, &self.authorities[axis], axis);
         if damping.threshold.is_none() && threshold >= NO_MOTION {
-            let name = if self.axes.len() == 1 { "the law" } else { crate::body::spatial::AXES[axis] };
+            let name = if self.axes.len() == 1 { "the law" } else { crate::attitude::AXES[axis] };
             return Err(Fault::new(
                 key,
                 format!(

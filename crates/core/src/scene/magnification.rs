@@ -3,7 +3,8 @@
 //! A run does not know its largest motion beforehand. What its actuator can do, and how it begins, give the order of magnitude.
 
 use crate::actuator::Actuator;
-use crate::body::spatial::{SpatialMode, turned};
+use crate::attitude::turned;
+use crate::body::spatial::SpatialMode;
 use crate::body::{Mode, Spatial};
 use crate::law::Law;
 use crate::quantity::{Finite, Positive};

@@ -1,7 +1,7 @@
 //! Parts of a scene: frames, and the boxes, cones and words that are fixed to them.
 
 use super::pose::{from_z, place, point, pose, upright};
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 use crate::record::foxglove::{
     ArrowPrimitive, Color, CubePrimitive, CylinderPrimitive, FrameTransform, LinePrimitive, LineType,
     SceneEntity, SceneUpdate, TextPrimitive,

@@ -9,8 +9,8 @@ use super::part::{
 use super::plume::{Burning, Nozzle};
 use super::pose::{about_z, attitude};
 use super::wheel::{Wheel, disc};
-use crate::body::Phase;
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
+use crate::motion::Phase;
 use crate::quantity::Positive;
 use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneEntity, SceneUpdate};
 use crate::record::row::Stamp;

@@ -1,7 +1,7 @@
 //! Plumes: which thrusters burn, logged at each change and then whole.
 
 use super::part::{PLUME, cone, entity};
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 use crate::record::foxglove::{Deleted, Plumes, SceneEntityDeletion, SceneUpdate};
 use crate::record::row::Stamp;
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Quaternion as Rotation;
 
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 use crate::record::foxglove::{Point3, Pose, Quaternion, Vector3};
 
 fn single(value: f64) -> f64 {

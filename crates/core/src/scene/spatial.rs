@@ -11,8 +11,9 @@ use super::part::{BODY, BOOM, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, en
 use super::plume::{Burning, Nozzle};
 use super::pose::{about, attitude, from_z, limited, magnified, place};
 use crate::actuator::Pair;
-use crate::body::spatial::{Vector, vector};
-use crate::body::{Phase, Spatial};
+use crate::attitude::{Vector, vector};
+use crate::body::Spatial;
+use crate::motion::Phase;
 use crate::quantity::Positive;
 use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
 use crate::record::row::Stamp;

@@ -4,7 +4,7 @@ use super::PlanarView;
 use super::magnification::{rate, slowing};
 use super::part::{MARK, WHEEL, cone, cube, entity};
 use crate::actuator::Actuator;
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 use crate::record::foxglove::SceneEntity;
 use crate::record::row::Stamp;
 use crate::scenario::Scenario;

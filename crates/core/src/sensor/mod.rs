@@ -11,7 +11,7 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::body::spatial::{AXES, Vector, beyond, rotation};
+use crate::attitude::{AXES, Vector, beyond, rotation};
 use crate::document::Parts;
 use crate::own::Own;
 use crate::quantity::Positive;

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Fault, Orientation, Reading, Sense, Truth, stream};
-use crate::body::spatial::{Attitude, Vector, rotation};
+use crate::attitude::{Attitude, Vector, rotation};
 use crate::quantity::{NonNegative, Positive, Time};
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
@@ -187,7 +187,7 @@ mod tests {
         for k in 0..count {
             let now = Instant::START + Span::from_seconds(f64::from(k));
             let seen = attitude(tracker.read(now, &truth(at, elastic, [0.0; 3]), None).unwrap());
-            let error = crate::body::spatial::beyond(&(at * rotation(&elastic.into())), &seen);
+            let error = crate::attitude::beyond(&(at * rotation(&elastic.into())), &seen);
             sums += error * error.transpose() / f64::from(count);
         }
         let exact = tracker.tracker.covariance([1e-5, 2e-5, 1e-3]);

@@ -1,7 +1,8 @@
 //! The end of the manoeuvre: how far from the goal, and what vibration is left.
 
-use crate::body::{Drive, Planar, State};
+use crate::body::{Drive, Planar};
 use crate::law::Goal;
+use crate::motion::State;
 use crate::record::{self, Residual};
 use crate::scenario::Scenario;
 use crate::sensor::Truth;

@@ -1,7 +1,7 @@
 //! What is new in a run, for its journal: its start and end, targets, arrivals, active damping, trust in estimators.
 
-use crate::body::spatial::{AXES, angles};
-use crate::law::Damped;
+use crate::attitude::{AXES, angles};
+use crate::belief::Damped;
 use crate::record::foxglove::Level;
 use crate::record::row::Stamp;
 use crate::record::{Adaptation, Arrival, Record, RecordError};

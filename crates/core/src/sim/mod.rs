@@ -17,10 +17,10 @@ mod telling;
 use thiserror::Error;
 
 use crate::belief::Belief;
-use crate::body::State;
 use crate::body::spatial::SpatialState;
 use crate::estimator::{self, Estimate, Monitor, Taken};
 use crate::law::{Cause, Controls, Event};
+use crate::motion::State;
 use crate::random::Seed;
 use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
@@ -97,10 +97,10 @@ impl Simulation {
             end: Instant::START + scenario.duration,
             plant: Plant::new(scenario),
             sensing: Sensing::new(scenario, seed),
-            estimator: estimator::start(scenario, seed),
+            estimator: estimator::start(&scenario.known(), seed),
             estimates: scenario.estimator.is_some(),
             given: Instant::START,
-            monitor: Monitor::new(scenario, seed),
+            monitor: scenario.monitor(seed),
             origin: reference.origin(Instant::START),
             next_target: reference.next_target(Instant::START),
             beliefs: vec![Belief::default(); axes],

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::attitude::Vector;
 use crate::belief::Belief;
-use crate::body::spatial::Vector;
 use crate::law::{Control, Goal, Itinerary};
 use crate::scenario::Scenario;
 use crate::sensor::Orientation;

@@ -19,6 +19,7 @@ mod matrix;
 pub mod mode_table;
 #[cfg(feature = "matrices")]
 mod npz;
+mod shape;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,6 +27,7 @@ use crate::document::Fault;
 use eigen::Unsolved;
 pub use eigen::values as eigenvalues;
 pub use matrix::Matrix;
+pub use shape::Shape;
 
 /// The largest order.
 pub const LARGEST: usize = 2000;

@@ -12,8 +12,8 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{DeserializeOwned, Error, IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::Shape;
 use super::{LARGEST, csv};
-use crate::body::spatial::Shape;
 use crate::quantity::{Finite, Frequency, NonNegative};
 
 /// What a column of a point's shape ends with, after the point's name and a dot: three translations, three rotations.

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Vector, vector};
+use crate::attitude::{Vector, vector};
 use crate::quantity::{Finite, Positive};
 
 /// A torque in the body's axes, constant + amplitude sin(2 pi t/period + phase) about each.

@@ -1,8 +1,10 @@
 //! The elastic modes of a spatial body: their exact flow under constant modal forces, their energy, what a gyro sees.
 
-use super::{Spatial, SpatialMode, Vector};
+use super::{Spatial, SpatialMode};
+use crate::attitude::Vector;
+use crate::body::Mode;
 use crate::body::mode::Flow;
-use crate::body::{Mode, Phase};
+use crate::motion::Phase;
 use crate::quantity::Finite;
 
 /// The flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.

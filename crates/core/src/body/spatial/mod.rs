@@ -5,7 +5,6 @@
 //! excite and which a gyro sees.
 //! The modes do not act back on the rigid motion. Q turns vectors of the body into inertial ones: v = Q o v_body o Q*.
 
-mod attitude;
 mod disturbance;
 mod elastic;
 mod modes;
@@ -18,21 +17,16 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::attitude::{Attitude, Vector, asymmetry, tensor, vector};
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, NonNegative};
+use crate::structure::Shape;
 
-pub use attitude::{Attitude, angles, beyond, rotation, turned};
 pub use disturbance::Periodic;
 pub use elastic::Elastic;
 pub use modes::SpatialModes;
 pub use rigid::{LONGEST_TURN, Rigid, Turn};
 pub use state::SpatialState;
-
-/// Three numbers along the body's axes x, y and z, about which it rolls, pitches and yaws.
-pub type Vector = nalgebra::Vector3<f64>;
-
-/// The names of rotations about the three axes, as in keys.
-pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// A spatial body as a scenario describes it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -86,36 +80,6 @@ pub struct SpatialMode {
     /// The mode's shape at each point, by the point's name.
     #[serde(default)]
     pub shapes: BTreeMap<String, Shape>,
-}
-
-/// The shape of a mode at a point.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Shape {
-    /// Displacement of the point for a unit of the mode (1/sqrt(kg)).
-    #[serde(default)]
-    pub translation: [Finite; 3],
-    /// Rotation at the point for a unit of the mode (rad/(m sqrt(kg))).
-    #[serde(default)]
-    pub rotation: [Finite; 3],
-}
-
-/// The vector of a scenario's numbers.
-pub fn vector(of: &[Finite; 3]) -> Vector {
-    Vector::new(of[0].get(), of[1].get(), of[2].get())
-}
-
-/// The tensor of a scenario's rows.
-pub fn tensor(of: &[[Finite; 3]; 3]) -> Matrix3<f64> {
-    Matrix3::from_fn(|row, column| of[row][column].get())
-}
-
-/// Why a tensor is no symmetric one, if it is not.
-pub fn asymmetry(tensor: &Matrix3<f64>) -> Option<String> {
-    let mut below = (0..3).flat_map(|row| (0..row).map(move |column| (row, column)));
-    let (row, column) = below.find(|at| tensor[*at] != tensor[(at.1, at.0)])?;
-    let (found, other) = (tensor[(row, column)], tensor[(column, row)]);
-    Some(format!("must be symmetric, got {found} and {other} across the diagonal"))
 }
 
 impl Spatial {

@@ -8,7 +8,8 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::{Periodic, Spatial, Vector};
+use super::{Periodic, Spatial};
+use crate::attitude::Vector;
 use crate::motion::turning::Surroundings;
 use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
 

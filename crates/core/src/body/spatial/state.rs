@@ -1,7 +1,8 @@
 //! The state of a spatial body.
 
-use super::{Elastic, Rigid, Spatial, Turn, vector};
-use crate::body::Phase;
+use super::{Elastic, Rigid, Spatial, Turn};
+use crate::attitude::vector;
+use crate::motion::Phase;
 
 /// Where a spatial body is.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! The adaptive observers of a run: what they are fed with, what laws believe of them, and how that compares with the body.
 
 use super::{Channel, Estimate, Merged, ObserverDesign};
+use crate::belief::Damped;
 use crate::belief::{Belief, Dominant, ElasticRate};
 use crate::estimator::{self, Given, Taken};
-use crate::law::Damped;
 use crate::record::{ChannelState, TrackedMode, Tracking};
 use crate::time::Instant;
 

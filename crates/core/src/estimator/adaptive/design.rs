@@ -1,7 +1,7 @@
 //! What the observer of one axis is built on: the modes of the design, where the observer starts, and what it is fed with.
 
 use super::{Adaptive, Form, Merged, Tracker, bounds, merged};
-use crate::body::spatial::AXES;
+use crate::attitude::AXES;
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency};
 

@@ -19,6 +19,7 @@ mod tracker;
 use crate::document::Fault;
 use crate::quantity::{NonNegative, Positive};
 
+pub use crate::actuator::Pulse;
 pub use at_work::Observers;
 pub use axes::{Adaptive, Form, Given};
 pub use channel::Channel;
@@ -28,29 +29,6 @@ pub use oscillator::{Oscillator, Phase};
 pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
 pub use residual::Residual;
 pub use tracker::{Merged, Tracker, bounds, merged};
-
-/// A pulse of thrusters, as one that was executed or is about to be.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Pulse {
-    /// Index of the input: the group of thrusters.
-    pub input: usize,
-    /// Rigid acceleration about the group's own axis, signed (rad/s²).
-    pub acceleration: f64,
-    /// When it begins, after the last sample (s).
-    pub start: f64,
-    /// How long it lasts (s).
-    pub duration: f64,
-}
-
-impl Pulse {
-    /// Whether it is a pulse, and not nonsense.
-    fn is_sound(&self) -> bool {
-        self.acceleration.is_finite()
-            && self.start.is_finite()
-            && self.duration.is_finite()
-            && self.duration > 0.0
-    }
-}
 
 /// An observer's estimate of a mode.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use nalgebra::Quaternion;
 
 use super::spec::{AttitudeFilter, Role, Setting};
 use super::{Correction, Filter, Fix, History};
+use crate::attitude::{Vector, rotation};
 use crate::belief::Belief;
-use crate::body::spatial::{Vector, rotation};
 use crate::estimator::kalman::Prior;
 use crate::estimator::{Estimate, Taken};
 use crate::random::Stream;

@@ -7,7 +7,7 @@
 
 use nalgebra::{Cholesky, Matrix3, Matrix6, Quaternion, SMatrix};
 
-use crate::body::spatial::{Vector, beyond, rotation};
+use crate::attitude::{Vector, beyond, rotation};
 use crate::numerics::stumpff::stumpff;
 
 /// Noise of a gyro as the filter knows it, the same about each axis.

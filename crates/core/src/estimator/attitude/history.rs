@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::filter::{Correction, Filter, GyroNoise};
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 use crate::time::{Instant, Span};
 
 /// A measured attitude.

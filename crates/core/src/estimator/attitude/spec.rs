@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::GyroNoise;
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 use crate::document::Fault;
 use crate::estimator::kalman::Prior;
 use crate::quantity::{NonNegative, Positive};

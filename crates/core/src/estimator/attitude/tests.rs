@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Quaternion};
 
 use super::filter::{Correction, Filter, GyroNoise};
 use super::history::{Fix, History};
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 use crate::time::{Instant, Span};
 
 /// Gyro readings, measured attitudes and truth of a made-up run; a filter in forty digits with the covariance of Van Loan,

@@ -3,15 +3,18 @@
 use nalgebra::{Matrix3, Quaternion};
 
 use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
-use super::pace::Pace;
+use super::pace::{Pace, Pose};
 use super::response::Response;
 use super::rotation::Bend;
 use super::state::{Seen, State};
 use super::step::{Step, Work};
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 
 /// Steps after which the motion asks whether it may go on.
 const STEPS: u64 = 256;
+
+/// Lengths of steps beside the grid whose responses are kept: those between samples and commands come again and again.
+const BESIDE: usize = 16;
 
 /// A flexible body that turns, and what acts on it since it departed.
 #[derive(Clone, Debug)]
@@ -29,8 +32,11 @@ pub struct Turning {
     acting: Acting,
     /// Responses over a step of the grid at each level, once they were needed.
     regular: Vec<Option<Regular>>,
-    /// Those over the last step that was beside the grid.
-    beside: Vec<Response>,
+    /// Those over the last steps that were beside the grid, and the place of the next.
+    beside: Vec<Regular>,
+    next_beside: usize,
+    /// The amplitude of each mode, at most, at the start of a step (m sqrt(kg)).
+    amplitudes: Vec<f64>,
     work: Work,
     effort: Effort,
 }
@@ -63,10 +69,11 @@ struct Regular {
 }
 
 impl Flexible {
-    /// Length of the steps in which the body moves while it turns, and torques change, at such a rate (rad/s), in s.
+    /// Length of the steps that resolve all modes while the body turns, and torques change, at such a rate (rad/s), in s.
     pub fn step(&self, rate: f64) -> f64 {
-        let pace = Pace::new(&Model::new(self).felt);
-        pace.length(pace.level(rate, 0.0))
+        let pace = Pace::new(&Model::new(self));
+        let amplitudes = vec![f64::MAX; self.modes.len()];
+        pace.length(pace.level(Pose { rate, acceleration: 0.0, amplitudes: &amplitudes }))
     }
 }
 
@@ -127,7 +134,7 @@ impl Turning {
             modes: moved.map(canonical).collect(),
         };
         let mut turning = Self {
-            pace: Pace::new(&model.felt),
+            pace: Pace::new(&model),
             grid: state.clone(),
             here: state.clone(),
             reached: 0.0,
@@ -136,6 +143,8 @@ impl Turning {
             acting: Acting::default(),
             regular: Vec::new(),
             beside: Vec::new(),
+            next_beside: 0,
+            amplitudes: vec![0.0; state.modes.len()],
             work: Work::new(state.modes.len()),
             effort: Effort::default(),
             departed: state,
@@ -201,23 +210,54 @@ impl Turning {
         self.now = t;
         let h = t - self.reached;
         if h > 0.0 {
-            let modes = self.model.modes.iter();
-            self.beside.clear();
-            self.beside.extend(modes.map(|of| Response::new(of.frequency, of.damping, h)));
-            let step = self.acting.step(&self.model, &self.beside, h, self.reached, around);
-            step.take(&mut self.here, &mut self.work);
+            let place = self.prepare_beside(h);
+            let responses = &self.beside[place].responses;
+            let step = self.acting.step(&self.model, responses, h, self.reached, around);
+            self.effort.passes += u64::from(step.take(&mut self.here, &mut self.work));
+            self.effort.steps += 1;
         }
         self.look();
         Ok(())
     }
 
     /// The level of the next step.
-    fn level(&self, around: Option<(&dyn Surroundings, f64)>) -> usize {
+    fn level(&mut self, around: Option<(&dyn Surroundings, f64)>) -> usize {
         let (exerted, slow) = around.map_or((0.0, 0.0), |(around, _)| (around.bound(), around.frequency()));
         let (rotors, change) = self.acting.rotors(self.reached);
-        let push = self.acting.torque.norm() + exerted + change.norm();
-        let size = self.grid.momentum.norm() + rotors.norm();
-        self.pace.level(self.model.mobility * size + slow, self.model.mobility * push)
+        let Self { model, grid, acting, amplitudes, .. } = self;
+        let push = acting.torque.norm() + exerted + change.norm();
+        // Gt but for how much the body is bent now.
+        let turning = grid.momentum - rotors;
+        let rate = model.mobility * (grid.momentum.norm() + turning.norm());
+        let net = acting.torque - change;
+        for (index, (amplitude, of)) in amplitudes.iter_mut().zip(&model.modes).enumerate() {
+            let [q, p, ..] = grid.modes[index];
+            let (w, forced) = (of.frequency, acting.forces.get(index).copied().unwrap_or(0.0));
+            // At least the displacement, the rate, and what the torque bends, each.
+            *amplitude = q.abs()
+                + (p + of.rotation.dot(&turning) / w).abs()
+                + (of.rotation.dot(&net) + forced).abs() / (w * w);
+        }
+        let pose = Pose { rate: rate + slow, acceleration: model.mobility * push, amplitudes: &*amplitudes };
+        self.pace.level(pose)
+    }
+
+    /// Makes sure that there are responses over a step beside the grid, of `h` seconds; tells their place.
+    fn prepare_beside(&mut self, h: f64) -> usize {
+        if let Some(place) = self.beside.iter().position(|known| known.h.to_bits() == h.to_bits()) {
+            return place;
+        }
+        let modes = self.model.modes.iter();
+        let known =
+            Regular { h, responses: modes.map(|of| Response::new(of.frequency, of.damping, h)).collect() };
+        if self.beside.len() < BESIDE {
+            self.beside.push(known);
+            return self.beside.len() - 1;
+        }
+        let place = self.next_beside;
+        self.next_beside = (place + 1) % BESIDE;
+        self.beside[place] = known;
+        place
     }
 
     /// Makes sure that there are responses for a level.

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 
 /// A free mode: of the whole body, in axes that follow its total momentum, mass-normalised.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,16 +1,20 @@
-//! How long steps are: a base length that resolves the modes, halved as often as the rotation needs.
+//! How long steps are: as long as the modes allow, halved as often as the rotation needs.
 //!
-//! Of 1.5 radians of the fastest mode that the hub feels, the attitude errs by less than 1e-10 rad in 1e4 s of the reference
-//! craft's tumbling; of 3 radians by 2e-9. A mode above [`RESOLVED`] is left unresolved: it stays an exact oscillator, and what
-//! is lost is what steps make of it that are a multiple of its period, a slow error of up to 1e-8 rad/s for each 2e-5 rad/s of
-//! its rate at the hub. Steps keep off such multiples.
+//! Modes are exact oscillators, and what constant torques do to them is exact: a step errs where the elastic motion turns
+//! with the body, in products with the body's rate. Of 1.5 radians of the fastest mode that the hub feels, the attitude errs by
+//! less than 1e-10 rad in 1e4 s of the reference craft's tumbling; of 3 radians by 2e-9; beyond 20 radians the whole
+//! displacement of a mode may come out as a slow drift. A step is longer than 1.5 radians of a mode where this error, at the
+//! amplitudes that the modes have, is below [`DRIFT`]: with a body that hardly turns, or modes that hardly move. A mode above
+//! [`RESOLVED`] is left unresolved in any case; steps keep off the multiples of its period.
 
 use std::f64::consts::TAU;
+
+use super::model::Model;
 
 /// A step turns the body by at most about this (rad).
 const TURN: f64 = 1.0 / 16.0;
 
-/// The phase of the fastest mode that is resolved, in a step (rad).
+/// The phase of the fastest mode that is resolved whatever its amplitude, in a step (rad).
 const PHASE: f64 = 1.5;
 
 /// Modes above this frequency make no step shorter (rad/s): steps of 15 ms are the shortest for the sake of modes.
@@ -25,41 +29,86 @@ const NUDGES: u32 = 40;
 /// The longest step of a body without modes (s).
 const LONGEST: f64 = 1024.0;
 
+/// How often the longest step is halved until it resolves all modes.
+const DOUBLINGS: i32 = 6;
+
+/// The attitude may drift so fast for the sake of modes that a step does not resolve (rad/s): 2e-11 rad in 1e4 s.
+const DRIFT: f64 = 2e-15;
+
+/// The part of a mode's displacement that a step of a radian of it loses, by the sixth power of the radians: measured on the
+/// reference craft, from 1.5 to 23 radians, and rounded up.
+const LOST: f64 = 1e-8;
+
 /// The lengths that steps can have: 0 the longest, each next about half of it.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     base: f64,
     /// A step turns the body by at most about this (rad).
     turn: f64,
+    /// A step of this length resolves all modes (s).
+    resolving: f64,
+    /// For each mode its frequency (rad/s), and how much a unit of its amplitude turns the body (rad/(m sqrt(kg))).
+    modes: Vec<(f64, f64)>,
     unresolved: Vec<f64>,
 }
 
+/// How a body moves at the start of a step.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Pose<'a> {
+    /// Its rate, at most (rad/s), with that of the surroundings.
+    pub rate: f64,
+    /// Its angular acceleration, at most (rad/s²).
+    pub acceleration: f64,
+    /// The amplitude of each mode, at most (m sqrt(kg)).
+    pub amplitudes: &'a [f64],
+}
+
 impl Pace {
-    /// The pace for modes of these frequencies (rad/s).
-    pub fn new(felt: &[f64]) -> Self {
-        let resolved = felt.iter().copied().filter(|w| *w <= RESOLVED).fold(0.0, f64::max);
-        let unresolved: Vec<f64> = felt.iter().copied().filter(|w| *w > RESOLVED).collect();
-        let fastest = if unresolved.is_empty() { resolved } else { RESOLVED };
-        Self { base: if fastest > 0.0 { PHASE / fastest } else { LONGEST }, turn: TURN, unresolved }
+    /// The pace of a body.
+    pub fn new(model: &Model) -> Self {
+        let felt = &model.felt;
+        let fastest = felt.iter().copied().fold(0.0, f64::max).min(RESOLVED);
+        let resolving = if fastest > 0.0 { PHASE / fastest } else { LONGEST };
+        // Damping that couples modes is a force that only resolved modes feel rightly.
+        let longest = if model.beside.is_some() { resolving } else { libm::scalbn(resolving, DOUBLINGS) };
+        Self {
+            base: longest.min(LONGEST),
+            turn: TURN,
+            resolving,
+            modes: turning(model),
+            unresolved: felt.iter().copied().filter(|w| *w > RESOLVED).collect(),
+        }
     }
 
     /// Steps of one length (s), whatever the rotation.
     #[cfg(test)]
     pub fn fixed(h: f64) -> Self {
-        Self { base: h, turn: f64::INFINITY, unresolved: Vec::new() }
+        Self { base: h, turn: f64::INFINITY, resolving: h, modes: Vec::new(), unresolved: Vec::new() }
     }
 
-    /// The level of steps of a body that turns, or whose torque changes, at this rate (rad/s), with this acceleration
-    /// (rad/s²).
-    pub fn level(&self, rate: f64, acceleration: f64) -> usize {
+    /// The level of steps of a body in such a motion.
+    pub fn level(&self, pose: Pose<'_>) -> usize {
         let mut level = 0;
         let mut h = self.base;
         // What is not finite needs no short steps.
-        while h * (rate + acceleration * h) > self.turn && level < 60 {
+        while level < 60
+            && (h * (pose.rate + pose.acceleration * h) > self.turn
+                || h > self.resolving && self.drift(h, pose) > DRIFT)
+        {
             h *= 0.5;
             level += 1;
         }
         level
+    }
+
+    /// How fast the attitude drifts at most for the sake of modes that steps of `h` seconds do not resolve (rad/s).
+    fn drift(&self, h: f64, pose: Pose<'_>) -> f64 {
+        let lost = |((w, turning), amplitude): (&(f64, f64), &f64)| {
+            let square = w * h * w * h;
+            turning * amplitude * (LOST * square * square * square).min(1.0)
+        };
+        let lost = self.modes.iter().zip(pose.amplitudes).map(lost).sum::<f64>();
+        (pose.rate + pose.acceleration * h) * lost
     }
 
     /// The length of a step (s), a number of few bits so that sums of steps are exact.
@@ -92,6 +141,19 @@ impl Pace {
     }
 }
 
+/// The frequency of each mode (rad/s), and how much a unit of its amplitude turns the body: by the hub's rotation, by the
+/// change of the inertia, and by what its motion does to slower modes, which the inertia's change couples.
+fn turning(model: &Model) -> Vec<(f64, f64)> {
+    let moments = |of: &[f64; 6]| of.iter().map(|moment| moment.abs()).sum::<f64>();
+    let coupled: f64 =
+        model.modes.iter().map(|mode| mode.rotation.norm() * moments(&mode.moments) / mode.frequency).sum();
+    let each = model.modes.iter().map(|mode| {
+        let turned = mode.rotation.norm() * (1.0 + mode.frequency * coupled);
+        (mode.frequency, turned + moments(&mode.moments) * model.mobility)
+    });
+    each.collect()
+}
+
 /// The largest number of 12 bits that is not above `h`.
 fn few_bits(h: f64) -> f64 {
     f64::from_bits(h.to_bits() & !((1 << 41) - 1))
@@ -99,28 +161,54 @@ fn few_bits(h: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Matrix3;
+
+    use super::super::model::{Flexible, FreeMode};
     use super::*;
+    use crate::attitude::Vector;
+
+    /// The pace of a body with modes of these frequencies (rad/s).
+    fn pace(frequencies: &[f64]) -> Pace {
+        let mode = |w: &f64| FreeMode {
+            frequency: *w,
+            damping: 0.0,
+            rotation: Vector::new(0.04, 0.0, 0.0),
+            moments: Matrix3::zeros(),
+        };
+        let inertia = Matrix3::from_diagonal_element(300.0);
+        let modes = frequencies.iter().map(mode).collect();
+        Pace::new(&Model::new(&Flexible { inertia, modes, damping: None }))
+    }
 
     #[test]
     fn steps_resolve_slow_modes_follow_the_rotation_and_keep_off_aliases() {
-        let pace = Pace::new(&[1.1475, 50.4, 92.94]);
-        let h = pace.length(0);
-        assert!(h * 92.94 <= 1.5 && h * 92.94 > 1.49, "{h}");
-        assert_eq!(pace.level(0.07, 0.0), 0);
-        assert_eq!(pace.level(6.0, 0.0), 1);
+        let pace = pace(&[1.1475, 50.4, 92.94]);
+        let at = |rate, acceleration, amplitudes: &[f64]| {
+            let h = pace.length(pace.level(Pose { rate, acceleration, amplitudes }));
+            h * 92.94
+        };
+        // Modes that move resolve; with those at rest, or a body that hardly turns, steps are longer.
+        let phase = at(0.07, 0.0, &[1e-3; 3]);
+        assert!(phase <= 1.5 && phase > 1.49, "{phase}");
+        let unresolved = at(0.0, 0.0, &[1e-3; 3]);
+        assert!(unresolved > 95.0, "{unresolved}");
+        assert!(at(1e-6, 0.0, &[1e-6; 3]) > at(1e-3, 0.0, &[1e-6; 3]));
+        assert!(at(6.0, 0.0, &[1e-3; 3]) < 0.8);
         // A torque alone makes steps shorter too.
-        assert!(pace.level(0.0, 1000.0) > 0);
+        assert!(at(0.0, 1000.0, &[0.0; 3]) < 1.0);
         // 418.9 rad/s is a whole turn in 15 ms.
-        let pace = Pace::new(&[1.0, TAU / 0.015, 3.0 * TAU / 0.0149]);
-        for level in 0..3 {
+        let pace = self::pace(&[1.0, TAU / 0.015, 3.0 * TAU / 0.0149]);
+        for level in 0..9 {
             let h = pace.length(level);
             assert!(pace.gap(h) >= NEAR, "{level} {h}");
-            assert!(h <= 0.015 / f64::from(1 << level) && h > 0.008 / f64::from(1 << level));
+            let longest = 0.96 / f64::from(1 << level);
+            assert!(h <= longest && h > 0.5 * longest, "{level} {h}");
             // Some 1e9 of them add up without rounding.
             assert_eq!((h * 1e9 + h) - h * 1e9, h);
         }
         // Without modes, rotation and torque alone.
-        let pace = Pace::new(&[]);
-        assert!(pace.length(pace.level(1e-3, 0.0)) * 1e-3 <= TURN);
+        let pace = self::pace(&[]);
+        let pose = Pose { rate: 1e-3, acceleration: 0.0, amplitudes: &[] };
+        assert!(pace.length(pace.level(pose)) * 1e-3 <= TURN);
     }
 }

@@ -1,6 +1,6 @@
 //! Finite rotations by a small vector, and the rate that a change of the vector makes.
 
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 
 /// Squares of an angle below which the coefficients come from their series (rad²).
 const SMALL: f64 = 0.04;

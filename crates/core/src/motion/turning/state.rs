@@ -4,7 +4,7 @@ use nalgebra::Quaternion;
 
 use super::model::{Model, tensor};
 use super::rotation::Bend;
-use crate::body::spatial::{Vector, rotation};
+use crate::attitude::{Vector, rotation};
 
 /// The state that steps carry on.
 #[derive(Clone, Debug, PartialEq)]

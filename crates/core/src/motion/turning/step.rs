@@ -10,7 +10,7 @@ use super::model::{Model, Surroundings, tensor};
 use super::response::Response;
 use super::rotation::Bend;
 use super::state::State;
-use crate::body::spatial::{Vector, rotation};
+use crate::attitude::{Vector, rotation};
 use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
 
 /// Passes after which the stages are taken as they are.

@@ -7,8 +7,9 @@ mod two_way;
 use std::borrow::Cow;
 
 use super::SimulationError;
-use crate::body::{Sensed, State, Wrench};
+use crate::body::Wrench;
 use crate::guard::Guard;
+use crate::motion::{Sensed, State};
 use crate::record::{Course, Record, RecordError};
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Truth};

@@ -1,10 +1,9 @@
 //! A body with one angle on its way: its motion since the last event, and what is seen of it now.
 
-use crate::body::{
-    Coupling, Expansion, Flight, Flown, Input, Output, Segment, Sensed, State, Stretch, Unfolding, Wrench,
-};
-use crate::crossing::locate;
+use crate::body::{Coupling, Flight, Flown, Input, Output, Segment, Unfolding, Wrench};
 use crate::guard::Guard;
+use crate::motion::crossing::locate;
+use crate::motion::{Expansion, Sensed, State, Stretch};
 use crate::numerics::polynomial::{Polynomial, Series, TERMS};
 use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
 use crate::scenario::Scenario;
@@ -136,7 +135,8 @@ impl PlanarPlant {
         let span = until.since(self.departed);
         let guards = [Guard::at_least(band), Guard::at_most(-band)];
         Ok(arc.stays_within(band, span.seconds())
-            || arc.knows_bounds() && locate(arc, &guards, span, &mut self.state.clone(), record)?.is_none())
+            || arc.knows_bounds()
+                && locate(arc, &guards, span, &mut self.state.clone(), || record.poll())?.is_none())
     }
 
     /// Takes the motion apart, from its departure to an instant.
@@ -241,13 +241,13 @@ impl PlanarPlant {
         let arc = match &mut self.motion {
             Motion::Planar(arc) => arc,
             Motion::Coupled(coupling) => {
-                let trip = coupling.trip(guards, horizon, record)?;
+                let trip = coupling.trip(guards, horizon, || record.poll())?;
                 return Ok(trip.map(|trip| (departed + trip.after, trip.guard)));
             }
             // No law with guards acts on a body without a closed form.
             Motion::Chain(_) => return Ok(None),
         };
-        let trip = locate(arc, guards, horizon, &mut self.ahead.0, record)?;
+        let trip = locate(arc, guards, horizon, &mut self.ahead.0, || record.poll())?;
         Ok(trip.map(|trip| {
             let at = departed + trip.after;
             (self.ahead.1, self.ahead.2) = (trip.sight, at);

@@ -1,10 +1,12 @@
 //! A body with three axes on its way, from one change of what acts on it to the next.
 
 use super::two_way::TwoWay;
-use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState, Vector, beyond};
-use crate::body::{Phase, State, Wrench};
+use crate::attitude::{Vector, beyond};
+use crate::body::Wrench;
+use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
 use crate::environment::Around;
 use crate::motion::turning::{Flexible, Rotor, Surroundings};
+use crate::motion::{Phase, State};
 use crate::record::{Energy, Pointing, Record, RecordError, Vibration, Vibrations};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
@@ -292,7 +294,7 @@ impl SpatialPlant {
     /// The attitude, as logged, with the angles by which it is beyond its target (rad).
     pub fn pointing(&self, error: [f64; 3]) -> Pointing {
         let q = self.two_way.as_deref().map_or(&self.state.turn.attitude, TwoWay::attitude);
-        let [roll_rad, pitch_rad, yaw_rad] = crate::body::spatial::angles(q);
+        let [roll_rad, pitch_rad, yaw_rad] = crate::attitude::angles(q);
         let [roll_error_rad, pitch_error_rad, yaw_error_rad] = error;
         Pointing {
             q_w: q.w,

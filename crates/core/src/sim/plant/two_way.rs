@@ -2,9 +2,11 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState, Vector, vector};
-use crate::body::{Phase, Wrench};
+use crate::attitude::{Vector, vector};
+use crate::body::Wrench;
+use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
 use crate::environment::Around;
+use crate::motion::Phase;
 use crate::motion::turning::{Acting, Flexible, Surroundings, Turning};
 use crate::sensor::{Orientation, Truth};
 

@@ -1,3 +1,5 @@
+//! Real files of finite-element programs, and what is refused of broken ones.
+
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

@@ -2,8 +2,10 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use crate::body::spatial::{Spatial, Vector, rotation};
-use crate::body::{Phase, Wrench};
+use crate::attitude::{Vector, rotation};
+use crate::body::Wrench;
+use crate::body::spatial::Spatial;
+use crate::motion::Phase;
 use crate::motion::turning::{Flexible, FreeMode, Rotor};
 use crate::numerics::gauss_legendre::{NODES, WEIGHTS};
 use crate::scenario::Study;

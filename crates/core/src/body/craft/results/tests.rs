@@ -1,3 +1,5 @@
+//! What results of finite-element programs come to, and what is refused of them.
+
 use crate::{Document, Scenario};
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/fe/");
@@ -83,7 +85,7 @@ fn millimetres_and_tonnes_become_metres_and_kilograms() {
     for (metres, small) in metres.iter().zip(small.iter()) {
         assert_eq!(metres.frequency, small.frequency);
         assert!((small.translation() - metres.translation() * 1000_f64.sqrt()).norm() < 1e-12);
-        let rotation = |mode: &super::ClampedMode| crate::body::spatial::vector(&mode.rotation.expect("one"));
+        let rotation = |mode: &super::ClampedMode| crate::attitude::vector(&mode.rotation.expect("one"));
         assert!((rotation(small) - rotation(metres) * 1e-3 * 1000_f64.sqrt()).norm() < 1e-12);
     }
 }

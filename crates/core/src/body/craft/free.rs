@@ -6,7 +6,7 @@
 
 use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix3xX, SymmetricEigen};
 
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 
 /// Clamped modes as the free hub sees them, a column each.
 #[derive(Clone, Debug, PartialEq)]

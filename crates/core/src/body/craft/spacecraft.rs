@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::mass::MassProperties;
-use crate::body::spatial::{Attitude, NamedPoint, tensor, vector};
+use crate::attitude::{Attitude, tensor, vector};
+use crate::body::spatial::NamedPoint;
 use crate::quantity::{Finite, Positive};
 
 /// A spacecraft: its rigid hub, to which the appendages are clamped.

@@ -8,8 +8,9 @@ use super::clamped::{ClampedMode, rotation_of};
 use super::mass::MassProperties;
 use super::results::Units;
 use super::turned::Turned;
+use crate::attitude::{Vector, tensor, vector};
 use crate::body::Damping;
-use crate::body::spatial::{NamedPoint, Vector, tensor, vector};
+use crate::body::spatial::NamedPoint;
 use crate::quantity::{Finite, Positive};
 use crate::structure::mode_table::ModeTable;
 

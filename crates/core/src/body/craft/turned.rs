@@ -9,7 +9,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::body::spatial::vector;
+use crate::attitude::vector;
 use crate::document::Fault;
 use crate::quantity::Finite;
 

@@ -3,9 +3,7 @@
 //! It strides only as far as the bounds on the motion prove that no guard can trip, so that no crossing is missed, however
 //! brief, and no tolerance exists. `docs/events.md` derives the stride.
 
-use crate::body::{Segment, Sensed, State};
-use crate::guard::Guard;
-use crate::record::{Record, RecordError};
+use super::Sensed;
 use crate::time::Span;
 
 /// A guard that tripped.
@@ -54,14 +52,14 @@ const STRIDES: u32 = 256;
 /// `state`.
 ///
 /// # Errors
-/// The record ends the search, however small its strides.
-pub fn locate<M: Approach>(
+/// What `go_on` answers ends the search, however small its strides: it is asked now and then.
+pub fn locate<M: Approach, E>(
     motion: &M,
     guards: &[M::Guard],
     horizon: Span,
     state: &mut M::State,
-    record: &mut impl Record,
-) -> Result<Option<Trip<M::Sensed>>, RecordError> {
+    mut go_on: impl FnMut() -> Result<(), E>,
+) -> Result<Option<Trip<M::Sensed>>, E> {
     let mut sensed = motion.begin(state);
     if let Some(guard) = guards.iter().position(|guard| M::holds(*guard, state, sensed)) {
         motion.go(0.0, state);
@@ -81,7 +79,7 @@ pub fn locate<M: Approach>(
         while ticks < last && M::is_finite(state, sensed) {
             strides = strides.wrapping_add(1);
             if strides.is_multiple_of(STRIDES) {
-                record.poll()?;
+                go_on()?;
             }
             // The tick before the stride's end is certain not to trip: the next one is the first that can.
             ticks = ticks.saturating_add((stride * 1e15) as i64).saturating_add(1).min(last);
@@ -101,53 +99,6 @@ pub fn locate<M: Approach>(
         if base >= horizon || !M::is_finite(state, sensed) {
             return Ok(None);
         }
-    }
-}
-
-impl Approach for Segment {
-    type Guard = Guard;
-    type State = State;
-    type Sensed = Sensed;
-
-    #[inline]
-    fn begin(&self, _: &mut State) -> Sensed {
-        self.origin()
-    }
-
-    #[allow(clippy::inline_always, reason = "the search calls it")]
-    #[inline(always)]
-    fn go(&self, h: f64, state: &mut State) -> Sensed {
-        self.at(h, state)
-    }
-
-    #[inline]
-    fn is_finite(_: &State, sensed: Sensed) -> bool {
-        sensed.angle.is_finite()
-    }
-
-    #[inline]
-    fn holds(guard: Guard, _: &State, sensed: Sensed) -> bool {
-        guard.holds(sensed.angle)
-    }
-
-    #[inline]
-    fn window(_: &State) -> f64 {
-        f64::INFINITY
-    }
-
-    #[inline]
-    fn earliest(&self, guard: Guard, _: Span, _: &State) -> f64 {
-        Self::earliest(self, guard)
-    }
-
-    #[inline]
-    fn stride(&self, guard: Guard, _: &State, sensed: Sensed) -> f64 {
-        Self::stride(self, guard, sensed)
-    }
-
-    #[inline]
-    fn is_clear(&self, guard: Guard, _: &State, sensed: Sensed, time: f64) -> bool {
-        Self::is_clear(self, guard, sensed, time)
     }
 }
 

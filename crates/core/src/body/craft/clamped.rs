@@ -6,8 +6,9 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::body::spatial::{Shape, Vector, tensor, vector};
+use crate::attitude::{Vector, tensor, vector};
 use crate::quantity::{Finite, Frequency, NonNegative};
+use crate::structure::Shape;
 use crate::structure::mode_table::{Common, Row};
 
 /// A mode of an appendage clamped at its root, mass-normalised: the integral of phi_i . phi_j dm is 1 for i = j, else 0.

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::body::spatial::Vector;
+use crate::attitude::Vector;
 
 /// Mass properties of a rigid part, in the body's axes.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -15,8 +15,8 @@ mod results;
 mod spacecraft;
 mod turned;
 
+use crate::attitude::Vector;
 use crate::body::Spatial;
-use crate::body::spatial::Vector;
 use crate::motion::turning::Flexible;
 
 pub use appendage::{Appendage, Plate};

@@ -1,12 +1,18 @@
-//! Attitudes: unit quaternions, and the small angles between two of them (\[Hughes86\]).
+//! Vectors and attitudes: unit quaternions, and the small angles between two of them (\[Hughes86\]).
 
 use std::borrow::Cow;
 
-use nalgebra::Quaternion;
+use nalgebra::{Matrix3, Quaternion};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::Vector;
+use crate::quantity::Finite;
+
+/// Three numbers along the body's axes x, y and z, about which it rolls, pitches and yaws.
+pub type Vector = nalgebra::Vector3<f64>;
+
+/// The names of rotations about the three axes, as in keys.
+pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// An attitude as a scenario writes it: a unit quaternion \[w, x, y, z\].
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -98,6 +104,24 @@ pub fn rotation(by: &Vector) -> Quaternion<f64> {
 pub fn beyond(goal: &Quaternion<f64>, q: &Quaternion<f64>) -> Vector {
     let difference = goal.conjugate() * q;
     difference.vector() * libm::copysign(2.0, difference.w)
+}
+
+/// The vector of a scenario's numbers.
+pub fn vector(of: &[Finite; 3]) -> Vector {
+    Vector::new(of[0].get(), of[1].get(), of[2].get())
+}
+
+/// The tensor of a scenario's rows.
+pub fn tensor(of: &[[Finite; 3]; 3]) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| of[row][column].get())
+}
+
+/// Why a tensor is no symmetric one, if it is not.
+pub fn asymmetry(tensor: &Matrix3<f64>) -> Option<String> {
+    let mut below = (0..3).flat_map(|row| (0..row).map(move |column| (row, column)));
+    let (row, column) = below.find(|at| tensor[*at] != tensor[(at.1, at.0)])?;
+    let (found, other) = (tensor[(row, column)], tensor[(column, row)]);
+    Some(format!("must be symmetric, got {found} and {other} across the diagonal"))
 }
 
 #[cfg(test)]

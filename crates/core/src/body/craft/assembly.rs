@@ -12,11 +12,13 @@ use super::free::{Free, Held};
 use super::mass::MassProperties;
 use super::spacecraft::Spacecraft;
 use super::{Craft, Rotor};
+use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
-use crate::body::spatial::{NamedPoint, Shape, SpatialMode, Vector, vector};
+use crate::body::spatial::{NamedPoint, SpatialMode};
 use crate::document::Fault;
 use crate::motion::turning::{Flexible, FreeMode};
 use crate::quantity::{Finite, Frequency, NonNegative};
+use crate::structure::Shape;
 
 /// A clamped mode as a part of the spacecraft.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,31 @@
+//! What the estimator and the monitor of the envelope are told of a scenario before a run.
+
+use super::Scenario;
+use crate::estimator::{Estimator, Known, Monitor};
+use crate::random::Seed;
+
+impl Scenario {
+    /// What its estimator knows before a run.
+    pub fn known(&self) -> Known<'_> {
+        let study = &self.study;
+        let axes = 0..study.axes.len();
+        Known {
+            estimator: self.estimator.as_ref(),
+            axes: &study.axes,
+            back_emf: study.back_emf,
+            drift: self.drift.as_ref(),
+            sampling: study.sampling,
+            angle_noise: self.sensor.angle_noise(),
+            rate_noise: axes.clone().map(|axis| self.sensor.rate_noise(axis)).collect(),
+            reads: axes.map(|axis| self.law.about(axis).reads()).collect(),
+            adaptive: study.adaptive.as_deref(),
+            attitude: study.attitude.as_ref(),
+        }
+    }
+
+    /// The monitor of the envelope that it asks for, if any.
+    pub fn monitor(&self, seed: Seed) -> Option<Monitor> {
+        let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
+        Some(Monitor::new(envelope, &self.model, self.adaptation.as_ref(), &self.law.tunable(), seed))
+    }
+}

@@ -1,0 +1,18 @@
+//! The shape of a mode at a point of the structure.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::quantity::Finite;
+
+/// The shape of a mode at a point.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Shape {
+    /// Displacement of the point for a unit of the mode (1/sqrt(kg)).
+    #[serde(default)]
+    pub translation: [Finite; 3],
+    /// Rotation at the point for a unit of the mode (rad/(m sqrt(kg))).
+    #[serde(default)]
+    pub rotation: [Finite; 3],
+}
