@@ -73,7 +73,7 @@ impl Flexible {
     pub fn step(&self, rate: f64) -> f64 {
         let pace = Pace::new(&Model::new(self));
         let amplitudes = vec![f64::MAX; self.modes.len()];
-        pace.length(pace.level(Pose { rate, acceleration: 0.0, amplitudes: &amplitudes }))
+        pace.length(pace.level(Pose { rate, carried: rate, acceleration: 0.0, amplitudes: &amplitudes }))
     }
 }
 
@@ -228,7 +228,7 @@ impl Turning {
         let push = acting.torque.norm() + exerted + change.norm();
         // Gt but for how much the body is bent now.
         let turning = grid.momentum - rotors;
-        let rate = model.mobility * (grid.momentum.norm() + turning.norm());
+        let size = grid.momentum.norm();
         let net = acting.torque - change;
         for (index, (amplitude, of)) in amplitudes.iter_mut().zip(&model.modes).enumerate() {
             let [q, p, ..] = grid.modes[index];
@@ -238,7 +238,12 @@ impl Turning {
                 + (p + of.rotation.dot(&turning) / w).abs()
                 + (of.rotation.dot(&net) + forced).abs() / (w * w);
         }
-        let pose = Pose { rate: rate + slow, acceleration: model.mobility * push, amplitudes: &*amplitudes };
+        let pose = Pose {
+            rate: model.mobility * (size + turning.norm()) + slow,
+            carried: (model.inverse * turning).norm() + model.mobility * size + slow,
+            acceleration: model.mobility * push,
+            amplitudes: &*amplitudes,
+        };
         self.pace.level(pose)
     }
 

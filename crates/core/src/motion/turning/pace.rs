@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use super::model::Model;
+use super::model::{Model, tensor};
 
 /// A step turns the body by at most about this (rad).
 const TURN: f64 = 1.0 / 16.0;
@@ -32,7 +32,8 @@ const LONGEST: f64 = 1024.0;
 /// How often the longest step is halved until it resolves all modes.
 const DOUBLINGS: i32 = 6;
 
-/// The attitude may drift so fast for the sake of modes that a step does not resolve (rad/s): 2e-11 rad in 1e4 s.
+/// The attitude may drift so fast, by the estimate, for the sake of modes that a step does not resolve (rad/s): 2e-11 rad in
+/// 1e4 s.
 const DRIFT: f64 = 2e-15;
 
 /// The part of a mode's displacement that a step of a radian of it loses, by the sixth power of the radians: measured on the
@@ -57,6 +58,8 @@ pub(super) struct Pace {
 pub(super) struct Pose<'a> {
     /// Its rate, at most (rad/s), with that of the surroundings.
     pub rate: f64,
+    /// The rates at which what modes do turns with the body and with its momentum (rad/s).
+    pub carried: f64,
     /// Its angular acceleration, at most (rad/s²).
     pub acceleration: f64,
     /// The amplitude of each mode, at most (m sqrt(kg)).
@@ -108,7 +111,7 @@ impl Pace {
             turning * amplitude * (LOST * square * square * square).min(1.0)
         };
         let lost = self.modes.iter().zip(pose.amplitudes).map(lost).sum::<f64>();
-        (pose.rate + pose.acceleration * h) * lost
+        (pose.carried + pose.acceleration * h) * lost
     }
 
     /// The length of a step (s), a number of few bits so that sums of steps are exact.
@@ -144,7 +147,7 @@ impl Pace {
 /// The frequency of each mode (rad/s), and how much a unit of its amplitude turns the body: by the hub's rotation, by the
 /// change of the inertia, and by what its motion does to slower modes, which the inertia's change couples.
 fn turning(model: &Model) -> Vec<(f64, f64)> {
-    let moments = |of: &[f64; 6]| of.iter().map(|moment| moment.abs()).sum::<f64>();
+    let moments = |of: &[f64; 6]| tensor(*of).norm();
     let coupled: f64 =
         model.modes.iter().map(|mode| mode.rotation.norm() * moments(&mode.moments) / mode.frequency).sum();
     let each = model.modes.iter().map(|mode| {
@@ -184,7 +187,7 @@ mod tests {
     fn steps_resolve_slow_modes_follow_the_rotation_and_keep_off_aliases() {
         let pace = pace(&[1.1475, 50.4, 92.94]);
         let at = |rate, acceleration, amplitudes: &[f64]| {
-            let h = pace.length(pace.level(Pose { rate, acceleration, amplitudes }));
+            let h = pace.length(pace.level(Pose { rate, carried: rate, acceleration, amplitudes }));
             h * 92.94
         };
         // Modes that move resolve; with those at rest, or a body that hardly turns, steps are longer.
@@ -208,7 +211,7 @@ mod tests {
         }
         // Without modes, rotation and torque alone.
         let pace = self::pace(&[]);
-        let pose = Pose { rate: 1e-3, acceleration: 0.0, amplitudes: &[] };
+        let pose = Pose { rate: 1e-3, carried: 1e-3, acceleration: 0.0, amplitudes: &[] };
         assert!(pace.length(pace.level(pose)) * 1e-3 <= TURN);
     }
 }
