@@ -10,11 +10,16 @@ use flexsc_core::{Scenario, ScenarioError, Simulation};
 /// A kind: its name, its letter in the table, and its text.
 type Kind = (&'static str, &'static str, &'static str);
 
-const LAWS: [Kind; 7] = [
+const LAWS: [Kind; 8] = [
     ("relay", "", "relay = { dead_zone = 5e-4, hysteresis = 1e-4, strong = 4e-3, weak = 1e-4, k_t = 0.3 }"),
     ("pd", "", "pd = { k_p = 0.4, k_d = 6.0, period = 0.2 }"),
     ("pd with an extra loop", "", "pd = { k_p = 0.4, k_d = 6.0, period = 0.2, extra = { gain = 0.1 } }"),
     ("attitude", "", "attitude = { period = 0.2, bandwidth = 0.06 }"),
+    (
+        "state_space",
+        "",
+        "state_space = { period = 0.2, a = [[0.5]], b = [[-3.0, 0.0]], c = [[1.0]], d = [[0.4, 6.0]] }",
+    ),
     ("open", "", "open = {}"),
     (
         "phase_plane",

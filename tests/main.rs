@@ -59,6 +59,7 @@ mod scene;
 mod several_sensors;
 mod spacecraft;
 mod spatial;
+mod state_space;
 mod station;
 mod stops;
 #[cfg(unix)]

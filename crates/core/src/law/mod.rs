@@ -13,6 +13,7 @@ mod phase_plane;
 mod relay;
 #[cfg(test)]
 mod slew_tests;
+mod state_space;
 mod switching_lines;
 
 use std::fmt;
@@ -40,6 +41,7 @@ pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use per_axis::PerAxis;
 pub use phase_plane::{PhasePlane, Target, targeted};
 pub use relay::{Relay, Sides};
+pub use state_space::{Commands, Of, StateSpace};
 pub use switching_lines::{SwitchingLines, band};
 
 /// The kinds of law.
@@ -52,6 +54,8 @@ pub enum Law {
     Pd(Pd),
     /// Sampled feedback of the attitude, as an acceleration.
     Attitude(AttitudeLaw),
+    /// A sampled compensator, by its matrices.
+    StateSpace(StateSpace),
     /// None: what a scenario with a manoeuvre has by default.
     Open(Open),
     /// A relay in the phase plane, with pulses of measured length.
@@ -154,6 +158,7 @@ impl Deref for Law {
             Self::Relay(law) => law,
             Self::Pd(law) => law,
             Self::Attitude(law) => law,
+            Self::StateSpace(law) => law,
             Self::Open(law) => law,
             Self::PhasePlane(law) => law,
             Self::PerAxis(laws) => laws.as_ref(),
@@ -179,6 +184,7 @@ impl Law {
             Self::Relay(_) => "relay",
             Self::Pd(_) => "pd",
             Self::Attitude(_) => "attitude",
+            Self::StateSpace(_) => "state_space",
             Self::Open(_) => "open",
             Self::PhasePlane(_) => "phase_plane",
             Self::PerAxis(_) => "per_axis",

@@ -194,6 +194,11 @@ impl Scenario {
                         return Some(fault.within(&key));
                     }
                 }
+                Law::StateSpace(law) => {
+                    if let Some(fault) = law.inconsistency() {
+                        return Some(fault.within(&key));
+                    }
+                }
                 Law::Pd(_) | Law::Open(_) | Law::Own(_) => {}
             }
         }

@@ -6,7 +6,7 @@ use crate::actuator::Actuator;
 use crate::attitude::turned;
 use crate::body::spatial::SpatialMode;
 use crate::body::{Mode, Spatial};
-use crate::law::Law;
+use crate::law::{Commands, Law};
 use crate::quantity::{Finite, Positive};
 use crate::scenario::Scenario;
 
@@ -107,6 +107,13 @@ pub fn largest(scenario: &Scenario) -> f64 {
     let by_law = match &scenario.law {
         Law::Relay(relay) => relay.strong.get(),
         Law::Pd(pd) if scenario.plan.is_none() => pd.k_p.get() * scenario.model.angle.get().abs(),
+        Law::StateSpace(law) if scenario.plan.is_none() => {
+            let unit = match law.command {
+                Commands::Torque => 1.0,
+                Commands::Acceleration => scenario.model.commanded_inertia(),
+            };
+            unit * law.first_command(scenario.model.angle.get())
+        }
         Law::Attitude(law) if scenario.plan.is_none() => {
             law.first_torque(scenario.model.angle.get(), scenario.model.commanded_inertia())
         }
@@ -136,6 +143,12 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
                 None => law.first_torque(spatial_angle(scenario, body), inertia),
             }
         }
+        Law::StateSpace(law) => match law.command {
+            Commands::Torque => unit * law.first_command(spatial_angle(scenario, body)),
+            Commands::Acceleration => {
+                study.axes[axis].inertia.get() * law.first_command(spatial_angle(scenario, body))
+            }
+        },
         Law::PhasePlane(_) => most,
         Law::Open(_) | Law::PerAxis(_) | Law::Own(_) => 0.0,
     };

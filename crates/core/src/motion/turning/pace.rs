@@ -32,9 +32,9 @@ const LONGEST: f64 = 1024.0;
 /// How often the longest step is halved until it resolves all modes.
 const DOUBLINGS: i32 = 6;
 
-/// The attitude may drift so fast, by the estimate, for the sake of modes that a step does not resolve (rad/s): 2e-11 rad in
+/// The attitude may drift so fast, by the estimate, for the sake of modes that a step does not resolve (rad/s): 1e-10 rad in
 /// 1e4 s.
-const DRIFT: f64 = 2e-15;
+const DRIFT: f64 = 1e-14;
 
 /// The part of a mode's displacement that a step of a radian of it loses, by the sixth power of the radians: measured on the
 /// reference craft, from 1.5 to 23 radians, and rounded up.

@@ -1,0 +1,272 @@
+//! A compensator given by its matrices, x' = A x + B e, u = C x + D e, at samples: what design programs bring.
+//!
+//! e is what is wanted less what is believed, of the angle and, with a second column of B and D, of the rate: a PD law is
+//! D = \[\[k_p, k_d\]\]. Matrices of continuous time become those of samples, under an error that is held over a period
+//! exactly, or by Tustin's rule (\[FranklinPowell98\]).
+
+use nalgebra::DMatrix;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule};
+use crate::belief::Belief;
+use crate::document::Fault;
+use crate::numerics::exponential::exponential;
+use crate::quantity::{Finite, Positive};
+use crate::time::{Instant, Span};
+
+/// The most states.
+const MOST: usize = 64;
+
+/// The compensator.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StateSpace {
+    /// Period of its samples (s).
+    pub period: Span,
+    /// Matrix A, row by row; left out, there are no states.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub a: Vec<Vec<Finite>>,
+    /// Matrix B: a row for each state, a column for the error of the angle (rad) and, if there are two, of the rate (rad/s).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub b: Vec<Vec<Finite>>,
+    /// Matrix C: one row.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub c: Vec<Vec<Finite>>,
+    /// Matrix D: one row; left out, it is zero.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub d: Vec<Vec<Finite>>,
+    /// What the matrices are of.
+    #[serde(default)]
+    pub of: Of,
+    /// What it commands.
+    #[serde(default)]
+    pub command: Commands,
+    /// Largest command, in its unit; left out, there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<Positive>,
+    /// Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub track: bool,
+}
+
+/// What matrices are of.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Of {
+    /// Samples, `period` apart.
+    #[default]
+    Samples,
+    /// Continuous time: the error is held over a period.
+    Held,
+    /// Continuous time: Tustin's rule.
+    Tustin,
+}
+
+/// What the output is.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Commands {
+    /// A torque (N m; for a wheel, units of its command).
+    #[default]
+    Torque,
+    /// An angular acceleration (rad/s²), of which the whole inertia makes a torque, with that of the reference added.
+    Acceleration,
+}
+
+/// The matrices at samples.
+#[derive(Clone, Debug, PartialEq)]
+struct Matrices {
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    c: DMatrix<f64>,
+    d: DMatrix<f64>,
+}
+
+/// A matrix of so many columns.
+fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix<f64>, Fault> {
+    match rows.iter().position(|row| row.len() != columns) {
+        Some(row) => Err(Fault::new(
+            format!("{key}[{row}]"),
+            format!("must have {columns} columns, got {}", rows[row].len()),
+        )),
+        None => Ok(DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column].get())),
+    }
+}
+
+impl StateSpace {
+    /// The matrices at samples.
+    fn sampled(&self) -> Result<Matrices, Fault> {
+        let wrong = |key: &str, why: String| Err(Fault::new(key, why));
+        let order = self.a.len();
+        if order > MOST {
+            return wrong("a", format!("must be of at most {MOST} states, got {order}"));
+        }
+        let Some(inputs) = self.d.first().or(self.b.first()).map(Vec::len) else {
+            return wrong("d", "must be there where there are no states".to_owned());
+        };
+        if !(1..=2).contains(&inputs) {
+            let key = if self.d.is_empty() { "b[0]" } else { "d[0]" };
+            return wrong(
+                key,
+                format!("must have a column for the angle, or two for angle and rate, got {inputs}"),
+            );
+        }
+        let (a, b) = (matrix("a", &self.a, order)?, matrix("b", &self.b, inputs)?);
+        if b.nrows() != order {
+            return wrong("b", format!("must have a row for each of the {order} states, got {}", b.nrows()));
+        }
+        let row = |key: &str, rows: &[Vec<Finite>], columns: usize| match rows.len() {
+            0 => Ok(DMatrix::zeros(1, columns)),
+            1 => matrix(key, rows, columns),
+            many => Err(Fault::new(key, format!("must be one row, got {many}"))),
+        };
+        if order > 0 && self.c.is_empty() {
+            return wrong("c", format!("must be a row of {order}: without it the states are not seen"));
+        }
+        let (c, d) = (row("c", &self.c, order)?, row("d", &self.d, inputs)?);
+        let continuous = Matrices { a, b, c, d };
+        let h = self.period.seconds();
+        match self.of {
+            Of::Samples => Ok(continuous),
+            Of::Held => Ok(continuous.held(h)),
+            Of::Tustin => match continuous.tustin(h) {
+                Some(sampled) => Ok(sampled),
+                None => wrong(
+                    "a",
+                    format!("has an eigenvalue at 2/period = {} 1/s, where Tustin's rule has none", 2.0 / h),
+                ),
+            },
+        }
+    }
+
+    /// What single values cannot show to be wrong: a key within the law, and why.
+    pub fn inconsistency(&self) -> Option<Fault> {
+        match self.sampled() {
+            Err(fault) => Some(fault),
+            Ok(sampled) => {
+                let all = [&sampled.a, &sampled.b, &sampled.c, &sampled.d];
+                let finite = all.iter().all(|matrix| matrix.iter().all(|entry| entry.is_finite()));
+                (!finite).then(|| Fault::new("a", "grows beyond all numbers within a period"))
+            }
+        }
+    }
+
+    /// The command for an angle that is so far from its target (rad) when nothing has been before: its size.
+    pub fn first_command(&self, angle: f64) -> f64 {
+        let direct = self.d.first().and_then(|row| row.first()).map_or(0.0, |entry| entry.get());
+        let limit = self.limit.map_or(f64::INFINITY, Positive::get);
+        (direct * angle).abs().min(limit)
+    }
+}
+
+impl Matrices {
+    /// Those of samples `h` seconds apart, of an input that is held between them.
+    fn held(self, h: f64) -> Self {
+        let (order, inputs) = (self.a.nrows(), self.b.ncols());
+        let mut whole = DMatrix::zeros(order + inputs, order + inputs);
+        whole.view_mut((0, 0), (order, order)).copy_from(&(&self.a * h));
+        whole.view_mut((0, order), (order, inputs)).copy_from(&(&self.b * h));
+        let whole = exponential(&whole);
+        let (a, b) = (whole.view((0, 0), (order, order)), whole.view((0, order), (order, inputs)));
+        Self { a: a.into_owned(), b: b.into_owned(), ..self }
+    }
+
+    /// The same by s = 2/h (z - 1)/(z + 1), if there are any: with L = (1 - A h/2)^-1, states (L (1 + A h/2) x), inputs L B h,
+    /// outputs C L, and D + C L B h/2.
+    fn tustin(self, h: f64) -> Option<Self> {
+        let one = DMatrix::identity(self.a.nrows(), self.a.nrows());
+        let half = &self.a * (0.5 * h);
+        let inverse = if self.a.is_empty() { one.clone() } else { (&one - &half).try_inverse()? };
+        let (a, c) = (&inverse * (one + half), &self.c * &inverse);
+        let b = inverse * &self.b * h;
+        let d = &self.d + &c * &self.b * (0.5 * h);
+        Some(Self { a, b, c, d })
+    }
+}
+
+impl Rule for StateSpace {
+    fn start(&self, _: &Authority) -> Box<dyn Control> {
+        // One that cannot be sampled was refused.
+        let none = || Matrices {
+            a: DMatrix::zeros(0, 0),
+            b: DMatrix::zeros(0, 1),
+            c: DMatrix::zeros(1, 0),
+            d: DMatrix::zeros(1, 1),
+        };
+        let matrices = self.sampled().unwrap_or_else(|_| none());
+        Box::new(AtSamples {
+            state: DMatrix::zeros(matrices.a.nrows(), 1),
+            period: self.period,
+            command: self.command,
+            limit: self.limit.map_or(f64::INFINITY, Positive::get),
+            track: self.track,
+            active: false,
+            matrices,
+        })
+    }
+
+    fn period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    /// The usual 5 % of a step.
+    fn promise(&self) -> Promise {
+        Promise::Part(0.05)
+    }
+
+    fn reads(&self) -> Reads {
+        Reads::Motion
+    }
+}
+
+/// The law at work about an axis.
+#[derive(Clone, Debug)]
+struct AtSamples {
+    matrices: Matrices,
+    /// One column.
+    state: DMatrix<f64>,
+    period: Span,
+    command: Commands,
+    limit: f64,
+    track: bool,
+    active: bool,
+}
+
+impl Control for AtSamples {
+    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+        self.active = now >= goal.from;
+        if !self.active {
+            return Hold { until: Some(goal.from), ..Hold::NONE };
+        }
+        let (angle, rate) = goal.at(now);
+        let Matrices { a, b, c, d } = &self.matrices;
+        let errors = [angle - belief.angle, rate - belief.rate];
+        let error = DMatrix::from_column_slice(b.ncols(), 1, &errors[..b.ncols()]);
+        let mut output = (d * &error)[(0, 0)];
+        if !self.state.is_empty() {
+            output += (c * &self.state)[(0, 0)];
+            self.state = a * &self.state + b * &error;
+        }
+        let command = match self.command {
+            Commands::Torque => Command::Torque(output.clamp(-self.limit, self.limit)),
+            Commands::Acceleration => {
+                Command::Acceleration(output.clamp(-self.limit, self.limit) + goal.acceleration)
+            }
+        };
+        Hold { command, until: Some(now + self.period), guards: Guards::NONE }
+    }
+
+    fn state(&self) -> Phase {
+        if self.active { Phase::Feedback } else { Phase::Open }
+    }
+
+    /// With accelerations its reference has one to follow.
+    fn tracks(&self) -> bool {
+        self.track || self.command == Commands::Acceleration
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(self.clone())
+    }
+}
