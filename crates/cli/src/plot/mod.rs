@@ -14,6 +14,7 @@ mod gain;
 mod lock;
 mod modes;
 mod motion;
+mod orbit;
 mod outputs;
 mod phase_plane;
 mod spatial;

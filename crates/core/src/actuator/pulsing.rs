@@ -60,6 +60,7 @@ impl Pulsing {
                 let most = self.group(axis, torque).torque[axis].abs();
                 (torque.abs() / most * period, torque)
             }
+            Demand::Moment(_) => (0.0, 0.0),
         };
         if sign == 0.0 { 0.0 } else { sign.signum() * self.width.on_time(wanted, period) }
     }
@@ -132,6 +133,7 @@ impl Actuate for Pulsing {
                 let group = self.group(axis, change);
                 change / group.acceleration * group.torque[axis].abs() / self.period.seconds()
             }
+            Demand::Moment(_) => 0.0,
         }
     }
 

@@ -47,7 +47,7 @@ pub struct Wheels {
     /// Of four wheels, a speed that torques which cancel each other keep; left out, none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_bias: Option<SpeedBias>,
-    /// How jets unload them; left out, none do.
+    /// How jets or magnetorquers unload them; left out, none do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unloading: Option<Unloading>,
 }

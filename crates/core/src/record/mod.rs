@@ -31,13 +31,13 @@ pub use mcap::{LogFile, McapLog};
 pub use message::{Attachment, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;
-pub use states::{Gate, Latch, Lock, Trust, Use, Watch};
+pub use states::{Gate, Latch, Light, Lock, Trust, Use, Watch};
 pub use topics::{
     Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, ChannelState, Command, Energy,
-    Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Metric, MetricLine, MetricPage, Metrics,
-    ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Pointing, Rate,
-    Rates, Residual, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
-    Wheel, WheelMotion, Wheels, WindowMean,
+    Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
+    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion,
+    OutputName, Outputs, Params, Pointing, Rate, Rates, Residual, Summary, TOPICS, Torque, Torques,
+    TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -133,6 +133,8 @@ pub struct Cycle {
     pub elastic_rate_rad_s: [f64; 3],
     /// Angles beyond the target (rad).
     pub error_rad: [f64; 3],
+    /// Momentum of the wheels, in the body's axes (N m s).
+    pub stored_nm_s: [f64; 3],
 }
 
 /// The motion of a spatial body at one instant.
@@ -150,6 +152,10 @@ pub struct SpatialMotion {
     pub torques: Option<Torques>,
     /// Wheels about axes of their own.
     pub wheels: Option<Wheels>,
+    /// Where the body is on its orbit.
+    pub orbit: Option<Orbit>,
+    /// Magnetic moments of torquers.
+    pub magnetorquers: Option<Magnetorquers>,
 }
 
 /// Which motions a record wants whole, stretch by stretch.
@@ -369,6 +375,12 @@ trait TakeRow {
                 self.take(now, &motion.energy)?;
                 if let Some(torques) = &motion.torques {
                     self.take(now, torques)?;
+                }
+                if let Some(orbit) = &motion.orbit {
+                    self.take(now, orbit)?;
+                }
+                if let Some(magnetorquers) = &motion.magnetorquers {
+                    self.take(now, magnetorquers)?;
                 }
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
             }

@@ -1,5 +1,6 @@
 //! The sensors of a run: when each is due, and what their readings come to about each axis.
 
+use crate::body::spatial::Vector;
 use crate::random::Seed;
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Reading, Sense, Truth};
@@ -15,6 +16,10 @@ pub struct Sensing {
     pub reading: Option<Reading>,
     /// The same about each axis: angle (rad) and rate (rad/s).
     pub measured: Vec<[f64; 2]>,
+    /// The magnetic field in the body's axes as it was measured last (T), when, and how fast it changed (T/s).
+    pub field: Option<(Instant, Vector)>,
+    /// See `field`.
+    pub field_rate: Option<Vector>,
     /// When the next is due; none of a continuous sensor.
     pub next: Option<Instant>,
 }
@@ -54,6 +59,8 @@ impl Sensing {
             fresh: vec![None; sensors.len()],
             reading: None,
             measured: vec![[0.0; 2]; axes],
+            field: None,
+            field_rate: None,
             next: sensors.iter().filter_map(|due| due.next).min(),
             sensors,
         }
@@ -76,6 +83,11 @@ impl Sensing {
             let Some(reading) = reading else { continue };
             any = true;
             self.fresh[index] = Some(reading);
+            if let Some(sight) = reading.sight.filter(|sight| !sight.is_direction) {
+                let before = self.field.replace((now, sight.vector)).filter(|(then, _)| *then < now);
+                self.field_rate =
+                    before.map(|(then, field)| (sight.vector - field) / now.since(then).seconds());
+            }
             let rates = reading.rate.or_else(|| due.differences(now, &reading, &truth));
             if due.orients {
                 let angles = reading.at.beyond(origin);
@@ -89,6 +101,7 @@ impl Sensing {
             self.reading = Some(Reading {
                 at: if due.orients { reading.at } else { before.at },
                 rate: reading.rate.or(before.rate),
+                sight: None,
             });
         }
         self.next = self.sensors.iter().filter_map(|due| due.next).min();

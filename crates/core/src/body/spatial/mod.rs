@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, NonNegative};
 
-pub use attitude::{Attitude, angles, beyond, rotation, turned};
+pub use attitude::{Attitude, angles, beyond, of_axes, rotation, turned};
 pub use disturbance::Periodic;
 pub use elastic::Elastic;
 pub use modes::SpatialModes;

@@ -11,5 +11,5 @@ mod tests;
 
 pub use at_work::Tracking;
 pub use filter::{Correction, Filter, GyroNoise};
-pub use history::{Fix, History};
+pub use history::{Fix, History, Measured};
 pub use spec::{AttitudeFilter, Initial, Role, Setting};

@@ -25,6 +25,12 @@ pub struct AttitudeFilter {
     /// Standard deviation of a measured attitude about each axis of what measures it (rad); left out, the sensor's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude_noise: Option<[Positive; 3]>,
+    /// Standard deviation of a measured magnetic field along each axis (T); left out, the magnetometer's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub field_noise: Option<Positive>,
+    /// Standard deviation of a measured direction to the Sun (rad); left out, the Sun sensor's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sun_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: Initial,
@@ -62,11 +68,11 @@ impl Default for Initial {
 pub enum Role {
     /// Its rates carry the attitude on.
     Gyro,
-    /// It measures the attitude, so late, with errors of this covariance in the body's axes (rad²).
-    Attitude {
+    /// It measures the attitude or a vector, so late, with errors of this covariance in the body's axes.
+    Corrects {
         /// From exposure to when it is told.
         latency: Span,
-        /// The covariance.
+        /// The covariance (rad², or T² of a magnetic field).
         noise: Matrix3<f64>,
     },
     /// The filter does not read it.
@@ -103,16 +109,16 @@ impl AttitudeFilter {
             ));
         };
         let role = |(index, sensor): (usize, &Sensor)| match self.measured(sensor) {
-            Some((latency, noise)) => Ok(Role::Attitude { latency, noise: noise? }),
+            Some((latency, noise)) => Ok(Role::Corrects { latency, noise: noise? }),
             None if index == read => Ok(Role::Gyro),
             None => Ok(Role::None),
         };
         let roles = sensors.iter().enumerate().map(role).collect::<Result<Vec<_>, Fault>>()?;
         let late =
-            |role: &Role| if let Role::Attitude { latency, .. } = role { Some(*latency) } else { None };
+            |role: &Role| if let Role::Corrects { latency, .. } = role { Some(*latency) } else { None };
         let Some(latest) = roles.iter().filter_map(late).max() else {
-            let why =
-                "corrects its attitude by that of a `star_tracker` or a `sampled` sensor, and there is none";
+            let why = "corrects its attitude by that of a `star_tracker` or a `sampled` sensor, or by the vectors of a \
+                       `magnetometer` or a `sun_sensor`, and there is none";
             return Err(Fault::new("", why));
         };
         let Some(period) = gyro.period.or(cycle) else {
@@ -123,7 +129,7 @@ impl AttitudeFilter {
         Ok(Setting { roles, noise, bias, reach: latest + period })
     }
 
-    /// How late a sensor measures the attitude, and the covariance of its errors; nothing of one that does not.
+    /// How late a sensor measures the attitude or a vector, and the covariance of its errors; nothing of one that does not.
     fn measured(&self, sensor: &Sensor) -> Option<(Span, Result<Matrix3<f64>, Fault>)> {
         let given = self.attitude_noise.map(|noise| noise.map(Positive::get));
         let known = |own: [f64; 3]| {
@@ -144,6 +150,13 @@ impl AttitudeFilter {
                 let squares = |noise: [f64; 3]| Vector::from(noise.map(|noise| noise * noise));
                 let noise = known([sampled.angle_noise(); 3]);
                 Some((Span::ZERO, noise.map(|noise| Matrix3::from_diagonal(&squares(noise)))))
+            }
+            Sensor::Magnetometer(magnetometer) => {
+                let noise = vector(self.field_noise, magnetometer.covariance(), "field_noise");
+                Some((magnetometer.latency(), noise))
+            }
+            Sensor::SunSensor(sensor) => {
+                Some((sensor.latency(), vector(self.sun_noise, sensor.covariance(), "sun_noise")))
             }
             Sensor::Continuous | Sensor::Gyro(_) | Sensor::Own(_) => None,
         }
@@ -167,5 +180,16 @@ impl AttitudeFilter {
             angle_random_walk,
             rate_random_walk: self.rate_random_walk.map_or(walk, NonNegative::get),
         })
+    }
+}
+
+/// The covariance of a vector, of this deviation along each axis or its sensor's own.
+fn vector(given: Option<Positive>, own: Matrix3<f64>, key: &str) -> Result<Matrix3<f64>, Fault> {
+    let noise = given.map_or(own, |given| Matrix3::from_diagonal_element(given.get() * given.get()));
+    let why = "must be given where the sensor has no noise along an axis";
+    if noise.diagonal().iter().all(|variance| *variance > 0.0) {
+        Ok(noise)
+    } else {
+        Err(Fault::new(key, why))
     }
 }

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use super::SimulationError;
 use crate::body::{Sensed, State, Wrench};
+use crate::environment::Seen;
 use crate::guard::Guard;
 use crate::record::{Course, Record, RecordError};
 use crate::scenario::Scenario;
@@ -57,6 +58,7 @@ impl Plant {
                     rate: [rate, 0.0, 0.0],
                     rigid: [plant.state().rigid_rate, 0.0, 0.0],
                     turned: [angle, 0.0, 0.0],
+                    sky: Seen::default(),
                 })
             }
             Self::Spatial(plant) => plant.view(),

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Quaternion};
 
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState, Vector, vector};
 use crate::body::{Phase, Wrench};
-use crate::environment::Around;
+use crate::environment::{Around, Seen};
 use crate::motion::turning::{Acting, Flexible, Surroundings, Turning};
 use crate::sensor::{Orientation, Truth};
 
@@ -90,6 +90,9 @@ impl TwoWay {
     /// Begins a new motion at the instant seen last, under what acts from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
         let (push, hub) = (wrench.torque, Vector::from(wrench.hub));
+        if let Some(around) = &mut self.outside.around {
+            around.hold(wrench.moment);
+        }
         let Acting { torque, forces, rotors } = &mut self.acting;
         *torque = push + hub;
         rotors.clone_from(&wrench.rotors);
@@ -125,6 +128,7 @@ impl TwoWay {
             rate: (seen.rigid + elastic).into(),
             rigid: seen.rigid.into(),
             turned: (seen.turned + sum(sensed, &seen.displacements)).into(),
+            sky: Seen::default(),
         };
         (truth, elastic)
     }
