@@ -12,6 +12,7 @@ mod extra;
 mod frequency;
 mod gain;
 mod lock;
+mod magnetorquers;
 mod modes;
 mod motion;
 mod orbit;

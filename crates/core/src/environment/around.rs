@@ -20,6 +20,8 @@ pub struct Around {
     spinning: Matrix3<f64>,
     /// Force of sunlight in inertial axes (N), and where it acts from the centre of mass (m).
     sunlight: (Vector, Vector),
+    /// The centre of mass (m).
+    centre: Vector,
     /// See `environment`.
     torque: Vector,
     /// The magnetic moment that torquers hold, in the body's axes (A m²).
@@ -43,6 +45,8 @@ impl Around {
         let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
         let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
         let push = dipole.map_or(0.0, |dipole| dipole.bound(sky.field_bound()));
+        let drag = environment.drag.as_ref().zip(sky.orbit());
+        let braked = drag.map_or(0.0, |(drag, orbit)| drag.bound(orbit, centre));
         let axial = dipole.and_then(super::Dipole::own);
         let own = gradient.and_then(|of| of.orbit_rate).map(crate::quantity::Positive::get);
         let turning = environment.magnetic_field.map(|field| field.rotation.get().abs());
@@ -52,7 +56,8 @@ impl Around {
             environment: environment.clone(),
             axial,
             spinning,
-            bound: torque.norm() + sunlight.0.norm() * sunlight.1.norm() + pull + push,
+            centre: *centre,
+            bound: torque.norm() + sunlight.0.norm() * sunlight.1.norm() + pull + push + braked,
             // Both are of second order in the local axes' sine and cosine.
             frequency: 2.0 * fastest,
             sunlight,
@@ -94,7 +99,7 @@ impl Around {
 
 impl Surroundings for Around {
     fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let Environment { gravity_gradient, solar_pressure, dipole, .. } = &self.environment;
+        let Environment { gravity_gradient, solar_pressure, dipole, drag, .. } = &self.environment;
         let mut torque = into(attitude, &self.torque);
         let place = self.sky.place(t);
         if let Some(gradient) = gravity_gradient {
@@ -104,6 +109,9 @@ impl Surroundings for Around {
         if solar_pressure.as_ref().is_some_and(|sun| sun.is_lit(t) && self.sky.is_lit(t)) {
             let (force, at) = &self.sunlight;
             torque += at.cross(&into(attitude, force));
+        }
+        if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {
+            torque += drag.torque(orbit, place, attitude, &self.centre);
         }
         let field = place.and_then(|place| self.sky.field(&place, t));
         if let Some(dipole) = dipole {

@@ -2,6 +2,7 @@
 
 mod around;
 mod dipole;
+mod drag;
 mod gravity_gradient;
 mod kepler;
 mod magnetic_field;
@@ -19,6 +20,7 @@ use crate::quantity::Finite;
 
 pub use around::Around;
 pub use dipole::Dipole;
+pub use drag::{Drag, Plate};
 pub use gravity_gradient::GravityGradient;
 pub use kepler::{Kepler, Place};
 pub use magnetic_field::MagneticField;
@@ -48,6 +50,9 @@ pub struct Environment {
     /// A magnetic moment of the body in the field of its planet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dipole: Option<Dipole>,
+    /// Drag of the atmosphere on plates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drag: Option<Drag>,
     /// A torque that is constant in inertial axes (N m).
     #[serde(default)]
     pub torque: [Finite; 3],
@@ -64,6 +69,9 @@ impl Environment {
         }
         if self.magnetic_field.is_some() && self.orbit.is_none() {
             return Some(Fault::new("magnetic_field", "is that along an `orbit`, and there is none"));
+        }
+        if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
+            return Some(fault.within("drag"));
         }
         let shadow = self.solar_pressure.as_ref().and_then(SolarPressure::fault);
         shadow.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())

@@ -69,7 +69,7 @@ impl Tracking {
             }
         }
         for (role, reading) in self.setting.of(readings, &|role| matches!(role, Role::Corrects { .. })) {
-            let Role::Corrects { latency, noise } = role else { continue };
+            let Role::Corrects { latency, noise, gain } = role else { continue };
             let measured = match (reading.sight, reading.at) {
                 (Some(sight), _) => Measured::Vector(sight),
                 (None, Orientation::Attitude(attitude)) => Measured::Attitude(attitude),
@@ -77,7 +77,7 @@ impl Tracking {
             };
             // What is told at the start is of the start.
             let exposed = if now == Instant::START { now } else { now.before(*latency) };
-            corrections.extend(history.fix(Fix { exposed, measured, noise: *noise }));
+            corrections.extend(history.fix(Fix { exposed, measured, noise: *noise, gain: *gain }));
         }
         self.used = !corrections.is_empty();
         self.told = corrections.pop().unwrap_or_default();

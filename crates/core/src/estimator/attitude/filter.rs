@@ -6,8 +6,9 @@
 //! form of Joseph. So does a vector y that is r in inertial axes: with b = Q^* r it is b + b x theta, of a direction the part across
 //! b alone. Errors stay on the right of Q^: nothing has to be reset but Q^ itself.
 
-use nalgebra::{Cholesky, Const, DimSub, Matrix3, Matrix6, Quaternion, SMatrix, ToTypenum};
+use nalgebra::{Cholesky, Const, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum};
 
+use super::history::Measured;
 use crate::body::spatial::{Vector, beyond, rotation};
 use crate::environment::into;
 use crate::numerics::stumpff::stumpff;
@@ -91,6 +92,50 @@ impl Filter {
         Some(Correction { innovation: off.cross(&expected) / expected.norm_squared(), nis })
     }
 
+    /// The same with a constant gain from the angle that is measured beyond the attitude. The covariance is that of the errors
+    /// which this gain leaves.
+    pub fn correct_with(
+        &mut self,
+        measured: &Measured,
+        noise: &Matrix3<f64>,
+        gain: &Matrix6x3<f64>,
+    ) -> Option<Correction> {
+        let (off, moved, gain) = match measured {
+            Measured::Attitude(attitude) => (beyond(&self.attitude, attitude), Matrix3::identity(), *gain),
+            Measured::Vector(sight) => {
+                let expected = into(&self.attitude, &sight.inertial);
+                let to_angle = expected.cross_matrix() / -expected.norm_squared();
+                (sight.vector - expected, expected.cross_matrix(), gain * to_angle)
+            }
+        };
+        let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
+        let spread = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?;
+        // A direction has two numbers.
+        let scale =
+            if matches!(measured, Measured::Vector(Sight { is_direction: true, .. })) { 1.5 } else { 1.0 };
+        let nis = scale * off.dot(&spread.solve(&off));
+        let error = gain * off;
+        let innovation = match measured {
+            Measured::Attitude(_) => off,
+            Measured::Vector(sight) => {
+                let expected = into(&self.attitude, &sight.inertial);
+                off.cross(&expected) / expected.norm_squared()
+            }
+        };
+        self.take(&error, &(gain * moved), &(gain * noise * gain.transpose()));
+        Some(Correction { innovation, nis })
+    }
+
+    /// Takes errors over that were found with a gain of which this acts on the attitude, and adds this to the covariance.
+    fn take(&mut self, error: &SMatrix<f64, 6, 1>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) {
+        self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
+        self.bias += error.fixed_rows::<3>(3);
+        let mut kept = Matrix6::identity();
+        let mut first = kept.fixed_columns_mut::<3>(0);
+        first -= told;
+        self.covariance = symmetric(&(kept * self.covariance * kept.transpose() + added));
+    }
+
     /// Takes D numbers that are beyond what is expected by so much, where a unit of theta moves them so, and errors have this
     /// covariance; returns the normalised square.
     fn update<const D: usize>(
@@ -105,14 +150,7 @@ impl Filter {
         let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
         let inverse = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?.inverse();
         let gain = to_measured * inverse;
-        let error = gain * off;
-        self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
-        self.bias += error.fixed_rows::<3>(3);
-        let mut kept = Matrix6::identity();
-        let mut told = kept.fixed_columns_mut::<3>(0);
-        told -= gain * moved;
-        self.covariance =
-            symmetric(&(kept * self.covariance * kept.transpose() + gain * noise * gain.transpose()));
+        self.take(&(gain * off), &(gain * moved), &(gain * noise * gain.transpose()));
         Some(off.dot(&(inverse * off)))
     }
 

@@ -6,7 +6,7 @@
 
 use std::collections::VecDeque;
 
-use nalgebra::{Matrix3, Quaternion};
+use nalgebra::{Matrix3, Matrix6x3, Quaternion};
 
 use super::filter::{Correction, Filter, GyroNoise};
 use crate::body::spatial::Vector;
@@ -22,6 +22,8 @@ pub struct Fix {
     pub measured: Measured,
     /// Covariance of its error in the body's axes (rad², or that of the vector's unit).
     pub noise: Matrix3<f64>,
+    /// The constant gain of a filter that has one.
+    pub gain: Option<Matrix6x3<f64>>,
 }
 
 /// What corrects an attitude.
@@ -35,9 +37,10 @@ pub enum Measured {
 
 impl Fix {
     fn correct(&self, filter: &mut Filter) -> Option<Correction> {
-        match &self.measured {
-            Measured::Attitude(attitude) => filter.correct(attitude, &self.noise),
-            Measured::Vector(sight) => filter.correct_by(sight, &self.noise),
+        match (&self.measured, &self.gain) {
+            (Measured::Attitude(attitude), None) => filter.correct(attitude, &self.noise),
+            (Measured::Vector(sight), None) => filter.correct_by(sight, &self.noise),
+            (measured, Some(gain)) => filter.correct_with(measured, &self.noise, gain),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The attitude filter as a scenario describes it, and what it makes of the scenario's sensors.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::GyroNoise;
+use super::{Form, GyroNoise};
 use crate::body::spatial::Vector;
 use crate::document::Fault;
 use crate::estimator::kalman::Prior;
@@ -16,6 +16,9 @@ use crate::time::Span;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AttitudeFilter {
+    /// How its gains are found.
+    #[serde(default)]
+    pub form: Form,
     /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; left out, the largest of the gyro's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_random_walk: Option<Positive>,
@@ -74,6 +77,8 @@ pub enum Role {
         latency: Span,
         /// The covariance (rad², or T² of a magnetic field).
         noise: Matrix3<f64>,
+        /// The constant gain of a filter that has one.
+        gain: Option<Matrix6x3<f64>>,
     },
     /// The filter does not read it.
     None,
@@ -108,8 +113,16 @@ impl AttitudeFilter {
                 "carries the attitude on by the rates of a `gyro`, and there is none",
             ));
         };
+        let Some(period) = gyro.period.or(cycle) else {
+            return Err(Fault::new("", "needs a gyro with a `period`"));
+        };
+        let gyro_noise = self.gyro_noise(gyro, period.seconds())?;
         let role = |(index, sensor): (usize, &Sensor)| match self.measured(sensor) {
-            Some((latency, noise)) => Ok(Role::Corrects { latency, noise: noise? }),
+            Some((latency, noise)) => {
+                let (noise, every) = (noise?, sensor.period(cycle).unwrap_or(period));
+                let gain = self.form.gain(&gyro_noise, every.seconds(), &noise);
+                Ok(Role::Corrects { latency, noise, gain })
+            }
             None if index == read => Ok(Role::Gyro),
             None => Ok(Role::None),
         };
@@ -121,12 +134,13 @@ impl AttitudeFilter {
                        `magnetometer` or a `sun_sensor`, and there is none";
             return Err(Fault::new("", why));
         };
-        let Some(period) = gyro.period.or(cycle) else {
-            return Err(Fault::new("", "needs a gyro with a `period`"));
-        };
-        let noise = self.gyro_noise(gyro, period.seconds())?;
+        let correct = roles.iter().filter(|role| matches!(role, Role::Corrects { .. })).count();
+        if self.form == Form::Steady && (correct > 1 || sensors.iter().any(Sensor::is_of_a_vector)) {
+            let why = "has a steady state with one sensor of the attitude, and no vectors: take `extended` or `complementary`";
+            return Err(Fault::new("form", why));
+        }
         let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
-        Ok(Setting { roles, noise, bias, reach: latest + period })
+        Ok(Setting { roles, noise: gyro_noise, bias, reach: latest + period })
     }
 
     /// How late a sensor measures the attitude or a vector, and the covariance of its errors; nothing of one that does not.

@@ -47,7 +47,12 @@ fn at(k: usize) -> Instant {
 }
 
 fn fix(read: &[Vec<f64>], k: usize) -> Fix {
-    Fix { exposed: at(k), measured: Measured::Attitude(quaternion(&read[k][5..9])), noise: tracker() }
+    Fix {
+        exposed: at(k),
+        measured: Measured::Attitude(quaternion(&read[k][5..9])),
+        noise: tracker(),
+        gain: None,
+    }
 }
 
 /// The run, with the filter after each reading, where attitudes arrive this many readings after exposure.
