@@ -63,8 +63,7 @@ fn decayed(momentum: [f64; 3], gain: f64, until: f64) -> [f64; 3] {
         // The body is where the orbit has the angle u from its node: its direction, and the dipole's south.
         let (node, inclination) = (0.4_f64, 1.2_f64);
         let [c, s] = [u.cos(), u.sin()];
-        let [cn, sn, ci, si] =
-            [node.cos(), node.sin(), inclination.cos(), inclination.sin()];
+        let [cn, sn, ci, si] = [node.cos(), node.sin(), inclination.cos(), inclination.sin()];
         let up = [cn * c - sn * ci * s, sn * c + cn * ci * s, si * s];
         let field = [-3.0 * up[2] * up[0], -3.0 * up[2] * up[1], 1.0 - 3.0 * up[2] * up[2]];
         let (length, part) = (norm(&field), dot(&field, h));

@@ -3,7 +3,7 @@
 use crate::body::spatial::Vector;
 use crate::random::Seed;
 use crate::scenario::Scenario;
-use crate::sensor::{Orientation, Reading, Sense, Truth};
+use crate::sensor::{Orientation, Reading, Sense, Sensor, Truth};
 use crate::time::{Instant, Span};
 
 /// The sensors at work.
@@ -33,6 +33,8 @@ struct Due {
     period: Option<Span>,
     next: Option<Instant>,
     last: Option<Reading>,
+    /// Whether it is the magnetometer whose field counts.
+    feels: bool,
     /// Whether rates are the differences of its angles.
     differs: bool,
 }
@@ -43,7 +45,8 @@ impl Sensing {
         let (study, axes) = (&scenario.study, scenario.study.axes.len());
         let all = &scenario.sensor;
         let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
-        let due = |(index, sensor): (usize, &crate::sensor::Sensor)| {
+        let feels = all.iter().position(|sensor| matches!(sensor, Sensor::Magnetometer(_)));
+        let due = |(index, sensor): (usize, &Sensor)| {
             let period = if all.len() == 1 { study.sampling } else { sensor.period(study.cycle) };
             Due {
                 sensor: sensor.start(axes, seed, all.ordinal(index)),
@@ -51,6 +54,7 @@ impl Sensing {
                 period,
                 next: period.map(|period| Instant::START + period),
                 last: None,
+                feels: feels == Some(index),
                 differs: all.orients(index) && !rates,
             }
         };
@@ -83,7 +87,7 @@ impl Sensing {
             let Some(reading) = reading else { continue };
             any = true;
             self.fresh[index] = Some(reading);
-            if let Some(sight) = reading.sight.filter(|sight| !sight.is_direction) {
+            if let Some(sight) = reading.sight.filter(|_| due.feels) {
                 let before = self.field.replace((now, sight.vector)).filter(|(then, _)| *then < now);
                 self.field_rate =
                     before.map(|(then, field)| (sight.vector - field) / now.since(then).seconds());

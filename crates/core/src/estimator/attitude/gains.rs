@@ -113,7 +113,7 @@ mod tests {
         let sum = before.fixed_rows::<3>(0) + covariance;
         let found = Form::Steady.gain(&noise, period, &covariance).unwrap();
         for axis in 0..3 {
-            for (row, size) in [(axis, 1.0), (axis + 3, 1e-3)] {
+            for (row, size) in [(axis, 1.0_f64), (axis + 3, 1e-3)] {
                 let exact = before[(row, axis)] / sum[(axis, axis)];
                 let off = (found[(row, axis)] - exact).abs();
                 assert!(off < 1e-9 * size.max(exact.abs()), "{axis} {row} {} {exact}", found[(row, axis)]);
