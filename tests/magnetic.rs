@@ -196,6 +196,30 @@ fn a_filter_of_vectors_is_as_good_as_it_says() {
     assert!((nis - 1.0).abs() < 0.02, "NIS {nis}");
 }
 
+/// With constant gains the covariance is that of the errors which they leave, over many runs.
+#[test]
+fn filters_with_constant_gains_are_as_good_as_they_say() {
+    for form in ["\"steady\"", "{ complementary = { bandwidth = 0.02 } }"] {
+        let keys = format!("[estimator.attitude]\nform = {form}");
+        let scenario = shipped(
+            "earth-observer",
+            &[("[estimator.attitude]", &keys), ("duration = 300.0", "seed = 9\nduration = 300.0")],
+        );
+        let runs = 40;
+        let mut sums = [0.0; 2];
+        for run in 0..runs {
+            let mut gather = Gather::new(&scenario);
+            Simulation::new(&scenario, run).run(&mut gather).expect("a run");
+            let metrics = gather.finish(&scenario);
+            for (sum, name) in sums.iter_mut().zip(["nees_mean", "nis_mean"]) {
+                *sum += metrics.number(name).expect(name) / runs as f64;
+            }
+        }
+        // Slow filters: the errors of a run are few numbers, with a standard deviation of 0.45 over the runs.
+        assert!(sums.iter().all(|mean| (mean - 1.0).abs() < 0.2), "{form}: NEES and NIS {sums:?}");
+    }
+}
+
 #[test]
 fn the_observer_keeps_its_wheels_empty_by_torquers() {
     let (metrics, trace) = flown(&shipped("magnetic-unloading", &[]), 0);
@@ -206,6 +230,50 @@ fn the_observer_keeps_its_wheels_empty_by_torquers() {
     let without = shipped("magnetic-unloading", &[("gain = 2e-3  ", "gain = 1e-9  ")]);
     let (metrics, _) = flown(&without, 0);
     assert!(metrics.number("wheel_momentum_peak_nm_s").expect("a number") > 0.3);
+}
+
+/// An appendage that cools at the edge of the shadow: an oscillator under an exponential, in closed form.
+#[test]
+fn an_appendage_snaps_as_its_closed_form_does() {
+    let (m, t, o, eta, tau) = (100.0, 2.0, 1.3, 0.05, 4.0_f64);
+    let text = format!(
+        "duration = 120.0\nlaw = {{ open = {{}} }}\nlog = {{ period = 0.5 }}\n\
+         [spacecraft]\nmass = 90.0\ninertia = [[30, 0, 0], [0, 40, 0], [0, 0, 35]]\n\
+         [[appendage]]\nname = \"mass\"\nmass = 10.0\nmodes = [{{ frequency = {o}, translation = [0, 0, {t}] }}]\n\
+         thermal = {{ deflection = [{eta}], time_constant = {tau} }}\n\
+         [environment]\norbit = {{ semi_major_axis = 7e6, anomaly = 1.97 }}\nsun = [1, 0, 0]\n"
+    );
+    let (_, trace) = flown(&Scenario::parse("snap.toml", &text).expect("a scenario"), 0);
+    let Some(Column::Rows(_, modes)) = trace.topic("/vibrations").and_then(|rows| rows.get("modes")) else {
+        panic!("modes")
+    };
+    let found = modes.numbers("displacement").expect("a column");
+    // One free mode: E = 1 - t²/m, W = O/sqrt(E), Y = 1/sqrt(E); the force is Y O² eta.
+    let e = 1.0 - t * t / m;
+    let (w, force) = (o / e.sqrt(), o * o * eta / e.sqrt());
+    let rate = (3.986_004_418e14_f64 / 7e6_f64.powi(3)).sqrt();
+    let edge = (std::f64::consts::PI - (6_378_137.0_f64 / 7e6).asin() - 1.97) / rate;
+    assert!((10.0..60.0).contains(&edge), "{edge}");
+    let (a, b) = (-force / (w * w), force / (1.0 / (tau * tau) + w * w));
+    let mut most = 0.0_f64;
+    for (row, found) in found.iter().enumerate() {
+        let s = 0.5 * row as f64 - edge;
+        let exact = if s < 0.0 {
+            0.0
+        } else {
+            let (sin, cos) = (w * s).sin_cos();
+            a + b * (-s / tau).exp() - (a + b) * cos + b / (tau * w) * sin
+        };
+        assert!((found - exact).abs() < 1e-9, "{s} {found} {exact}");
+        most = most.max(exact.abs());
+    }
+    assert!(most > 0.05, "{most}");
+    let error =
+        Scenario::parse("dark.toml", &text.replace("sun = [1, 0, 0]", "")).expect_err("no Sun").to_string();
+    assert!(error.contains("`appendage[0].thermal`") && error.contains("environment.sun"), "{error}");
+    let error =
+        Scenario::parse("two.toml", &text.replace("[0.05]", "[0.05, 1]")).expect_err("two").to_string();
+    assert!(error.contains("appendage[0].thermal.deflection") && error.contains("1 modes, got 2"), "{error}");
 }
 
 #[test]

@@ -6,7 +6,8 @@ use super::dipole::Axial;
 use super::orbit::into;
 use super::{Environment, GravityGradient, Kepler, Seen, Sky, SolarPressure};
 use crate::body::spatial::{Vector, vector};
-use crate::motion::turning::Surroundings;
+use crate::craft::Bending;
+use crate::motion::turning::{Heated, Surroundings};
 use crate::time::Instant;
 
 /// The surroundings of a body.
@@ -24,6 +25,8 @@ pub struct Around {
     centre: Vector,
     /// See `environment`.
     torque: Vector,
+    /// Thermal bending of appendages.
+    heated: Vec<Heated>,
     /// The magnetic moment that torquers hold, in the body's axes (A m²).
     held: Vector,
     bound: f64,
@@ -63,8 +66,23 @@ impl Around {
             sunlight,
             torque,
             held: Vector::zeros(),
+            heated: Vec::new(),
             sky,
         }
+    }
+
+    /// Lets sunlight bend the body: the level counts from that at the start.
+    #[must_use]
+    pub fn warming(self, bendings: &[Bending]) -> Self {
+        let start = if self.sky.is_lit(0.0) { 1.0 } else { 0.0 };
+        let level = |edge: Instant| {
+            let t = edge.seconds();
+            [t, if self.sky.is_lit(t) { 1.0 - start } else { -start }]
+        };
+        let aims = || self.sky.edges().map(level);
+        let heated = |of: &Bending| Heated::new(of.forces.clone(), of.time_constant, aims());
+        let heated = bendings.iter().map(heated).collect();
+        Self { heated, ..self }
     }
 
     /// Takes over the magnetic moment that torquers hold from now on, in the body's axes (A m²).
@@ -92,8 +110,9 @@ impl Around {
 
     /// The instants at which a torque begins or ends.
     pub fn edges(&self) -> impl Iterator<Item = Instant> {
-        let sunlight = self.environment.solar_pressure.iter();
-        sunlight.flat_map(|sun| SolarPressure::edges(sun).chain(self.sky.edges()))
+        let own = self.environment.solar_pressure.iter().flat_map(SolarPressure::edges);
+        let matters = self.environment.solar_pressure.is_some() || !self.heated.is_empty();
+        own.chain(self.sky.edges().filter(move |_| matters))
     }
 }
 
@@ -127,6 +146,10 @@ impl Surroundings for Around {
     fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
         let gradient = self.environment.gravity_gradient.as_ref()?;
         Some(GravityGradient::tide(gradient.pull(t, attitude, self.sky.place(t).as_ref())))
+    }
+
+    fn heated(&self) -> &[Heated] {
+        &self.heated
     }
 
     fn bound(&self) -> f64 {

@@ -329,6 +329,14 @@ impl Study {
 
 /// What is around a body, of which wheels are a part that its inertia is without.
 fn surroundings(scenario: &Scenario, body: &Spatial) -> Result<Option<Around>, Fault> {
+    let bendings = scenario.body.craft().map_or(&[][..], |craft| &craft.bendings);
+    let sunny =
+        scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some() && around.sun.is_some());
+    if !bendings.is_empty() && !sunny {
+        let index = scenario.appendage.iter().position(|appendage| appendage.thermal.is_some());
+        let why = "is that of sunlight and shadow: it needs `environment.orbit` and `environment.sun`";
+        return Err(Fault::new(format!("appendage[{}].thermal", index.unwrap_or(0)), why));
+    }
     let Some(environment) = &scenario.environment else { return Ok(None) };
     let rotors = match &scenario.actuator {
         Actuator::Wheels(wheels) => wheels.rotors().map_err(|fault| fault.within("actuator.wheels"))?,
@@ -336,7 +344,8 @@ fn surroundings(scenario: &Scenario, body: &Spatial) -> Result<Option<Around>, F
     };
     let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
     let centre = scenario.body.craft().map_or_else(Vector::zeros, |craft| craft.centre);
-    Ok(Some(Around::new(environment, scenario.sky(), [body.tensor(), spinning], &centre)))
+    let around = Around::new(environment, scenario.sky(), [body.tensor(), spinning], &centre);
+    Ok(Some(around.warming(bendings)))
 }
 
 /// No structure has elastic rates like this (rad/s).

@@ -77,7 +77,12 @@ impl Tracking {
             };
             // What is told at the start is of the start.
             let exposed = if now == Instant::START { now } else { now.before(*latency) };
-            corrections.extend(history.fix(Fix { exposed, measured, noise: *noise, gain: *gain }));
+            corrections.extend(history.fix(Fix {
+                exposed,
+                measured,
+                noise: *noise,
+                gain: gain.as_deref().copied(),
+            }));
         }
         self.used = !corrections.is_empty();
         self.told = corrections.pop().unwrap_or_default();

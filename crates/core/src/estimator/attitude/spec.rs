@@ -67,7 +67,7 @@ impl Default for Initial {
 }
 
 /// What a sensor is to the filter.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Role {
     /// Its rates carry the attitude on.
     Gyro,
@@ -78,7 +78,7 @@ pub enum Role {
         /// The covariance (rad², or T² of a magnetic field).
         noise: Matrix3<f64>,
         /// The constant gain of a filter that has one.
-        gain: Option<Matrix6x3<f64>>,
+        gain: Option<Box<Matrix6x3<f64>>>,
     },
     /// The filter does not read it.
     None,
@@ -121,7 +121,7 @@ impl AttitudeFilter {
             Some((latency, noise)) => {
                 let (noise, every) = (noise?, sensor.period(cycle).unwrap_or(period));
                 let gain = self.form.gain(&gyro_noise, every.seconds(), &noise);
-                Ok(Role::Corrects { latency, noise, gain })
+                Ok(Role::Corrects { latency, noise, gain: gain.map(Box::new) })
             }
             None if index == read => Ok(Role::Gyro),
             None => Ok(Role::None),

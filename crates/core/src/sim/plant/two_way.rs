@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Quaternion};
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState, Vector, vector};
 use crate::body::{Phase, Wrench};
 use crate::environment::{Around, Seen};
-use crate::motion::turning::{Acting, Flexible, Surroundings, Turning};
+use crate::motion::turning::{Acting, Flexible, Heated, Surroundings, Turning};
 use crate::sensor::{Orientation, Truth};
 
 /// The motion, and what the plant needs to turn what acts and what is seen into its terms.
@@ -36,6 +36,10 @@ impl Surroundings for Outside {
 
     fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
         self.around.as_ref()?.tide(t, attitude)
+    }
+
+    fn heated(&self) -> &[Heated] {
+        self.around.as_ref().map_or(&[], Surroundings::heated)
     }
 
     fn bound(&self) -> f64 {
