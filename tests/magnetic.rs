@@ -249,7 +249,7 @@ fn an_appendage_snaps_as_its_closed_form_does() {
     };
     let found = modes.numbers("displacement").expect("a column");
     // One free mode: E = 1 - t²/m, W = O/sqrt(E), Y = 1/sqrt(E); the force is Y O² eta.
-    let e = 1.0 - t * t / m;
+    let e = 1.0_f64 - t * t / m;
     let (w, force) = (o / e.sqrt(), o * o * eta / e.sqrt());
     let rate = (3.986_004_418e14_f64 / 7e6_f64.powi(3)).sqrt();
     let edge = (std::f64::consts::PI - (6_378_137.0_f64 / 7e6).asin() - 1.97) / rate;
@@ -274,6 +274,29 @@ fn an_appendage_snaps_as_its_closed_form_does() {
     let error =
         Scenario::parse("two.toml", &text.replace("[0.05]", "[0.05, 1]")).expect_err("two").to_string();
     assert!(error.contains("appendage[0].thermal.deflection") && error.contains("1 modes, got 2"), "{error}");
+}
+
+/// A table in the axes of an orbit that is no circle: what is left of rate and acceleration fed forward is the hold of a sample,
+/// and falls with its period.
+#[test]
+fn a_table_on_an_orbit_is_followed_to_the_hold_of_a_sample() {
+    let worst = |period: f64| {
+        let text = format!(
+            "duration = 300.0\nlog = {{ period = 0.5 }}\nlaw = {{ attitude = {{ period = {period}, bandwidth = 0.1 }} }}\n\
+             target = [{{ from = 0, frame = \"nadir\" }}, {{ from = 180, frame = \"nadir\", table = [{{ time = 0 }}, \
+             {{ time = 30, roll = 0.3 }}, {{ time = 60, roll = -0.3, yaw = 0.2 }}, {{ time = 100 }}] }}]\n\
+             [spacecraft]\nmass = 100.0\ninertia = [[30, 1, 0], [1, 40, 2], [0, 2, 35]]\nattitude = [0.5, 0.5, 0.5, 0.5]\n\
+             [environment]\norbit = {{ semi_major_axis = 7.0e6, inclination = 1.2, node = 0.3, eccentricity = 0.05 }}\n"
+        );
+        let (_, trace) = flown(&Scenario::parse("table.toml", &text).expect("a scenario"), 0);
+        let errors = ["roll", "pitch", "yaw"]
+            .map(|axis| column(&trace, "/pointing", &format!("{axis}_error_rad"))[360..].to_vec());
+        errors.iter().flatten().fold(0.0_f64, |most, error| most.max(error.abs()))
+    };
+    let [coarse, fine] = [0.25, 0.025].map(worst);
+    // Half a period late, the acceleration of the table, at most 0.3 rad in 30 s: 2e-3 rad.
+    assert!((1e-3..3e-3).contains(&coarse), "{coarse}");
+    assert!((9.5..10.5).contains(&(coarse / fine)), "{coarse} {fine}");
 }
 
 #[test]
