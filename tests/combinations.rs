@@ -10,7 +10,7 @@ use flexsc_core::{Scenario, ScenarioError, Simulation};
 /// A kind: its name, its letter in the table, and its text.
 type Kind = (&'static str, &'static str, &'static str);
 
-const LAWS: [Kind; 8] = [
+const LAWS: [Kind; 10] = [
     ("relay", "", "relay = { dead_zone = 5e-4, hysteresis = 1e-4, strong = 4e-3, weak = 1e-4, k_t = 0.3 }"),
     ("pd", "", "pd = { k_p = 0.4, k_d = 6.0, period = 0.2 }"),
     ("pd with an extra loop", "", "pd = { k_p = 0.4, k_d = 6.0, period = 0.2, extra = { gain = 0.1 } }"),
@@ -31,9 +31,15 @@ const LAWS: [Kind; 8] = [
         "",
         "phase_plane = { period = 0.2, dead_zone = 5e-4, rate_limit = 1e-3, switch_on = 1e-4, switch_off = 3e-5, damping = {} }",
     ),
+    ("b_dot", "", "b_dot = { period = 1.0, gain = 1e5 }"),
+    (
+        "sequence",
+        "",
+        "sequence = [{ law = { open = {} } }, { from = 10.0, law = { attitude = { period = 0.2, bandwidth = 0.06 } } }]",
+    ),
 ];
 
-const SENSORS: [Kind; 5] = [
+const SENSORS: [Kind; 6] = [
     ("continuous", "c", "sensor = \"continuous\""),
     ("sampled", "s", "sensor = { sampled = { period = 0.2, noise = 1e-6 } }"),
     ("gyro", "g", "sensor = { gyro = { period = 0.2, noise = 1e-6 } }"),
@@ -42,6 +48,11 @@ const SENSORS: [Kind; 5] = [
         "gyro and star_tracker",
         "b",
         "sensor = [{ gyro = { period = 0.2, angle_random_walk = 1e-6 } }, { star_tracker = { period = 1.0, noise = [1e-6, 1e-6, 1e-6], latency = 0.3 } }]",
+    ),
+    (
+        "gyro, magnetometer and sun_sensor",
+        "m",
+        "sensor = [{ gyro = { period = 0.2, angle_random_walk = 1e-6 } }, { magnetometer = { period = 1.0, noise = 1e-8 } }, { sun_sensor = { period = 1.0, noise = 1e-3 } }]",
     ),
 ];
 
@@ -57,12 +68,13 @@ const ESTIMATORS: [Kind; 9] = [
     ("adaptive", "A", "adaptive = {}"),
 ];
 
-const ACTUATORS: [Kind; 6] = [
+const ACTUATORS: [Kind; 7] = [
     ("ideal", "", "\"ideal\""),
     ("hold", "", "{ hold = { period = 0.2 } }"),
     ("thrusters", "", "{ thrusters = { torque = 0.05, period = 0.2 } }"),
     ("wheel", "", "{ wheel = { gain = 1.0, limit = 0.05 } }"),
     ("wheels", "", "{ wheels = { arrangement = \"pyramid\", inertia = 0.01, torque = 0.05 } }"),
+    ("magnetorquers", "", "{ magnetorquers = { moment = 10.0 } }"),
     (
         "jets",
         "",
@@ -94,6 +106,13 @@ modes = [
     { frequency = 1.0, damping = 0.01, displacement = 1e-4, shapes.hub = { rotation = [0.05, 0.02, 0.01] } },
     { frequency = 2.5, damping = 0.01, shapes.hub = { rotation = [0.01, 0.04, -0.03] } },
 ]
+";
+
+/// What is around a body with three axes: nothing that pushes.
+const AROUND: &str = "[environment]
+orbit = { semi_major_axis = 7e6, inclination = 1.0 }
+magnetic_field = {}
+sun = [1, 2, 3]
 ";
 
 const SPACECRAFT: &str = "[spacecraft]
@@ -131,8 +150,9 @@ fn combined(
         }
         _ => format!("estimator = {{ {} }}\n", estimator.2),
     };
+    let around = if body == ONE_ANGLE { "" } else { AROUND };
     let text = format!(
-        "duration = 50.0\nseed = 3\nlaw = {{ {} }}\n{}\nactuator = {}\n{estimator}{body}",
+        "duration = 50.0\nseed = 3\nlaw = {{ {} }}\n{}\nactuator = {}\n{estimator}{body}{around}",
         law.2, sensor.2, actuator.2
     );
     Scenario::parse("combination.toml", &text)

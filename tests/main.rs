@@ -44,6 +44,7 @@ mod live_limits;
 mod logs;
 mod loops;
 mod lqg;
+mod magnetic;
 mod manoeuvres;
 mod own_parts;
 mod plan;

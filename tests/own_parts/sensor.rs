@@ -28,7 +28,7 @@ impl Instrument for Encoder {
 impl Sense for Encoder {
     fn read(&mut self, _: Instant, truth: &Truth, _: Option<&Reading>) -> Option<Reading> {
         let steps = truth.seen().map(|angle| (angle / self.step).round() * self.step);
-        Some(Reading { at: truth.orientation.at(steps), rate: None })
+        Some(Reading { at: truth.orientation.at(steps), rate: None, sight: None })
     }
 
     fn copy(&self) -> Box<dyn Sense> {

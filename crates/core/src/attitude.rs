@@ -23,6 +23,11 @@ impl Attitude {
     pub const fn get(self) -> Quaternion<f64> {
         self.0
     }
+
+    /// Whether it leaves vectors as they are.
+    pub fn is_identity(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 impl Default for Attitude {
@@ -78,6 +83,24 @@ pub fn turned(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
     about(2, yaw) * about(1, pitch) * about(0, roll)
 }
 
+/// The attitude of a body whose axes x, y and z are these, right-handed unit vectors in inertial axes.
+pub fn of_axes([x, y, z]: &[Vector; 3]) -> Quaternion<f64> {
+    // Four times the square of each part; the largest is divided by.
+    let squares =
+        [1.0 + x.x + y.y + z.z, 1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z, 1.0 - x.x - y.y + z.z];
+    let largest = (1..4).fold(0, |best, part| if squares[part] > squares[best] { part } else { best });
+    let twice = libm::sqrt(squares[largest]);
+    let (a, b, c) = ((y.z - z.y) / twice, (z.x - x.z) / twice, (x.y - y.x) / twice);
+    let (d, e, f) = ((x.y + y.x) / twice, (x.z + z.x) / twice, (y.z + z.y) / twice);
+    let parts = match largest {
+        0 => Quaternion::new(twice, a, b, c),
+        1 => Quaternion::new(a, twice, d, e),
+        2 => Quaternion::new(b, d, twice, f),
+        _ => Quaternion::new(c, e, f, twice),
+    };
+    parts / parts.norm()
+}
+
 /// Roll, pitch and yaw of an attitude (rad), in the same sequence.
 pub fn angles(q: &Quaternion<f64>) -> [f64; 3] {
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);
@@ -127,6 +150,18 @@ pub fn asymmetry(tensor: &Matrix3<f64>) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn axes_make_the_attitude_that_has_them() {
+        for by in [[0.1, -0.2, 0.3], [3.0, 0.1, 0.2], [0.2, -3.1, 0.1], [0.1, 0.3, 3.0], [0.0; 3]] {
+            let q = rotation(&Vector::from(by));
+            let turn = |axis: Vector| -> Vector {
+                (q * Quaternion::from_imag(axis) * q.conjugate()).vector().into_owned()
+            };
+            let found = of_axes(&[turn(Vector::x()), turn(Vector::y()), turn(Vector::z())]);
+            assert!(beyond(&q, &found).norm() < 1e-14, "{by:?}");
+        }
+    }
 
     #[test]
     fn angles_come_back_and_errors_are_small_rotations() {

@@ -7,6 +7,9 @@ pub struct Belief {
     pub angle: f64,
     /// Rate (rad/s): of a sampled sensor without a gyro, the difference of its last two samples over the period.
     pub rate: f64,
+    /// How fast the magnetic field along the axis changes (T/s): the difference of a magnetometer's last two readings over the
+    /// time between.
+    pub field_rate: f64,
     /// The dominant mode, as an estimator gives it.
     pub dominant: Dominant,
     /// Change of the rigid rate that is commanded, and not yet executed (rad/s).
@@ -44,6 +47,8 @@ pub struct Dominant {
 pub enum Reads {
     /// Nothing.
     Nothing,
+    /// How fast the magnetic field changes.
+    Field,
     /// Angle and rate.
     Motion,
     /// Angle and rate as measured, and the dominant mode.

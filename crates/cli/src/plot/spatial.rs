@@ -6,8 +6,8 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    AttitudeEstimate, ChannelState, Cycle, Log, Record, RecordError, Sample, SpatialMotion, TrackedMode,
-    Tracking, Wheels,
+    AttitudeEstimate, ChannelState, Cycle, Log, Magnetorquers, Orbit, Record, RecordError, Sample,
+    SpatialMotion, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
@@ -28,6 +28,10 @@ pub struct Cycles {
     pub attitude: Vec<(f64, AttitudeEstimate)>,
     /// The wheels, at each period of the log.
     pub wheels: Vec<(f64, Wheels)>,
+    /// Where the body is on its orbit, at each period of the log.
+    pub orbit: Vec<(f64, Orbit)>,
+    /// Magnetic moments, at each period of the log.
+    pub magnetorquers: Vec<(f64, Magnetorquers)>,
 }
 
 impl Cycles {
@@ -66,8 +70,11 @@ impl Record for Cycles {
             Sample::Cycle(cycle) => self.all.push((now.seconds(), cycle.clone())),
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
-            Sample::SpatialMotion(SpatialMotion { wheels: Some(wheels), .. }) => {
-                self.wheels.push((now.seconds(), wheels.clone()));
+            Sample::SpatialMotion(SpatialMotion { wheels, orbit, magnetorquers, .. }) => {
+                let t = now.seconds();
+                self.wheels.extend(wheels.clone().map(|wheels| (t, wheels)));
+                self.orbit.extend(orbit.clone().map(|orbit| (t, orbit)));
+                self.magnetorquers.extend(magnetorquers.clone().map(|moments| (t, moments)));
             }
             _ => {}
         }

@@ -8,8 +8,8 @@ use super::motion::Motion;
 use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
-    angle, attitude_filter, consistency, dead_zone, drive, envelope, estimate, extra, frequency, gain, modes,
-    outputs, phase_plane, torque, wheel, wheels,
+    angle, attitude_filter, consistency, dead_zone, drive, envelope, estimate, extra, frequency, gain,
+    magnetorquers, modes, orbit, outputs, phase_plane, torque, wheel, wheels,
 };
 
 /// A figure.
@@ -43,6 +43,10 @@ pub enum What {
     Damping,
     /// Speed and momentum of the flywheel, or speed and torque of each wheel of a spatial body, with their limits
     Wheel,
+    /// Of a spatial body: magnetic moments of its torquers, and the momentum of its wheels or its rate
+    Magnetorquers,
+    /// Of a spatial body on an orbit: magnetic field, planet and Sun in its axes, and the shadow
+    Orbit,
     /// Frequency of the dominant mode as a filter estimates it, and what it really is
     Frequency,
     /// Displacement of the dominant mode as a filter estimates it, and what it really is
@@ -88,6 +92,8 @@ impl What {
                 spatial && story.scenario.study.authorities.iter().any(|authority| authority.threshold > 0.0)
             }
             Self::Wheel => wheel::rotor(story).is_some() && !spatial || wheels::of(story).is_some(),
+            Self::Orbit => spatial && orbit::of(story),
+            Self::Magnetorquers => magnetorquers::of(story),
             Self::Consistency if spatial => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())
             }
@@ -119,6 +125,8 @@ impl What {
             Self::Damping => spatial::damping(story, cycles),
             Self::Wheel if wheels::of(story).is_some() => wheels::figure(story, cycles),
             Self::Wheel => wheel::figure(story, motion),
+            Self::Orbit => orbit::figure(story, cycles),
+            Self::Magnetorquers => magnetorquers::figure(story, cycles),
             Self::Frequency => frequency::figure(story, motion),
             Self::Estimate => estimate::figure(story, motion),
             Self::Consistency if !cycles.attitude.is_empty() => attitude_filter::figure(story, cycles),

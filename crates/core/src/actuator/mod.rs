@@ -4,6 +4,8 @@ mod allocation;
 mod hold;
 mod ideal;
 mod jets;
+mod magnetic_unloading;
+mod magnetorquers;
 mod pulse_timing;
 mod pulse_width;
 mod pulsing;
@@ -19,6 +21,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::own::Own;
 use crate::record::{self, WheelMotion};
@@ -27,6 +30,8 @@ use crate::time::{Instant, Span};
 pub use allocation::{Allocation, Choice};
 pub use hold::ZeroOrderHold;
 pub use jets::{Group, Groups, Jets, Pair, Thruster};
+pub use magnetic_unloading::Magnetic;
+pub use magnetorquers::{Magnetorquers, Torquing};
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use pulsing::{Pulse, Pulsing};
@@ -54,6 +59,8 @@ pub enum Actuator {
     Wheels(Wheels),
     /// Thrusters at points of a spatial body.
     Jets(Jets),
+    /// Magnetic moments of a spatial body in the field of its planet.
+    Magnetorquers(Magnetorquers),
     /// An actuator from outside of this crate, which no scenario file can name.
     Own(Own<dyn Effector>),
 }
@@ -65,6 +72,8 @@ pub enum Demand {
     Torque(f64),
     /// A change of the rigid rate within the law's period (rad/s): the actuator makes a pulse of it.
     Change(f64),
+    /// A magnetic moment along the axis (A m²), of torquers.
+    Moment(f64),
 }
 
 /// What an actuator from outside tells of itself before a run.
@@ -82,6 +91,9 @@ pub trait Effector: Send + Sync {
 pub trait Actuate: fmt::Debug + Send + Sync {
     /// Takes over what is demanded from now on about each axis, of a body that turns at these rigid rates (rad/s).
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]);
+
+    /// Takes over the magnetic field in the body's axes (T) as it is measured, before what follows from it.
+    fn feel(&mut self, _field: Vector) {}
 
     /// The next instant at which what it exerts changes by itself.
     fn due(&self) -> Option<Instant> {
@@ -126,6 +138,11 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     /// Wheels about axes of their own, of a body that turns at this rate (rad/s).
     fn wheels(&self, _now: Instant, _rate: [f64; 3]) -> Vec<record::Wheel> {
         Vec::new()
+    }
+
+    /// The magnetic moments that it holds, of torquers.
+    fn magnetic(&self) -> Option<record::Magnetorquers> {
+        None
     }
 
     /// The angular momentum that its rotors store now, in the body's axes (N m s).
@@ -186,6 +203,7 @@ impl Actuator {
             Self::Wheel(_) => "wheel",
             Self::Wheels(_) => "wheels",
             Self::Jets(_) => "jets",
+            Self::Magnetorquers(_) => "magnetorquers",
             Self::Own(_) => "own",
         }
     }
@@ -195,7 +213,18 @@ impl Actuator {
         match self {
             Self::Jets(jets) => Some((jets, "actuator.jets")),
             Self::Wheels(Wheels { unloading: Some(unloading), .. }) => {
-                Some((&unloading.jets, "actuator.wheels.unloading.jets"))
+                Some((unloading.jets.as_ref()?, "actuator.wheels.unloading.jets"))
+            }
+            _ => None,
+        }
+    }
+
+    /// The magnetorquers that there are, laws act by them or not, and their key.
+    pub fn magnetorquers(&self) -> Option<(&Magnetorquers, &'static str)> {
+        match self {
+            Self::Magnetorquers(torquers) => Some((torquers, "actuator.magnetorquers")),
+            Self::Wheels(Wheels { unloading: Some(unloading), .. }) => {
+                Some((unloading.magnetorquers.as_ref()?, "actuator.wheels.unloading.magnetorquers"))
             }
             _ => None,
         }
@@ -204,18 +233,18 @@ impl Actuator {
     /// The period in which the command is executed; none for one that executes it at once.
     pub fn period(&self) -> Option<Span> {
         match self {
-            Self::Ideal | Self::Wheel(_) | Self::Wheels(_) | Self::Own(_) => None,
+            Self::Ideal | Self::Wheel(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => None,
             Self::Hold(hold) => Some(hold.period),
             Self::Thrusters(thrusters) => Some(thrusters.period),
             Self::Jets(jets) => jets.period,
         }
     }
 
-    /// The actuator of a single axis at work in a setting. Jets, wheels of three axes and one from outside act about all axes,
+    /// The actuator of a single axis at work in a setting. Jets, torquers, wheels of three axes and one from outside act about all axes,
     /// and are not asked.
     pub fn about_an_axis(&self, setting: &Setting) -> Box<dyn AxisActuate> {
         match self {
-            Self::Ideal | Self::Jets(_) | Self::Wheels(_) | Self::Own(_) => {
+            Self::Ideal | Self::Jets(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => {
                 Box::new(ideal::Ideal::new(setting))
             }
             Self::Hold(hold) => Box::new(hold.start(setting)),

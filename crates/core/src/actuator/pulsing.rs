@@ -82,6 +82,7 @@ impl Pulsing {
                 let most = self.group(axis, torque).torque[axis].abs();
                 (torque.abs() / most * period, torque)
             }
+            Demand::Moment(_) => (0.0, 0.0),
         };
         if sign == 0.0 { 0.0 } else { sign.signum() * self.width.on_time(wanted, period) }
     }
@@ -154,6 +155,7 @@ impl Actuate for Pulsing {
                 let group = self.group(axis, change);
                 change / group.acceleration * group.torque[axis].abs() / self.period.seconds()
             }
+            Demand::Moment(_) => 0.0,
         }
     }
 

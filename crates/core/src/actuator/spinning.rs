@@ -139,6 +139,7 @@ impl Actuate for Spinning {
             self.wanted[axis] = match demand {
                 Demand::Torque(torque) => *torque,
                 Demand::Change(change) => change * setting.inertia / setting.cycle.map_or(1.0, Span::seconds),
+                Demand::Moment(_) => 0.0,
             };
         }
         let speeds = self.speeds(&rigid.into());

@@ -109,6 +109,7 @@ impl Actuate for Torquers {
                     let cycle = setting.cycle.map_or(1.0, Span::seconds);
                     change * setting.inertia / cycle / actuator.unit()
                 }
+                Demand::Moment(_) => 0.0,
             };
             actuator.command(now, wanted, rigid[axis]);
         }

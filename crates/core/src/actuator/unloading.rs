@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuate, Cycle, Demand, Group, Jets, Pulsing, Spinning};
+use super::{Actuate, Cycle, Demand, Group, Jets, Magnetic, Magnetorquers, Pulsing, Setting, Spinning};
 use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::document::Fault;
@@ -11,7 +11,7 @@ use crate::quantity::{NonNegative, Positive};
 use crate::record;
 use crate::time::{Instant, Span};
 
-/// How wheels are unloaded.
+/// How wheels are unloaded: by jets or by magnetorquers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Unloading {
@@ -20,9 +20,20 @@ pub struct Unloading {
     /// Momentum below which it ends (N m s).
     pub below: NonNegative,
     /// Largest mean torque of the jets about each axis over their cycles (N m), which the wheels take up meanwhile.
-    pub torque: Positive,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub torque: Option<Positive>,
     /// The jets, with a period of their own and without a delay.
-    pub jets: Jets,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub jets: Option<Jets>,
+    /// The magnetorquers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub magnetorquers: Option<Magnetorquers>,
+    /// Of magnetorquers, the part of the momentum across the field that they take in a second (1/s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Positive>,
+    /// Of magnetorquers, the period of their commands (s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<Span>,
 }
 
 impl Unloading {
@@ -33,40 +44,78 @@ impl Unloading {
         if below >= above {
             return at("below", format!("must be less than `above`, {above} N m s, got {below}"));
         }
-        let Some(period) = self.jets.period.map(Span::seconds) else {
-            return at("jets.period", "must be given: the law's cycles are those of the wheels".to_owned());
-        };
-        if self.jets.delay > 0 {
-            return at(
-                "jets.delay",
-                format!("must be 0 for jets that unload wheels, got {}", self.jets.delay),
-            );
-        }
-        for (key, value) in [("minimum_on", self.jets.minimum_on.get()), ("quantum", self.jets.quantum.get())]
-        {
-            if value > period {
-                let why = format!("must be at most the period of {period} s, got {value}");
-                return at(&format!("jets.{key}"), why);
+        let of_torquers = [("gain", self.gain.is_some()), ("period", self.period.is_some())];
+        match (&self.jets, &self.magnetorquers) {
+            (Some(jets), None) => {
+                if let Some((key, _)) = of_torquers.into_iter().find(|(_, given)| *given) {
+                    return at(key, "is that of `magnetorquers`: leave it out".to_owned());
+                }
+                if self.torque.is_none() {
+                    return at("torque", "must be given with `jets`".to_owned());
+                }
+                jets_fault(jets)
+            }
+            (None, Some(_)) => {
+                if self.torque.is_some() {
+                    return at("torque", "is that of `jets`: leave it out".to_owned());
+                }
+                let (key, _) = of_torquers.into_iter().find(|(_, given)| !given)?;
+                at(key, "must be given with `magnetorquers`".to_owned())
+            }
+            (None, None) => at("jets", "must be given, or `magnetorquers`".to_owned()),
+            (Some(_), Some(_)) => {
+                at("magnetorquers", "must be left out with `jets`: one of them unloads the wheels".to_owned())
             }
         }
-        None
     }
 
-    /// Wheels and jets before the first command.
-    pub fn start(&self, wheels: Spinning, groups: &[[Group; 2]; 3]) -> Unloaded {
-        let period = self.jets.period.unwrap_or(Span::TICK);
-        Unloaded {
+    /// Wheels and jets before the first command, if jets unload them.
+    pub fn start(&self, wheels: Spinning, groups: &[[Group; 2]; 3]) -> Option<Unloaded> {
+        let jets = self.jets.as_ref()?;
+        let period = jets.period.unwrap_or(Span::TICK);
+        Some(Unloaded {
             wheels,
-            jets: Pulsing::new(&self.jets, groups, period),
+            jets: Pulsing::new(jets, groups, period),
             limits: [self.above.get(), self.below.get()],
-            torque: self.torque.get(),
+            torque: self.torque.map_or(f64::INFINITY, Positive::get),
             period,
             next: Instant::START,
             active: false,
             mean: Vector::zeros(),
             demands: [Demand::Torque(0.0); 3],
+        })
+    }
+
+    /// Wheels and magnetorquers before the first command, if these unload them.
+    pub fn start_magnetic(&self, wheels: Spinning, settings: &[Setting]) -> Option<Magnetic> {
+        Some(Magnetic {
+            wheels,
+            torquers: self.magnetorquers.as_ref()?.start(settings),
+            limits: [self.above.get(), self.below.get()],
+            gain: self.gain?.get(),
+            period: self.period?,
+            next: Instant::START,
+            active: false,
+            demands: [Demand::Torque(0.0); 3],
+        })
+    }
+}
+
+/// A key of jets that does not fit the unloading of wheels, and why.
+fn jets_fault(jets: &Jets) -> Option<Fault> {
+    let at = |key: &str, why: String| Some(Fault::new(format!("jets.{key}"), why));
+    let Some(period) = jets.period.map(Span::seconds) else {
+        return at("period", "must be given: the law's cycles are those of the wheels".to_owned());
+    };
+    if jets.delay > 0 {
+        return at("delay", format!("must be 0 for jets that unload wheels, got {}", jets.delay));
+    }
+    for (key, value) in [("minimum_on", jets.minimum_on.get()), ("quantum", jets.quantum.get())] {
+        if value > period {
+            return at(key, format!("must be at most the period of {period} s, got {value}"));
         }
     }
+    None
 }
 
 /// Wheels and jets at work.

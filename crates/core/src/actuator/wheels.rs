@@ -47,9 +47,9 @@ pub struct Wheels {
     /// Of four wheels, a speed that torques which cancel each other keep; left out, none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_bias: Option<SpeedBias>,
-    /// How jets unload them; left out, none do.
+    /// How jets or magnetorquers unload them; left out, none do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unloading: Option<Unloading>,
+    pub unloading: Option<Box<Unloading>>,
 }
 
 /// How wheels are arranged.
@@ -112,7 +112,7 @@ impl Wheels {
                 format!("needs four wheels, whose torques can cancel each other in one way, got {count}");
             return Err(Fault::new("speed_bias", why));
         }
-        if let Some(fault) = self.unloading.as_ref().and_then(Unloading::inconsistency) {
+        if let Some(fault) = self.unloading.as_deref().and_then(Unloading::inconsistency) {
             return Err(fault.within("unloading"));
         }
         Ok(allocation)

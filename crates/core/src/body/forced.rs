@@ -37,6 +37,8 @@ pub struct Wrench {
     pub forces: Vec<f64>,
     /// Rotors that store momentum, each with the torque on it.
     pub rotors: Vec<Rotor>,
+    /// Magnetic moment of torquers, in the body's axes (A m²).
+    pub moment: Vector,
     /// A waveform about the first axis, and the time on it at that instant.
     pub waveform: Option<Forced>,
 }

@@ -2,73 +2,158 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::Environment;
+use super::dipole::Axial;
 use super::orbit::into;
+use super::{Environment, GravityGradient, Kepler, Seen, Sky, SolarPressure};
 use crate::attitude::{Vector, vector};
-use crate::motion::turning::Surroundings;
+use crate::body::craft::Bending;
+use crate::motion::turning::{Heated, Surroundings};
+use crate::time::Instant;
 
 /// The surroundings of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Around {
     environment: Environment,
+    sky: Sky,
+    /// The field of a body's dipole that has its own.
+    axial: Option<Axial>,
     /// What rotors have about their axes (kg m²), which the inertia of the body is without and gravity pulls at too.
     spinning: Matrix3<f64>,
     /// Force of sunlight in inertial axes (N), and where it acts from the centre of mass (m).
     sunlight: (Vector, Vector),
+    /// The centre of mass (m).
+    centre: Vector,
     /// See `environment`.
     torque: Vector,
+    /// Thermal bending of appendages.
+    heated: Vec<Heated>,
+    /// The magnetic moment that torquers hold, in the body's axes (A m²).
+    held: Vector,
     bound: f64,
     frequency: f64,
 }
 
 impl Around {
     /// What surrounds a body of this inertia and rotors that have this about their axes (kg m²), whose centre of mass is here
-    /// from the point that positions are from (m).
-    pub fn new(environment: &Environment, [inertia, spinning]: [Matrix3<f64>; 2], centre: &Vector) -> Self {
+    /// from the point that positions are from (m), under this sky.
+    pub fn new(
+        environment: &Environment,
+        sky: Sky,
+        [inertia, spinning]: [Matrix3<f64>; 2],
+        centre: &Vector,
+    ) -> Self {
         let sunlight = environment.solar_pressure.as_ref();
         let sunlight = sunlight.map(|sun| (vector(&sun.force), vector(&sun.at) - centre)).unwrap_or_default();
         let torque = vector(&environment.torque);
-        let gradient = environment.gravity_gradient.as_ref();
-        let dipole = environment.dipole.as_ref();
-        let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning)));
-        let push = dipole.map_or(0.0, super::Dipole::bound);
-        let orbits = [gradient.map(|of| of.orbit_rate), dipole.map(|of| of.orbit_rate)];
-        let fastest = orbits.into_iter().flatten().map(crate::quantity::Positive::get).fold(0.0, f64::max);
+        let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
+        let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
+        let push = dipole.map_or(0.0, |dipole| dipole.bound(sky.field_bound()));
+        let drag = environment.drag.as_ref().zip(sky.orbit());
+        let braked = drag.map_or(0.0, |(drag, orbit)| drag.bound(orbit, centre));
+        let axial = dipole.and_then(super::Dipole::own);
+        let own = gradient.and_then(|of| of.orbit_rate).map(crate::quantity::Positive::get);
+        let turning = environment.magnetic_field.map(|field| field.rotation.get().abs());
+        let orbits = [own, axial.map(|of| of.rate), sky.orbit().map(Kepler::fastest)];
+        let fastest = orbits.into_iter().flatten().fold(0.0, f64::max) + turning.unwrap_or(0.0);
         Self {
             environment: environment.clone(),
+            axial,
             spinning,
-            bound: torque.norm() + sunlight.0.norm() * sunlight.1.norm() + pull + push,
+            centre: *centre,
+            bound: torque.norm() + sunlight.0.norm() * sunlight.1.norm() + pull + push + braked,
             // Both are of second order in the local axes' sine and cosine.
             frequency: 2.0 * fastest,
             sunlight,
             torque,
+            held: Vector::zeros(),
+            heated: Vec::new(),
+            sky,
         }
+    }
+
+    /// Lets sunlight bend the body: the level counts from that at the start.
+    #[must_use]
+    pub fn warming(self, bendings: &[Bending]) -> Self {
+        let start = if self.sky.is_lit(0.0) { 1.0 } else { 0.0 };
+        let level = |edge: Instant| {
+            let t = edge.seconds();
+            [t, if self.sky.is_lit(t) { 1.0 - start } else { -start }]
+        };
+        let aims = || self.sky.edges().map(level);
+        let heated = |of: &Bending| Heated::new(of.forces.clone(), of.time_constant, aims());
+        let heated = bendings.iter().map(heated).collect();
+        Self { heated, ..self }
+    }
+
+    /// Takes over the magnetic moment that torquers hold from now on, in the body's axes (A m²).
+    pub fn hold(&mut self, moment: Vector) {
+        self.held = moment;
+    }
+
+    /// The torque of the moment that torquers hold, in the axes of a body that faces this way (N m).
+    pub fn held_torque(&self, t: f64, attitude: &Quaternion<f64>) -> Vector {
+        if self.held == Vector::zeros() {
+            return Vector::zeros();
+        }
+        self.sky.seen(t).field.map_or_else(Vector::zeros, |field| self.held.cross(&into(attitude, &field)))
+    }
+
+    /// The sky.
+    pub fn sky(&self) -> &Sky {
+        &self.sky
+    }
+
+    /// What there is to measure of the sky at a time since the start (s).
+    pub fn seen(&self, t: f64) -> Seen {
+        self.sky.seen(t)
+    }
+
+    /// The instants at which a torque begins or ends.
+    pub fn edges(&self) -> impl Iterator<Item = Instant> {
+        let own = self.environment.solar_pressure.iter().flat_map(SolarPressure::edges);
+        let matters = self.environment.solar_pressure.is_some() || !self.heated.is_empty();
+        own.chain(self.sky.edges().filter(move |_| matters))
     }
 }
 
 impl Surroundings for Around {
     fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let Environment { gravity_gradient, solar_pressure, dipole, .. } = &self.environment;
+        let Environment { gravity_gradient, solar_pressure, dipole, drag, .. } = &self.environment;
         let mut torque = into(attitude, &self.torque);
+        let place = self.sky.place(t);
         if let Some(gradient) = gravity_gradient {
-            torque += gradient.torque(t, attitude, &(inertia + self.spinning));
+            let pull = gradient.pull(t, attitude, place.as_ref());
+            torque += GravityGradient::torque(pull, &(inertia + self.spinning));
         }
-        if solar_pressure.as_ref().is_some_and(|sun| sun.is_lit(t)) {
+        if solar_pressure.as_ref().is_some_and(|sun| sun.is_lit(t) && self.sky.is_lit(t)) {
             let (force, at) = &self.sunlight;
             torque += at.cross(&into(attitude, force));
         }
+        if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {
+            torque += drag.torque(orbit, place, attitude, &self.centre);
+        }
+        let field = place.and_then(|place| self.sky.field(&place, t));
         if let Some(dipole) = dipole {
-            torque += dipole.torque(t, attitude);
+            let field = self.axial.map(|own| own.at(t)).or(field).unwrap_or_default();
+            torque += dipole.torque(&field, attitude);
+        }
+        if let Some(field) = field.filter(|_| self.held != Vector::zeros()) {
+            torque += self.held.cross(&into(attitude, &field));
         }
         torque
     }
 
     fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
-        self.environment.gravity_gradient.as_ref().map(|gradient| gradient.tide(t, attitude))
+        let gradient = self.environment.gravity_gradient.as_ref()?;
+        Some(GravityGradient::tide(gradient.pull(t, attitude, self.sky.place(t).as_ref())))
+    }
+
+    fn heated(&self) -> &[Heated] {
+        &self.heated
     }
 
     fn bound(&self) -> f64 {
-        self.bound
+        self.bound + self.held.norm() * self.sky.field_bound()
     }
 
     fn frequency(&self) -> f64 {

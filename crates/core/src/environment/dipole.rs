@@ -1,6 +1,7 @@
-//! A magnetic moment of the body in the field of a dipole along the planet's axis, on a circular orbit (\[Hughes86\]).
+//! A magnetic moment of the body in the field of its planet: the environment's, or on a circular orbit that of a dipole along
+//! the planet's axis (\[Hughes86\]).
 //!
-//! At the angle u past the ascending node of an orbit of inclination i, and with b = mu/R³, the field in local axes is
+//! Of the latter, at the angle u past the ascending node of an orbit of inclination i, and with b = mu/R³, the field in local axes is
 //! b (cos u sin i, -cos i, 2 sin u sin i).
 
 use nalgebra::Quaternion;
@@ -9,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::orbit::{Orbit, into};
 use crate::attitude::{Attitude, Vector, vector};
+use crate::document::Fault;
 use crate::quantity::{Finite, Positive};
 
 /// A magnetic moment in the field of a dipole.
@@ -17,36 +19,90 @@ use crate::quantity::{Finite, Positive};
 pub struct Dipole {
     /// Magnetic moment of the body (A m²), in its axes.
     pub moment: [Finite; 3],
-    /// Field over the magnetic equator at the orbit's radius R (T), mu/R³: around the Earth mu is 7.8e15 T m³.
-    pub strength: Positive,
-    /// Inclination of the orbit to the magnetic equator (rad).
-    pub inclination: Finite,
+    /// Field over the magnetic equator at the radius R of a circular orbit (T), mu/R³: around the Earth mu is 7.8e15 T m³; left
+    /// out, the environment's magnetic field counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strength: Option<Positive>,
+    /// Inclination of that orbit to the magnetic equator (rad).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inclination: Option<Finite>,
     /// Angle from the ascending node at the start (rad).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub from_node: Finite,
-    /// Rate of the circular orbit (rad/s).
-    pub orbit_rate: Positive,
+    /// Rate of that orbit (rad/s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orbit_rate: Option<Positive>,
     /// How the local axes lie at the start, as of a gravity gradient.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Attitude::is_identity")]
     pub local: Attitude,
 }
 
-impl Dipole {
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_zero(angle: &Finite) -> bool {
+    *angle == Finite::ZERO
+}
+
+/// The field of a dipole along the planet's axis on a circular orbit.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub(super) struct Axial {
+    strength: f64,
+    inclination: f64,
+    from_node: f64,
+    /// Rate of the orbit (rad/s).
+    pub rate: f64,
+    orbit: Orbit,
+}
+
+impl Axial {
     /// The field in inertial axes (T) at a time since the start (s).
-    pub(super) fn field(&self, t: f64) -> Vector {
-        let (across, along) = libm::sincos(self.inclination.get());
-        let (sin, cos) = libm::sincos(self.from_node.get() + self.orbit_rate.get() * t);
-        let local = Vector::new(cos * across, -along, 2.0 * sin * across) * self.strength.get();
-        Orbit::new(self.orbit_rate, self.local).inertial(t, &local)
+    pub fn at(&self, t: f64) -> Vector {
+        let (across, along) = libm::sincos(self.inclination);
+        let (sin, cos) = libm::sincos(self.from_node + self.rate * t);
+        let local = Vector::new(cos * across, -along, 2.0 * sin * across) * self.strength;
+        self.orbit.inertial(t, &local)
+    }
+}
+
+impl Dipole {
+    /// Its own field, if it has one.
+    pub(super) fn own(&self) -> Option<Axial> {
+        let (strength, inclination, rate) = (self.strength?, self.inclination?, self.orbit_rate?);
+        Some(Axial {
+            strength: strength.get(),
+            inclination: inclination.get(),
+            from_node: self.from_node.get(),
+            rate: rate.get(),
+            orbit: Orbit::new(rate, self.local),
+        })
     }
 
-    /// The torque in the body's axes (N m) at a time since the start (s).
-    pub(super) fn torque(&self, t: f64, attitude: &Quaternion<f64>) -> Vector {
-        vector(&self.moment).cross(&into(attitude, &self.field(t)))
+    /// A field that is there twice, or missing: the key, and why.
+    pub(super) fn fault(&self, on_orbit: bool, in_field: bool) -> Option<Fault> {
+        let given = [
+            ("strength", self.strength.is_some()),
+            ("inclination", self.inclination.is_some()),
+            ("orbit_rate", self.orbit_rate.is_some()),
+        ];
+        if on_orbit {
+            let beside =
+                [("from_node", self.from_node != Finite::ZERO), ("local", !self.local.is_identity())];
+            if let Some((key, _)) = given.into_iter().chain(beside).find(|(_, given)| *given) {
+                return Some(Fault::new(key, "is that of the environment's `orbit`: leave it out"));
+            }
+            let why = "is in a field: give the environment its `magnetic_field`";
+            return (!in_field).then(|| Fault::new("moment", why));
+        }
+        let (key, _) = given.into_iter().find(|(_, given)| !given)?;
+        Some(Fault::new(key, "must be given where the environment has no `orbit`"))
     }
 
-    /// No torque is larger (N m).
-    pub(super) fn bound(&self) -> f64 {
-        2.0 * self.strength.get() * vector(&self.moment).norm()
+    /// The torque in the body's axes (N m) of a field in inertial ones (T).
+    pub(super) fn torque(&self, field: &Vector, attitude: &Quaternion<f64>) -> Vector {
+        vector(&self.moment).cross(&into(attitude, field))
+    }
+
+    /// No torque is larger (N m), in its own field or one that is at most so strong (T).
+    pub(super) fn bound(&self, field: f64) -> f64 {
+        self.strength.map_or(field, |strength| 2.0 * strength.get()) * vector(&self.moment).norm()
     }
 }

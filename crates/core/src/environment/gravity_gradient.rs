@@ -1,51 +1,69 @@
-//! Gravity gradient on a circular orbit (\[Hughes86\]).
+//! Gravity gradient on an orbit (\[Hughes86\]).
 //!
 //! At the rate n of the orbit and with the direction o of the nadir, the field of gravity less what makes the centre of mass fall is
 //! n² (3 o o' - 1) r. Its torque on a body is 3 n² o x J o. A mode that changes the inertia by J1 for a unit is pushed by
-//! n² (tr J1/2 - 3/2 o' J1 o), which is the integral of its shape times that field.
+//! n² (tr J1/2 - 3/2 o' J1 o), which is the integral of its shape times that field. On a Kepler orbit n² is mu/R³.
 
 use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::orbit::Orbit;
+use super::orbit::{Orbit, into};
+use super::{Place, Sky};
 use crate::attitude::{Attitude, Vector};
+use crate::document::Fault;
 use crate::quantity::Positive;
 
 /// Gravity gradient.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GravityGradient {
-    /// Rate of the circular orbit (rad/s).
-    pub orbit_rate: Positive,
-    /// How the local axes lie at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the local axes (x along the
-    /// velocity, y against the orbit's normal, z nadir) into inertial ones; left out, they are the inertial ones then.
-    #[serde(default)]
+    /// Rate of a circular orbit (rad/s); left out, the environment's orbit counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orbit_rate: Option<Positive>,
+    /// How the local axes of that orbit lie at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the local axes (x
+    /// along the velocity, y against the orbit's normal, z nadir) into inertial ones; left out, they are the inertial ones then.
+    #[serde(default, skip_serializing_if = "Attitude::is_identity")]
     pub local: Attitude,
 }
 
 impl GravityGradient {
-    /// The orbit.
-    fn orbit(&self) -> Orbit {
-        Orbit::new(self.orbit_rate, self.local)
+    /// An orbit that is there twice, or missing: the key, and why.
+    pub(super) fn fault(&self, on_orbit: bool) -> Option<Fault> {
+        if !on_orbit {
+            let why = "must be given where the environment has no `orbit`";
+            return self.orbit_rate.is_none().then(|| Fault::new("orbit_rate", why));
+        }
+        let twice = [("orbit_rate", self.orbit_rate.is_some()), ("local", !self.local.is_identity())];
+        let key = twice.into_iter().find(|(_, given)| *given)?.0;
+        Some(Fault::new(key, "is that of the environment's `orbit`: leave it out"))
     }
 
-    /// The torque in the body's axes (N m) at a time since the start (s).
-    pub(super) fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let (orbit, rate) = (self.orbit(), self.orbit_rate.get());
-        let nadir = orbit.nadir(t, attitude);
-        nadir.cross(&(inertia * nadir)) * (3.0 * rate * rate)
+    /// The direction to the planet in the axes of a body that faces this way, and n² or mu/R³ (1/s²).
+    pub(super) fn pull(&self, t: f64, attitude: &Quaternion<f64>, place: Option<&Place>) -> (Vector, f64) {
+        match (self.orbit_rate, place) {
+            (Some(rate), _) => (Orbit::new(rate, self.local).nadir(t, attitude), rate.get() * rate.get()),
+            (None, Some(place)) => (into(attitude, &place.local[2]), place.tide),
+            (None, None) => (Vector::zeros(), 0.0),
+        }
+    }
+
+    /// The torque in the body's axes (N m) of such a pull.
+    pub(super) fn torque((nadir, tide): (Vector, f64), inertia: &Matrix3<f64>) -> Vector {
+        nadir.cross(&(inertia * nadir)) * (3.0 * tide)
     }
 
     /// The tensor (1/s²) whose product with J1, element by element, is the force on a mode.
-    pub(super) fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Matrix3<f64> {
-        let (nadir, rate) = (self.orbit().nadir(t, attitude), self.orbit_rate.get());
-        (Matrix3::identity() - nadir * nadir.transpose() * 3.0) * (0.5 * rate * rate)
+    pub(super) fn tide((nadir, tide): (Vector, f64)) -> Matrix3<f64> {
+        (Matrix3::identity() - nadir * nadir.transpose() * 3.0) * (0.5 * tide)
     }
 
     /// No torque on a body of this inertia is larger (N m).
-    pub(super) fn bound(&self, inertia: &Matrix3<f64>) -> f64 {
-        let rate = self.orbit_rate.get();
-        3.0 * rate * rate * inertia.norm()
+    pub(super) fn bound(&self, inertia: &Matrix3<f64>, sky: &Sky) -> f64 {
+        let on_orbit = sky.orbit().map_or(0.0, |orbit| {
+            let nearest = orbit.nearest();
+            orbit.gravity.get() / (nearest * nearest * nearest)
+        });
+        3.0 * self.orbit_rate.map_or(on_orbit, |rate| rate.get() * rate.get()) * inertia.norm()
     }
 }

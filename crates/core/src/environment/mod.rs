@@ -2,8 +2,12 @@
 
 mod around;
 mod dipole;
+mod drag;
 mod gravity_gradient;
+mod kepler;
+mod magnetic_field;
 mod orbit;
+mod sky;
 mod solar_pressure;
 #[cfg(test)]
 mod tests;
@@ -13,17 +17,30 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::Fault;
 use crate::quantity::Finite;
-use crate::time::Instant;
 
 pub use around::Around;
 pub use dipole::Dipole;
+pub use drag::{Drag, Plate};
 pub use gravity_gradient::GravityGradient;
+pub use kepler::{Kepler, Place};
+pub use magnetic_field::MagneticField;
+pub(crate) use orbit::into;
+pub use sky::{Seen, Sky};
 pub use solar_pressure::SolarPressure;
 
 /// What surrounds a body with three axes. The torques add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Environment {
+    /// The orbit on which the body is; left out, there is none, or one of those below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orbit: Option<Kepler>,
+    /// The magnetic field of the orbit's planet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub magnetic_field: Option<MagneticField>,
+    /// The direction to the Sun in inertial axes, of any length; the orbit's planet throws a shadow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sun: Option<[Finite; 3]>,
     /// Gravity gradient of a circular orbit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_gradient: Option<GravityGradient>,
@@ -33,29 +50,51 @@ pub struct Environment {
     /// A magnetic moment of the body in the field of its planet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dipole: Option<Dipole>,
+    /// Drag of the atmosphere on plates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drag: Option<Drag>,
     /// A torque that is constant in inertial axes (N m).
     #[serde(default)]
     pub torque: [Finite; 3],
 }
 
 impl Environment {
-    /// The instants at which something begins or ends.
-    pub fn edges(&self) -> impl Iterator<Item = Instant> {
-        self.solar_pressure.iter().flat_map(SolarPressure::edges)
-    }
-
     /// What single values cannot show to be wrong: a key within the environment, and why.
     pub fn fault(&self) -> Option<Fault> {
+        if let Some(fault) = self.orbit.as_ref().and_then(Kepler::fault) {
+            return Some(fault.within("orbit"));
+        }
+        if self.sun.is_some_and(|sun| sun.iter().all(|part| part.get() == 0.0)) {
+            return Some(Fault::new("sun", "must have a length, got [0, 0, 0]"));
+        }
+        if self.magnetic_field.is_some() && self.orbit.is_none() {
+            return Some(Fault::new("magnetic_field", "is that along an `orbit`, and there is none"));
+        }
+        if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
+            return Some(fault.within("drag"));
+        }
         let shadow = self.solar_pressure.as_ref().and_then(SolarPressure::fault);
-        shadow.map(|fault| fault.within("solar_pressure")).or_else(|| {
-            let (dipole, gradient) = (self.dipole.as_ref()?, self.gravity_gradient.as_ref()?);
-            let (own, other) = (dipole.orbit_rate.get(), gradient.orbit_rate.get());
-            if own != other {
-                let why = format!("must be that of `gravity_gradient`, {other} rad/s, got {own}");
-                return Some(Fault::new("dipole.orbit_rate", why));
-            }
-            (dipole.local != gradient.local)
-                .then(|| Fault::new("dipole.local", "must be that of `gravity_gradient`: there is one orbit"))
-        })
+        shadow.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
+    }
+
+    /// An orbit that is there twice, or missing.
+    fn orbit_fault(&self) -> Option<Fault> {
+        let (gradient, dipole) = (self.gravity_gradient.as_ref(), self.dipole.as_ref());
+        if let Some(fault) = gradient.and_then(|gradient| gradient.fault(self.orbit.is_some())) {
+            return Some(fault.within("gravity_gradient"));
+        }
+        let dipole = dipole?;
+        if let Some(fault) = dipole.fault(self.orbit.is_some(), self.magnetic_field.is_some()) {
+            return Some(fault.within("dipole"));
+        }
+        let gradient = gradient.filter(|_| dipole.own().is_some())?;
+        if let (Some(own), Some(other)) = (dipole.orbit_rate, gradient.orbit_rate)
+            && own != other
+        {
+            let why = format!("must be that of `gravity_gradient`, {} rad/s, got {}", other.get(), own.get());
+            return Some(Fault::new("dipole.orbit_rate", why));
+        }
+        (dipole.local != gradient.local)
+            .then(|| Fault::new("dipole.local", "must be that of `gravity_gradient`: there is one orbit"))
     }
 }

@@ -44,6 +44,7 @@ impl Distribution {
             *demand = match command {
                 Command::Torque(torque) => Demand::Torque(torque),
                 Command::Change(change) => Demand::Change(change),
+                Command::Moment(moment) => Demand::Moment(moment),
                 Command::Acceleration(_) => Demand::Torque(turning),
             };
         }

@@ -1,93 +1,204 @@
-//! The way from target to target: at once, or along a turn with limits.
+//! The way from target to target: at once, along a turn with limits, or through a table, in axes that may turn themselves.
 
 use nalgebra::Quaternion;
 
-use super::Target;
+use super::{Frame, Target};
 use crate::document::Fault;
-use crate::manoeuvre::{Pose, Profile, Slew};
+use crate::environment::Sky;
+use crate::manoeuvre::{AttitudeTable, Pose, Profile, Slew};
 use crate::quantity::Positive;
 use crate::time::Instant;
 
-/// The turns to targets, in the order of their times.
+/// The ways to targets, in the order of their times.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Itinerary(Vec<(Instant, Slew)>);
+pub struct Itinerary {
+    legs: Vec<Leg>,
+    /// What targets point to.
+    sky: Sky,
+}
+
+/// The way to a target.
+#[derive(Clone, Debug, PartialEq)]
+struct Leg {
+    begins: Instant,
+    frame: Frame,
+    path: Path,
+}
+
+/// How it goes within its frame.
+#[derive(Clone, Debug, PartialEq)]
+enum Path {
+    Turn(Slew),
+    Table(AttitudeTable),
+}
+
+impl Path {
+    fn at(&self, t: f64) -> Pose {
+        match self {
+            Self::Turn(slew) => slew.at(t),
+            Self::Table(table) => table.at(t),
+        }
+    }
+
+    fn duration(&self) -> f64 {
+        match self {
+            Self::Turn(slew) => slew.duration(),
+            Self::Table(table) => table.duration(),
+        }
+    }
+
+    fn to(&self) -> Quaternion<f64> {
+        match self {
+            Self::Turn(slew) => slew.to(),
+            Self::Table(table) => table.to(),
+        }
+    }
+}
 
 impl Itinerary {
-    /// The way to these targets. Before the first the attitude is the inertial one; a turn begins where the one before ended.
-    pub fn new(targets: &[Target]) -> Self {
-        let mut before = Target::INERTIAL.attitude();
-        let turn = |target: &Target| {
-            let to = target.attitude();
-            let rate_limit = target.rate_limit.map_or(f64::INFINITY, Positive::get);
-            let slew = target.acceleration.map_or_else(
-                || Slew::at_once(to),
-                |acceleration| Slew::new([before, to], acceleration.get(), rate_limit, target.profile),
-            );
-            before = to;
-            (target.begins(), slew)
-        };
-        Self(targets.iter().map(turn).collect())
+    /// The way to these targets under a sky. Before the first the attitude is the inertial one; a turn begins where the body
+    /// should be then.
+    pub fn new(targets: &[Target], sky: &Sky) -> Self {
+        let mut way = Self { legs: Vec::new(), sky: sky.clone() };
+        for target in targets {
+            let (begins, frame) = (target.begins(), target.frame);
+            let path = if target.table.is_empty() {
+                let to = target.attitude();
+                let rate_limit = target.rate_limit.map_or(f64::INFINITY, Positive::get);
+                Path::Turn(target.acceleration.map_or_else(
+                    || Slew::at_once(to),
+                    |acceleration| {
+                        let from = way.seen_from(frame, begins);
+                        Slew::new([from, to], acceleration.get(), rate_limit, target.profile)
+                    },
+                ))
+            } else {
+                Path::Table(AttitudeTable::new(&target.table))
+            };
+            way.legs.push(Leg { begins, frame, path });
+        }
+        way
+    }
+
+    /// Where the way so far is at an instant, from a frame.
+    fn seen_from(&self, frame: Frame, now: Instant) -> Quaternion<f64> {
+        let here = self.at(now).attitude;
+        if frame == Frame::Inertial {
+            return here;
+        }
+        frame.at(&self.sky, now.seconds()).attitude.conjugate() * here
+    }
+
+    fn leg(&self, now: Instant) -> Option<&Leg> {
+        self.legs.iter().rev().find(|leg| leg.begins <= now)
     }
 
     /// Where the body shall be at an instant, and how it shall turn there.
     pub fn at(&self, now: Instant) -> Pose {
-        let turn = self.0.iter().rev().find(|(begins, _)| *begins <= now);
-        turn.map_or_else(
+        self.leg(now).map_or_else(
             || Pose::at_rest(Target::INERTIAL.attitude()),
-            |(begins, slew)| slew.at(now.since(*begins).seconds()),
+            |leg| self.seen(leg.frame, now, leg.path.at(now.since(leg.begins).seconds())),
         )
+    }
+
+    /// A pose in a frame, as it is in inertial axes.
+    fn seen(&self, frame: Frame, now: Instant, pose: Pose) -> Pose {
+        if frame == Frame::Inertial {
+            return pose;
+        }
+        pose.within(&frame.at(&self.sky, now.seconds()))
     }
 
     /// The target that the body is on its way to at an instant.
     pub fn target(&self, now: Instant) -> Quaternion<f64> {
-        let turn = self.0.iter().rev().find(|(begins, _)| *begins <= now);
-        turn.map_or_else(|| Target::INERTIAL.attitude(), |(_, slew)| slew.to())
+        let there = |leg: &Leg| self.seen(leg.frame, now, Pose::at_rest(leg.path.to())).attitude;
+        self.leg(now).map_or_else(|| Target::INERTIAL.attitude(), there)
+    }
+
+    /// The same as it is written: the frame, and the attitude in it.
+    pub fn written(&self, now: Instant) -> (Frame, Quaternion<f64>) {
+        let leg = self.leg(now);
+        leg.map_or_else(|| (Frame::Inertial, Target::INERTIAL.attitude()), |leg| (leg.frame, leg.path.to()))
     }
 
     /// When the next target begins after an instant.
     pub fn next(&self, now: Instant) -> Option<Instant> {
-        self.0.iter().map(|(begins, _)| *begins).find(|begins| *begins > now)
+        self.legs.iter().map(|leg| leg.begins).find(|begins| *begins > now)
     }
 
     /// Whether the reference moves at an instant.
     pub fn moves(&self, now: Instant) -> bool {
-        let turn = self.0.iter().rev().find(|(begins, _)| *begins <= now);
-        turn.is_some_and(|(begins, slew)| now.since(*begins).seconds() < slew.duration())
+        self.leg(now)
+            .is_some_and(|leg| leg.frame.turns() || now.since(leg.begins).seconds() < leg.path.duration())
     }
 
-    /// The first target that begins before the turn to the one before has ended, or whose limits do not fit: its key, and why.
-    pub fn fault(targets: &[Target]) -> Option<Fault> {
-        let at = |index: usize, key: &str, why: String| Some(Fault::new(format!("[{index}].{key}"), why));
+    /// The first target without the axes that it is from, whose keys do not fit, or that begins before the way to the one before
+    /// has ended: its key, and why.
+    pub fn fault(targets: &[Target], sky: &Sky) -> Option<Fault> {
         for (index, target) in targets.iter().enumerate() {
-            if target.rate_limit.is_some() && target.acceleration.is_none() {
-                return at(
-                    index,
-                    "rate_limit",
-                    "needs the `acceleration` at which the rate rises".to_owned(),
-                );
-            }
-            if target.profile != Profile::default() && target.acceleration.is_none() {
-                return at(index, "profile", "needs the `acceleration` that it shapes".to_owned());
+            if let Some(fault) = target.fault(sky) {
+                return Some(fault.within(&format!("[{index}]")));
             }
         }
-        let way = Self::new(targets);
-        for (index, pair) in way.0.windows(2).enumerate() {
-            let ends = pair[0].0.seconds() + pair[0].1.duration();
-            if pair[1].0.seconds() < ends {
+        let way = Self::new(targets, sky);
+        for (index, pair) in way.legs.windows(2).enumerate() {
+            let ends = pair[0].begins.seconds() + pair[0].path.duration();
+            if pair[1].begins.seconds() < ends {
                 let why = format!(
                     "must not be before the turn to the one before has ended, {ends:.3} s, got {}",
-                    pair[1].0.seconds()
+                    pair[1].begins.seconds()
                 );
-                return at(index + 1, "from", why);
+                return Some(Fault::new(format!("[{}].from", index + 1), why));
             }
         }
         None
     }
 }
 
+impl Target {
+    /// Keys that do not fit each other or the sky: the key, and why.
+    fn fault(&self, sky: &Sky) -> Option<Fault> {
+        if let Some(fault) = self.frame.fault(sky) {
+            return Some(fault);
+        }
+        let shaped = self.profile != Profile::default();
+        if !self.table.is_empty() {
+            let beside = [
+                ("roll", self.roll.get() != 0.0),
+                ("pitch", self.pitch.get() != 0.0),
+                ("yaw", self.yaw.get() != 0.0),
+                ("acceleration", self.acceleration.is_some()),
+                ("rate_limit", self.rate_limit.is_some()),
+                ("profile", shaped),
+            ];
+            if let Some((key, _)) = beside.into_iter().find(|(_, given)| *given) {
+                return Some(Fault::new(
+                    key,
+                    "must be left out with a `table`, which says where the body is when",
+                ));
+            }
+            return AttitudeTable::fault(&self.table);
+        }
+        if self.rate_limit.is_some() && self.acceleration.is_none() {
+            return Some(Fault::new("rate_limit", "needs the `acceleration` at which the rate rises"));
+        }
+        (shaped && self.acceleration.is_none())
+            .then(|| Fault::new("profile", "needs the `acceleration` that it shapes"))
+    }
+
+    /// The largest rate on the way to it, in its frame (rad/s), if it has one.
+    pub fn fastest(&self) -> Option<(&'static str, f64)> {
+        if self.table.len() > 1 {
+            return Some(("table", AttitudeTable::new(&self.table).fastest()));
+        }
+        self.rate_limit.map(|rate| ("rate_limit", rate.get()))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::attitude::Vector;
     use crate::time::Span;
 
     fn targets(text: &str) -> Vec<Target> {
@@ -107,8 +218,9 @@ mod tests {
         let two = targets(
             "target = [{ from = 10.0, yaw = 0.5 }, { from = 20.0, yaw = 0.9, acceleration = 2e-3, rate_limit = 0.02 }]",
         );
-        assert_eq!(Itinerary::fault(&two), None);
-        let way = Itinerary::new(&two);
+        let sky = Sky::default();
+        assert_eq!(Itinerary::fault(&two, &sky), None);
+        let way = Itinerary::new(&two, &sky);
         let yaw = |seconds: f64| crate::attitude::angles(&way.at(at(seconds)).attitude)[2];
         // 0.02 rad/s after 10 s; 0.4 rad take 30 s.
         for (seconds, exact) in
@@ -124,7 +236,7 @@ mod tests {
 
     #[test]
     fn targets_that_do_not_fit_are_refused() {
-        let fault = |text: &str| Itinerary::fault(&targets(text)).unwrap().to_string();
+        let fault = |text: &str| Itinerary::fault(&targets(text), &Sky::default()).unwrap().to_string();
         let soon = fault(
             "target = [{ from = 0, yaw = 0.4, acceleration = 2e-3, rate_limit = 0.02 }, { from = 29.0 }]",
         );
@@ -137,5 +249,61 @@ mod tests {
                 .starts_with("`[0].rate_limit` needs")
         );
         assert!(fault("target = [{ from = 0, profile = \"versine\" }]").starts_with("`[0].profile` needs"));
+    }
+
+    #[test]
+    fn a_target_of_the_orbit_turns_with_it_and_is_reached_from_where_the_body_was() {
+        let environment = toml::from_str(
+            "orbit = { semi_major_axis = 8e6, eccentricity = 0.1, inclination = 1.2 }\nsun = [1, 2, 3]",
+        );
+        let sky = Sky::new(&environment.unwrap(), Span::from_seconds(1e4));
+        let way = targets(
+            "target = [{ from = 0, frame = \"sun\", yaw = 0.3 }, { from = 50, frame = \"nadir\", roll = 0.2, acceleration = 2e-3 }, \
+             { from = 400, frame = \"nadir\", table = [{ time = 0, roll = 0.2 }, { time = 20, pitch = 0.4 }, { time = 60, yaw = -0.3 }] }]",
+        );
+        assert_eq!(Itinerary::fault(&way, &sky), None);
+        let way = Itinerary::new(&way, &sky);
+        let there = |seconds: f64, axis: Vector| -> Vector {
+            let q = way.at(at(seconds)).attitude;
+            (q * Quaternion::from_imag(axis) * q.conjugate()).vector().into_owned()
+        };
+        assert!((there(10.0, Vector::z()) - Vector::new(1.0, 2.0, 3.0).normalize()).norm() < 1e-15);
+        assert!(!way.moves(at(10.0)) && way.moves(at(60.0)) && way.moves(at(390.0)));
+        // The turn begins where the target before was.
+        assert!((way.at(at(50.0)).attitude - way.at(at(49.999_999_999)).attitude).norm() < 1e-9);
+        // At its end the body's z is 0.2 rad beyond the nadir about the local x.
+        let local = sky.place(390.0).unwrap().local;
+        assert!((there(390.0, Vector::x()) - local[0]).norm() < 1e-14);
+        assert!((there(390.0, Vector::z()).dot(&local[2]) - libm::cos(0.2)).abs() < 1e-14);
+        // Rate and acceleration are derivatives, on the turn, on the orbit and through the table.
+        let h = 1e-3;
+        for seconds in [60.0, 150.0, 390.0, 410.0, 435.0, 470.0] {
+            let [before, now, after] = [seconds - h, seconds, seconds + h].map(|t| way.at(at(t)));
+            let turn = (before.attitude.conjugate() * after.attitude).vector() * 2.0;
+            assert!((turn / (2.0 * h) - now.rate).norm() < 1e-9, "{seconds}");
+            let change = (after.rate - before.rate) / (2.0 * h);
+            assert!((change - now.acceleration).norm() < 1e-8, "{seconds}");
+        }
+        assert!((way.at(at(390.0)).rate.norm() - sky.place(390.0).unwrap().turning[0]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_frame_that_is_not_there_is_refused() {
+        let fault = |text: &str| Itinerary::fault(&targets(text), &Sky::default()).unwrap().to_string();
+        assert!(
+            fault("target = [{ from = 0, frame = \"nadir\" }]")
+                .starts_with("`[0].frame` points to the planet")
+        );
+        assert!(
+            fault("target = [{ from = 0, frame = \"sun\" }]")
+                .starts_with("`[0].frame` points to `environment.sun`")
+        );
+        assert!(
+            fault("target = [{ from = 0, yaw = 1, table = [{ time = 0 }, { time = 1 }] }]")
+                .starts_with("`[0].yaw` must be left out")
+        );
+        assert!(
+            fault("target = [{ from = 0, table = [{ time = 0 }] }]").starts_with("`[0].table` must have two")
+        );
     }
 }

@@ -1,16 +1,19 @@
 //! Control laws: state machines that answer every event about an axis with a hold.
 
 mod attitude;
+mod b_dot;
 mod controls;
 mod damping;
 mod distribution;
 mod filter;
+mod frame;
 mod itinerary;
 mod open;
 mod pd;
 mod per_axis;
 mod phase_plane;
 mod relay;
+mod sequence;
 #[cfg(test)]
 mod slew_tests;
 mod state_space;
@@ -31,16 +34,19 @@ use crate::time::{Instant, Span};
 
 pub use crate::record::Phase;
 pub use attitude::{AttitudeLaw, Integral};
+pub use b_dot::BDot;
 pub use controls::{Controls, Event};
 pub use damping::{ActiveDamping, DampingGuards, DampingRelay};
 pub use distribution::Distribution;
 pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
+pub use frame::Frame;
 pub use itinerary::Itinerary;
 pub use open::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use per_axis::PerAxis;
-pub use phase_plane::{PhasePlane, Target, targeted};
+pub use phase_plane::{PhasePlane, Target};
 pub use relay::{Relay, Sides};
+pub use sequence::{Sequence, Stage};
 pub use state_space::{Commands, Of, StateSpace};
 pub use switching_lines::{SwitchingLines, band};
 
@@ -62,6 +68,10 @@ pub enum Law {
     PhasePlane(PhasePlane),
     /// A law of its own about each of three axes.
     PerAxis(Box<PerAxis>),
+    /// Magnetic moments against the change of the field, of a body that tumbles.
+    BDot(BDot),
+    /// Laws one after the other.
+    Sequence(Sequence),
     /// A law from outside of this crate, which no scenario file can name.
     Own(Own<dyn Rule + Send + Sync>),
 }
@@ -162,6 +172,8 @@ impl Deref for Law {
             Self::Open(law) => law,
             Self::PhasePlane(law) => law,
             Self::PerAxis(laws) => laws.as_ref(),
+            Self::BDot(law) => law,
+            Self::Sequence(laws) => laws,
             Self::Own(law) => &**law,
         }
     }
@@ -188,6 +200,8 @@ impl Law {
             Self::Open(_) => "open",
             Self::PhasePlane(_) => "phase_plane",
             Self::PerAxis(_) => "per_axis",
+            Self::BDot(_) => "b_dot",
+            Self::Sequence(_) => "sequence",
             Self::Own(_) => "own",
         }
     }
@@ -272,6 +286,8 @@ pub enum Command {
     Change(f64),
     /// An angular acceleration (rad/s²): the inertia makes a torque of those about all axes.
     Acceleration(f64),
+    /// A magnetic moment along the axis (A m²).
+    Moment(f64),
 }
 
 impl Hold {

@@ -49,7 +49,7 @@ impl Rule for PerAxis {
 
     fn reads(&self) -> Reads {
         let of = |wanted: Reads| self.all().into_iter().any(|law| law.reads() == wanted);
-        let order = [Reads::ElasticRates, Reads::DominantMode, Reads::Motion];
+        let order = [Reads::ElasticRates, Reads::DominantMode, Reads::Motion, Reads::Field];
         order.into_iter().find(|wanted| of(*wanted)).unwrap_or(Reads::Nothing)
     }
 }

@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 
 use super::damping::{ActiveDamping, DampingRelay};
 use super::{
-    Authority, Cause, Command, Control, Goal, Guards, Hold, Itinerary, Phase, Reads, Rule, SwitchingLines,
+    Authority, Cause, Command, Control, Frame, Goal, Guards, Hold, Phase, Reads, Rule, SwitchingLines,
 };
 use crate::attitude::turned;
 use crate::belief::{Belief, Damped};
 use crate::document::Fault;
-use crate::manoeuvre::Profile;
+use crate::manoeuvre::{AttitudeAt, Profile};
 use crate::quantity::{Finite, Fraction, Positive, Time};
 use crate::time::{Instant, Span};
 
@@ -57,11 +57,14 @@ fn half() -> Fraction {
 }
 
 /// An attitude to turn to: yaw, then pitch about the turned axis, then roll about the one turned twice.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Target {
     /// From when on (s).
     pub from: Time,
+    /// The axes that its attitude is from.
+    #[serde(default, skip_serializing_if = "is_inertial")]
+    pub frame: Frame,
     /// Roll (rad).
     #[serde(default)]
     pub roll: Finite,
@@ -80,6 +83,14 @@ pub struct Target {
     /// How the rate of that turn rises and falls.
     #[serde(default, skip_serializing_if = "is_trapezoid")]
     pub profile: Profile,
+    /// In place of one attitude, a table in time: splines of roll, pitch and yaw, at rest at both ends.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub table: Vec<AttitudeAt>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_inertial(frame: &Frame) -> bool {
+    *frame == Frame::Inertial
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -87,22 +98,18 @@ fn is_trapezoid(profile: &Profile) -> bool {
     *profile == Profile::Trapezoid
 }
 
-/// The attitude to turn to at an instant, of targets in the order of their times.
-pub fn targeted(targets: &[Target], now: Instant) -> nalgebra::Quaternion<f64> {
-    let target = targets.iter().rev().find(|target| target.begins() <= now);
-    target.unwrap_or(&Target::INERTIAL).attitude()
-}
-
 impl Target {
     /// The inertial attitude, from the start on.
     pub const INERTIAL: Self = Self {
         from: Time::ZERO,
+        frame: Frame::Inertial,
         roll: Finite::ZERO,
         pitch: Finite::ZERO,
         yaw: Finite::ZERO,
         acceleration: None,
         rate_limit: None,
         profile: Profile::Trapezoid,
+        table: Vec::new(),
     };
 
     /// The attitude.
@@ -129,10 +136,8 @@ impl PhasePlane {
         if off >= on {
             return Some(Fault::new("switch_off", format!("must be below `switch_on`, {on}, got {off}")));
         }
-        if let Some((late, why)) = Target::disorder(&self.targets) {
-            return Some(Fault::new(format!("targets[{late}].from"), why));
-        }
-        Itinerary::fault(&self.targets).map(|fault| fault.within("targets"))
+        let (late, why) = Target::disorder(&self.targets)?;
+        Some(Fault::new(format!("targets[{late}].from"), why))
     }
 }
 

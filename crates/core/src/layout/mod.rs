@@ -116,6 +116,8 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(planar::filters(scenario), "/estimators", Full);
         add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
         add(matches!(scenario.actuator, Actuator::Wheels(_)), "/wheels", Full);
+        add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);
+        add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);
         for topic in ["/pointing", "/rates", "/vibrations", "/energy"] {
             add(true, topic, Full);
         }

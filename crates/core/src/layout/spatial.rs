@@ -31,6 +31,12 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     if scenario.environment.is_some() {
         motion.push(Panel::plot("around", "Torques of the surroundings (N m)", torques("disturbance_nm")));
     }
+    if scenario.environment.as_ref().is_some_and(|around| around.magnetic_field.is_some()) {
+        motion.push(Panel::plot("field", "Magnetic field (T)", along("/orbit", "field_t")));
+    }
+    if scenario.actuator.magnetorquers().is_some() {
+        motion.push(Panel::plot("moments", "Magnetic moments (A m²)", along("/magnetorquers", "moment_am2")));
+    }
     if let Actuator::Wheels(_) = &scenario.actuator {
         motion.push(Panel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }
@@ -118,6 +124,12 @@ fn errors(scenario: &Scenario) -> Vec<Line> {
 fn torques(field: &str) -> Vec<Line> {
     let axis = |(index, axis)| line(format!("/torques.axes[{index}].{field}"), axis);
     AXES.into_iter().enumerate().map(axis).collect()
+}
+
+/// A field of a topic along each axis.
+fn along(topic: &str, field: &str) -> Vec<Line> {
+    let axis = |(index, axis)| line(format!("{topic}.axes[{index}].{field}"), axis);
+    ["x", "y", "z"].into_iter().enumerate().map(axis).collect()
 }
 
 fn rates(fields: &[(&str, &str)]) -> Vec<Line> {

@@ -1,6 +1,7 @@
 //! Manoeuvres: rotations planned ahead, whose command leaves the elastic modes at rest.
 
 mod adjoint;
+mod attitude_table;
 mod bang_bang;
 mod command;
 mod effort;
@@ -29,6 +30,7 @@ use crate::document::Fault;
 use crate::quantity::{Finite, Positive};
 use crate::time::Span;
 
+pub use attitude_table::{AttitudeAt, AttitudeTable};
 pub use command::{BangBang, Command, MinimumPeak, Polynomial};
 pub use effort::Effort;
 pub use extremum::Peak;

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::{Vector, rotation};
+use crate::environment::into;
 
 /// How the rate of a turn rises to its limit, and falls.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -32,6 +33,17 @@ impl Pose {
     /// At rest in an attitude.
     pub fn at_rest(attitude: Quaternion<f64>) -> Self {
         Self { attitude, rate: Vector::zeros(), acceleration: Vector::zeros() }
+    }
+
+    /// The pose of what is in this one in axes that have another.
+    #[must_use]
+    pub fn within(&self, axes: &Self) -> Self {
+        let [carried, pushed] = [axes.rate, axes.acceleration].map(|of| into(&self.attitude, &of));
+        Self {
+            attitude: axes.attitude * self.attitude,
+            rate: carried + self.rate,
+            acceleration: pushed - self.rate.cross(&carried) + self.acceleration,
+        }
     }
 
     /// Rate and acceleration in the axes of a body that is beyond it by so much (twice the sine of half the angle along its

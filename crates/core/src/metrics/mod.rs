@@ -99,6 +99,11 @@ metrics! {
     GOAL_BAND = "goal_band_rad", "rad",
         "Half width of the band about the goal: reference.band, or what the law or the manoeuvre promises; null without one";
     TIME_OUTSIDE = "time_outside_s", "s", "Time outside that band, from the goal's beginning on";
+    RATE_END = "rate_end_rad_s", "rad/s",
+        "Rigid rate of a body with magnetorquers at the end of the run";
+    MOMENTUM_PEAK = "wheel_momentum_peak_nm_s", "N m s",
+        "Largest momentum of all wheels together, of wheels that magnetorquers unload";
+    MOMENTUM_END = "wheel_momentum_end_nm_s", "N m s", "The same at the end of the run";
     NEES_MEAN = "nees_mean", "",
         "Mean over the assessed samples of the filter's normalised estimation error squared, over its number of states: 1 if its covariance is honest";
     NIS_MEAN = "nis_mean", "",

@@ -2,8 +2,8 @@
 
 use super::goal::Verdict;
 use super::{
-    BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, POINTING_END,
-    Told, VISIBLE_END, VISIBLE_PEAK, Value,
+    BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, MOMENTUM_END,
+    MOMENTUM_PEAK, POINTING_END, RATE_END, Told, VISIBLE_END, VISIBLE_PEAK, Value,
 };
 use crate::quantity::Positive;
 use crate::record::Cycle;
@@ -32,6 +32,11 @@ pub struct Spatial {
     /// Sum of the squared elastic rates of late cycles (rad²/s²), and how many they were.
     square: (f64, u64),
     error: f64,
+    /// Whether there are magnetorquers, and whether they unload wheels.
+    magnetic: [bool; 2],
+    /// Rigid rate last (rad/s); momentum of the wheels at its largest, and last (N m s).
+    rate: f64,
+    stored: [f64; 2],
     verdict: Verdict,
     /// How near to the target each axis shall be (rad), and since when one is not (s).
     bands: [f64; 3],
@@ -61,6 +66,12 @@ impl Spatial {
             below: [f64::NAN; 2],
             square: (0.0, 0),
             error: f64::NAN,
+            magnetic: [
+                scenario.actuator.magnetorquers().is_some(),
+                scenario.actuator.magnetorquers().is_some() && scenario.study.wheels.is_some(),
+            ],
+            rate: f64::NAN,
+            stored: [0.0, f64::NAN],
         }
     }
 
@@ -86,6 +97,9 @@ impl Spatial {
             self.square.1 += 1;
         }
         self.error = libm::sqrt(norm(cycle.error_rad));
+        self.rate = libm::sqrt(norm(cycle.rigid_rate_rad_s));
+        let stored = libm::sqrt(norm(cycle.stored_nm_s));
+        self.stored = [self.stored[0].max(stored), stored];
         if let Some(since) = self.outside.take() {
             self.verdict.outside(since, t);
         }
@@ -115,6 +129,11 @@ impl Spatial {
             (&POINTING_END, Value::Number(self.error)),
         ];
         let jets = jets.into_iter().filter(|_| self.jets);
-        jets.chain(metrics).chain(self.verdict.finish(self.end)).collect()
+        let [torquers, unload] = self.magnetic;
+        let rate = [(&RATE_END, Value::Number(self.rate))].into_iter().filter(|_| torquers);
+        let stored =
+            [(&MOMENTUM_PEAK, Value::Number(self.stored[0])), (&MOMENTUM_END, Value::Number(self.stored[1]))];
+        let stored = stored.into_iter().filter(|_| unload);
+        jets.chain(metrics).chain(rate).chain(stored).chain(self.verdict.finish(self.end)).collect()
     }
 }

@@ -12,6 +12,7 @@ mod proto;
 mod recover;
 pub mod row;
 mod shape;
+mod spatial;
 mod states;
 mod summary;
 mod table;
@@ -32,13 +33,14 @@ pub use mcap::{LogFile, McapLog};
 pub use message::{Attachment, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;
-pub use states::{Gate, Latch, Lock, Phase, Trust, Use, Watch};
+pub use spatial::{Cycle, SpatialMotion};
+pub use states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
 pub use topics::{
     Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, ChannelState, Command, Energy,
-    Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Metric, MetricLine, MetricPage, Metrics,
-    ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Pointing, Rate,
-    Rates, Residual, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
-    Wheel, WheelMotion, Wheels, WindowMean,
+    Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
+    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion,
+    OutputName, Outputs, Params, Pointing, Rate, Rates, Residual, Summary, TOPICS, Torque, Torques,
+    TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -115,42 +117,6 @@ pub struct Motion {
     pub wheel: Option<WheelMotion>,
     /// Envelope, if the scenario has an observer.
     pub envelope: Option<Envelope>,
-}
-
-/// A cycle of a spatial loop, after its law has decided.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Cycle {
-    /// What the jets do in it.
-    pub jets: Jets,
-    /// How many pulses begin.
-    pub pulses: u64,
-    /// Energy of the elastic modes (J).
-    pub elastic_energy_j: f64,
-    /// The same of the modes that the gyro sees (J).
-    pub visible_energy_j: f64,
-    /// Rigid rates (rad/s).
-    pub rigid_rate_rad_s: [f64; 3],
-    /// Elastic part of the rates at the gyro (rad/s).
-    pub elastic_rate_rad_s: [f64; 3],
-    /// Angles beyond the target (rad).
-    pub error_rad: [f64; 3],
-}
-
-/// The motion of a spatial body at one instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpatialMotion {
-    /// Attitude.
-    pub pointing: Pointing,
-    /// Rates.
-    pub rates: Rates,
-    /// Modes.
-    pub vibrations: Vibrations,
-    /// Energies.
-    pub energy: Energy,
-    /// Torques of actuators that are no jets.
-    pub torques: Option<Torques>,
-    /// Wheels about axes of their own.
-    pub wheels: Option<Wheels>,
 }
 
 /// Which motions a record wants whole, stretch by stretch.
@@ -370,6 +336,12 @@ trait TakeRow {
                 self.take(now, &motion.energy)?;
                 if let Some(torques) = &motion.torques {
                     self.take(now, torques)?;
+                }
+                if let Some(orbit) = &motion.orbit {
+                    self.take(now, orbit)?;
+                }
+                if let Some(magnetorquers) = &motion.magnetorquers {
+                    self.take(now, magnetorquers)?;
                 }
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
             }

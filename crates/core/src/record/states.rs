@@ -43,6 +43,13 @@ states! {
         /// The dominant mode moves too little for that.
         Gated = "gated",
     }
+    /// Whether the Sun shines on a body.
+    Light {
+        /// The planet hides it.
+        Shadow = "shadow",
+        /// It shines.
+        Lit = "lit",
+    }
     /// What a filter did with a sample.
     Use {
         /// There was none, or it was dropped.
@@ -98,6 +105,8 @@ labels! {
         Coasting = "COAST",
         /// Phase plane: pulses bring the rate back.
         Firing = "FIRE",
+        /// B-dot: magnetic moments take the rotation away.
+        Detumbling = "BDOT",
     }
 }
 

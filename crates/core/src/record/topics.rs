@@ -2,7 +2,7 @@
 
 use super::foxglove::{self, Level, Plumes};
 use super::row::{Topic, TopicRow, label_cells, rows};
-use super::states::{Gate, Latch, Lock, Phase, Trust, Use, Watch};
+use super::states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
 use crate::adaptation::Decision;
 use crate::label::{Labels, labels};
 use crate::time::Instant;
@@ -304,6 +304,36 @@ rows! {
         /// Torque of its motor (N m).
         torque_nm: f64,
     }
+    /// A magnetorquer.
+    Magnetorquer {
+        /// The magnetic moment that it holds (A m²).
+        moment_am2: f64,
+    }
+    /// The magnetorquers of a spatial body.
+    Magnetorquers = "/magnetorquers" {
+        /// Along x, y and z.
+        axes: Vec<Magnetorquer>,
+    }
+    /// Where a spatial body is on its orbit, and what there is of the sky, along one axis.
+    OrbitAxis {
+        /// Position from the planet's centre, in inertial axes (m).
+        position_m: f64,
+        /// Velocity, in inertial axes (m/s).
+        velocity_m_s: f64,
+        /// Direction to the planet's centre, in the body's axes.
+        nadir: f64,
+        /// Magnetic field, in the body's axes (T); NaN without one.
+        field_t: f64,
+        /// Direction to the Sun, in the body's axes, in the light or not; NaN without a Sun.
+        sun: f64,
+    }
+    /// Where a spatial body is on its orbit, and what there is of the sky.
+    Orbit = "/orbit" {
+        /// Along x, y and z.
+        axes: Vec<OrbitAxis>,
+        /// Whether the Sun shines on the body.
+        light: Light,
+    }
     /// The attitude of a spatial body.
     Pointing = "/pointing" {
         /// Real part of the quaternion that turns vectors of the body into inertial ones.
@@ -515,7 +545,15 @@ impl Command {
 
 /// The label of an enumeration's value, by its identifier in the schema of a log.
 pub fn label_of(identifier: &str) -> String {
-    let states = [&Lock::LABELS, &Gate::LABELS, &Use::LABELS, &Trust::LABELS, &Latch::LABELS, &Watch::LABELS];
+    let states = [
+        &Lock::LABELS,
+        &Gate::LABELS,
+        &Use::LABELS,
+        &Trust::LABELS,
+        &Latch::LABELS,
+        &Watch::LABELS,
+        &Light::LABELS,
+    ];
     let others = [&Phase::LABELS, &Trigger::LABELS, &Decision::LABELS, &Level::LABELS];
     let mut labels = others.iter().chain(&states).flat_map(|of| of.values);
     let label = labels.find(|label| Labels::identifier(label) == identifier);

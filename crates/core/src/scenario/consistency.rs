@@ -11,7 +11,7 @@ use crate::document::Fault;
 use crate::document::key;
 use crate::estimator::Estimator;
 use crate::law::{Extra, Law, Target};
-use crate::quantity::{Positive, Time};
+use crate::quantity::Time;
 use crate::sensor::Outage;
 
 impl Scenario {
@@ -77,11 +77,12 @@ impl Scenario {
         }
         let own = matches!(&self.law, Law::PhasePlane(law) if !law.targets.is_empty());
         let key = if own { "law.phase_plane.targets" } else { "target" };
-        let fast = |target: &Target| target.rate_limit.is_some_and(|rate| rate.get() > limit);
-        let index = self.targets().iter().position(fast)?;
-        let rate = self.targets()[index].rate_limit.map_or(f64::NAN, Positive::get);
-        let why = format!("must be below {limit:.3e} rad/s, {why}, got {rate}");
-        Some(Fault::new(format!("{key}[{index}].rate_limit"), why))
+        let fast = |(index, target): (usize, &Target)| {
+            let (of, rate) = target.fastest().filter(|(_, rate)| *rate > limit)?;
+            let why = format!("must be below {limit:.3e} rad/s, {why}, got {rate}");
+            Some(Fault::new(format!("{key}[{index}].{of}"), why))
+        };
+        self.targets().iter().enumerate().find_map(fast)
     }
 
     fn planar_inconsistency(&self) -> Option<Fault> {

@@ -8,9 +8,9 @@ use crate::body::Spatial;
 use crate::body::spatial::{LONGEST_TURN, Periodic};
 use crate::document::Fault;
 use crate::estimator::Estimator;
-use crate::law::Law;
+use crate::law::{Law, Target};
 use crate::motion::turning::Surroundings;
-use crate::quantity::{NonNegative, Positive};
+use crate::quantity::NonNegative;
 use crate::record::Detail;
 use crate::time::Span;
 
@@ -222,6 +222,7 @@ impl Scenario {
             Actuator::Ideal
             | Actuator::Wheel(_)
             | Actuator::Wheels(_)
+            | Actuator::Magnetorquers(_)
             | Actuator::Jets(_)
             | Actuator::Own(_) => {}
         }
@@ -257,7 +258,7 @@ impl Scenario {
     /// How fast a body with three axes is expected to turn at most, and what acts on it to change (rad/s).
     fn fastest_turn(&self, body: &Spatial) -> f64 {
         let start = vector(&body.rate).norm();
-        let limits = self.targets().iter().filter_map(|target| target.rate_limit).map(Positive::get);
+        let limits = self.targets().iter().filter_map(Target::fastest).map(|(_, rate)| rate);
         let around = self.study.around.as_ref().map_or(0.0, Surroundings::frequency);
         let own = body.disturbance.as_ref().map_or(0.0, Periodic::frequency);
         limits.fold(start, f64::max) + around + own

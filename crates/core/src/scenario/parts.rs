@@ -3,6 +3,7 @@
 use super::{Scenario, Study};
 use crate::actuator::Actuator;
 use crate::document::Fault;
+use crate::environment::Sky;
 use crate::estimator::Estimator;
 use crate::law::{Itinerary, Law, Reads, Target};
 use crate::sensor::Sensor;
@@ -15,6 +16,7 @@ impl Scenario {
     pub(super) fn fit(&mut self) -> Result<(), Fault> {
         let faults = [
             self.axes_fault(),
+            self.environment_fault(),
             self.target_fault(),
             self.law_fault(),
             self.sensor_fault(),
@@ -41,6 +43,8 @@ impl Scenario {
             let key = match (&self.law, &self.actuator) {
                 (Law::PerAxis(_), _) => "law.per_axis",
                 (_, Actuator::Jets(_)) => "actuator.jets",
+                (_, Actuator::Magnetorquers(_)) => "actuator.magnetorquers",
+                (Law::BDot(_), _) => "law.b_dot",
                 _ if !self.target.is_empty() => "target",
                 _ if self.environment.is_some() => "environment",
                 _ => "",
@@ -74,7 +78,8 @@ impl Scenario {
                 let why = "turn three axes: a body with one angle has `[actuator.wheel]`";
                 return refused("actuator.wheels", why);
             }
-            let trackers = |sensor: &Sensor| matches!(sensor, Sensor::StarTracker(_));
+            let trackers =
+                |sensor: &Sensor| matches!(sensor, Sensor::StarTracker(_)) || sensor.is_of_a_vector();
             if let Some(index) = self.sensor.iter().position(trackers) {
                 let why = "measures three axes: the angle of a body with one is that of a `sampled` sensor";
                 return refused(&self.sensor_key(index), why);
@@ -120,15 +125,36 @@ impl Scenario {
         None
     }
 
+    fn environment_fault(&self) -> Option<Fault> {
+        let fault = self.environment.as_ref()?.fault()?;
+        Some(fault.within("environment"))
+    }
+
+    /// What is around the body wherever it faces.
+    pub fn sky(&self) -> Sky {
+        let of = |environment| Sky::new(environment, self.duration);
+        self.environment.as_ref().map(of).unwrap_or_default()
+    }
+
     fn target_fault(&self) -> Option<Fault> {
-        if matches!(&self.law, Law::PhasePlane(law) if !law.targets.is_empty()) {
-            let why = "are those of the scenario: leave out `law.phase_plane.targets`";
-            return (!self.target.is_empty()).then(|| Fault::new("target", why));
+        if let Law::PhasePlane(law) = &self.law
+            && !law.targets.is_empty()
+        {
+            if !self.target.is_empty() {
+                let why = "are those of the scenario: leave out `law.phase_plane.targets`";
+                return Some(Fault::new("target", why));
+            }
+            // Their order is a matter of the law.
+            if Target::disorder(&law.targets).is_some() {
+                return None;
+            }
+            let fault = Itinerary::fault(&law.targets, &self.sky())?;
+            return Some(fault.within("law.phase_plane.targets"));
         }
         if let Some((late, why)) = Target::disorder(&self.target) {
             return Some(Fault::new(format!("target[{late}].from"), why));
         }
-        Itinerary::fault(&self.target).map(|fault| fault.within("target"))
+        Itinerary::fault(&self.target, &self.sky()).map(|fault| fault.within("target"))
     }
 
     fn law_fault(&self) -> Option<Fault> {
@@ -180,6 +206,7 @@ impl Scenario {
                         | Actuator::Hold(_)
                         | Actuator::Wheel(_)
                         | Actuator::Wheels(_)
+                        | Actuator::Magnetorquers(_)
                         | Actuator::Own(_) => Some(
                             "needs the largest torque, on which its switching lines depend: thrusters, jets, a wheel with a \
                              `limit`, or wheels with a `torque`",
@@ -199,10 +226,35 @@ impl Scenario {
                         return Some(fault.within(&key));
                     }
                 }
+                Law::BDot(_) => {
+                    if let Some(fault) = self.b_dot_fault() {
+                        return Some(fault.within(&key));
+                    }
+                }
+                Law::Sequence(laws) => {
+                    let commands = laws.laws().position(|law| matches!(law, Law::BDot(_)));
+                    let magnetic = commands
+                        .and_then(|index| Some(self.b_dot_fault()?.within(&format!("[{index}].law.b_dot"))));
+                    if let Some(fault) = laws.inconsistency().or(magnetic) {
+                        return Some(fault.within(&key));
+                    }
+                }
                 Law::Pd(_) | Law::Open(_) | Law::Own(_) => {}
             }
         }
         None
+    }
+
+    /// Why a B-dot law cannot act.
+    fn b_dot_fault(&self) -> Option<Fault> {
+        let why = if !self.sensor.iter().any(|sensor| matches!(sensor, Sensor::Magnetometer(_))) {
+            "reads the field of a `[sensor.magnetometer]`, and there is none"
+        } else if self.actuator.magnetorquers().is_none() {
+            "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them"
+        } else {
+            return None;
+        };
+        Some(Fault::new("", why))
     }
 
     fn sensor_fault(&self) -> Option<Fault> {
@@ -216,11 +268,22 @@ impl Scenario {
             {
                 return Some(fault.within(&self.sensor_key(index)));
             }
+            if let Some(fault) = self.vector_fault(sensor) {
+                return Some(fault.within(&self.sensor_key(index)));
+            }
             if self.sensor.len() > 1 && sensor.is_continuous() {
                 return at(index, "knows the motion at every instant, and there is nothing that others add");
             }
         }
-        if self.sensor.len() == 1 || self.estimator.as_ref().is_some_and(Estimator::combines) {
+        if self.estimator.as_ref().is_some_and(Estimator::combines) {
+            return None;
+        }
+        let moves = |axis: usize| !matches!(self.law.about(axis).reads(), Reads::Nothing | Reads::Field);
+        if (0..self.axis_count()).any(moves) && self.sensor.iter().all(Sensor::is_of_a_vector) {
+            let why = "tells no attitude and no rate, which the law reads: give it a `gyro` and an `[estimator.attitude]`";
+            return at(0, why);
+        }
+        if self.sensor.len() == 1 {
             return None;
         }
         if let Some(estimator) = self.estimator.as_ref().filter(|estimator| !estimator.reads_rates_alone()) {
@@ -236,12 +299,36 @@ impl Scenario {
         None
     }
 
+    /// A sensor of a vector that there is not, or with keys that do not fit.
+    fn vector_fault(&self, sensor: &Sensor) -> Option<Fault> {
+        let around = self.environment.as_ref();
+        match sensor {
+            Sensor::Magnetometer(magnetometer) => {
+                let why = "measures the field of `[environment.magnetic_field]`, and there is none";
+                let dark = around.is_none_or(|around| around.magnetic_field.is_none());
+                magnetometer.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
+            }
+            Sensor::SunSensor(sensor) => {
+                let why = "measures the direction to `environment.sun`, and there is none";
+                let dark = around.is_none_or(|around| around.sun.is_none());
+                sensor.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
+            }
+            _ => None,
+        }
+    }
+
     /// The key of a sensor, its kind included.
     pub fn sensor_key(&self, index: usize) -> String {
         format!("{}.{}", self.sensor.key("sensor", index), self.sensor[index].kind())
     }
 
     fn actuator_fault(&self) -> Option<Fault> {
+        if let Some((_, key)) = self.actuator.magnetorquers()
+            && self.environment.as_ref().is_none_or(|around| around.magnetic_field.is_none())
+        {
+            let why = "push against the field of `[environment.magnetic_field]`, and there is none";
+            return Some(Fault::new(key, why));
+        }
         let Actuator::Jets(jets) = &self.actuator else { return None };
         let at = |key: &str, why: String| Some(Fault::new(format!("actuator.jets.{key}"), why));
         let laws = (0..3).map(|axis| self.law.about(axis).period());
@@ -298,14 +385,15 @@ impl Scenario {
                 format!("must be left out where `{}.extra` reads the filter", self.law_key(reader)),
             );
         }
-        let unread = reads.iter().all(|reads| *reads == Reads::Nothing);
+        let unread = reads.iter().all(|reads| matches!(reads, Reads::Nothing | Reads::Field));
         if unread && !matches!(estimator, Estimator::Adaptive(_) | Estimator::Own(_)) {
             let instead = if estimator.filters() || matches!(estimator, Estimator::Attitude(_)) {
                 "with `watch_only = true` the filter is assessed and changes nothing"
             } else {
                 "leave it out"
             };
-            return at("", format!("is read by nothing, for the law is `open`: {instead}"));
+            let law = self.law.kind();
+            return at("", format!("is read by nothing, for the law is `{law}`: {instead}"));
         }
         None
     }

@@ -12,7 +12,7 @@ use crate::body::{Drive, Mode, Planar, Spatial};
 use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
-use crate::law::{ActiveDamping, Authority, Distribution, Law, PhasePlane, Promise, Target, band, targeted};
+use crate::law::{ActiveDamping, Authority, Distribution, Itinerary, Law, PhasePlane, Promise, Target, band};
 use crate::quantity::{Finite, Positive};
 use crate::time::{Instant, Span};
 
@@ -38,8 +38,10 @@ pub struct Study {
     pub acts_at: String,
     /// What is around a body with three axes.
     pub around: Option<Around>,
-    /// Attitudes to turn to.
+    /// Attitudes to turn to, and the way to them.
     pub targets: Vec<Target>,
+    /// See `targets`.
+    pub way: Itinerary,
     /// What each group of jets by which laws act does: for each axis, plus and minus.
     pub groups: Option<[[Group; 2]; 3]>,
     /// The same of jets that unload wheels.
@@ -70,6 +72,7 @@ impl Study {
             // A continuous sensor is read in the cycles of the law, where an estimator acts at samples.
             sampling: scenario.sensor.period(cycle).or(cycle.filter(|_| samples)),
             targets: scenario.targets().to_vec(),
+            way: Itinerary::new(scenario.targets(), &scenario.sky()),
             back_emf: match &scenario.actuator {
                 Actuator::Wheel(wheel) => (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate),
                 _ => (0.0, true),
@@ -131,7 +134,7 @@ impl Study {
         }
         self.around = surroundings(scenario, body)?;
         let measured = self.measured(body);
-        let angles = beyond(&targeted(&self.targets, Instant::START), &body.attitude.get());
+        let angles = beyond(&self.way.target(Instant::START), &body.attitude.get());
         for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.seen).enumerate() {
             let mode = |(index, mode): (usize, &crate::body::spatial::SpatialMode)| {
                 let shape = seen[index];
@@ -198,6 +201,10 @@ impl Study {
                 let most = self.wheels.as_ref().map_or(f64::INFINITY, |wheels| wheels.most(axis, limit));
                 ([most / inertia; 2], PulseWidth::default(), 0.0)
             }
+            Actuator::Magnetorquers(torquers) => {
+                let field = self.around.as_ref().map_or(0.0, |around| around.sky().field_bound());
+                ([torquers.largest() * field / inertia; 2], PulseWidth::default(), 0.0)
+            }
             Actuator::Jets(jets) => {
                 let groups = self.groups.as_ref().map(|groups| &groups[axis]);
                 let of = |sign: usize| groups.map_or(f64::INFINITY, |groups| groups[sign].acceleration);
@@ -241,11 +248,13 @@ impl Study {
                 Promise::Part(part) => {
                     // Of the whole turn to the last target.
                     let end = Instant::START + scenario.duration;
-                    let goal = targeted(&self.targets, end);
-                    let from = self.targets.iter().rev().nth(1).map_or_else(
-                        || body.attitude.get(),
-                        |target| targeted(&self.targets, target.begins()),
-                    );
+                    let goal = self.way.target(end);
+                    let from = self
+                        .targets
+                        .iter()
+                        .rev()
+                        .nth(1)
+                        .map_or_else(|| body.attitude.get(), |target| self.way.target(target.begins()));
                     let distance = beyond(&goal, &from).norm();
                     (distance > 0.0).then_some(part * distance)
                 }
@@ -301,11 +310,17 @@ impl Study {
             (Actuator::Jets(jets), Some(groups), _) => Box::new(Pulsing::new(jets, groups, self.tick)),
             (Actuator::Wheels(wheels), _, Some(allocation)) => {
                 let spinning = wheels.start(allocation, &settings);
-                match (&wheels.unloading, &self.unloading) {
-                    (Some(unloading), Some(groups)) => Box::new(unloading.start(spinning, groups)),
-                    _ => Box::new(spinning),
+                let Some(unloading) = &wheels.unloading else { return Box::new(spinning) };
+                if let Some(magnetic) = unloading.start_magnetic(spinning.clone(), &settings) {
+                    return Box::new(magnetic);
+                }
+                let by_jets = self.unloading.as_ref();
+                match by_jets.and_then(|groups| unloading.start(spinning.clone(), groups)) {
+                    Some(unloaded) => Box::new(unloaded),
+                    None => Box::new(spinning),
                 }
             }
+            (Actuator::Magnetorquers(torquers), ..) => Box::new(torquers.start(&settings)),
             (Actuator::Own(own), ..) => own.start(&settings),
             (kind, ..) => Box::new(Torquers::new(kind, settings)),
         }
@@ -314,17 +329,23 @@ impl Study {
 
 /// What is around a body, of which wheels are a part that its inertia is without.
 fn surroundings(scenario: &Scenario, body: &Spatial) -> Result<Option<Around>, Fault> {
-    let Some(environment) = &scenario.environment else { return Ok(None) };
-    if let Some(fault) = environment.fault() {
-        return Err(fault.within("environment"));
+    let bendings = scenario.body.craft().map_or(&[][..], |craft| &craft.bendings);
+    let sunny =
+        scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some() && around.sun.is_some());
+    if !bendings.is_empty() && !sunny {
+        let index = scenario.appendage.iter().position(|appendage| appendage.thermal.is_some());
+        let why = "is that of sunlight and shadow: it needs `environment.orbit` and `environment.sun`";
+        return Err(Fault::new(format!("appendage[{}].thermal", index.unwrap_or(0)), why));
     }
+    let Some(environment) = &scenario.environment else { return Ok(None) };
     let rotors = match &scenario.actuator {
         Actuator::Wheels(wheels) => wheels.rotors().map_err(|fault| fault.within("actuator.wheels"))?,
         _ => Vec::new(),
     };
     let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
     let centre = scenario.body.craft().map_or_else(Vector::zeros, |craft| craft.centre);
-    Ok(Some(Around::new(environment, [body.tensor(), spinning], &centre)))
+    let around = Around::new(environment, scenario.sky(), [body.tensor(), spinning], &centre);
+    Ok(Some(around.warming(bendings)))
 }
 
 /// No structure has elastic rates like this (rad/s).

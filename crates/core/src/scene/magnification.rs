@@ -150,7 +150,7 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
             }
         },
         Law::PhasePlane(_) => most,
-        Law::Open(_) | Law::PerAxis(_) | Law::Own(_) => 0.0,
+        Law::Open(_) | Law::PerAxis(_) | Law::BDot(_) | Law::Sequence(_) | Law::Own(_) => 0.0,
     };
     by_law.min(most)
 }

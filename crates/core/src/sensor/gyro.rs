@@ -137,7 +137,7 @@ impl Sense for AtCycles {
         if let Some(counter) = counter {
             let mean = counter.mean(now, truth);
             let rate = counter.count(gyro, mean, noise);
-            return Some(Reading { at: truth.orientation, rate: Some(rate) });
+            return Some(Reading { at: truth.orientation, rate: Some(rate), sight: None });
         }
         let mut rate = truth.rate;
         for (axis, (rate, noise)) in rate.iter_mut().zip(noise).enumerate() {
@@ -150,7 +150,7 @@ impl Sense for AtCycles {
                 *rate = libm::round(*rate / quantum) * quantum;
             }
         }
-        Some(Reading { at: truth.orientation, rate: Some(rate) })
+        Some(Reading { at: truth.orientation, rate: Some(rate), sight: None })
     }
 
     fn bias(&self) -> Option<[f64; 3]> {

@@ -2,8 +2,12 @@
 
 mod counter;
 mod gyro;
+mod late;
+mod magnetometer;
 mod sampled;
 mod star_tracker;
+mod sun_sensor;
+mod vector;
 
 use std::fmt;
 
@@ -13,14 +17,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::{AXES, Vector, beyond, rotation};
 use crate::document::Parts;
+use crate::environment::Seen;
 use crate::own::Own;
 use crate::quantity::Positive;
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
 pub use gyro::{AtCycles, Gyro};
+pub use magnetometer::Magnetometer;
 pub use sampled::{AtSamples, Fault, Outage, Sampled};
 pub use star_tracker::StarTracker;
+pub use sun_sensor::SunSensor;
 
 /// The kinds of sensor.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -35,6 +42,10 @@ pub enum Sensor {
     Gyro(Gyro),
     /// The attitude at exposures, told later.
     StarTracker(StarTracker),
+    /// The magnetic field.
+    Magnetometer(Magnetometer),
+    /// The direction to the Sun.
+    SunSensor(SunSensor),
     /// A sensor from outside of this crate, which no scenario file can name.
     Own(Own<dyn Instrument>),
 }
@@ -126,6 +137,8 @@ pub struct Truth {
     pub rigid: [f64; 3],
     /// The integral of `rate` (rad), but for a constant: what a gyro that counts angles has counted.
     pub turned: [f64; 3],
+    /// What there is of the sky.
+    pub sky: Seen,
 }
 
 impl Truth {
@@ -145,6 +158,19 @@ pub struct Reading {
     pub at: Orientation,
     /// Rates (rad/s), of a sensor that measures them.
     pub rate: Option<[f64; 3]>,
+    /// A vector, of a sensor that measures one.
+    pub sight: Option<Sight>,
+}
+
+/// A vector that was measured.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Sight {
+    /// In the body's axes, as measured.
+    pub vector: Vector,
+    /// What it is in inertial axes.
+    pub inertial: Vector,
+    /// Whether its direction alone was measured, and it has length 1.
+    pub is_direction: bool,
 }
 
 /// The true orientation and rates, at every instant.
@@ -153,7 +179,7 @@ struct Exact;
 
 impl Sense for Exact {
     fn read(&mut self, _: Instant, truth: &Truth, _: Option<&Reading>) -> Option<Reading> {
-        Some(Reading { at: truth.orientation.at(truth.seen()), rate: Some(truth.rate) })
+        Some(Reading { at: truth.orientation.at(truth.seen()), rate: Some(truth.rate), sight: None })
     }
 
     fn copy(&self) -> Box<dyn Sense> {
@@ -169,6 +195,8 @@ impl Sensor {
             Self::Sampled(sampled) => Box::new(sampled.start(axes, seed, ordinal)),
             Self::Gyro(gyro) => Box::new(gyro.start(axes, seed, ordinal)),
             Self::StarTracker(tracker) => Box::new(tracker.start(seed, ordinal)),
+            Self::Magnetometer(magnetometer) => magnetometer.start(seed, ordinal),
+            Self::SunSensor(sensor) => sensor.start(seed, ordinal),
             Self::Own(own) => own.start(axes, seed),
         }
     }
@@ -185,6 +213,8 @@ impl Sensor {
             Self::Sampled(_) => "sampled",
             Self::Gyro(_) => "gyro",
             Self::StarTracker(_) => "star_tracker",
+            Self::Magnetometer(_) => "magnetometer",
+            Self::SunSensor(_) => "sun_sensor",
             Self::Own(_) => "own",
         }
     }
@@ -196,6 +226,8 @@ impl Sensor {
             Self::Sampled(sampled) => Some(sampled.period),
             Self::Gyro(gyro) => gyro.period.or(law),
             Self::StarTracker(tracker) => Some(tracker.period),
+            Self::Magnetometer(magnetometer) => Some(magnetometer.period),
+            Self::SunSensor(sensor) => Some(sensor.period),
             Self::Own(own) => Some(own.period()),
         }
     }
@@ -207,13 +239,15 @@ impl Sensor {
             Self::Sampled(sampled) => sampled.point.as_deref(),
             Self::Gyro(gyro) => gyro.point.as_deref(),
             Self::StarTracker(tracker) => tracker.point.as_deref(),
+            Self::Magnetometer(magnetometer) => magnetometer.point.as_deref(),
+            Self::SunSensor(sensor) => sensor.point.as_deref(),
         }
     }
 
     /// Standard deviation of a measured rate about an axis (rad/s), if rates are measured.
     pub fn rate_noise(&self, axis: usize) -> Option<f64> {
         match self {
-            Self::Continuous | Self::StarTracker(_) => None,
+            Self::Continuous | Self::StarTracker(_) | Self::Magnetometer(_) | Self::SunSensor(_) => None,
             Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
             Self::Gyro(gyro) => Some(gyro.rate_noise(axis)),
             Self::Own(own) => own.rate_noise(),
@@ -226,8 +260,13 @@ impl Sensor {
             Self::Sampled(sampled) => sampled.angle_noise(),
             Self::StarTracker(tracker) => tracker.angle_noise(),
             Self::Own(own) => own.angle_noise(),
-            Self::Continuous | Self::Gyro(_) => 0.0,
+            Self::Continuous | Self::Gyro(_) | Self::Magnetometer(_) | Self::SunSensor(_) => 0.0,
         }
+    }
+
+    /// Whether it measures a vector, which tells the attitude only beside another.
+    pub fn is_of_a_vector(&self) -> bool {
+        matches!(self, Self::Magnetometer(_) | Self::SunSensor(_))
     }
 
     /// Its failures.
@@ -235,6 +274,8 @@ impl Sensor {
         match self {
             Self::Sampled(sampled) => &sampled.faults,
             Self::StarTracker(tracker) => &tracker.faults,
+            Self::Magnetometer(magnetometer) => &magnetometer.faults,
+            Self::SunSensor(sensor) => &sensor.faults,
             Self::Continuous | Self::Gyro(_) | Self::Own(_) => &[],
         }
     }
@@ -264,7 +305,11 @@ impl Parts<Sensor> {
     /// Whether a sensor tells where the body points: a gyro only where no other does, which then is known exactly.
     pub fn orients(&self, index: usize) -> bool {
         let gyro = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(_));
-        !gyro(&self[index]) || self.iter().all(gyro) && index == 0
+        if self[index].is_of_a_vector() {
+            return false;
+        }
+        let first = self.iter().position(gyro);
+        !gyro(&self[index]) || self.iter().all(|of| gyro(of) || of.is_of_a_vector()) && first == Some(index)
     }
 
     /// The shortest period of their samples under a law with a period of its own or none; none of a continuous sensor.

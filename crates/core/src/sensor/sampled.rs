@@ -115,7 +115,7 @@ impl Sense for AtSamples {
                 *rate += sd * noise.normal();
             }
         }
-        let reading = Reading { at: truth.orientation.at(angles), rate: gyro.map(|_| rate) };
+        let reading = Reading { at: truth.orientation.at(angles), rate: gyro.map(|_| rate), sight: None };
         match sampled.faults.iter().find(|fault| fault.outage().lasts(now)) {
             None => Some(reading),
             Some(Fault::Stuck(_)) => Some(last.copied().unwrap_or(reading)),

@@ -1,11 +1,10 @@
 //! A star tracker: the attitude at its exposures, with noise in its own axes, told some time later.
 
-use std::collections::VecDeque;
-
 use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::late::{Late, failing};
 use super::{Fault, Orientation, Reading, Sense, Truth, stream};
 use crate::attitude::{Attitude, Vector, rotation};
 use crate::quantity::{NonNegative, Positive, Time};
@@ -46,8 +45,7 @@ impl StarTracker {
         Exposing {
             tracker: self.clone(),
             noise: [0, 1, 2].map(draws),
-            exposes: Instant::START,
-            waiting: VecDeque::new(),
+            late: Late::new(self.period, self.latency()),
         }
     }
 
@@ -82,10 +80,7 @@ pub struct Exposing {
     tracker: StarTracker,
     /// Draws about each of its axes.
     noise: [Stream; 3],
-    /// When it exposes next.
-    exposes: Instant,
-    /// What was seen, and when it is told.
-    waiting: VecDeque<(Instant, Reading)>,
+    late: Late,
 }
 
 impl Exposing {
@@ -96,38 +91,28 @@ impl Exposing {
         let draws: [f64; 3] = std::array::from_fn(|axis| deviations[axis] * self.noise[axis].normal());
         let Orientation::Attitude(attitude) = truth.orientation.at(truth.seen()) else { return None };
         let error = self.tracker.turned_to_body(&draws.into());
-        let seen = Reading { at: Orientation::Attitude(attitude * rotation(&error)), rate: None };
+        let seen =
+            Reading { at: Orientation::Attitude(attitude * rotation(&error)), rate: None, sight: None };
         let rate = Vector::from(truth.rate).norm();
         if self.tracker.blackout_rate.is_some_and(|limit| rate >= limit.get()) {
             return None;
         }
-        match self.tracker.faults.iter().find(|fault| fault.outage().lasts(now)) {
-            None => Some(seen),
-            Some(Fault::Stuck(_)) => Some(last.copied().unwrap_or(seen)),
-            Some(Fault::Silent(_)) => None,
-        }
+        failing(&self.tracker.faults, now, Some(seen), last)
     }
 }
 
 impl Sense for Exposing {
     /// What is told now. At the start that is what is seen then, as if it had been exposed before.
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
-        if now >= self.exposes {
-            let told = if now == Instant::START { now } else { now + self.tracker.latency() };
-            self.exposes = now + self.tracker.period;
-            if let Some(reading) = self.expose(now, truth, last) {
-                self.waiting.push_back((told, reading));
-            }
+        if self.late.exposes(now) {
+            let seen = self.expose(now, truth, last);
+            self.late.take(now, seen);
         }
-        let (told, reading) = *self.waiting.front()?;
-        (told <= now).then(|| {
-            self.waiting.pop_front();
-            reading
-        })
+        self.late.told(now)
     }
 
     fn after(&mut self, _: Instant, _: Span) -> Instant {
-        self.waiting.front().map_or(self.exposes, |(told, _)| self.exposes.min(*told))
+        self.late.next()
     }
 
     fn copy(&self) -> Box<dyn Sense> {
@@ -141,7 +126,8 @@ mod tests {
 
     fn truth(attitude: Quaternion<f64>, elastic: [f64; 3], rate: [f64; 3]) -> Truth {
         let orientation = Orientation::Attitude(attitude);
-        Truth { orientation, elastic, rate, rigid: rate, turned: [0.0; 3] }
+        let sky = crate::environment::Seen::default();
+        Truth { orientation, elastic, rate, rigid: rate, turned: [0.0; 3], sky }
     }
 
     fn start(keys: &str) -> Exposing {

@@ -4,7 +4,7 @@ use crate::actuator::Actuate;
 use crate::belief::Belief;
 use crate::body::{Drift, Wrench};
 use crate::disturbance::{Disturbance, Disturbing};
-use crate::environment::Environment;
+use crate::environment::Around;
 use crate::law::{Command, Distribution};
 use crate::random::Seed;
 use crate::scenario::Scenario;
@@ -32,7 +32,7 @@ impl Drive {
         let breaks = scenario.plan.iter().flat_map(|plan| plan.waveform.breaks()).map(at);
         let kinks = scenario.drift.iter().flat_map(Drift::kinks).map(at);
         let disturbed = scenario.disturbance.iter().flat_map(Disturbance::edges);
-        let around = scenario.environment.iter().flat_map(Environment::edges);
+        let around = scenario.study.around.iter().flat_map(Around::edges);
         let mut edges: Vec<Instant> = breaks.chain(disturbed).chain(kinks).chain(around).collect();
         edges.sort_by(|a, b| b.cmp(a));
         edges.dedup();

@@ -2,20 +2,21 @@
 
 use crate::attitude::{AXES, angles};
 use crate::belief::Damped;
+use crate::law::Frame;
 use crate::record::foxglove::Level;
 use crate::record::row::Stamp;
 use crate::record::{Adaptation, Arrival, Record, RecordError};
 use crate::scenario::Scenario;
-use crate::sensor::Orientation;
 use crate::sim::journal::{Journal, adapted, opening};
 use crate::time::Instant;
+use nalgebra::Quaternion;
 
 /// What was known before.
 #[derive(Clone, Debug)]
 pub struct Events {
     journal: Journal,
     opening: String,
-    target: Option<Orientation>,
+    target: Option<(Frame, Quaternion<f64>)>,
     /// Whether the body is on its way to the target.
     travelling: bool,
     /// How near to a target it arrives, about each axis (rad).
@@ -104,16 +105,17 @@ impl Events {
     pub fn target(
         &mut self,
         now: Instant,
-        target: &Orientation,
+        target: (Frame, Quaternion<f64>),
         error: [f64; 3],
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
         let manoeuvre = (Level::Info, "manoeuvre");
-        let Orientation::Attitude(attitude) = target else { return Ok(()) };
-        if self.target.as_ref() != Some(target) {
-            self.target = Some(*target);
-            let [roll, pitch, yaw] = angles(attitude);
-            let line = format!("the target is roll {roll:.5}, pitch {pitch:.5}, yaw {yaw:.5} rad");
+        if self.target != Some(target) {
+            self.target = Some(target);
+            let (frame, attitude) = target;
+            let [roll, pitch, yaw] = angles(&attitude);
+            let from = frame.words();
+            let line = format!("the target is roll {roll:.5}, pitch {pitch:.5}, yaw {yaw:.5} rad{from}");
             self.journal.tell(now, manoeuvre, line, record)?;
             self.travelling = true;
         }

@@ -18,6 +18,7 @@ use thiserror::Error;
 
 use crate::belief::Belief;
 use crate::body::spatial::SpatialState;
+use crate::environment::into;
 use crate::estimator::{self, Estimate, Monitor, Taken};
 use crate::law::{Cause, Controls, Event};
 use crate::motion::State;
@@ -170,6 +171,7 @@ impl Simulation {
         let truth = self.plant.view(self.now)?;
         self.sense(&truth, record)?;
         self.ask(Event::Start);
+        self.feel(&truth);
         self.drive.command(self.now, self.laws.commands(), &self.beliefs, truth.rigid);
         self.drive.serve(self.now, truth.rigid);
         self.depart(record)?;
@@ -215,6 +217,7 @@ impl Simulation {
         }
         if self.drive.due == Some(now) {
             let truth = self.plant.view(now)?;
+            self.feel(&truth);
             self.drive.serve(now, truth.rigid);
             self.depart(record)?;
         }
@@ -244,6 +247,9 @@ impl Simulation {
             ahead: self.laws.ahead(),
         };
         self.estimator.take(&taken, &mut self.beliefs);
+        if let Some(changes) = self.sensing.field_rate {
+            self.beliefs.iter_mut().zip(&changes).for_each(|(belief, change)| belief.field_rate = *change);
+        }
         for (belief, queued) in self.beliefs.iter_mut().zip(self.drive.actuator.queued()) {
             belief.queued = queued;
         }
@@ -272,6 +278,18 @@ impl Simulation {
         laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
     }
 
+    /// Lets the actuator have the magnetic field as it was measured last, or as it is where nothing measures it.
+    fn feel(&mut self, truth: &Truth) {
+        let measured = self.sensing.field.map(|(_, field)| field);
+        let here = || match (truth.orientation, truth.sky.field) {
+            (Orientation::Attitude(attitude), Some(field)) => Some(into(&attitude, &field)),
+            _ => None,
+        };
+        if let Some(field) = measured.or_else(here) {
+            self.drive.actuator.feel(field);
+        }
+    }
+
     fn decide(&mut self, event: Event, record: &mut impl Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.decisions += 1;
@@ -291,6 +309,7 @@ impl Simulation {
         }
         let before = self.laws.about(0).state();
         let cause = self.ask(event);
+        self.feel(&truth);
         self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
         self.depart(record)?;
         self.tell_switching(before, cause, &truth, record)

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use crate::attitude::Vector;
 use crate::belief::Belief;
-use crate::law::{Control, Goal, Itinerary};
+use crate::law::{Control, Frame, Goal, Itinerary};
 use crate::scenario::Scenario;
 use crate::sensor::Orientation;
 use crate::time::{Instant, Span};
 use crate::waveform::Waveform;
+use nalgebra::Quaternion;
 
 /// Where the body shall be.
 #[derive(Clone, Debug)]
@@ -32,7 +33,7 @@ impl Reference {
             waveform: scenario.plan.as_ref().map(|plan| Arc::new(plan.waveform.clone())),
             from: (scenario.model.angle.get(), scenario.model.rate.get()),
             inertia: scenario.planned_for().commanded_inertia(),
-            way: scenario.body.spatial().map(|_| Itinerary::new(&scenario.study.targets)),
+            way: scenario.body.spatial().map(|_| scenario.study.way.clone()),
         }
     }
 
@@ -74,6 +75,11 @@ impl Reference {
             None => Orientation::Angle(0.0),
             Some(way) => Orientation::Attitude(way.target(now)),
         }
+    }
+
+    /// The same as it is written, of three axes: the axes that it is from, and the attitude in them.
+    pub fn written(&self, now: Instant) -> Option<(Frame, Quaternion<f64>)> {
+        self.way.as_ref().map(|way| way.written(now))
     }
 
     /// What each of three axes is led along, while the reference moves, of a body that is believed to be where it is.

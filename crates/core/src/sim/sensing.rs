@@ -1,8 +1,9 @@
 //! The sensors of a run: when each is due, and what their readings come to about each axis.
 
+use crate::attitude::Vector;
 use crate::random::Seed;
 use crate::scenario::Scenario;
-use crate::sensor::{Orientation, Reading, Sense, Truth};
+use crate::sensor::{Orientation, Reading, Sense, Sensor, Truth};
 use crate::time::{Instant, Span};
 
 /// The sensors at work.
@@ -15,6 +16,10 @@ pub struct Sensing {
     pub reading: Option<Reading>,
     /// The same about each axis: angle (rad) and rate (rad/s).
     pub measured: Vec<[f64; 2]>,
+    /// The magnetic field in the body's axes as it was measured last (T), when, and how fast it changed (T/s).
+    pub field: Option<(Instant, Vector)>,
+    /// See `field`.
+    pub field_rate: Option<Vector>,
     /// When the next is due; none of a continuous sensor.
     pub next: Option<Instant>,
 }
@@ -28,6 +33,8 @@ struct Due {
     period: Option<Span>,
     next: Option<Instant>,
     last: Option<Reading>,
+    /// Whether it is the magnetometer whose field counts.
+    feels: bool,
     /// Whether rates are the differences of its angles.
     differs: bool,
 }
@@ -38,7 +45,8 @@ impl Sensing {
         let (study, axes) = (&scenario.study, scenario.study.axes.len());
         let all = &scenario.sensor;
         let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
-        let due = |(index, sensor): (usize, &crate::sensor::Sensor)| {
+        let feels = all.iter().position(|sensor| matches!(sensor, Sensor::Magnetometer(_)));
+        let due = |(index, sensor): (usize, &Sensor)| {
             let period = if all.len() == 1 { study.sampling } else { sensor.period(study.cycle) };
             Due {
                 sensor: sensor.start(axes, seed, all.ordinal(index)),
@@ -46,6 +54,7 @@ impl Sensing {
                 period,
                 next: period.map(|period| Instant::START + period),
                 last: None,
+                feels: feels == Some(index),
                 differs: all.orients(index) && !rates,
             }
         };
@@ -54,6 +63,8 @@ impl Sensing {
             fresh: vec![None; sensors.len()],
             reading: None,
             measured: vec![[0.0; 2]; axes],
+            field: None,
+            field_rate: None,
             next: sensors.iter().filter_map(|due| due.next).min(),
             sensors,
         }
@@ -76,6 +87,11 @@ impl Sensing {
             let Some(reading) = reading else { continue };
             any = true;
             self.fresh[index] = Some(reading);
+            if let Some(sight) = reading.sight.filter(|_| due.feels) {
+                let before = self.field.replace((now, sight.vector)).filter(|(then, _)| *then < now);
+                self.field_rate =
+                    before.map(|(then, field)| (sight.vector - field) / now.since(then).seconds());
+            }
             let rates = reading.rate.or_else(|| due.differences(now, &reading, &truth));
             if due.orients {
                 let angles = reading.at.beyond(origin);
@@ -89,6 +105,7 @@ impl Sensing {
             self.reading = Some(Reading {
                 at: if due.orients { reading.at } else { before.at },
                 rate: reading.rate.or(before.rate),
+                sight: None,
             });
         }
         self.next = self.sensors.iter().filter_map(|due| due.next).min();

@@ -262,10 +262,13 @@ impl Simulation {
                 rigid_rate_rad_s: rigid.into(),
                 elastic_rate_rad_s: elastic.into(),
                 error_rad: error,
+                stored_nm_s: self.drive.actuator.stored(now),
             };
             record.record(now, Sample::Cycle(&cycle))?;
-            let target = self.reference.target(now);
-            self.telling.events.target(now, &target, truth.orientation.beyond(&target), record)?;
+            if let Some(written) = self.reference.written(now) {
+                let error = truth.orientation.beyond(&self.reference.target(now));
+                self.telling.events.target(now, written, error, record)?;
+            }
             if self.estimates {
                 let damped = || self.laws.damped();
                 let Some(tracking) = self.estimator.tracking(&|| plant.modal_rates(), &damped) else {
@@ -289,11 +292,12 @@ impl Simulation {
             believed_rad_s: self.beliefs[axis].rate,
         };
         let actuator = &self.drive.actuator;
-        let around = plant.surroundings();
+        let (around, magnetic) = (plant.surroundings(), plant.magnetic());
         let torque = |axis: usize| record::Torque {
             feedforward_nm: 0.0,
             feedback_nm: actuator.asked(axis),
-            applied_nm: actuator.applied(self.now, axis, [rigid[axis] + elastic[axis], rigid[axis]]),
+            applied_nm: magnetic[axis]
+                + actuator.applied(self.now, axis, [rigid[axis] + elastic[axis], rigid[axis]]),
             disturbance_nm: {
                 let others = self.drive.disturbance(self.now, axis);
                 around.map_or(others, |around| others + around[axis])
@@ -310,6 +314,8 @@ impl Simulation {
             energy: plant.energy(),
             torques,
             wheels: (!wheels.is_empty()).then_some(Wheels { wheels }),
+            orbit: plant.orbit(),
+            magnetorquers: actuator.magnetic(),
         }
     }
 }

@@ -53,6 +53,7 @@ impl Loop {
             Actuator::Hold(_)
             | Actuator::Thrusters(_)
             | Actuator::Wheels(_)
+            | Actuator::Magnetorquers(_)
             | Actuator::Jets(_)
             | Actuator::Own(_) => {
                 return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop");

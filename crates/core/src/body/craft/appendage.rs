@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::clamped::{ClampedMode, rotation_of};
 use super::mass::MassProperties;
 use super::results::Units;
+use super::thermal::Thermal;
 use super::turned::Turned;
 use crate::attitude::{Vector, tensor, vector};
 use crate::body::Damping;
@@ -50,6 +51,9 @@ pub struct Appendage {
     /// How many of the modes of results are kept, those with the lowest frequencies; left out, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<usize>,
+    /// How sunlight bends it; left out, it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thermal: Option<Thermal>,
     /// The units of results: metres and kilograms where it is left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,

@@ -11,6 +11,7 @@ use super::damping::FreeDamping;
 use super::free::{Free, Held};
 use super::mass::MassProperties;
 use super::spacecraft::Spacecraft;
+use super::thermal;
 use super::{Craft, Rotor};
 use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
@@ -59,6 +60,12 @@ impl Craft {
         let whole = MassProperties::together(&bodies);
         let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
         let parts = parts(appendages, &whole.centre);
+        for (index, appendage) in appendages.iter().enumerate() {
+            let thermal = appendage.thermal.as_ref();
+            if let Some(fault) = thermal.and_then(|thermal| thermal.fault(appendage.modes.len())) {
+                return Err(fault.within(&format!("appendage[{index}]")));
+            }
+        }
         let held = Held {
             mass: whole.mass,
             inertia: whole.inertia - spinning,
@@ -90,6 +97,7 @@ impl Craft {
             },
             mass: whole.mass,
             centre: whole.centre,
+            bendings: thermal::bendings(appendages, &held.frequencies, &free.shapes),
             parts,
             damping_coupling: damping.coupling,
         })

@@ -13,6 +13,7 @@ mod limit;
 mod mass;
 mod results;
 mod spacecraft;
+mod thermal;
 mod turned;
 
 use crate::attitude::Vector;
@@ -25,6 +26,7 @@ pub use clamped::ClampedMode;
 pub use limit::Limit;
 pub use results::Units;
 pub use spacecraft::Spacecraft;
+pub use thermal::{Bending, Thermal};
 pub use turned::{Turn, Turned};
 
 /// A rotor of the hub that turns freely about its axis.
@@ -49,6 +51,8 @@ pub struct Craft {
     pub centre: Vector,
     /// The clamped modes as the hub sees them, appendage by appendage.
     pub parts: Vec<Part>,
+    /// Thermal bending of its appendages.
+    pub bendings: Vec<Bending>,
     /// Off-diagonal damping of the free modes, the largest |Dq_ij| W/|W_i² - W_j²|.
     pub damping_coupling: f64,
 }

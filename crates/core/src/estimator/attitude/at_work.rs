@@ -1,9 +1,9 @@
-//! The attitude filter at work: it reads the gyro and what measures the attitude, and writes the belief about three axes.
+//! The attitude filter at work: it reads the gyro and what measures the attitude or a vector, and writes the belief about three axes.
 
 use nalgebra::Quaternion;
 
 use super::spec::{AttitudeFilter, Role, Setting};
-use super::{Correction, Filter, Fix, History};
+use super::{Correction, Filter, Fix, History, Measured};
 use crate::attitude::{Vector, rotation};
 use crate::belief::Belief;
 use crate::estimator::kalman::Prior;
@@ -68,14 +68,21 @@ impl Tracking {
                 self.since = now;
             }
         }
-        for (role, reading) in self.setting.of(readings, &|role| matches!(role, Role::Attitude { .. })) {
-            let (Role::Attitude { latency, noise }, Orientation::Attitude(attitude)) = (role, reading.at)
-            else {
-                continue;
+        for (role, reading) in self.setting.of(readings, &|role| matches!(role, Role::Corrects { .. })) {
+            let Role::Corrects { latency, noise, gain } = role else { continue };
+            let measured = match (reading.sight, reading.at) {
+                (Some(sight), _) => Measured::Vector(sight),
+                (None, Orientation::Attitude(attitude)) => Measured::Attitude(attitude),
+                (None, Orientation::Angle(_)) => continue,
             };
             // What is told at the start is of the start.
             let exposed = if now == Instant::START { now } else { now.before(*latency) };
-            corrections.extend(history.fix(Fix { exposed, attitude, noise: *noise }));
+            corrections.extend(history.fix(Fix {
+                exposed,
+                measured,
+                noise: *noise,
+                gain: gain.as_deref().copied(),
+            }));
         }
         self.used = !corrections.is_empty();
         self.told = corrections.pop().unwrap_or_default();

@@ -3,12 +3,16 @@
 //! The attitude is Q = Q^ exp(theta), the bias b = b^ + beta; theta and beta, three numbers each, have the covariance P. A gyro
 //! reading y covers an interval: w^ = y - b^ turns Q^ through it, and theta' = -w^ x theta - beta - n_v, beta' = n_u is solved
 //! exactly for constant w^, with the exact covariance of what n_v and n_u add. An attitude z corrects by 2 vec(Q^* z), in the
-//! form of Joseph. Errors stay on the right of Q^: nothing has to be reset but Q^ itself.
+//! form of Joseph. So does a vector y that is r in inertial axes: with b = Q^* r it is b + b x theta, of a direction the part across
+//! b alone. Errors stay on the right of Q^: nothing has to be reset but Q^ itself.
 
-use nalgebra::{Cholesky, Matrix3, Matrix6, Quaternion, SMatrix};
+use nalgebra::{Cholesky, Const, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum};
 
+use super::history::Measured;
 use crate::attitude::{Vector, beyond, rotation};
+use crate::environment::into;
 use crate::numerics::stumpff::stumpff;
+use crate::sensor::Sight;
 
 /// Noise of a gyro as the filter knows it, the same about each axis.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -30,12 +34,12 @@ pub struct Filter {
     pub covariance: Matrix6<f64>,
 }
 
-/// What a measured attitude told a filter.
+/// What a measured attitude or vector told a filter.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Correction {
-    /// How far the measured attitude was beyond the predicted one, in the body's axes (rad).
+    /// How far the measured attitude was beyond the predicted one, in the body's axes (rad); of a vector the part across it.
     pub innovation: Vector,
-    /// The normalised square of the innovation.
+    /// The normalised square of the innovation, of a direction, which has two numbers, times 3/2.
     pub nis: f64,
 }
 
@@ -73,6 +77,81 @@ impl Filter {
         self.covariance =
             symmetric(&(kept * self.covariance * kept.transpose() + gain * noise * gain.transpose()));
         Some(Correction { innovation, nis: innovation.dot(&(inverse * innovation)) })
+    }
+
+    /// Takes a measured vector whose error in the body's axes has this covariance.
+    pub fn correct_by(&mut self, sight: &Sight, noise: &Matrix3<f64>) -> Option<Correction> {
+        let expected = into(&self.attitude, &sight.inertial);
+        let (off, moved) = (sight.vector - expected, expected.cross_matrix());
+        let nis = if sight.is_direction {
+            let across = across(&expected);
+            self.update(&(across * moved), &(across * off), &(across * noise * across.transpose()))? * 1.5
+        } else {
+            self.update(&moved, &off, noise)?
+        };
+        Some(Correction { innovation: off.cross(&expected) / expected.norm_squared(), nis })
+    }
+
+    /// The same with a constant gain from the angle that is measured beyond the attitude. The covariance is that of the errors
+    /// which this gain leaves.
+    pub fn correct_with(
+        &mut self,
+        measured: &Measured,
+        noise: &Matrix3<f64>,
+        gain: &Matrix6x3<f64>,
+    ) -> Option<Correction> {
+        let (off, moved, gain) = match measured {
+            Measured::Attitude(attitude) => (beyond(&self.attitude, attitude), Matrix3::identity(), *gain),
+            Measured::Vector(sight) => {
+                let expected = into(&self.attitude, &sight.inertial);
+                let to_angle = expected.cross_matrix() / -expected.norm_squared();
+                (sight.vector - expected, expected.cross_matrix(), gain * to_angle)
+            }
+        };
+        let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
+        let spread = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?;
+        // A direction has two numbers.
+        let scale =
+            if matches!(measured, Measured::Vector(Sight { is_direction: true, .. })) { 1.5 } else { 1.0 };
+        let nis = scale * off.dot(&spread.solve(&off));
+        let error = gain * off;
+        let innovation = match measured {
+            Measured::Attitude(_) => off,
+            Measured::Vector(sight) => {
+                let expected = into(&self.attitude, &sight.inertial);
+                off.cross(&expected) / expected.norm_squared()
+            }
+        };
+        self.take(&error, &(gain * moved), &(gain * noise * gain.transpose()));
+        Some(Correction { innovation, nis })
+    }
+
+    /// Takes errors over that were found with a gain of which this acts on the attitude, and adds this to the covariance.
+    fn take(&mut self, error: &SMatrix<f64, 6, 1>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) {
+        self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
+        self.bias += error.fixed_rows::<3>(3);
+        let mut kept = Matrix6::identity();
+        let mut first = kept.fixed_columns_mut::<3>(0);
+        first -= told;
+        self.covariance = symmetric(&(kept * self.covariance * kept.transpose() + added));
+    }
+
+    /// Takes D numbers that are beyond what is expected by so much, where a unit of theta moves them so, and errors have this
+    /// covariance; returns the normalised square.
+    fn update<const D: usize>(
+        &mut self,
+        moved: &SMatrix<f64, D, 3>,
+        off: &SMatrix<f64, D, 1>,
+        noise: &SMatrix<f64, D, D>,
+    ) -> Option<f64>
+    where
+        Const<D>: ToTypenum + DimSub<Const<1>>,
+    {
+        let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
+        let inverse = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?.inverse();
+        let gain = to_measured * inverse;
+        self.take(&(gain * off), &(gain * moved), &(gain * noise * gain.transpose()));
+        Some(off.dot(&(inverse * off)))
     }
 
     /// Its error where these are attitude and bias: so far is the truth beyond the estimate (rad, rad/s).
@@ -114,6 +193,13 @@ fn interval(turn: &Vector, seconds: f64, [white, walk]: [f64; 2]) -> (Matrix6<f6
         one * (walk * seconds),
     ]);
     (transition, added)
+}
+
+/// Two unit vectors across a vector and each other, as rows.
+fn across(v: &Vector) -> SMatrix<f64, 2, 3> {
+    let first = v.cross(&Vector::ith(v.iamin(), 1.0)).normalize();
+    let second = v.cross(&first).normalize();
+    SMatrix::from_rows(&[first.transpose(), second.transpose()])
 }
 
 fn unit(q: Quaternion<f64>) -> Quaternion<f64> {

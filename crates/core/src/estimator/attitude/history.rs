@@ -1,26 +1,48 @@
 //! The recent past of an attitude filter, so that a measurement that arrives late corrects it where the body was exposed.
 //!
 //! Each entry holds the filter after what happened at its instant, with the gyro reading of the interval that ends there and
-//! the attitudes that were measured there. A late measurement is put where it belongs, and all that is later is done again:
+//! what was measured there. A late measurement is put where it belongs, and all that is later is done again:
 //! the result is that of a filter to which nothing is late.
 
 use std::collections::VecDeque;
 
-use nalgebra::{Matrix3, Quaternion};
+use nalgebra::{Matrix3, Matrix6x3, Quaternion};
 
 use super::filter::{Correction, Filter, GyroNoise};
 use crate::attitude::Vector;
+use crate::sensor::Sight;
 use crate::time::{Instant, Span};
 
-/// A measured attitude.
+/// A measurement that corrects.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Fix {
     /// When the body was exposed.
     pub exposed: Instant,
-    /// The attitude.
-    pub attitude: Quaternion<f64>,
-    /// Covariance of its error in the body's axes (rad²).
+    /// What was measured.
+    pub measured: Measured,
+    /// Covariance of its error in the body's axes (rad², or that of the vector's unit).
     pub noise: Matrix3<f64>,
+    /// The constant gain of a filter that has one.
+    pub gain: Option<Matrix6x3<f64>>,
+}
+
+/// What corrects an attitude.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Measured {
+    /// An attitude.
+    Attitude(Quaternion<f64>),
+    /// A vector.
+    Vector(Sight),
+}
+
+impl Fix {
+    fn correct(&self, filter: &mut Filter) -> Option<Correction> {
+        match (&self.measured, &self.gain) {
+            (Measured::Attitude(attitude), None) => filter.correct(attitude, &self.noise),
+            (Measured::Vector(sight), None) => filter.correct_by(sight, &self.noise),
+            (measured, Some(gain)) => filter.correct_with(measured, &self.noise, gain),
+        }
+    }
 }
 
 /// A filter and its recent past.
@@ -79,7 +101,7 @@ impl History {
         told
     }
 
-    /// Takes a measured attitude, as late as it may be; nothing comes of one that is later, and of one that waits for a reading.
+    /// Takes a measurement, as late as it may be; nothing comes of one that is later, and of one that waits for a reading.
     pub fn fix(&mut self, fix: Fix) -> Option<Correction> {
         let Some(index) = self.entries.iter().position(|entry| fix.exposed <= entry.at) else {
             self.early.push(fix);
@@ -94,7 +116,7 @@ impl History {
             self.entries.insert(index, Entry { at: fix.exposed, reading, fixes: Vec::new(), filter });
         }
         let entry = &mut self.entries[index];
-        let correction = entry.filter.correct(&fix.attitude, &fix.noise)?;
+        let correction = fix.correct(&mut entry.filter)?;
         entry.fixes.push(fix);
         self.again(index + 1);
         Some(correction)
@@ -107,7 +129,7 @@ impl History {
             let entry = &mut self.entries[index];
             filter.predict(&entry.reading, entry.at.since(since).seconds(), &self.noise);
             for fix in &entry.fixes {
-                filter.correct(&fix.attitude, &fix.noise);
+                fix.correct(&mut filter);
             }
             entry.filter = filter;
         }

@@ -2,6 +2,7 @@
 
 mod at_work;
 mod filter;
+mod gains;
 mod history;
 #[cfg(test)]
 mod loop_tests;
@@ -11,5 +12,6 @@ mod tests;
 
 pub use at_work::Tracking;
 pub use filter::{Correction, Filter, GyroNoise};
-pub use history::{Fix, History};
+pub use gains::{Complementary, Form};
+pub use history::{Fix, History, Measured};
 pub use spec::{AttitudeFilter, Initial, Role, Setting};

@@ -1,10 +1,10 @@
 //! The attitude filter as a scenario describes it, and what it makes of the scenario's sensors.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::GyroNoise;
+use super::{Form, GyroNoise};
 use crate::attitude::Vector;
 use crate::document::Fault;
 use crate::estimator::kalman::Prior;
@@ -16,6 +16,9 @@ use crate::time::Span;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AttitudeFilter {
+    /// How its gains are found.
+    #[serde(default)]
+    pub form: Form,
     /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; left out, the largest of the gyro's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_random_walk: Option<Positive>,
@@ -25,6 +28,12 @@ pub struct AttitudeFilter {
     /// Standard deviation of a measured attitude about each axis of what measures it (rad); left out, the sensor's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude_noise: Option<[Positive; 3]>,
+    /// Standard deviation of a measured magnetic field along each axis (T); left out, the magnetometer's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub field_noise: Option<Positive>,
+    /// Standard deviation of a measured direction to the Sun (rad); left out, the Sun sensor's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sun_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: Initial,
@@ -58,16 +67,18 @@ impl Default for Initial {
 }
 
 /// What a sensor is to the filter.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Role {
     /// Its rates carry the attitude on.
     Gyro,
-    /// It measures the attitude, so late, with errors of this covariance in the body's axes (rad²).
-    Attitude {
+    /// It measures the attitude or a vector, so late, with errors of this covariance in the body's axes.
+    Corrects {
         /// From exposure to when it is told.
         latency: Span,
-        /// The covariance.
+        /// The covariance (rad², or T² of a magnetic field).
         noise: Matrix3<f64>,
+        /// The constant gain of a filter that has one.
+        gain: Option<Box<Matrix6x3<f64>>>,
     },
     /// The filter does not read it.
     None,
@@ -102,28 +113,37 @@ impl AttitudeFilter {
                 "carries the attitude on by the rates of a `gyro`, and there is none",
             ));
         };
+        let Some(period) = gyro.period.or(cycle) else {
+            return Err(Fault::new("", "needs a gyro with a `period`"));
+        };
+        let gyro_noise = self.gyro_noise(gyro, period.seconds())?;
         let role = |(index, sensor): (usize, &Sensor)| match self.measured(sensor) {
-            Some((latency, noise)) => Ok(Role::Attitude { latency, noise: noise? }),
+            Some((latency, noise)) => {
+                let (noise, every) = (noise?, sensor.period(cycle).unwrap_or(period));
+                let gain = self.form.gain(&gyro_noise, every.seconds(), &noise);
+                Ok(Role::Corrects { latency, noise, gain: gain.map(Box::new) })
+            }
             None if index == read => Ok(Role::Gyro),
             None => Ok(Role::None),
         };
         let roles = sensors.iter().enumerate().map(role).collect::<Result<Vec<_>, Fault>>()?;
         let late =
-            |role: &Role| if let Role::Attitude { latency, .. } = role { Some(*latency) } else { None };
+            |role: &Role| if let Role::Corrects { latency, .. } = role { Some(*latency) } else { None };
         let Some(latest) = roles.iter().filter_map(late).max() else {
-            let why =
-                "corrects its attitude by that of a `star_tracker` or a `sampled` sensor, and there is none";
+            let why = "corrects its attitude by that of a `star_tracker` or a `sampled` sensor, or by the vectors of a \
+                       `magnetometer` or a `sun_sensor`, and there is none";
             return Err(Fault::new("", why));
         };
-        let Some(period) = gyro.period.or(cycle) else {
-            return Err(Fault::new("", "needs a gyro with a `period`"));
-        };
-        let noise = self.gyro_noise(gyro, period.seconds())?;
+        let correct = roles.iter().filter(|role| matches!(role, Role::Corrects { .. })).count();
+        if self.form == Form::Steady && (correct > 1 || sensors.iter().any(Sensor::is_of_a_vector)) {
+            let why = "has a steady state with one sensor of the attitude, and no vectors: take `extended` or `complementary`";
+            return Err(Fault::new("form", why));
+        }
         let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
-        Ok(Setting { roles, noise, bias, reach: latest + period })
+        Ok(Setting { roles, noise: gyro_noise, bias, reach: latest + period })
     }
 
-    /// How late a sensor measures the attitude, and the covariance of its errors; nothing of one that does not.
+    /// How late a sensor measures the attitude or a vector, and the covariance of its errors; nothing of one that does not.
     fn measured(&self, sensor: &Sensor) -> Option<(Span, Result<Matrix3<f64>, Fault>)> {
         let given = self.attitude_noise.map(|noise| noise.map(Positive::get));
         let known = |own: [f64; 3]| {
@@ -144,6 +164,13 @@ impl AttitudeFilter {
                 let squares = |noise: [f64; 3]| Vector::from(noise.map(|noise| noise * noise));
                 let noise = known([sampled.angle_noise(); 3]);
                 Some((Span::ZERO, noise.map(|noise| Matrix3::from_diagonal(&squares(noise)))))
+            }
+            Sensor::Magnetometer(magnetometer) => {
+                let noise = vector(self.field_noise, magnetometer.covariance(), "field_noise");
+                Some((magnetometer.latency(), noise))
+            }
+            Sensor::SunSensor(sensor) => {
+                Some((sensor.latency(), vector(self.sun_noise, sensor.covariance(), "sun_noise")))
             }
             Sensor::Continuous | Sensor::Gyro(_) | Sensor::Own(_) => None,
         }
@@ -167,5 +194,16 @@ impl AttitudeFilter {
             angle_random_walk,
             rate_random_walk: self.rate_random_walk.map_or(walk, NonNegative::get),
         })
+    }
+}
+
+/// The covariance of a vector, of this deviation along each axis or its sensor's own.
+fn vector(given: Option<Positive>, own: Matrix3<f64>, key: &str) -> Result<Matrix3<f64>, Fault> {
+    let noise = given.map_or(own, |given| Matrix3::from_diagonal_element(given.get() * given.get()));
+    let why = "must be given where the sensor has no noise along an axis";
+    if noise.diagonal().iter().all(|variance| *variance > 0.0) {
+        Ok(noise)
+    } else {
+        Err(Fault::new(key, why))
     }
 }

@@ -3,8 +3,9 @@
 use nalgebra::{Matrix3, Quaternion};
 
 use super::filter::{Correction, Filter, GyroNoise};
-use super::history::{Fix, History};
+use super::history::{Fix, History, Measured};
 use crate::attitude::Vector;
+use crate::sensor::Sight;
 use crate::time::{Instant, Span};
 
 /// Gyro readings, measured attitudes and truth of a made-up run; a filter in forty digits with the covariance of Van Loan,
@@ -46,7 +47,12 @@ fn at(k: usize) -> Instant {
 }
 
 fn fix(read: &[Vec<f64>], k: usize) -> Fix {
-    Fix { exposed: at(k), attitude: quaternion(&read[k][5..9]), noise: tracker() }
+    Fix {
+        exposed: at(k),
+        measured: Measured::Attitude(quaternion(&read[k][5..9])),
+        noise: tracker(),
+        gain: None,
+    }
 }
 
 /// The run, with the filter after each reading, where attitudes arrive this many readings after exposure.
@@ -124,4 +130,38 @@ fn a_measurement_waits_for_its_reading_and_not_for_ever() {
         assert_eq!(history.read(at(k), reading(k)).len(), usize::from(k == 4));
     }
     assert!(history.fix(fix(&read, 8)).is_none(), "0.75 s late");
+}
+
+/// A vector that is measured with small noise along each axis tells of the attitude what a measured attitude tells whose noise
+/// about that vector is endless.
+#[test]
+fn a_vector_corrects_across_itself_alone() {
+    let truth = crate::attitude::rotation(&Vector::new(0.3, -0.7, 1.1));
+    let off = Vector::new(2e-6, -3e-6, 1e-6);
+    let begins = Filter::new(truth * crate::attitude::rotation(&off), Vector::zeros(), [1e-3, 1e-5]);
+    let inertial = Vector::new(2.0, -1.0, 0.5) * 1e-5;
+    let body = crate::environment::into(&truth, &inertial);
+    let (deviation, along) = (1e-8, body.normalize());
+    for is_direction in [false, true] {
+        let scale = if is_direction { body.norm() } else { 1.0 };
+        let sight = Sight { vector: body / scale, inertial: inertial / scale, is_direction };
+        let noise = Matrix3::from_diagonal_element(deviation * deviation / (scale * scale));
+        let mut filter = begins.clone();
+        let correction = filter.correct_by(&sight, &noise).unwrap();
+        // The attitude that is left of an error across the vector, with its variance; along it nothing is told.
+        let [left, _] = filter.error(&truth, &Vector::zeros());
+        let variance = deviation * deviation / body.norm_squared();
+        let part = variance / (variance + 1e-6);
+        let exact = -(along * along.dot(&off) + (off - along * along.dot(&off)) * part);
+        assert!((left - exact).norm() < 1e-10, "{left} {exact}");
+        let across = along.cross(&Vector::x()).normalize();
+        let of = |axis: &Vector| {
+            let covariance = filter.covariance.fixed_view::<3, 3>(0, 0).into_owned();
+            axis.dot(&(covariance * axis))
+        };
+        assert!((of(&along) / 1e-6 - 1.0).abs() < 1e-9 && (of(&across) / (1e-6 * part) - 1.0).abs() < 1e-9);
+        assert!((correction.innovation + (off - along * along.dot(&off))).norm() < 1e-10);
+        let nis = (off - along * along.dot(&off)).norm_squared() / (variance + 1e-6);
+        assert!((correction.nis / (if is_direction { 1.5 * nis } else { nis }) - 1.0).abs() < 1e-4);
+    }
 }

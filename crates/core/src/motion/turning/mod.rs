@@ -13,6 +13,7 @@
 //! seen between is one shorter step beside it, so that looking changes nothing.
 
 mod flow;
+mod heated;
 mod model;
 mod pace;
 mod response;
@@ -23,5 +24,6 @@ mod step;
 mod tests;
 
 pub use flow::{Acting, Effort, Turning};
+pub use heated::Heated;
 pub use model::{Flexible, FreeMode, Rotor, Surroundings};
 pub use state::Seen;

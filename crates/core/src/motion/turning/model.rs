@@ -1,5 +1,6 @@
 //! What a turning flexible body is: its inertia, free modes and rotors, and the constants that follow.
 
+use super::heated::Heated;
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
 use crate::attitude::Vector;
@@ -49,6 +50,11 @@ pub trait Surroundings {
     /// The tensor (1/s²) whose product with what a unit of a mode adds to the inertia, element by element, is the force on the
     /// mode; none if there is no such force.
     fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
+
+    /// Forces on the modes that are warmed.
+    fn heated(&self) -> &[Heated] {
+        &[]
+    }
 
     /// No torque is larger (N m).
     fn bound(&self) -> f64;

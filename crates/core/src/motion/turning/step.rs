@@ -74,6 +74,8 @@ struct Felt {
     turning: Vector,
     rate: Vector,
     tide: Option<Matrix3<f64>>,
+    /// Since the start of the step (s).
+    t: f64,
 }
 
 impl Work {
@@ -119,7 +121,9 @@ impl Step<'_> {
 
     /// Whether modes are forced by more than Gt and constants.
     fn is_loud(&self) -> bool {
-        self.model.stretches || self.model.beside.is_some()
+        self.model.stretches
+            || self.model.beside.is_some()
+            || self.around.is_some_and(|(around, _)| !around.heated().is_empty())
     }
 
     /// What the state comes to by itself, and the first guess: all stages are like the start.
@@ -191,7 +195,13 @@ impl Step<'_> {
         let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
         let stage =
             Stage { push: bend.forward(&torque) - mean.cross(momentum), turn: spin(facing, &mean), rigid };
-        (stage, Felt { turning, rate, tide })
+        (stage, Felt { turning, rate, tide, t })
+    }
+
+    /// The force of what is warmed on a mode (N/sqrt(kg)) so many seconds after the start of the step.
+    fn warmth(&self, mode: usize, t: f64) -> f64 {
+        let Some((around, since)) = self.around else { return 0.0 };
+        around.heated().iter().fold(0.0, |sum, heated| sum + heated.forces[mode] * heated.level(since + t))
     }
 
     /// Gives the modes what they feel at a node; tells by how much their forces changed.
@@ -215,6 +225,7 @@ impl Step<'_> {
                         .map(|(other, of)| beside[(index, other)] * of.rate)
                         .sum::<f64>();
                 }
+                force += self.warmth(index, felt.t);
                 change = change.max((force - modes[index].s[node]).abs());
                 modes[index].s[node] = force;
             }

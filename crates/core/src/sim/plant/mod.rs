@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use super::SimulationError;
 use crate::body::Wrench;
+use crate::environment::Seen;
 use crate::guard::Guard;
 use crate::motion::{Sensed, State};
 use crate::record::{Course, Record, RecordError};
@@ -58,6 +59,7 @@ impl Plant {
                     rate: [rate, 0.0, 0.0],
                     rigid: [plant.state().rigid_rate, 0.0, 0.0],
                     turned: [angle, 0.0, 0.0],
+                    sky: Seen::default(),
                 })
             }
             Self::Spatial(plant) => plant.view(),

@@ -1,13 +1,15 @@
 //! A body with three axes on its way, from one change of what acts on it to the next.
 
+use nalgebra::Quaternion;
+
 use super::two_way::TwoWay;
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
 use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
-use crate::environment::Around;
+use crate::environment::{Around, Seen, into};
 use crate::motion::turning::{Flexible, Rotor, Surroundings};
 use crate::motion::{Phase, State};
-use crate::record::{Energy, Pointing, Record, RecordError, Vibration, Vibrations};
+use crate::record::{Energy, Orbit, OrbitAxis, Pointing, Record, RecordError, Vibration, Vibrations};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
@@ -137,7 +139,8 @@ impl SpatialPlant {
                 Some(two_way) => two_way.measurable(&self.sensed),
             };
             self.rates = (truth.rigid.into(), elastic);
-            self.truth = Some(truth);
+            let sky = self.around.as_ref().map(|around| around.seen(self.seen.seconds())).unwrap_or_default();
+            self.truth = Some(Truth { sky, ..truth });
         }
         self.truth
     }
@@ -171,6 +174,7 @@ impl SpatialPlant {
             rate: (rigid + elastic).into(),
             rigid: rigid.into(),
             turned: (Rigid::turned(&self.state.turn) + angle).into(),
+            sky: Seen::default(),
         };
         (truth, elastic)
     }
@@ -179,6 +183,9 @@ impl SpatialPlant {
     pub fn depart(&mut self, wrench: &Wrench) {
         self.origin.clone_from(&self.state);
         self.departed = self.seen;
+        if let Some(around) = &mut self.around {
+            around.hold(wrench.moment);
+        }
         if let Some(two_way) = &mut self.two_way {
             two_way.depart(wrench);
             two_way.show(&self.rigid, &mut self.state);
@@ -210,13 +217,14 @@ impl SpatialPlant {
         self.around.is_some()
     }
 
-    /// The torque of the surroundings at the instant seen last, in the body's axes (N m); none if there is nothing around.
+    /// The torque of the surroundings at the instant seen last, in the body's axes (N m), without that of torquers; none if there
+    /// is nothing around.
     pub fn surroundings(&self) -> Option<Vector> {
         let t = self.seen.seconds();
         if self.around.is_none() && self.disturbance.is_none() {
             return None;
         }
-        Some(self.two_way.as_deref().map_or_else(
+        let all = self.two_way.as_deref().map_or_else(
             || {
                 let own = self.disturbance.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
                 let turn = &self.state.turn;
@@ -225,7 +233,19 @@ impl SpatialPlant {
                     .map_or(own, |of| own + of.torque(t, &turn.attitude, self.rigid.inertia()))
             },
             |two_way| two_way.exerted(t),
-        ))
+        );
+        Some(all - self.magnetic())
+    }
+
+    /// The torque of the moment that torquers hold at the instant seen last, in the body's axes (N m).
+    pub fn magnetic(&self) -> Vector {
+        let held = |around: &Around| around.held_torque(self.seen.seconds(), self.attitude());
+        self.around.as_ref().map_or_else(Vector::zeros, held)
+    }
+
+    /// The attitude of the hub at the instant seen last.
+    pub fn attitude(&self) -> &Quaternion<f64> {
+        self.two_way.as_deref().map_or(&self.state.turn.attitude, TwoWay::attitude)
     }
 
     /// The motion about an axis beyond a target, as if that axis were alone: the modes by the angles that they make at the
@@ -291,9 +311,27 @@ impl SpatialPlant {
         Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
     }
 
+    /// Where it is on its orbit, as logged.
+    pub fn orbit(&self) -> Option<Orbit> {
+        let (sky, t) = (self.around.as_ref()?.sky(), self.seen.seconds());
+        let place = sky.place(t)?;
+        let here = |v: Vector| into(self.attitude(), &v);
+        let nowhere = Vector::repeat(f64::NAN);
+        let (nadir, field) = (here(place.local[2]), sky.seen(t).field.map_or(nowhere, here));
+        let sun = sky.sun().map_or(nowhere, |sun| here(*sun));
+        let axis = |axis: usize| OrbitAxis {
+            position_m: place.position[axis],
+            velocity_m_s: place.velocity[axis],
+            nadir: nadir[axis],
+            field_t: field[axis],
+            sun: sun[axis],
+        };
+        Some(Orbit { axes: [0, 1, 2].map(axis).into(), light: sky.is_lit(t).into() })
+    }
+
     /// The attitude, as logged, with the angles by which it is beyond its target (rad).
     pub fn pointing(&self, error: [f64; 3]) -> Pointing {
-        let q = self.two_way.as_deref().map_or(&self.state.turn.attitude, TwoWay::attitude);
+        let q = self.attitude();
         let [roll_rad, pitch_rad, yaw_rad] = crate::attitude::angles(q);
         let [roll_error_rad, pitch_error_rad, yaw_error_rad] = error;
         Pointing {

@@ -5,9 +5,9 @@ use nalgebra::{Matrix3, Quaternion};
 use crate::attitude::{Vector, vector};
 use crate::body::Wrench;
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
-use crate::environment::Around;
+use crate::environment::{Around, Seen};
 use crate::motion::Phase;
-use crate::motion::turning::{Acting, Flexible, Surroundings, Turning};
+use crate::motion::turning::{Acting, Flexible, Heated, Surroundings, Turning};
 use crate::sensor::{Orientation, Truth};
 
 /// The motion, and what the plant needs to turn what acts and what is seen into its terms.
@@ -38,6 +38,10 @@ impl Surroundings for Outside {
 
     fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
         self.around.as_ref()?.tide(t, attitude)
+    }
+
+    fn heated(&self) -> &[Heated] {
+        self.around.as_ref().map_or(&[], Surroundings::heated)
     }
 
     fn bound(&self) -> f64 {
@@ -92,6 +96,9 @@ impl TwoWay {
     /// Begins a new motion at the instant seen last, under what acts from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
         let (push, hub) = (wrench.torque, Vector::from(wrench.hub));
+        if let Some(around) = &mut self.outside.around {
+            around.hold(wrench.moment);
+        }
         let Acting { torque, forces, rotors } = &mut self.acting;
         *torque = push + hub;
         rotors.clone_from(&wrench.rotors);
@@ -127,6 +134,7 @@ impl TwoWay {
             rate: (seen.rigid + elastic).into(),
             rigid: seen.rigid.into(),
             turned: (seen.turned + sum(sensed, &seen.displacements)).into(),
+            sky: Seen::default(),
         };
         (truth, elastic)
     }

@@ -1,0 +1,69 @@
+//! Figure `orbit` of three axes: the magnetic field and the directions to planet and Sun in the body's axes, and the shadow.
+
+use flexsc_core::record::{Light, OrbitAxis};
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+
+use super::spatial::Cycles;
+use super::story::Story;
+use super::{time, title};
+
+const COLOURS: [(&str, plotters::style::RGBColor); 3] =
+    [("x", colour::BLUE), ("y", colour::VERMILLION), ("z", colour::GREEN)];
+
+/// Whether a scenario has an orbit.
+pub fn of(story: &Story) -> bool {
+    story.scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some())
+}
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let shown: [(&str, &str, fn(&OrbitAxis) -> f64); 3] =
+        [("field", "T", |axis| axis.field_t), ("nadir", "", |axis| axis.nadir), ("Sun", "", |axis| axis.sun)];
+    let mut panels = Vec::new();
+    for (name, unit, of) in shown {
+        let line = |axis: usize| -> Vec<Point> {
+            cycles.orbit.iter().map(|(time, row)| (*time, of(&row.axes[axis]))).collect()
+        };
+        let lines = [0, 1, 2].map(line);
+        if lines.iter().flatten().all(|(_, value)| value.is_nan()) {
+            continue;
+        }
+        let values: Vec<f64> = lines.iter().flatten().map(|(_, value)| *value).collect();
+        let y = Axis::around(name, unit, values);
+        let (low, high) = (y.range.start, y.range.end);
+        let mut layers: Vec<Layer> = shadows(cycles, story.end)
+            .into_iter()
+            .enumerate()
+            .map(|(index, [from, to])| {
+                let label = if index == 0 && panels.is_empty() { "shadow" } else { "" };
+                let edges = |level: f64| [(from, level), (to, level)];
+                Layer::new(label, colour::GREY, Shape::Area(0.2), band(&edges(low), &edges(high)))
+            })
+            .collect();
+        layers.extend(lines.into_iter().zip(COLOURS).map(|(points, (axis, colour))| {
+            Layer::new(if panels.is_empty() { axis } else { "" }, colour, Shape::Line(1.2), points)
+        }));
+        panels.push(Panel::new(time(0.0..story.end).unnamed(), y, layers));
+    }
+    if let Some(last) = panels.last_mut() {
+        last.x = time(0.0..story.end);
+    }
+    Figure { title: title(story, "field, planet and Sun in the body's axes"), panels, panel_height: 160 }
+}
+
+/// The stretches of the log in shadow (s).
+fn shadows(cycles: &Cycles, end: f64) -> Vec<[f64; 2]> {
+    let mut shadows = Vec::new();
+    let mut since = None;
+    for (time, row) in &cycles.orbit {
+        match (row.light, since) {
+            (Light::Shadow, None) => since = Some(*time),
+            (Light::Lit, Some(from)) => {
+                shadows.push([from, *time]);
+                since = None;
+            }
+            _ => {}
+        }
+    }
+    shadows.extend(since.map(|from| [from, end]));
+    shadows
+}

@@ -1,0 +1,179 @@
+//! Magnetorquers along the body's axes: magnetic moments whose torque is moment times field, at every instant as both are.
+//!
+//! A torque T that is wanted becomes the moment B x T/B², whose torque m x B is the part of T across the field (\[Wertz78\]).
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Actuate, Demand, Setting};
+use crate::attitude::Vector;
+use crate::axes::Each;
+use crate::body::Wrench;
+use crate::quantity::Positive;
+use crate::record;
+use crate::time::{Instant, Span};
+
+/// Magnetorquers along the body's axes.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Magnetorquers {
+    /// Largest magnetic moment along each axis (A m²): one number for all, or three.
+    pub moment: Each<Positive>,
+}
+
+impl Magnetorquers {
+    /// The torquers before their first command.
+    pub fn start(&self, settings: &[Setting]) -> Torquing {
+        Torquing {
+            limits: [0, 1, 2].map(|axis| self.moment.about(axis).get()),
+            settings: settings.to_vec(),
+            field: None,
+            wanted: Vector::zeros(),
+            moment: Vector::zeros(),
+        }
+    }
+
+    /// The length of the largest moment (A m²).
+    pub fn largest(&self) -> f64 {
+        Vector::from_fn(|axis, _| self.moment.about(axis).get()).norm()
+    }
+}
+
+/// The torquers at work.
+#[derive(Clone, Debug)]
+pub struct Torquing {
+    limits: [f64; 3],
+    settings: Vec<Setting>,
+    /// The field in the body's axes as it is known (T).
+    field: Option<Vector>,
+    /// The torque that is asked for (N m).
+    wanted: Vector,
+    /// What is held, in the body's axes (A m²).
+    moment: Vector,
+}
+
+impl Torquing {
+    /// Holds the moment whose torque is the part of this one across the field (N m), made smaller as a whole where it is too
+    /// large.
+    pub fn give(&mut self, torque: Vector) {
+        self.wanted = torque;
+        let moment = self
+            .field
+            .filter(|field| field.norm_squared() > 0.0)
+            .map_or_else(Vector::zeros, |field| field.cross(&torque) / field.norm_squared());
+        let excess =
+            moment.iter().zip(self.limits).map(|(part, limit)| part.abs() / limit).fold(1.0, f64::max);
+        self.moment = moment / excess;
+    }
+
+    /// The torque in the field as it is known (N m).
+    pub fn given(&self) -> Vector {
+        self.field.map_or_else(Vector::zeros, |field| self.moment.cross(&field))
+    }
+
+    /// Holds the moments that are demanded (A m²), each as large as it may be.
+    fn hold(&mut self, demands: &[Demand]) {
+        for (axis, demand) in demands.iter().enumerate().take(3) {
+            let wanted = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
+            self.moment[axis] = wanted.clamp(-self.limits[axis], self.limits[axis]);
+        }
+        self.wanted = self.given();
+    }
+}
+
+impl Actuate for Torquing {
+    fn feel(&mut self, field: Vector) {
+        self.field = Some(field);
+    }
+
+    fn command(&mut self, _: Instant, demands: &[Demand], _: [f64; 3]) {
+        if demands.iter().any(|demand| matches!(demand, Demand::Moment(_))) {
+            return self.hold(demands);
+        }
+        let torque = |(demand, setting): (&Demand, &Setting)| match demand {
+            Demand::Torque(torque) => *torque,
+            Demand::Change(change) => change * setting.inertia / setting.cycle.map_or(1.0, Span::seconds),
+            Demand::Moment(_) => 0.0,
+        };
+        let mut wanted = Vector::zeros();
+        wanted.iter_mut().zip(demands.iter().zip(&self.settings).map(torque)).for_each(|(own, of)| *own = of);
+        self.give(wanted);
+    }
+
+    fn exert(&self, _: Instant, onto: &mut Wrench) {
+        onto.moment += self.moment;
+    }
+
+    fn asked(&self, axis: usize) -> f64 {
+        self.wanted[axis]
+    }
+
+    fn torque(&self, axis: usize) -> f64 {
+        self.given()[axis]
+    }
+
+    /// What the moments give depends on the field of the instant: the plant tells it.
+    fn applied(&self, _: Instant, _: usize, _: [f64; 2]) -> f64 {
+        0.0
+    }
+
+    fn moment(&self, axis: usize) -> f64 {
+        self.torque(axis) / self.settings[axis].inertia
+    }
+
+    fn magnetic(&self) -> Option<record::Magnetorquers> {
+        let axis = |axis: usize| record::Magnetorquer { moment_am2: self.moment[axis] };
+        Some(record::Magnetorquers { axes: [0, 1, 2].map(axis).into() })
+    }
+
+    fn copy(&self) -> Box<dyn Actuate> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn start(text: &str) -> Torquing {
+        let torquers: Magnetorquers = toml::from_str(text).unwrap();
+        let setting = |axis| Setting {
+            axis,
+            inertia: 10.0,
+            planned_inertia: 10.0,
+            rate: 0.0,
+            cycle: Some(Span::from_seconds(0.5)),
+            waveform: None,
+        };
+        torquers.start(&[0, 1, 2].map(setting))
+    }
+
+    #[test]
+    fn they_give_what_is_across_the_field() {
+        let mut torquers = start("moment = 100.0");
+        let (field, torque) = (Vector::new(2e-5, -1e-5, 3e-5), Vector::new(1e-4, 2e-4, -1e-4));
+        torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
+        assert_eq!(torquers.given(), Vector::zeros(), "no field is known");
+        torquers.feel(field);
+        torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
+        let along = field.normalize();
+        let exact = torque - along * along.dot(&torque);
+        assert!((torquers.given() - exact).norm() < 1e-18);
+        // Ten times the torque asks for more than there is: all of it is made smaller.
+        let mut weak = start("moment = [4.0, 100.0, 100.0]");
+        weak.feel(field);
+        weak.command(Instant::START, &(torque * 10.0).data.0[0].map(Demand::Torque), [0.0; 3]);
+        assert!((weak.moment.x.abs() - 4.0).abs() < 1e-14);
+        assert!(weak.given().cross(&exact).norm() < 1e-18 && weak.given().dot(&exact) > 0.0);
+        let mut wrench = Wrench::default();
+        weak.exert(Instant::START, &mut wrench);
+        assert_eq!(wrench.moment, weak.moment);
+    }
+
+    #[test]
+    fn moments_that_are_demanded_are_held_axis_by_axis() {
+        let mut torquers = start("moment = [4.0, 5.0, 6.0]");
+        torquers.command(Instant::START, &[9.0, -1.0, -7.0].map(Demand::Moment), [0.0; 3]);
+        assert_eq!(torquers.moment, Vector::new(4.0, -1.0, -6.0));
+    }
+}

@@ -1,0 +1,133 @@
+//! Drag of the atmosphere on plates, as a torque: the orbit stays what it is (\[Wertz78\]).
+//!
+//! On a plate of area A and outward normal n, in a flow that it meets at v, the force is -rho/2 C A (n.v) v where n.v > 0, and else
+//! none: a plate with two sides is two. The atmosphere turns with the planet.
+
+use nalgebra::Quaternion;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::orbit::into;
+use super::{Kepler, Place};
+use crate::attitude::{Vector, vector};
+use crate::document::Fault;
+use crate::quantity::{Finite, Positive};
+
+/// Drag of the atmosphere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Drag {
+    /// Density at a distance of the orbit's semi-major axis (kg/m³).
+    pub density: Positive,
+    /// Height in which it falls to 1/e (m); left out, it is the same everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale_height: Option<Positive>,
+    /// Drag coefficient.
+    #[serde(default = "coefficient")]
+    pub coefficient: Positive,
+    /// How fast the atmosphere turns with the planet (rad/s); left out, as the Earth does.
+    #[serde(default = "rotation")]
+    pub rotation: Finite,
+    /// The plates.
+    pub plates: Vec<Plate>,
+}
+
+/// A plate, of which one side counts.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Plate {
+    /// Area (m²).
+    pub area: Positive,
+    /// Its outward normal in the body's axes, of any length.
+    pub normal: [Finite; 3],
+    /// Its middle (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
+    pub at: [Finite; 3],
+}
+
+fn coefficient() -> Positive {
+    Positive::new(2.2).unwrap_or(Positive::ONE)
+}
+
+fn rotation() -> Finite {
+    Finite::new(7.292_115e-5).unwrap_or_default()
+}
+
+impl Drag {
+    /// What single values cannot show to be wrong: a key within the drag, and why.
+    pub(super) fn fault(&self, on_orbit: bool) -> Option<Fault> {
+        if !on_orbit {
+            return Some(Fault::new("", "is that along an `orbit`, and there is none"));
+        }
+        let flat = |plate: &Plate| plate.normal.iter().all(|part| part.get() == 0.0);
+        let index = self.plates.iter().position(flat)?;
+        Some(Fault::new(format!("plates[{index}].normal"), "must have a length, got [0, 0, 0]"))
+    }
+
+    /// The density at a distance from the planet's centre (kg/m³), on an orbit with this semi-major axis (m).
+    fn density_at(&self, distance: f64, orbit: &Kepler) -> f64 {
+        let above = distance - orbit.semi_major_axis.get();
+        let fallen = self.scale_height.map_or(1.0, |height| libm::exp(-above / height.get()));
+        self.density.get() * fallen
+    }
+
+    /// The torque about the centre of mass, which is here (m), in the axes of a body that faces this way (N m).
+    pub(super) fn torque(
+        &self,
+        orbit: &Kepler,
+        place: &Place,
+        attitude: &Quaternion<f64>,
+        centre: &Vector,
+    ) -> Vector {
+        let carried = Vector::z().cross(&place.position) * self.rotation.get();
+        let flow = into(attitude, &(place.velocity - carried));
+        let factor = -0.5 * self.coefficient.get() * self.density_at(place.position.norm(), orbit);
+        self.plates.iter().fold(Vector::zeros(), |sum, plate| {
+            let met = vector(&plate.normal).normalize().dot(&flow).max(0.0) * plate.area.get();
+            sum + (vector(&plate.at) - centre).cross(&flow) * (factor * met)
+        })
+    }
+
+    /// No torque is larger (N m).
+    pub(super) fn bound(&self, orbit: &Kepler, centre: &Vector) -> f64 {
+        let nearest = orbit.nearest();
+        let speed = nearest * (orbit.fastest() + self.rotation.get().abs());
+        let factor = 0.5 * self.coefficient.get() * self.density_at(nearest, orbit) * speed * speed;
+        let arm = |plate: &Plate| plate.area.get() * (vector(&plate.at) - centre).norm();
+        factor * self.plates.iter().map(arm).sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::attitude::rotation as turned;
+
+    #[test]
+    fn a_plate_is_pushed_back_where_it_meets_the_flow() {
+        // Without the planet's rotation: rho/2 C A v² at its arm.
+        let orbit: Kepler = toml::from_str("semi_major_axis = 6.8e6").unwrap();
+        let drag: Drag = toml::from_str(
+            "density = 4e-12\nscale_height = 6e4\nrotation = 0\nplates = [{ area = 2.0, normal = [0, 3, 0], at = [0.1, 0, 0.5] }]",
+        )
+        .unwrap();
+        assert_eq!(drag.fault(true), None);
+        // At the start the body is on the inertial x and goes along y.
+        let place = orbit.at(0.0);
+        let centre = Vector::new(0.1, 0.0, 0.0);
+        let speed = libm::sqrt(3.986_004_418e14 / 6.8e6);
+        let force = 0.5 * 4e-12 * 2.2 * 2.0 * speed * speed;
+        let torque = |by: Vector| drag.torque(&orbit, &place, &turned(&by), &centre);
+        assert!((torque(Vector::zeros()) - Vector::new(0.5 * force, 0.0, 0.0)).norm() < 1e-12 * force);
+        assert!(torque(Vector::zeros()).norm() <= drag.bound(&orbit, &centre) * (1.0 + 1e-12));
+        // Turned by 60 degrees about z it meets half of the flow; by more than 90 none.
+        let third = torque(Vector::new(0.0, 0.0, std::f64::consts::FRAC_PI_3));
+        assert!((third.norm() - 0.25 * force).abs() < 1e-12 * force, "{third}");
+        assert_eq!(torque(Vector::new(0.0, 0.0, 2.0)), Vector::zeros());
+        // An atmosphere that turns with the planet carries the flow along.
+        let carried = Drag { rotation: Finite::new(1e-4).unwrap(), ..drag.clone() };
+        let slower = carried.torque(&orbit, &place, &turned(&Vector::zeros()), &centre).x / (0.5 * force);
+        assert!((slower - libm::pow(1.0 - 680.0 / speed, 2.0)).abs() < 1e-12, "{slower}");
+        assert!((drag.density_at(6.86e6, &orbit) / 4e-12 - libm::exp(-1.0)).abs() < 1e-15);
+        assert_eq!(drag.fault(false).unwrap().key, "");
+    }
+}

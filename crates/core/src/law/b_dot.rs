@@ -1,0 +1,78 @@
+//! The B-dot law: magnetic moments against the change of the field take the rotation away (\[Wertz78\]).
+//!
+//! In a body that turns at w the field changes by B x w, more than it does along the orbit. A moment -k dB/dt has the torque
+//! -k (dB/dt) x B, which is -k B² times the part of w across the field. Each axis needs only its own part of the field, as a
+//! magnetometer measures it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Reads, Rule};
+use crate::belief::Belief;
+use crate::quantity::Positive;
+use crate::time::{Instant, Span};
+
+/// The B-dot law.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BDot {
+    /// Period of its commands (s).
+    pub period: Span,
+    /// Moment for each unit of the change of the field (A m² s/T).
+    pub gain: Positive,
+}
+
+impl Rule for BDot {
+    fn start(&self, _: &Authority) -> Box<dyn Control> {
+        Box::new(Detumbling { law: *self, gain: self.gain.get(), tuned: f64::NAN })
+    }
+
+    fn period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    fn reads(&self) -> Reads {
+        Reads::Field
+    }
+
+    fn tunable(&self) -> Vec<(&'static str, f64)> {
+        vec![("gain", self.gain.get())]
+    }
+}
+
+/// The law at work along an axis.
+#[derive(Copy, Clone, Debug)]
+struct Detumbling {
+    law: BDot,
+    gain: f64,
+    /// The number that was tuned last.
+    tuned: f64,
+}
+
+impl Control for Detumbling {
+    fn decide(&mut self, now: Instant, _: Cause, _: &Goal, belief: &Belief) -> Hold {
+        Hold {
+            command: Command::Moment(-self.gain * belief.field_rate),
+            until: Some(now + self.law.period),
+            guards: Guards::NONE,
+        }
+    }
+
+    fn state(&self) -> Phase {
+        Phase::Detumbling
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(*self)
+    }
+
+    fn tuned(&self) -> f64 {
+        self.tuned
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        if key == "gain" {
+            (self.gain, self.tuned) = (value, value);
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Laws one after the other, each from a time on.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Authority, Cause, Control, Goal, Hold, Law, Phase, Promise, Reads, Rule};
+use crate::belief::Belief;
+use crate::document::Fault;
+use crate::quantity::Time;
+use crate::time::{Instant, Span};
+
+/// Laws one after the other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Sequence(Vec<Stage>);
+
+/// A law that acts from a time on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stage {
+    /// From when on (s); of the first 0.
+    #[serde(default)]
+    pub from: Time,
+    /// The law.
+    pub law: Law,
+}
+
+impl Stage {
+    fn begins(&self) -> Instant {
+        Instant::START + Span::from_seconds(self.from.get())
+    }
+}
+
+impl Sequence {
+    /// Its laws.
+    pub fn laws(&self) -> impl Iterator<Item = &Law> {
+        self.0.iter().map(|stage| &stage.law)
+    }
+
+    /// When the last of them begins.
+    pub fn settles(&self) -> Instant {
+        self.0.last().map_or(Instant::START, Stage::begins)
+    }
+
+    /// What single values cannot show to be wrong: a key within the sequence, and why.
+    pub fn inconsistency(&self) -> Option<Fault> {
+        let Some(first) = self.0.first() else {
+            return Some(Fault::new("", "must have one law or more, got none"));
+        };
+        if first.from != Time::ZERO {
+            let why = format!("must be 0, or left out, of the first, got {}", first.from.get());
+            return Some(Fault::new("[0].from", why));
+        }
+        if let Some(late) = self.0.windows(2).position(|pair| pair[0].from >= pair[1].from) {
+            let why = format!("must be later than the one before, got {}", self.0[late + 1].from.get());
+            return Some(Fault::new(format!("[{}].from", late + 1), why));
+        }
+        self.0.iter().enumerate().find_map(|(index, stage)| {
+            let key = format!("[{index}].law.{}", stage.law.kind());
+            match &stage.law {
+                Law::BDot(_) | Law::Pd(_) | Law::Open(_) | Law::Own(_) => None,
+                Law::Attitude(law) => law.inconsistency().map(|fault| fault.within(&key)),
+                Law::StateSpace(law) => law.inconsistency().map(|fault| fault.within(&key)),
+                Law::Relay(_) | Law::PhasePlane(_) | Law::PerAxis(_) | Law::Sequence(_) => {
+                    let why =
+                        "must be one of `attitude`, `b_dot`, `pd`, `state_space` and `open`: others are laws of a whole run";
+                    Some(Fault::new(key, why))
+                }
+            }
+        })
+    }
+}
+
+impl Rule for Sequence {
+    fn start(&self, authority: &Authority) -> Box<dyn Control> {
+        let stages = self.0.iter().map(|stage| (stage.begins(), stage.law.start(authority)));
+        Box::new(InTurn { stages: stages.collect(), active: 0 })
+    }
+
+    /// The shortest of its laws.
+    fn period(&self) -> Option<Span> {
+        self.laws().filter_map(|law| law.period()).min()
+    }
+
+    /// That of the last.
+    fn promise(&self) -> Promise {
+        self.0.last().map_or(Promise::Nothing, |stage| stage.law.promise())
+    }
+
+    fn reads(&self) -> Reads {
+        let of = |wanted: Reads| self.laws().any(|law| law.reads() == wanted);
+        let order = [Reads::ElasticRates, Reads::DominantMode, Reads::Motion, Reads::Field];
+        order.into_iter().find(|wanted| of(*wanted)).unwrap_or(Reads::Nothing)
+    }
+}
+
+/// The laws at work about an axis.
+#[derive(Clone, Debug)]
+struct InTurn {
+    stages: Vec<(Instant, Box<dyn Control>)>,
+    /// The one that acts.
+    active: usize,
+}
+
+impl Control for InTurn {
+    fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold {
+        let due = self.stages.iter().rposition(|(begins, _)| *begins <= now).unwrap_or(0);
+        let cause = if due == self.active { cause } else { Cause::Start };
+        self.active = due;
+        let hold = self.stages[due].1.decide(now, cause, goal, belief);
+        let next = self.stages.get(due + 1).map(|(begins, _)| *begins);
+        Hold { until: [hold.until, next].into_iter().flatten().min(), ..hold }
+    }
+
+    fn state(&self) -> Phase {
+        self.stages[self.active].1.state()
+    }
+
+    fn tracks(&self) -> bool {
+        self.stages[self.active].1.tracks()
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::PulseWidth;
+    use crate::law::Command;
+
+    fn sequence(text: &str) -> Sequence {
+        #[derive(serde::Deserialize)]
+        struct Of {
+            sequence: Sequence,
+        }
+        toml::from_str::<Of>(text).unwrap().sequence
+    }
+
+    #[test]
+    fn each_law_acts_from_its_time_on() {
+        let laws = sequence(
+            "[[sequence]]\nlaw.b_dot = { period = 2.0, gain = 1e4 }\n\
+             [[sequence]]\nfrom = 5.0\nlaw.attitude = { period = 1.0, bandwidth = 0.1 }",
+        );
+        assert_eq!(laws.inconsistency(), None);
+        assert_eq!(laws.period(), Some(Span::from_seconds(1.0)));
+        let authority = Authority {
+            accelerations: [f64::INFINITY; 2],
+            width: PulseWidth::default(),
+            delay: 0.0,
+            threshold: 0.0,
+        };
+        let mut law = laws.start(&authority);
+        let belief = Belief { angle: 0.2, field_rate: -3e-7, ..Belief::default() };
+        let (mut now, mut decisions) = (Instant::START, Vec::new());
+        while now.seconds() < 7.0 {
+            let hold = law.decide(now, Cause::Timeout, &Goal::default(), &belief);
+            decisions.push((now.seconds(), hold.command));
+            now = hold.until.unwrap();
+        }
+        let (moment, turn) = (Command::Moment(3e-3), Command::Acceleration(-2e-3));
+        let times: Vec<f64> = decisions.iter().map(|(t, _)| *t).collect();
+        assert_eq!(times, [0.0, 2.0, 4.0, 5.0, 6.0]);
+        assert!(decisions[..3].iter().all(|(_, command)| *command == moment), "{decisions:?}");
+        let Command::Acceleration(found) = decisions[4].1 else { panic!("{decisions:?}") };
+        let Command::Acceleration(exact) = turn else { panic!() };
+        assert!((found - exact).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_is_no_sequence_is_refused() {
+        let fault = |text: &str| sequence(text).inconsistency().unwrap().to_string();
+        let b_dot = "law.b_dot = { period = 2.0, gain = 1e4 }";
+        assert!(fault("sequence = []").contains("one law or more"));
+        assert!(fault(&format!("[[sequence]]\nfrom = 1.0\n{b_dot}")).starts_with("`[0].from` must be 0"));
+        assert!(
+            fault(&format!("[[sequence]]\n{b_dot}\n[[sequence]]\n{b_dot}"))
+                .starts_with("`[1].from` must be later")
+        );
+        let relay =
+            "law.relay = { dead_zone = 1e-3, hysteresis = 1e-4, strong = 1.0, weak = 0.1, k_t = 0.3 }";
+        assert!(fault(&format!("[[sequence]]\n{relay}")).starts_with("`[0].law.relay` must be one of"));
+    }
+}

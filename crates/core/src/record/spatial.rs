@@ -1,0 +1,45 @@
+//! What is reported of a body with three axes.
+
+use super::{Energy, Jets, Magnetorquers, Orbit, Pointing, Rates, Torques, Vibrations, Wheels};
+
+/// A cycle of a spatial loop, after its law has decided.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// What the jets do in it.
+    pub jets: Jets,
+    /// How many pulses begin.
+    pub pulses: u64,
+    /// Energy of the elastic modes (J).
+    pub elastic_energy_j: f64,
+    /// The same of the modes that the gyro sees (J).
+    pub visible_energy_j: f64,
+    /// Rigid rates (rad/s).
+    pub rigid_rate_rad_s: [f64; 3],
+    /// Elastic part of the rates at the gyro (rad/s).
+    pub elastic_rate_rad_s: [f64; 3],
+    /// Angles beyond the target (rad).
+    pub error_rad: [f64; 3],
+    /// Momentum of the wheels, in the body's axes (N m s).
+    pub stored_nm_s: [f64; 3],
+}
+
+/// The motion of a spatial body at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpatialMotion {
+    /// Attitude.
+    pub pointing: Pointing,
+    /// Rates.
+    pub rates: Rates,
+    /// Modes.
+    pub vibrations: Vibrations,
+    /// Energies.
+    pub energy: Energy,
+    /// Torques of actuators that are no jets.
+    pub torques: Option<Torques>,
+    /// Wheels about axes of their own.
+    pub wheels: Option<Wheels>,
+    /// Where the body is on its orbit.
+    pub orbit: Option<Orbit>,
+    /// Magnetic moments of torquers.
+    pub magnetorquers: Option<Magnetorquers>,
+}

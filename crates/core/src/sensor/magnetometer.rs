@@ -1,0 +1,100 @@
+//! A magnetometer: the magnetic field along the body's axes.
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::vector::{Errors, Looking, Measures};
+use super::{Fault, Sense};
+use crate::attitude::Vector;
+use crate::axes::Each;
+use crate::document;
+use crate::environment::Seen;
+use crate::quantity::{Finite, NonNegative, Time};
+use crate::random::Seed;
+use crate::time::Span;
+
+/// A magnetometer on a body with three axes. It does not feel the torquers of its own body.
+///
+/// Numbers are one for all axes, or one for each of three.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Magnetometer {
+    /// The point of the structure at which it is; left out, the first of the body's points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub point: Option<String>,
+    /// Period of its samples (s).
+    pub period: Span,
+    /// Standard deviation of the white noise along each axis (T).
+    #[serde(default)]
+    pub noise: Each<NonNegative>,
+    /// Constant error along each axis (T).
+    #[serde(default)]
+    pub bias: Each<Finite>,
+    /// Quantum of the output along each axis (T); 0 for none.
+    #[serde(default)]
+    pub resolution: Each<NonNegative>,
+    /// Relative error of the scale along each axis.
+    #[serde(default)]
+    pub scale: Each<Finite>,
+    /// What each axis, a row, measures of the field along the others (rad); the diagonal is 0.
+    #[serde(default)]
+    pub misalignment: [[Finite; 3]; 3],
+    /// Time from a sample to when it is told (s).
+    #[serde(default)]
+    pub latency: Time,
+    /// Times at which it fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
+}
+
+impl Magnetometer {
+    /// The sensor in a run, after so many others.
+    pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
+        Box::new(Looking::new(self, seed, ordinal))
+    }
+
+    /// How late a reading is told.
+    pub fn latency(&self) -> Span {
+        Span::from_seconds(self.latency.get())
+    }
+
+    /// Covariance of its noise, that of its rounding included.
+    pub fn covariance(&self) -> Matrix3<f64> {
+        self.errors().covariance()
+    }
+
+    /// What single values cannot show to be wrong: a key within the magnetometer, and why.
+    pub fn inconsistency(&self) -> Option<document::Fault> {
+        self.errors().fault()
+    }
+}
+
+impl Measures for Magnetometer {
+    const STREAM: &'static str = "magnetometer";
+
+    fn of(&self, sky: &Seen) -> Option<Vector> {
+        sky.field
+    }
+
+    fn told(&self, _: &Vector, measured: Vector) -> Option<Vector> {
+        Some(measured)
+    }
+
+    fn is_direction(&self) -> bool {
+        false
+    }
+
+    fn errors(&self) -> Errors {
+        let Self { noise, bias, resolution, scale, misalignment, .. } = *self;
+        Errors { noise, bias, resolution, scale, misalignment }
+    }
+
+    fn timing(&self) -> [Span; 2] {
+        [self.period, self.latency()]
+    }
+
+    fn faults(&self) -> &[Fault] {
+        &self.faults
+    }
+}

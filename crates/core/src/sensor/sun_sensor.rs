@@ -1,0 +1,196 @@
+//! A Sun sensor: the direction to the Sun in the body's axes, as long as it is lit and within the field of view.
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::vector::{Errors, Looking, Measures};
+use super::{Fault, Sense};
+use crate::attitude::{Vector, vector};
+use crate::axes::Each;
+use crate::document;
+use crate::environment::Seen;
+use crate::quantity::{Finite, NonNegative, Time};
+use crate::random::Seed;
+use crate::time::Span;
+
+/// A Sun sensor on a body with three axes. It tells the direction as a vector of length 1.
+///
+/// Numbers are one for all axes, or one for each of three.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SunSensor {
+    /// The middle of its field of view in the body's axes, of any length; left out, z.
+    #[serde(default = "ahead")]
+    pub boresight: [Finite; 3],
+    /// Half of the angle of the field of view (rad); left out, it sees all around.
+    #[serde(default = "all_around")]
+    pub field_of_view: NonNegative,
+    /// The point of the structure at which it is; left out, the first of the body's points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub point: Option<String>,
+    /// Period of its samples (s).
+    pub period: Span,
+    /// Standard deviation of the white noise along each axis (rad).
+    #[serde(default)]
+    pub noise: Each<NonNegative>,
+    /// Constant error along each axis (rad).
+    #[serde(default)]
+    pub bias: Each<Finite>,
+    /// Quantum of the output along each axis (rad); 0 for none.
+    #[serde(default)]
+    pub resolution: Each<NonNegative>,
+    /// Relative error of the scale along each axis.
+    #[serde(default)]
+    pub scale: Each<Finite>,
+    /// What each axis, a row, measures of the direction along the others (rad); the diagonal is 0.
+    #[serde(default)]
+    pub misalignment: [[Finite; 3]; 3],
+    /// Time from a sample to when it is told (s).
+    #[serde(default)]
+    pub latency: Time,
+    /// Times at which it fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
+}
+
+fn ahead() -> [Finite; 3] {
+    [0.0, 0.0, 1.0].map(|part| Finite::new(part).unwrap_or_default())
+}
+
+fn all_around() -> NonNegative {
+    NonNegative::new(std::f64::consts::PI).unwrap_or_default()
+}
+
+impl SunSensor {
+    /// The sensor in a run, after so many others.
+    pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
+        Box::new(Looking::new(self, seed, ordinal))
+    }
+
+    /// How late a reading is told.
+    pub fn latency(&self) -> Span {
+        Span::from_seconds(self.latency.get())
+    }
+
+    /// Covariance of its noise, that of its rounding included.
+    pub fn covariance(&self) -> Matrix3<f64> {
+        self.errors().covariance()
+    }
+
+    /// What single values cannot show to be wrong: a key within the sensor, and why.
+    pub fn inconsistency(&self) -> Option<document::Fault> {
+        if self.boresight.iter().all(|part| part.get() == 0.0) {
+            return Some(document::Fault::new("boresight", "must have a length, got [0, 0, 0]"));
+        }
+        self.errors().fault()
+    }
+}
+
+impl Measures for SunSensor {
+    const STREAM: &'static str = "sun sensor";
+
+    fn of(&self, sky: &Seen) -> Option<Vector> {
+        sky.sun
+    }
+
+    fn told(&self, exact: &Vector, measured: Vector) -> Option<Vector> {
+        let boresight = vector(&self.boresight);
+        // The angle itself: its cosine tells little of a narrow field.
+        let off = libm::atan2(boresight.cross(exact).norm(), boresight.dot(exact));
+        (off <= self.field_of_view.get()).then(|| measured.normalize())
+    }
+
+    fn is_direction(&self) -> bool {
+        true
+    }
+
+    fn errors(&self) -> Errors {
+        let Self { noise, bias, resolution, scale, misalignment, .. } = *self;
+        Errors { noise, bias, resolution, scale, misalignment }
+    }
+
+    fn timing(&self) -> [Span; 2] {
+        [self.period, self.latency()]
+    }
+
+    fn faults(&self) -> &[Fault] {
+        &self.faults
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Quaternion;
+
+    use super::*;
+    use crate::attitude::rotation;
+    use crate::sensor::{Orientation, Truth};
+    use crate::time::Instant;
+
+    fn truth(attitude: Quaternion<f64>, sun: Option<Vector>) -> Truth {
+        let sky = Seen { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun };
+        let [elastic, rate] = [[0.0; 3]; 2];
+        Truth { orientation: Orientation::Attitude(attitude), elastic, rate, rigid: rate, turned: rate, sky }
+    }
+
+    #[test]
+    fn it_sees_the_sun_within_its_field_of_view_alone() {
+        let sensor: SunSensor =
+            toml::from_str("period = 1.0\nboresight = [2, 0, 0]\nfield_of_view = 0.5").unwrap();
+        let mut at_work = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let mut seen = |t: f64, turned: f64, sun: Option<Vector>| {
+            let now = Instant::START + Span::from_seconds(t);
+            let attitude = rotation(&Vector::new(0.0, 0.0, turned));
+            at_work.read(now, &truth(attitude, sun), None).and_then(|reading| reading.sight)
+        };
+        let sun = Some(Vector::x());
+        let sight = seen(0.0, 0.499, sun).unwrap();
+        assert!((sight.vector - Vector::new(libm::cos(0.499), -libm::sin(0.499), 0.0)).norm() < 1e-15);
+        assert!(sight.is_direction && sight.inertial == Vector::x());
+        assert!(
+            seen(1.0, 0.501, sun).is_none()
+                && seen(2.0, 3.0, sun).is_none()
+                && seen(3.0, 0.0, None).is_none()
+        );
+        assert!(seen(4.0, -0.499, sun).is_some());
+    }
+
+    #[test]
+    fn noise_is_across_and_errors_are_those_that_are_asked_for() {
+        let sensor: SunSensor = toml::from_str("period = 1.0\nnoise = 1e-3").unwrap();
+        let mut at_work = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let count = 20_000;
+        let mut squares = Vector::zeros();
+        for k in 0..count {
+            let now = Instant::START + Span::from_seconds(f64::from(k));
+            let truth = truth(rotation(&Vector::zeros()), Some(Vector::z()));
+            let seen = at_work.read(now, &truth, None).unwrap().sight.unwrap().vector;
+            assert!((seen.norm() - 1.0).abs() < 1e-15);
+            squares += seen.component_mul(&seen) / f64::from(count);
+        }
+        // Three standard errors: 3 sqrt(2/n).
+        assert!((squares.x / 1e-6 - 1.0).abs() < 0.03 && (squares.y / 1e-6 - 1.0).abs() < 0.03, "{squares}");
+        let magnetometer: crate::sensor::Magnetometer = toml::from_str(
+            "period = 1.0\nlatency = 0.5\nbias = [1e-6, 0, 0]\nscale = 0.01\nmisalignment = [[0, 0, 0], [0.1, 0, 0], [0, 0, 0]]\n\
+             resolution = [0, 0, 7e-6]\nfaults = [{ stuck = { from = 2.0, to = 3.0 } }, { silent = { from = 3.0 } }]",
+        )
+        .unwrap();
+        assert_eq!(magnetometer.inconsistency(), None);
+        let mut at_work = magnetometer.start(Seed { scenario: 1, run: 0 }, 0);
+        let (mut now, mut told, mut last) = (Instant::START, Vec::new(), None);
+        while now.seconds() < 5.0 {
+            let turned = rotation(&Vector::new(0.0, 0.0, 0.1 * now.seconds()));
+            if let Some(reading) = at_work.read(now, &truth(turned, None), last.as_ref()) {
+                told.push((now.seconds(), reading.sight.unwrap().vector));
+                last = Some(reading);
+            }
+            now = at_work.after(now, Span::TICK);
+        }
+        let times: Vec<f64> = told.iter().map(|(t, _)| *t).collect();
+        assert_eq!(times, [0.0, 1.5, 2.5]);
+        let exact = Vector::new(2.02e-5 + 1e-6, -1.01e-5 + 2e-6, 2.8e-5);
+        assert!((told[0].1 - exact).norm() < 1e-19, "{}", told[0].1);
+        assert!(told[1].1 != told[0].1 && told[2].1 == told[1].1);
+    }
+}
