@@ -17,7 +17,7 @@ const SHIPPED: [(&str, &str); 5] = [
 ];
 
 /// Runs that have what the others have not: other estimators, actuators and bodies.
-const OTHERS: [(&str, &str); 10] = [
+const OTHERS: [(&str, &str); 11] = [
     ("relay-sampled", "--set duration=1000"),
     ("rotation-thrusters", ""),
     ("rotation-nonlinear", ""),
@@ -28,6 +28,7 @@ const OTHERS: [(&str, &str); 10] = [
     ("slew-wheel-lqg", ""),
     ("momentum-unloading", "--set duration=1400"),
     ("thruster-phase-plane", "--set duration=60"),
+    ("station-keeping", "--set duration=300"),
 ];
 
 /// What a layout's panels show: paths and topics.

@@ -30,6 +30,7 @@ mod events;
 mod exact;
 mod extending;
 mod filters;
+mod forces;
 mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
@@ -45,6 +46,8 @@ mod logs;
 mod loops;
 mod lqg;
 mod manoeuvres;
+mod newcomers;
+mod outside;
 mod own_parts;
 mod plan;
 mod plan_figures;

@@ -82,6 +82,8 @@ pub struct Group {
     pub torque: Vector,
     /// Modal forces Q_i = sum f_i . F + phi_i . M (N/sqrt(kg)).
     pub forces: Vec<f64>,
+    /// Force on the body, in its axes (N).
+    pub force: Vector,
     /// Propellant in a second (kg/s).
     pub flow: f64,
     /// Absolute acceleration about the group's own axis, m = |M_a|/J_aa (rad/s²).
@@ -132,7 +134,7 @@ impl Jets {
         names: &[String],
     ) -> Result<Group, Fault> {
         let key = format!("groups.{}.{sign}", AXES[axis]);
-        let mut torque = Vector::zeros();
+        let (mut torque, mut push) = (Vector::zeros(), Vector::zeros());
         let mut forces = vec![0.0; body.modes.len()];
         let mut thrust = 0.0;
         for name in names {
@@ -144,9 +146,10 @@ impl Jets {
             let force = vector(&thruster.direction).normalize() * thruster.thrust.get();
             let moment = vector(&thruster.offset).cross(&force);
             torque += body.point(&thruster.point).unwrap_or_default().cross(&force) + moment;
+            push += force;
             thrust += thruster.thrust.get();
-            for (push, (translation, rotation)) in forces.iter_mut().zip(body.shapes(&thruster.point)) {
-                *push += translation.dot(&force) + rotation.dot(&moment);
+            for (sum, (translation, rotation)) in forces.iter_mut().zip(body.shapes(&thruster.point)) {
+                *sum += translation.dot(&force) + rotation.dot(&moment);
             }
         }
         if sense * torque[axis] <= 0.0 {
@@ -156,7 +159,7 @@ impl Jets {
         }
         let acceleration = torque[axis].abs() / body.tensor()[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
-        Ok(Group { torque, forces, flow, acceleration })
+        Ok(Group { torque, forces, force: push, flow, acceleration })
     }
 
     /// What becomes of a wanted pulse.

@@ -119,9 +119,7 @@ impl Actuate for Pulsing {
     fn exert(&self, _: Instant, onto: &mut Wrench) {
         for axis in (0..3).filter(|axis| self.ends[*axis].is_some()) {
             let group = self.group(axis, self.executed[axis]);
-            onto.torque += group.torque;
-            onto.forces.resize(group.forces.len(), 0.0);
-            onto.forces.iter_mut().zip(&group.forces).for_each(|(sum, force)| *sum += force);
+            onto.push(&group.torque, &group.forces, &group.force);
         }
     }
 

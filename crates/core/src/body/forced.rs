@@ -31,10 +31,12 @@ pub struct Wrench {
     /// Torques about the axes at the hub (N m): on a body with one angle the first alone, rad/s² where the hub's motion is
     /// commanded; on one with three axes at the point that its actuators name.
     pub hub: [f64; 3],
-    /// Torque of jets about the centre of mass (N m).
+    /// Torque of jets and of forces at points, about the centre of mass (N m).
     pub torque: Vector,
-    /// Modal forces of jets (N/sqrt(kg)); none at all if no jet is on.
+    /// Modal forces of jets and of forces at points (N/sqrt(kg)); none at all if there are none.
     pub forces: Vec<f64>,
+    /// The sum of these forces, in the body's axes (N).
+    pub force: Vector,
     /// Rotors that store momentum, each with the torque on it.
     pub rotors: Vec<Rotor>,
     /// A waveform about the first axis, and the time on it at that instant.
@@ -47,6 +49,14 @@ impl Wrench {
         let mut forces = std::mem::take(&mut self.forces);
         forces.clear();
         *self = Self { forces, ..Self::default() };
+    }
+
+    /// Adds a push: its torque about the centre of mass (N m), its modal forces (N/sqrt(kg)), and its force (N).
+    pub fn push(&mut self, torque: &Vector, forces: &[f64], force: &Vector) {
+        self.torque += torque;
+        self.force += force;
+        self.forces.resize(forces.len(), 0.0);
+        self.forces.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force);
     }
 }
 

@@ -34,6 +34,10 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     if let Actuator::Wheels(_) = &scenario.actuator {
         motion.push(Panel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }
+    if scenario.study.moving.is_some() {
+        let along = ["x", "y", "z"].map(|axis| line(format!("/position.{axis}_m"), axis));
+        motion.push(Panel::plot("position", "Position (m)", along.into()));
+    }
     let mut elastic = vec![Panel::plot("energy", "Elastic energy (J)", energies(scenario, body))];
     if let Some(plan) = &scenario.study.adaptive {
         let tracked: Vec<usize> = plan.axes.iter().map(|design| design.modes.len()).collect();

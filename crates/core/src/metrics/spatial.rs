@@ -1,13 +1,13 @@
 //! What a run of a spatial body comes to: propellant, firings, elastic energy, pointing.
 
-use super::goal::Verdict;
+use super::goal::{self, Verdict};
 use super::{
     BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, POINTING_END,
-    Told, VISIBLE_END, VISIBLE_PEAK, Value,
+    POINTING_RMS, REQUIREMENT, Told, VISIBLE_END, VISIBLE_PEAK, Value,
 };
 use crate::quantity::Positive;
 use crate::record::Cycle;
-use crate::scenario::Scenario;
+use crate::scenario::{Pointing, Scenario};
 use crate::time::Instant;
 
 /// The elastic rates are judged over so much of the run's end (s).
@@ -32,6 +32,9 @@ pub struct Spatial {
     /// Sum of the squared elastic rates of late cycles (rad²/s²), and how many they were.
     square: (f64, u64),
     error: f64,
+    /// What is asked of the pointing, the sum of the squared errors that count (rad²), and how many they are.
+    asked: Option<Pointing>,
+    pointing: (f64, u64),
     verdict: Verdict,
     /// How near to the target each axis shall be (rad), and since when one is not (s).
     bands: [f64; 3],
@@ -61,6 +64,8 @@ impl Spatial {
             below: [f64::NAN; 2],
             square: (0.0, 0),
             error: f64::NAN,
+            asked: scenario.reference.pointing.clone(),
+            pointing: (0.0, 0),
         }
     }
 
@@ -86,6 +91,10 @@ impl Spatial {
             self.square.1 += 1;
         }
         self.error = libm::sqrt(norm(cycle.error_rad));
+        if self.asked.as_ref().is_some_and(|asked| asked.counts(t)) {
+            self.pointing.0 += norm(cycle.error_rad);
+            self.pointing.1 += 1;
+        }
         if let Some(since) = self.outside.take() {
             self.verdict.outside(since, t);
         }
@@ -115,6 +124,14 @@ impl Spatial {
             (&POINTING_END, Value::Number(self.error)),
         ];
         let jets = jets.into_iter().filter(|_| self.jets);
-        jets.chain(metrics).chain(self.verdict.finish(self.end)).collect()
+        let mut pointing: Vec<Told> = Vec::new();
+        if let Some(asked) = &self.asked {
+            // 0/0 of no cycles: no number.
+            let rms = libm::sqrt(self.pointing.0 / self.pointing.1 as f64);
+            pointing.push((&POINTING_RMS, Value::Number(rms)));
+            let met = asked.rms.map(|most| goal::word(rms <= most.get()));
+            pointing.extend(met.map(|word| (&REQUIREMENT, Value::Word(word))));
+        }
+        jets.chain(metrics).chain(pointing).chain(self.verdict.finish(self.end)).collect()
     }
 }

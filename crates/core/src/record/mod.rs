@@ -35,9 +35,9 @@ pub use states::{Gate, Latch, Lock, Trust, Use, Watch};
 pub use topics::{
     Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, ChannelState, Command, Energy,
     Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Metric, MetricLine, MetricPage, Metrics,
-    ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Pointing, Rate,
-    Rates, Residual, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
-    Wheel, WheelMotion, Wheels, WindowMean,
+    ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Pointing,
+    Position, Rate, Rates, Residual, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger,
+    Vibration, Vibrations, Wheel, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -146,6 +146,8 @@ pub struct SpatialMotion {
     pub vibrations: Vibrations,
     /// Energies.
     pub energy: Energy,
+    /// Where it is, if jets or forces push it and its mass is known.
+    pub position: Option<Position>,
     /// Torques of actuators that are no jets.
     pub torques: Option<Torques>,
     /// Wheels about axes of their own.
@@ -367,6 +369,9 @@ trait TakeRow {
                 self.take(now, &motion.rates)?;
                 self.take(now, &motion.vibrations)?;
                 self.take(now, &motion.energy)?;
+                if let Some(position) = &motion.position {
+                    self.take(now, position)?;
+                }
                 if let Some(torques) = &motion.torques {
                     self.take(now, torques)?;
                 }

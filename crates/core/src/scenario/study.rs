@@ -6,9 +6,9 @@ use super::Scenario;
 use crate::actuator::{
     Actuate, Actuator, Allocation, Group, Opposes, PulseWidth, Pulsing, Setting, Torquers,
 };
-use crate::body::spatial::{Vector, beyond};
+use crate::body::spatial::{Vector, beyond, tensor};
 use crate::body::{Drive, Mode, Planar, Spatial};
-use crate::craft::Rotor;
+use crate::craft::{Moving, Rotor};
 use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
@@ -36,6 +36,8 @@ pub struct Study {
     pub sensed_at: Vec<String>,
     /// The point of a body with three axes at which torques act.
     pub acts_at: String,
+    /// What moves a spacecraft that jets or forces push.
+    pub moving: Option<Moving>,
     /// What is around a body with three axes.
     pub around: Option<Around>,
     /// Attitudes to turn to.
@@ -130,6 +132,12 @@ impl Study {
             self.wheels = Some(allocation);
         }
         self.around = surroundings(scenario, body)?;
+        for (index, disturbance) in scenario.disturbance.iter().enumerate() {
+            named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
+        }
+        let pushed = self.fires() || scenario.disturbance.iter().any(|of| of.force.is_some());
+        let craft = scenario.body.craft().filter(|_| pushed);
+        self.moving = craft.map(|craft| Moving::new(body, craft.mass));
         let measured = self.measured(body);
         let angles = beyond(&targeted(&self.targets, Instant::START), &body.attitude.get());
         for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.seen).enumerate() {
@@ -281,7 +289,13 @@ impl Study {
     pub fn distribution(&self, scenario: &Scenario) -> Distribution {
         match scenario.body.spatial() {
             None => Distribution::of_one_angle(scenario.model.commanded_inertia()),
-            Some(body) => Distribution::of_three_axes(body.tensor()),
+            Some(body) => {
+                let believed = match &scenario.law {
+                    Law::Attitude(law) => law.inertia.as_ref(),
+                    _ => None,
+                };
+                Distribution::of_three_axes(believed.map_or_else(|| body.tensor(), tensor))
+            }
         }
     }
 

@@ -42,6 +42,8 @@ pub struct Acting {
     pub torque: Vector,
     /// Modal forces beside phi' times the torque, which the motion has of itself (N/sqrt(kg)); none at all if there are none.
     pub forces: Vec<f64>,
+    /// The acceleration of the centre of mass, in the hub's axes (m/s²).
+    pub push: Vector,
     /// The rotors. One that was not there before brings its momentum with it.
     pub rotors: Vec<Rotor>,
 }
@@ -92,6 +94,7 @@ impl Acting {
             responses,
             h,
             torque: self.torque,
+            push: (self.push != Vector::zeros()).then_some(self.push),
             forces: &self.forces,
             rotors: self.rotors(t),
             around: around.map(|(around, since)| (around, since + t)),
@@ -123,6 +126,7 @@ impl Turning {
             attitude,
             momentum: Bend::new(bent).forward(&momentum),
             turned: Vector::zeros(),
+            moved: [Vector::zeros(); 2],
             lost: (Quaternion::default(), Vector::zeros(), Vector::zeros()),
             modes: moved.map(canonical).collect(),
         };
@@ -156,7 +160,7 @@ impl Turning {
         for rotor in acting.rotors.iter().skip(self.acting.rotors.len()) {
             self.here.momentum += Bend::new(bent).forward(&(rotor.axis * rotor.momentum));
         }
-        self.acting.torque = acting.torque;
+        (self.acting.torque, self.acting.push) = (acting.torque, acting.push);
         self.acting.forces.clone_from(&acting.forces);
         self.acting.rotors.clone_from(&acting.rotors);
         self.departed.copy_from(&self.here);

@@ -28,6 +28,8 @@ pub(super) struct Step<'a> {
     pub h: f64,
     /// Torque on the hub in its axes (N m).
     pub torque: Vector,
+    /// The acceleration of the centre of mass in the hub's axes (m/s²), if anything pushes it.
+    pub push: Option<Vector>,
     /// Modal forces, without what the torque gives (N/sqrt(kg)).
     pub forces: &'a [f64],
     /// Momentum of the rotors at the start of the step (N m s), and its rate (N m).
@@ -67,6 +69,8 @@ struct Stage {
     turn: Quaternion<f64>,
     /// J^-1 Gt.
     rigid: Vector,
+    /// The acceleration of the centre of mass in inertial axes (m/s²).
+    pushed: Vector,
 }
 
 /// Gt, the hub's rate and the surroundings' tide, which modes feel.
@@ -189,8 +193,12 @@ impl Step<'_> {
             tide = if model.stretches { around.tide(since + t, &hub) } else { None };
         }
         let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
-        let stage =
-            Stage { push: bend.forward(&torque) - mean.cross(momentum), turn: spin(facing, &mean), rigid };
+        let stage = Stage {
+            push: bend.forward(&torque) - mean.cross(momentum),
+            turn: spin(facing, &mean),
+            rigid,
+            pushed: self.push.map_or_else(Vector::zeros, |push| inertial(facing, &bend.forward(&push))),
+        };
         (stage, Felt { turning, rate, tide })
     }
 
@@ -222,13 +230,25 @@ impl Step<'_> {
         change
     }
 
+    /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
+    fn move_on(&self, [position, velocity]: &mut [Vector; 2], stages: &[Stage; 3]) {
+        *position += *velocity * self.h;
+        if self.push.is_some() {
+            for ((stage, weight), node) in stages.iter().zip(WEIGHTS).zip(NODES) {
+                *velocity += stage.pushed * (weight * self.h);
+                *position += stage.pushed * (weight * (1.0 - node) * self.h * self.h);
+            }
+        }
+    }
+
     /// The state at the end.
     fn end(&self, state: &mut State, stages: &[Stage; 3], modes: &[Memory]) {
         let [a, b, c] = WEIGHTS.map(|weight| weight * self.h);
         let push = stages[0].push * a + stages[1].push * b + stages[2].push * c;
         let turn = stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
         let rigid = stages[0].rigid * a + stages[1].rigid * b + stages[2].rigid * c;
-        let State { attitude, momentum, turned, lost, modes: states } = state;
+        let State { attitude, momentum, turned, moved, lost, modes: states } = state;
+        self.move_on(moved, stages);
         (attitude.coords, lost.0.coords) = exact_sum(attitude.coords, turn.coords + lost.0.coords);
         (*momentum, lost.1) = exact_sum(*momentum, push + lost.1);
         (*turned, lost.2) = exact_sum(*turned, rigid + lost.2);
@@ -281,6 +301,11 @@ impl Sums {
 
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// A vector of the mean axes in inertial ones, by a quaternion that is of length 1 but for the error of a stage.
+fn inertial(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
+    (*attitude * Quaternion::from_imag(*v) * attitude.conjugate()).vector() / attitude.norm_squared()
 }
 
 /// Q' = 1/2 Q o (0, w).

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Quaternion};
 
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState, Vector, vector};
 use crate::body::{Phase, Wrench};
+use crate::craft::Moving;
 use crate::environment::Around;
 use crate::motion::turning::{Acting, Flexible, Surroundings, Turning};
 use crate::sensor::{Orientation, Truth};
@@ -19,6 +20,8 @@ pub struct TwoWay {
     acts: Vec<Vector>,
     outside: Outside,
     acting: Acting,
+    /// What moves it, and where its first point was at the start, from the centre of mass (m).
+    moving: Option<(Moving, Vector)>,
 }
 
 /// The disturbance of the body, and what is around it.
@@ -56,6 +59,7 @@ impl TwoWay {
         body: &Spatial,
         flexible: &Flexible,
         around: Option<Around>,
+        moving: Option<Moving>,
         [sensed, acts]: [&[Vector]; 2],
     ) -> Self {
         let frequencies: Vec<f64> = flexible.modes.iter().map(|mode| mode.frequency).collect();
@@ -64,8 +68,14 @@ impl TwoWay {
         let modes: Vec<_> = modes.map(|(phase, w)| [phase.displacement, w * phase.quadrature]).collect();
         let hub: Vec<Vector> = flexible.modes.iter().map(|mode| mode.rotation).collect();
         let beyond = |at: &[Vector]| at.iter().zip(&hub).map(|(at, hub)| at - hub).collect();
+        let turning = Turning::new(flexible, body.attitude.get(), vector(&body.rate), &modes);
+        let placed = |moving: Moving| {
+            let [began, _] = moving.place(turning.seen());
+            (moving, began)
+        };
         Self {
-            turning: Turning::new(flexible, body.attitude.get(), vector(&body.rate), &modes),
+            moving: moving.map(placed),
+            turning,
             sensed: beyond(sensed),
             acts: beyond(acts),
             outside: Outside { own: body.disturbance.clone(), around },
@@ -90,7 +100,9 @@ impl TwoWay {
     /// Begins a new motion at the instant seen last, under what acts from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
         let (push, hub) = (wrench.torque, Vector::from(wrench.hub));
-        let Acting { torque, forces, rotors } = &mut self.acting;
+        let Acting { torque, forces, rotors, push: accelerated } = &mut self.acting;
+        let moving = self.moving.as_ref();
+        *accelerated = moving.map_or_else(Vector::zeros, |(moving, _)| moving.acceleration(&wrench.force));
         *torque = push + hub;
         rotors.clone_from(&wrench.rotors);
         // The motion gives modes their part of the torque on the hub: what jets and torques elsewhere give differs from it.
@@ -127,6 +139,14 @@ impl TwoWay {
             turned: (seen.turned + sum(sensed, &seen.displacements)).into(),
         };
         (truth, elastic)
+    }
+
+    /// Where the first point is that was at 0 at the start (m), and how fast it moves (m/s), if anything can push it.
+    pub fn place(&self) -> Option<[Vector; 2]> {
+        self.moving.as_ref().map(|(moving, began)| {
+            let [position, velocity] = moving.place(self.turning.seen());
+            [position - began, velocity]
+        })
     }
 
     /// The attitude of the hub.
