@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::axes::Axis;
 use crate::body::spatial::{Vector, vector};
-use crate::body::{Spatial, Wrench};
+use crate::body::{Push, Spatial, Wrench};
 use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Stream;
@@ -64,13 +64,9 @@ impl Disturbance {
     fn push(&self, body: &Spatial) -> Option<Push> {
         let force = vector(self.force.as_ref()?);
         let first = body.points.first().map_or("", |point| &point.name);
-        let point = self.point.as_deref().unwrap_or(first);
-        let shapes = body.shapes(point);
-        Some(Push {
-            torque: body.point(point).unwrap_or_default().cross(&force),
-            forces: shapes.iter().map(|(translation, _)| translation.dot(&force)).collect(),
-            force,
-        })
+        let mut push = Push::default();
+        push.add(body, self.point.as_deref().unwrap_or(first), &Vector::zeros(), &force);
+        Some(push)
     }
 
     /// What does not go together on a body with three axes: a key, and why.
@@ -98,17 +94,6 @@ impl Disturbance {
     fn acts(&self, now: Instant) -> bool {
         at(self.from) <= now && self.to.is_none_or(|to| now < at(to))
     }
-}
-
-/// What a force does to a body.
-#[derive(Clone, Debug)]
-struct Push {
-    /// Torque about the centre of mass (N m).
-    torque: Vector,
-    /// Modal forces (N/sqrt(kg)).
-    forces: Vec<f64>,
-    /// The force itself (N).
-    force: Vector,
 }
 
 /// A disturbance at work.
@@ -189,7 +174,7 @@ impl Disturbing {
     /// Adds what a force does from now on.
     pub fn push(&self, now: Instant, onto: &mut Wrench) {
         if let Some(push) = self.push.as_ref().filter(|_| self.acts(now)) {
-            onto.push(&push.torque, &push.forces, &push.force);
+            onto.push(push);
         }
     }
 }

@@ -113,7 +113,7 @@ pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, "rates"), panels: panels(story, "rad/s", lines), panel_height: 160 }
 }
 
-/// Energy of the elastic modes, and the propellant.
+/// Energy of the elastic modes, and of jets the propellant.
 pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     let elastic = cycles.over_time(|cycle| cycle.elastic_energy_j);
     let fuel = cycles.over_time(|cycle| cycle.jets.fuel_kg);
@@ -124,12 +124,18 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
         bar: None,
     };
     let x = time(0.0..story.end);
-    let mut energies = panel(x.unnamed(), "elastic energy", "J", elastic);
+    let fires = fuel.iter().any(|(_, used)| used.is_finite());
+    let below = if fires { x.unnamed() } else { x.clone() };
+    let mut energies = panel(below, "elastic energy", "J", elastic);
     "all modes".clone_into(&mut energies.layers[0].name);
     let visible = cycles.over_time(|cycle| cycle.visible_energy_j);
     energies.layers.push(Layer::new("modes that the gyro sees", colour::ORANGE, Shape::Line(1.2), visible));
-    let panels = vec![energies, panel(x, "propellant", "kg", fuel)];
-    Figure { title: title(story, "elastic energy and propellant"), panels, panel_height: 220 }
+    let mut panels = vec![energies];
+    if fires {
+        panels.push(panel(x, "propellant", "kg", fuel));
+    }
+    let what = if fires { "elastic energy and propellant" } else { "elastic energy" };
+    Figure { title: title(story, what), panels, panel_height: 220 }
 }
 
 /// For how long the jets fire in each cycle.

@@ -21,9 +21,7 @@ impl Moving {
     pub fn new(body: &Spatial, mass: f64) -> Self {
         let first = body.points.first();
         let at = first.map_or_else(Vector::zeros, |point| vector(&point.position));
-        let shapes = body.shapes(first.map_or("", |point| &point.name));
-        // What the hub's rotation does to the point is in its attitude.
-        let shifts = shapes.iter().map(|(shift, rotation)| shift - rotation.cross(&at)).collect();
+        let shifts = body.shifts(first.map_or("", |point| &point.name), &Vector::zeros());
         Self { mass, at, shifts }
     }
 

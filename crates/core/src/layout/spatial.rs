@@ -135,7 +135,7 @@ fn rates(fields: &[(&str, &str)]) -> Vec<Line> {
 /// The energy of all modes, and of those that the jets excite most.
 fn energies(scenario: &Scenario, body: &Spatial) -> Vec<Line> {
     let groups = || scenario.study.groups.iter().flatten().flatten();
-    let push = |mode: usize| groups().map(|group| group.forces[mode].abs()).fold(0.0, f64::max);
+    let push = |mode: usize| groups().map(|group| group.push.forces[mode].abs()).fold(0.0, f64::max);
     let excited = |mode: &usize| push(*mode) / body.modes[*mode].frequency.get();
     let mut modes: Vec<usize> = (0..body.modes.len()).collect();
     modes.sort_by(|a, b| excited(b).total_cmp(&excited(a)));

@@ -169,7 +169,7 @@ impl Study {
         let input = |axis: usize| {
             let (forces, torque, acceleration) = if let Some(groups) = &self.groups {
                 let group = &groups[axis][0];
-                (group.forces.clone(), group.torque, group.acceleration)
+                (group.push.forces.clone(), group.push.torque, group.acceleration)
             } else {
                 let forces = hub.iter().map(|rotation| rotation[axis]).collect();
                 let torque = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });

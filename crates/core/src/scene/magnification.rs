@@ -148,10 +148,11 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let mode = |(index, mode): (usize, &SpatialMode)| {
         let w = mode.frequency.get();
         let forces: Vec<f64> = match &scenario.study.groups {
-            Some(groups) => groups.iter().flatten().map(|group| group.forces[index]).collect(),
+            Some(groups) => groups.iter().flatten().map(|group| group.push.forces[index]).collect(),
             None => torques.iter().zip(&hub[index].1).map(|(torque, shape)| torque * shape).collect(),
         };
-        let unloading = scenario.study.unloading.iter().flatten().flatten().map(|group| group.forces[index]);
+        let unloading =
+            scenario.study.unloading.iter().flatten().flatten().map(|group| group.push.forces[index]);
         let force = forces.into_iter().chain(unloading).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
         held.max(2.0 * force / (w * w))

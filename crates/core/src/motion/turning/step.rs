@@ -32,6 +32,8 @@ pub(super) struct Step<'a> {
     pub push: Option<Vector>,
     /// Modal forces, without what the torque gives (N/sqrt(kg)).
     pub forces: &'a [f64],
+    /// What a unit of each mode adds to the torque (N/sqrt(kg)).
+    pub levers: &'a [Vector],
     /// Momentum of the rotors at the start of the step (N m s), and its rate (N m).
     pub rotors: (Vector, Vector),
     /// The surroundings, and the time since the start of the run (s).
@@ -58,6 +60,8 @@ struct Shape {
     bent: Vector,
     elastic: Vector,
     changed: Matrix3<f64>,
+    /// What the modes add to the torque on the hub (N m).
+    levered: Vector,
 }
 
 /// What a stage comes to.
@@ -139,7 +143,7 @@ impl Step<'_> {
                 *known = [a * q + b * p + constant[0] * force, c * q + d * p + constant[1] * force];
             }
             memory.rate = self.model.modes[index].frequency * p;
-            sums.add(self.model, index, q, memory.rate);
+            sums.add(self, index, q, memory.rate);
         }
         let (stage, felt) = self.turning(0.0, &sums.shape(), &state.momentum, &state.attitude);
         self.feel(&felt, modes, 0);
@@ -164,7 +168,7 @@ impl Step<'_> {
                 p += dot(of_p, &memory.s);
             }
             memory.rate = self.model.modes[index].frequency * p;
-            sums.add(self.model, index, q, memory.rate);
+            sums.add(self, index, q, memory.rate);
         }
         let [a, b, c] = MATRIX[node].map(|weight| weight * self.h);
         let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
@@ -187,6 +191,9 @@ impl Step<'_> {
             (free, rigid, rigid + shape.elastic + model.bending * free)
         };
         let (mut torque, mut tide) = (self.torque, None);
+        if !self.levers.is_empty() {
+            torque += shape.levered;
+        }
         if let Some((around, since)) = self.around {
             let hub = facing * rotation(&shape.bent);
             torque += around.torque(since + t, &hub, &(model.inertia + shape.changed));
@@ -281,21 +288,25 @@ struct Sums {
     bent: Vector,
     elastic: Vector,
     changed: [f64; 6],
+    levered: Vector,
 }
 
 impl Sums {
     #[inline]
-    fn add(&mut self, model: &Model, index: usize, q: f64, p: f64) {
-        let of = &model.modes[index];
+    fn add(&mut self, step: &Step<'_>, index: usize, q: f64, p: f64) {
+        let of = &step.model.modes[index];
         self.bent += of.rotation * q;
         self.elastic += of.rotation * p;
-        if model.stretches {
+        if let Some(lever) = step.levers.get(index) {
+            self.levered += lever * q;
+        }
+        if step.model.stretches {
             self.changed.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
         }
     }
 
     fn shape(&self) -> Shape {
-        Shape { bent: self.bent, elastic: self.elastic, changed: tensor(self.changed) }
+        Shape { bent: self.bent, elastic: self.elastic, changed: tensor(self.changed), levered: self.levered }
     }
 }
 

@@ -100,7 +100,8 @@ impl TwoWay {
     /// Begins a new motion at the instant seen last, under what acts from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
         let (push, hub) = (wrench.torque, Vector::from(wrench.hub));
-        let Acting { torque, forces, rotors, push: accelerated } = &mut self.acting;
+        let Acting { torque, forces, levers, rotors, push: accelerated } = &mut self.acting;
+        levers.clone_from(&wrench.levers);
         let moving = self.moving.as_ref();
         *accelerated = moving.map_or_else(Vector::zeros, |(moving, _)| moving.acceleration(&wrench.force));
         *torque = push + hub;
