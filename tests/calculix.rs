@@ -34,10 +34,10 @@ fn a_beam_of_calculix_has_its_closed_form_clamped_and_free() {
     let free: Vec<f64> =
         scenario.body.spatial().expect("three axes").modes.iter().map(|mode| mode.frequency.get()).collect();
     for (index, exact, error) in [
-        (0, 4.35521656439, 2e-6),
-        (1, 9.24863725801, 6e-6),
-        (2, 16.6571906912, 4e-6),
-        (3, 33.8265419263, 4e-6),
+        (0, 4.35521656439, 7e-6),
+        (1, 9.24863725801, 1.3e-5),
+        (2, 16.6571906912, 2e-6),
+        (3, 33.8265419263, 2e-6),
         (4, 47.9105219175, 1.1e-5),
         (5, 96.1046402846, 3e-5),
         (6, 97.6097327968, 1.2e-4),
