@@ -121,7 +121,26 @@ fn what_is_no_force_is_refused() {
     let one_angle = "duration = 1.0\n[body.planar]\n[law.open]\n[[disturbance]]\nforce = [1, 0, 0]\n";
     let error = scenario(one_angle).expect_err("a force").to_string();
     assert!(error.contains("`disturbance[0].force` acts on a body with three axes"), "{error}");
-    let requirement = format!("{HUB}[reference]\npointing = {{ window = [50.0, 150.0] }}\n");
+    let requirement = format!("{HUB}[reference]\npointing = {{ window = [50.0, 50.0] }}\n");
     let error = scenario(&requirement).expect_err("late").to_string();
     assert!(error.contains("`reference.pointing.window` must be [from, to]"), "{error}");
+}
+
+/// A force on a body of given modes, which do not act back, turns it as it turns a rigid spacecraft.
+#[test]
+fn a_force_turns_every_body_with_three_axes() {
+    let force = "[[disturbance]]\nforce = [1.0, -2.0, 0.5]\npoint = \"jet\"\nfrom = 3.0\nto = 8.5\n";
+    let point = "points = [{ name = \"hub\" }, { name = \"jet\", position = [0.1, 0.4, -0.2] }]\n";
+    let spacecraft = flown(&format!("{HUB}{point}{force}"));
+    let spatial =
+        flown(&format!("{}{point}{force}", HUB.replace("[spacecraft]\nmass = 250.0", "[body.spatial]")));
+    assert!(spatial.topic("/position").is_none(), "nobody knows its mass");
+    for name in ["q_w", "q_x", "q_y", "q_z"] {
+        let of = |trace: &Trace| {
+            trace.topic("/pointing").and_then(|rows| rows.numbers(name)).expect("rows").to_vec()
+        };
+        for (a, b) in of(&spacecraft).into_iter().zip(of(&spatial)) {
+            near(a, b, 1e-12);
+        }
+    }
 }

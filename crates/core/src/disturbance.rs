@@ -61,7 +61,7 @@ impl Disturbance {
     }
 
     /// What its force does to a body; none of a torque.
-    fn push(&self, body: &Spatial) -> Option<Push> {
+    pub fn push(&self, body: &Spatial) -> Option<Push> {
         let force = vector(self.force.as_ref()?);
         let first = body.points.first().map_or("", |point| &point.name);
         let mut push = Push::default();

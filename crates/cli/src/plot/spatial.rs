@@ -1,4 +1,4 @@
-//! Figures of a spatial body: `pointing`, `rates`, `energy`, `jets`, and of its adaptive observers `tracking` and `damping`,
+//! Figures of a spatial body: `pointing`, `rates`, `energy`, `position`, `jets`, and of its adaptive observers `tracking` and `damping`,
 //! from its run repeated.
 
 use std::path::Path;
@@ -6,8 +6,8 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::body::spatial::AXES;
 use flexsc_core::record::{
-    AttitudeEstimate, ChannelState, Cycle, Log, Record, RecordError, Sample, SpatialMotion, TrackedMode,
-    Tracking, Wheels,
+    AttitudeEstimate, ChannelState, Cycle, Log, Position, Record, RecordError, Sample, SpatialMotion,
+    TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
@@ -28,6 +28,8 @@ pub struct Cycles {
     pub attitude: Vec<(f64, AttitudeEstimate)>,
     /// The wheels, at each period of the log.
     pub wheels: Vec<(f64, Wheels)>,
+    /// Where it is, at the same times.
+    position: Vec<(f64, Position)>,
 }
 
 impl Cycles {
@@ -66,8 +68,9 @@ impl Record for Cycles {
             Sample::Cycle(cycle) => self.all.push((now.seconds(), cycle.clone())),
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
-            Sample::SpatialMotion(SpatialMotion { wheels: Some(wheels), .. }) => {
-                self.wheels.push((now.seconds(), wheels.clone()));
+            Sample::SpatialMotion(SpatialMotion { wheels, position, .. }) => {
+                self.wheels.extend(wheels.iter().map(|wheels| (now.seconds(), wheels.clone())));
+                self.position.extend(position.iter().map(|position| (now.seconds(), position.clone())));
             }
             _ => {}
         }
@@ -111,6 +114,28 @@ pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
         ]
     };
     Figure { title: title(story, "rates"), panels: panels(story, "rad/s", lines), panel_height: 160 }
+}
+
+/// Where the first point is, and its velocity.
+pub fn position(story: &Story, cycles: &Cycles) -> Figure {
+    let panel = |x: Axis, name: &str, unit: &'static str, of: [fn(&Position) -> f64; 3]| {
+        let line = |(axis, colour): (usize, _)| {
+            let points = cycles.position.iter().map(|(time, position)| (*time, of[axis](position))).collect();
+            Layer::new(["x", "y", "z"][axis], colour, Shape::Line(1.2), points)
+        };
+        let layers: Vec<Layer> =
+            [colour::BLUE, colour::ORANGE, colour::GREEN].into_iter().enumerate().map(line).collect();
+        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        Panel { x, y: Axis::around(name, unit, values.collect::<Vec<_>>()), layers, bar: None }
+    };
+    let x = time(0.0..story.end);
+    let places: [fn(&Position) -> f64; 3] = [|at| at.x_m, |at| at.y_m, |at| at.z_m];
+    let rates: [fn(&Position) -> f64; 3] = [|at| at.x_m_s, |at| at.y_m_s, |at| at.z_m_s];
+    Figure {
+        title: title(story, "position in inertial axes"),
+        panels: vec![panel(x.unnamed(), "position", "m", places), panel(x, "velocity", "m/s", rates)],
+        panel_height: 220,
+    }
 }
 
 /// Energy of the elastic modes, and of jets the propellant.

@@ -27,6 +27,7 @@ use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::label::labels;
 use crate::own::Own;
+use crate::quantity::Finite;
 use crate::time::{Instant, Span};
 
 pub use attitude::{AttitudeLaw, Integral};
@@ -185,6 +186,11 @@ impl Law {
     /// The number that an adaptation tunes unless it names another; NaN of a law without any.
     pub fn tuned(&self) -> f64 {
         self.tunable().first().map_or(f64::NAN, |(_, value)| *value)
+    }
+
+    /// The inertia tensor that it takes a body with three axes to have, row by row (kg m²), if it has one of its own.
+    pub fn inertia(&self) -> Option<&[[Finite; 3]; 3]> {
+        if let Self::Attitude(law) = self { law.inertia.as_ref() } else { None }
     }
 
     /// The kind, as a scenario names it.

@@ -12,9 +12,15 @@ const MET: &str = "met";
 const MISSED: &str = "missed";
 const NONE: &str = "none";
 
-/// The word for what is met, or missed.
-pub fn word(is_met: bool) -> &'static str {
-    if is_met { MET } else { MISSED }
+/// Whether a value is at most another: met or missed, none without a value.
+pub fn within(value: f64, most: f64) -> &'static str {
+    if value.is_nan() {
+        NONE
+    } else if value <= most {
+        MET
+    } else {
+        MISSED
+    }
 }
 
 /// Gathers the time outside a band about the goal.

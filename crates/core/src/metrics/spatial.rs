@@ -129,7 +129,7 @@ impl Spatial {
             // 0/0 of no cycles: no number.
             let rms = libm::sqrt(self.pointing.0 / self.pointing.1 as f64);
             pointing.push((&POINTING_RMS, Value::Number(rms)));
-            let met = asked.rms.map(|most| goal::word(rms <= most.get()));
+            let met = asked.rms.map(|most| goal::within(rms, most.get()));
             pointing.extend(met.map(|word| (&REQUIREMENT, Value::Word(word))));
         }
         jets.chain(metrics).chain(pointing).chain(self.verdict.finish(self.end)).collect()

@@ -42,7 +42,7 @@ impl Scenario {
             return Some(fault.within("log.scene"));
         }
         if let Some(pointing) = &self.reference.pointing
-            && let Some(fault) = pointing.fault(self.axis_count(), self.duration.seconds())
+            && let Some(fault) = pointing.fault(self.axis_count())
         {
             return Some(fault.within("reference.pointing"));
         }

@@ -290,11 +290,7 @@ impl Study {
         match scenario.body.spatial() {
             None => Distribution::of_one_angle(scenario.model.commanded_inertia()),
             Some(body) => {
-                let believed = match &scenario.law {
-                    Law::Attitude(law) => law.inertia.as_ref(),
-                    _ => None,
-                };
-                Distribution::of_three_axes(believed.map_or_else(|| body.tensor(), tensor))
+                Distribution::of_three_axes(scenario.law.inertia().map_or_else(|| body.tensor(), tensor))
             }
         }
     }

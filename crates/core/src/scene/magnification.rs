@@ -125,7 +125,10 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     let most = study.authorities[axis].accelerations[0] * study.axes[axis].inertia.get();
     let by_law = match scenario.law.about(axis) {
         Law::Relay(relay) => unit * relay.strong.get(),
-        Law::Pd(pd) => unit * pd.k_p.get() * spatial_angle(scenario, body),
+        Law::Pd(pd) => {
+            let limit = pd.limit.map_or(f64::INFINITY, Positive::get);
+            unit * limit.min(pd.k_p.get() * spatial_angle(scenario, body))
+        }
         Law::Attitude(law) => {
             let inertia = study.axes[axis].inertia.get();
             // A turn along a profile asks for its acceleration, and not for all of the angle at once.
@@ -141,10 +144,11 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     by_law.min(most)
 }
 
-/// The same of the modes of a body with three axes (m sqrt(kg)), under the jets or the torque of any axis.
+/// The same of the modes of a body with three axes (m sqrt(kg)), under the jets, the torque of any axis, or a force.
 pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let torques = [0, 1, 2].map(|axis| spatial_torque(scenario, body, axis));
     let hub = body.shapes(&scenario.study.acts_at);
+    let pushes: Vec<_> = scenario.disturbance.iter().filter_map(|of| of.push(body)).collect();
     let mode = |(index, mode): (usize, &SpatialMode)| {
         let w = mode.frequency.get();
         let forces: Vec<f64> = match &scenario.study.groups {
@@ -153,7 +157,8 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
         };
         let unloading =
             scenario.study.unloading.iter().flatten().flatten().map(|group| group.push.forces[index]);
-        let force = forces.into_iter().chain(unloading).map(f64::abs).fold(0.0, f64::max);
+        let pushed = pushes.iter().map(|push| push.forces[index]);
+        let force = forces.into_iter().chain(unloading).chain(pushed).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
         held.max(2.0 * force / (w * w))
     };

@@ -270,7 +270,9 @@ impl Simulation {
         let Self { reference, now, laws, beliefs, .. } = self;
         if beliefs.len() > 1 {
             let square: f64 = beliefs.iter().map(|belief| belief.angle * belief.angle).sum();
-            beliefs.iter_mut().for_each(|belief| belief.whole = libm::sqrt(square));
+            for belief in beliefs.iter_mut() {
+                belief.whole = libm::sqrt(square);
+            }
         }
         let led = reference.led(*now, beliefs);
         laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
