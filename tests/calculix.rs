@@ -1,5 +1,7 @@
 //! A beam from CalculiX's results, clamped to a hub: the frequencies of the whole in closed form (tests/golden/beam_oracle.py).
 
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
 use flexsc_core::Scenario;
 
 const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/fe/beam.dat");

@@ -5,6 +5,7 @@
 use crate::actuator::Actuator;
 use crate::body::spatial::{SpatialMode, turned};
 use crate::body::{Mode, Spatial};
+use crate::disturbance::Disturbance;
 use crate::law::Law;
 use crate::quantity::{Finite, Positive};
 use crate::scenario::Scenario;
@@ -148,7 +149,10 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
 pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let torques = [0, 1, 2].map(|axis| spatial_torque(scenario, body, axis));
     let hub = body.shapes(&scenario.study.acts_at);
-    let pushes: Vec<_> = scenario.disturbance.iter().filter_map(|of| of.push(body)).collect();
+    // Pulses may come with the period of a mode, and add up.
+    let times = |of: &Disturbance| if of.pulse.is_some() { 2.0 } else { 1.0 };
+    let pushes: Vec<_> =
+        scenario.disturbance.iter().filter_map(|of| Some((of.push(body)?, times(of)))).collect();
     let mode = |(index, mode): (usize, &SpatialMode)| {
         let w = mode.frequency.get();
         let forces: Vec<f64> = match &scenario.study.groups {
@@ -157,7 +161,7 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
         };
         let unloading =
             scenario.study.unloading.iter().flatten().flatten().map(|group| group.push.forces[index]);
-        let pushed = pushes.iter().map(|push| push.forces[index]);
+        let pushed = pushes.iter().map(|(push, times)| push.forces[index] * times);
         let force = forces.into_iter().chain(unloading).chain(pushed).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
         held.max(2.0 * force / (w * w))
