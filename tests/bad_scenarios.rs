@@ -115,7 +115,7 @@ const KEYS: &[Case] = &[
     ("unknown key of the estimator", Line(19, "windw = 50.0"), 19, "windw", &["unknown key `windw`", "`window`"]),
     ("unknown key of the adaptation", Line(22, "step = 0.002\nfreze = true"), 23, "freze", &["unknown key `freze`", "`freeze`"]),
     ("unknown key of the log", Line(29, "periods = 1"), 29, "periods", &["unknown key `periods`", "expected `period`"]),
-    ("unknown key of the reference", Line(32, "envlope = 1"), 32, "envlope", &["unknown key `envlope`", "expected `envelope`"]),
+    ("unknown key of the reference", Line(32, "envlope = 1"), 32, "envlope", &["unknown key `envlope`", "expected one of `envelope`"]),
     ("unknown key of a distribution", Line(35, r#""law.relay.k_t" = { normal = { mean = 0.3, sd = 0.1, x = 1 } }"#), 35, "x", &["unknown key `x`", "expected `mean` or `sd`"]),
     ("unknown distribution", Line(35, r#""law.relay.k_t" = { unifrm = [0.3, 0.32] }"#), 35, "unifrm", &[r#"`uncertain."law.relay.k_t"`"#, "`unifrm` is not known here", "`uniform`"]),
     ("unknown kind of law", Line(11, "[law.rely]"), 11, "rely", &["`rely` is not known here", "expected one of `relay`, `pd`, `attitude`, `open`"]),

@@ -29,6 +29,7 @@ const OTHERS: [(&str, &str); 11] = [
     ("momentum-unloading", "--set duration=1400"),
     ("thruster-phase-plane", "--set duration=60"),
     ("detumble-and-point", "--set duration=60"),
+    ("station-keeping", "--set duration=300"),
 ];
 
 /// What a layout's panels show: paths and topics.

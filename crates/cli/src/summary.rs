@@ -15,7 +15,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     if scenario.axis_count() == 3 {
         say!("{head}, {:.1} ms", took * 1e3);
-        spatial(metrics);
+        spatial(metrics, modes > 0);
     } else if scenario.law.switches() {
         say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
         switchings(scenario, metrics);
@@ -27,7 +27,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
 }
 
 /// Propellant, elastic energy and pointing of a spatial body.
-fn spatial(metrics: &Metrics) {
+fn spatial(metrics: &Metrics, bends: bool) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     // Other actuators use none.
     if number("fuel_kg").is_finite() {
@@ -42,15 +42,17 @@ fn spatial(metrics: &Metrics) {
         time if time.is_finite() => format!(", below {part} of the first at {time:.1} s"),
         _ => String::new(),
     };
-    say!(
-        "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end, {:.3e} J of it in modes that the sensor sees",
-        number("elastic_energy_peak_j"),
-        below("energy_below_10pct_at_s", "10 %"),
-        below("energy_below_1pct_at_s", "1 %"),
-        number("elastic_energy_end_j"),
-        number("visible_energy_end_j"),
-    );
-    say!("  at the sensor  {:.3e} rad/s rms over the last 200 s", number("elastic_rate_rms_rad_s"));
+    if bends {
+        say!(
+            "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end, {:.3e} J of it in modes that the sensor sees",
+            number("elastic_energy_peak_j"),
+            below("energy_below_10pct_at_s", "10 %"),
+            below("energy_below_1pct_at_s", "1 %"),
+            number("elastic_energy_end_j"),
+            number("visible_energy_end_j"),
+        );
+        say!("  at the sensor  {:.3e} rad/s rms over the last 200 s", number("elastic_rate_rms_rad_s"));
+    }
     if number("attitude_estimate_error_rms_rad").is_finite() {
         say!(
             "  filter         off by {:.3e} rad rms; NEES {:.2}, NIS {:.2} of what it expects",
@@ -61,6 +63,9 @@ fn spatial(metrics: &Metrics) {
     }
     let error = number("pointing_error_end_rad");
     say!("  pointing       {error:.3e} rad from the target at the end, the root sum of squares of the axes");
+    if let (rms, Some(Value::Word(word))) = (number("pointing_rms_rad"), metrics.get("requirement")) {
+        say!("  requirement    {word}: {rms:.3e} rad rms in its window");
+    }
     // Each axis has a band of its own: their root sum of squares may be more.
     goal(metrics, |band| format!("an axis outside its band of up to {band:.3e} rad"));
     if let Some(Value::Numbers(frequencies)) = metrics.get("frequency_estimates_hz") {
@@ -190,6 +195,12 @@ fn filter(metrics: &Metrics) {
     );
     let lost = number("lock_lost_at_s");
     if lost.is_finite() {
-        say!("  filter         has lost the body at {lost} s");
+        // Of innovations that are as expected it lost what it cannot see.
+        let hint = if number("nis_mean") > 2.0 {
+            ": what it takes for noise is more than its `moment_noise` and the sensor's"
+        } else {
+            ""
+        };
+        say!("  filter         has lost the body at {lost} s{hint}");
     }
 }

@@ -5,6 +5,8 @@
 pub struct Belief {
     /// Angle (rad): of a body with one angle the angle itself, of one with three axes how far it is beyond the target.
     pub angle: f64,
+    /// Length of the vector of such angles about all axes (rad); 0 of a body with one angle.
+    pub whole: f64,
     /// Rate (rad/s): of a sampled sensor without a gyro, the difference of its last two samples over the period.
     pub rate: f64,
     /// How fast the magnetic field along the axis changes (T/s): the difference of a magnetometer's last two readings over the

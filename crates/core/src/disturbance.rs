@@ -1,14 +1,17 @@
-//! Disturbance torques from one time to another: constant, and random.
+//! Disturbances from one time to another: torques, constant and random, and forces at a point, steady or in pulses.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::attitude::{Vector, vector};
 use crate::axes::Axis;
+use crate::body::{Push, Spatial, Wrench};
+use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Stream;
 use crate::time::{Instant, Span};
 
-/// A disturbance torque.
+/// A disturbance: a torque about an axis, or a force at a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
@@ -18,9 +21,18 @@ pub struct Disturbance {
     /// Torque (N m).
     #[serde(default)]
     pub torque: Finite,
+    /// In place of a torque, on a body with three axes a force in its axes (N): a leak, a jet that is stuck, a push.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<[Finite; 3]>,
+    /// Name of the point at which the force acts; left out, the first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub point: Option<String>,
     /// Spectral density of a white noise in the torque beside it ((N m)² s): each draw is held for `period`.
     #[serde(default)]
     pub noise: NonNegative,
+    /// Pulses in place of a steady torque or force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pulse: Option<Pulses>,
     /// How long a draw of the noise is held (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
@@ -32,10 +44,50 @@ pub struct Disturbance {
     pub to: Option<Time>,
 }
 
+/// A train of pulses: on from the start of each period.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pulses {
+    /// From the start of one pulse to that of the next (s).
+    pub period: Span,
+    /// How long each lasts (s).
+    pub on: Span,
+}
+
 impl Disturbance {
     /// The instants at which it changes.
     pub fn edges(&self) -> impl Iterator<Item = Instant> {
         [Some(self.from), self.to].into_iter().flatten().map(at)
+    }
+
+    /// What its force does to a body; none of a torque.
+    pub fn push(&self, body: &Spatial) -> Option<Push> {
+        let force = vector(self.force.as_ref()?);
+        let first = body.points.first().map_or("", |point| &point.name);
+        let mut push = Push::default();
+        push.add(body, self.point.as_deref().unwrap_or(first), &Vector::zeros(), &force);
+        Some(push)
+    }
+
+    /// What does not go together on a body with three axes: a key, and why.
+    pub fn three_axes_fault(&self) -> Option<Fault> {
+        let refused = |key: &str, why: &str| Some(Fault::new(key, why));
+        let noisy = self.noise.get() > 0.0;
+        match (&self.force, self.about) {
+            (None, None) => refused(
+                "about",
+                "must be given for a torque on a body with three axes: `roll`, `pitch` or `yaw`; or give a `force`",
+            ),
+            (None, Some(_)) if self.point.is_some() => {
+                refused("point", "is where a `force` acts: a torque acts at the body's first point")
+            }
+            (Some(_), Some(_)) => refused("about", "is of a torque: a `force` has a direction of its own"),
+            (Some(_), None) if self.torque.get() != 0.0 || noisy => refused(
+                "force",
+                "stands alone: give a `torque`, or `noise`, as a `[[disturbance]]` of its own",
+            ),
+            _ => None,
+        }
     }
 
     /// Whether it acts at an instant.
@@ -48,6 +100,9 @@ impl Disturbance {
 #[derive(Clone, Debug)]
 pub struct Disturbing {
     what: Disturbance,
+    push: Option<Push>,
+    /// Of pulses, when the last began, whether it lasts, and when that changes.
+    beat: Option<(Instant, bool, Instant)>,
     draws: Stream,
     /// The draw that is held (N m), and when the next is due.
     drawn: f64,
@@ -55,24 +110,43 @@ pub struct Disturbing {
 }
 
 impl Disturbing {
-    /// A disturbance before its start, with its own stream of draws.
-    pub fn new(disturbance: &Disturbance, draws: Stream) -> Self {
+    /// A disturbance before its start, with its own stream of draws, on a body if that has three axes.
+    pub fn new(disturbance: &Disturbance, body: Option<&Spatial>, draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
-        Self { next: noisy.then(|| at(disturbance.from)), what: disturbance.clone(), draws, drawn: 0.0 }
+        Self {
+            next: noisy.then(|| at(disturbance.from)),
+            beat: disturbance.pulse.map(|_| (at(disturbance.from), false, at(disturbance.from))),
+            push: body.and_then(|body| disturbance.push(body)),
+            what: disturbance.clone(),
+            draws,
+            drawn: 0.0,
+        }
     }
 
-    /// The axis about which it acts: the first of a body with one angle.
-    pub fn axis(&self) -> usize {
-        self.what.about.map_or(0, Axis::index)
-    }
-
-    /// When the next draw is due.
+    /// When the next draw is due, or a pulse begins or ends.
     pub fn due(&self) -> Option<Instant> {
-        self.next
+        let ends = |next: &Instant| self.what.to.is_none_or(|to| *next < at(to));
+        let beat = self.beat.map(|(_, _, next)| next).filter(ends);
+        [self.next, beat].into_iter().flatten().min()
     }
 
-    /// Draws the noise anew if that is due.
+    /// Whether it acts at an instant.
+    fn acts(&self, now: Instant) -> bool {
+        self.what.acts(now) && self.beat.is_none_or(|(_, on, _)| on)
+    }
+
+    /// Draws the noise anew, begins and ends pulses, if that is due.
     pub fn serve(&mut self, now: Instant) {
+        if let (Some(pulses), Some((began, on, next))) = (self.what.pulse, &mut self.beat) {
+            while *next <= now {
+                *on = !*on;
+                if *on {
+                    (*began, *next) = (*next, *next + pulses.on);
+                } else {
+                    *next = *began + pulses.period;
+                }
+            }
+        }
         let Some(period) = self.what.period else { return };
         while let Some(next) = self.next.filter(|next| *next <= now) {
             // Of the power of white noise, a draw that is held has what falls into its period.
@@ -82,9 +156,26 @@ impl Disturbing {
         }
     }
 
-    /// The torque at an instant (N m), right-continuous.
-    pub fn torque(&self, now: Instant) -> f64 {
-        if self.what.acts(now) { self.what.torque.get() + self.drawn } else { 0.0 }
+    /// The torque on the hub about an axis at an instant (N m), right-continuous.
+    pub fn on_hub(&self, now: Instant, axis: usize) -> f64 {
+        let about = self.what.about.map_or(0, Axis::index);
+        let acts = self.push.is_none() && about == axis && self.acts(now);
+        if acts { self.what.torque.get() + self.drawn } else { 0.0 }
+    }
+
+    /// The torque about an axis at an instant (N m), of a force that about the centre of mass.
+    pub fn torque(&self, now: Instant, axis: usize) -> f64 {
+        match &self.push {
+            Some(push) if self.acts(now) => push.torque[axis],
+            _ => self.on_hub(now, axis),
+        }
+    }
+
+    /// Adds what a force does from now on.
+    pub fn push(&self, now: Instant, onto: &mut Wrench) {
+        if let Some(push) = self.push.as_ref().filter(|_| self.acts(now)) {
+            onto.push(push);
+        }
     }
 }
 

@@ -24,14 +24,14 @@ pub struct Statistics {
     pub quantiles: [f64; 5],
 }
 
-/// The statistics of every metric that is a number, over runs of one scenario. A goal counts as 1 where it is met and
-/// as 0 where it is missed: its mean is the fraction of runs that meet it.
+/// The statistics of every metric that is a number, over runs of one scenario. A goal or a requirement counts as 1 where it is
+/// met and as 0 where it is missed: its mean is the fraction of runs that meet it.
 pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
     let Some(first) = runs.first() else { return Vec::new() };
     let numeric = first.0.iter().enumerate().filter_map(|(index, (meaning, value))| {
         let counts = match value {
             Value::Count(_) | Value::Number(_) => true,
-            Value::Word(_) => meaning.name == goal::NAME,
+            Value::Word(_) => goal::NAMES.contains(&meaning.name),
             Value::Numbers(_) | Value::Quantities(_) => false,
         };
         counts.then_some((index, *meaning))

@@ -1,4 +1,4 @@
-//! Figures of a spatial body: `pointing`, `rates`, `energy`, `jets`, and of its adaptive observers `tracking` and `damping`,
+//! Figures of a spatial body: `pointing`, `rates`, `energy`, `position`, `jets`, and of its adaptive observers `tracking` and `damping`,
 //! from its run repeated.
 
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    AttitudeEstimate, ChannelState, Cycle, Log, Magnetorquers, Orbit, Record, RecordError, Sample,
+    AttitudeEstimate, ChannelState, Cycle, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample,
     SpatialMotion, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
@@ -32,6 +32,8 @@ pub struct Cycles {
     pub orbit: Vec<(f64, Orbit)>,
     /// Magnetic moments, at each period of the log.
     pub magnetorquers: Vec<(f64, Magnetorquers)>,
+    /// Where it is, at the same times.
+    position: Vec<(f64, Position)>,
 }
 
 impl Cycles {
@@ -70,11 +72,12 @@ impl Record for Cycles {
             Sample::Cycle(cycle) => self.all.push((now.seconds(), cycle.clone())),
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
-            Sample::SpatialMotion(SpatialMotion { wheels, orbit, magnetorquers, .. }) => {
+            Sample::SpatialMotion(SpatialMotion { wheels, orbit, magnetorquers, position, .. }) => {
                 let t = now.seconds();
                 self.wheels.extend(wheels.clone().map(|wheels| (t, wheels)));
                 self.orbit.extend(orbit.clone().map(|orbit| (t, orbit)));
                 self.magnetorquers.extend(magnetorquers.clone().map(|moments| (t, moments)));
+                self.position.extend(position.iter().map(|position| (t, position.clone())));
             }
             _ => {}
         }
@@ -120,7 +123,29 @@ pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, "rates"), panels: panels(story, "rad/s", lines), panel_height: 160 }
 }
 
-/// Energy of the elastic modes, and the propellant.
+/// Where the first point is, and its velocity.
+pub fn position(story: &Story, cycles: &Cycles) -> Figure {
+    let panel = |x: Axis, name: &str, unit: &'static str, of: [fn(&Position) -> f64; 3]| {
+        let line = |(axis, colour): (usize, _)| {
+            let points = cycles.position.iter().map(|(time, position)| (*time, of[axis](position))).collect();
+            Layer::new(["x", "y", "z"][axis], colour, Shape::Line(1.2), points)
+        };
+        let layers: Vec<Layer> =
+            [colour::BLUE, colour::ORANGE, colour::GREEN].into_iter().enumerate().map(line).collect();
+        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        Panel { x, y: Axis::around(name, unit, values.collect::<Vec<_>>()), layers, bar: None }
+    };
+    let x = time(0.0..story.end);
+    let places: [fn(&Position) -> f64; 3] = [|at| at.x_m, |at| at.y_m, |at| at.z_m];
+    let rates: [fn(&Position) -> f64; 3] = [|at| at.x_m_s, |at| at.y_m_s, |at| at.z_m_s];
+    Figure {
+        title: title(story, "position in inertial axes"),
+        panels: vec![panel(x.unnamed(), "position", "m", places), panel(x, "velocity", "m/s", rates)],
+        panel_height: 220,
+    }
+}
+
+/// Energy of the elastic modes, and of jets the propellant.
 pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     let elastic = cycles.over_time(|cycle| cycle.elastic_energy_j);
     let fuel = cycles.over_time(|cycle| cycle.jets.fuel_kg);
@@ -131,12 +156,18 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
         bar: None,
     };
     let x = time(0.0..story.end);
-    let mut energies = panel(x.unnamed(), "elastic energy", "J", elastic);
+    let fires = fuel.iter().any(|(_, used)| used.is_finite());
+    let below = if fires { x.unnamed() } else { x.clone() };
+    let mut energies = panel(below, "elastic energy", "J", elastic);
     "all modes".clone_into(&mut energies.layers[0].name);
     let visible = cycles.over_time(|cycle| cycle.visible_energy_j);
     energies.layers.push(Layer::new("modes that the gyro sees", colour::ORANGE, Shape::Line(1.2), visible));
-    let panels = vec![energies, panel(x, "propellant", "kg", fuel)];
-    Figure { title: title(story, "elastic energy and propellant"), panels, panel_height: 220 }
+    let mut panels = vec![energies];
+    if fires {
+        panels.push(panel(x, "propellant", "kg", fuel));
+    }
+    let what = if fires { "elastic energy and propellant" } else { "elastic energy" };
+    Figure { title: title(story, what), panels, panel_height: 220 }
 }
 
 /// For how long the jets fire in each cycle.

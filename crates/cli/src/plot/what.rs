@@ -35,6 +35,8 @@ pub enum What {
     Rates,
     /// Of a spatial body: energy of the elastic modes, and propellant
     Energy,
+    /// Of a spacecraft that jets or forces push: where its first point is, and its velocity
+    Position,
     /// Of a spatial body: for how long the jets fire
     Jets,
     /// Of a spatial body: natural frequencies as adaptive observers estimate them, and as they are
@@ -86,6 +88,7 @@ impl What {
             Self::Gain => !story.steps.is_empty(),
             Self::Modes => !story.scenario.model.modes.is_empty(),
             Self::Pointing | Self::Rates | Self::Energy => spatial,
+            Self::Position => story.scenario.study.moving.is_some(),
             Self::Jets => story.scenario.study.fires(),
             Self::Tracking => story.scenario.study.adaptive.is_some() && spatial,
             Self::Damping => {
@@ -120,6 +123,7 @@ impl What {
             Self::Pointing => spatial::pointing(story, cycles),
             Self::Rates => spatial::rates(story, cycles),
             Self::Energy => spatial::energy(story, cycles),
+            Self::Position => spatial::position(story, cycles),
             Self::Jets => spatial::jets(story, cycles),
             Self::Tracking => spatial::tracking(story, cycles),
             Self::Damping => spatial::damping(story, cycles),

@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::PulseWidth;
-use crate::attitude::{AXES, Vector, vector};
+use crate::attitude::{AXES, vector};
+use crate::body::Push;
 use crate::body::spatial::Spatial;
 use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Positive};
@@ -79,10 +80,8 @@ pub struct Pair {
 /// What a group does while it is on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// Torque about the centre of mass (N m).
-    pub torque: Vector,
-    /// Modal forces Q_i = sum f_i . F + phi_i . M (N/sqrt(kg)).
-    pub forces: Vec<f64>,
+    /// Its forces, all together.
+    pub push: Push,
     /// Propellant in a second (kg/s).
     pub flow: f64,
     /// Absolute acceleration about the group's own axis, m = |M_a|/J_aa (rad/s²).
@@ -133,8 +132,7 @@ impl Jets {
         names: &[String],
     ) -> Result<Group, Fault> {
         let key = format!("groups.{}.{sign}", AXES[axis]);
-        let mut torque = Vector::zeros();
-        let mut forces = vec![0.0; body.modes.len()];
+        let mut push = Push { forces: vec![0.0; body.modes.len()], ..Push::default() };
         let mut thrust = 0.0;
         for name in names {
             let Some(thruster) = self.thrusters.iter().find(|thruster| thruster.name == *name) else {
@@ -143,13 +141,10 @@ impl Jets {
                 return Err(Fault::new(key, why));
             };
             let force = vector(&thruster.direction).normalize() * thruster.thrust.get();
-            let moment = vector(&thruster.offset).cross(&force);
-            torque += body.point(&thruster.point).unwrap_or_default().cross(&force) + moment;
+            push.add(body, &thruster.point, &vector(&thruster.offset), &force);
             thrust += thruster.thrust.get();
-            for (push, (translation, rotation)) in forces.iter_mut().zip(body.shapes(&thruster.point)) {
-                *push += translation.dot(&force) + rotation.dot(&moment);
-            }
         }
+        let torque = push.torque;
         if sense * torque[axis] <= 0.0 {
             let (turns, [x, y, z]) = (AXES[axis], [torque.x, torque.y, torque.z]);
             let why = format!("must give a torque to {sign} {turns}, got [{x}, {y}, {z}] N m");
@@ -157,7 +152,7 @@ impl Jets {
         }
         let acceleration = torque[axis].abs() / body.tensor()[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
-        Ok(Group { torque, forces, flow, acceleration })
+        Ok(Group { push, flow, acceleration })
     }
 
     /// What becomes of a wanted pulse.

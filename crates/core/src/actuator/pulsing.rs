@@ -79,7 +79,7 @@ impl Pulsing {
         let (wanted, sign) = match self.demands[axis] {
             Demand::Change(change) => (change.abs() / self.group(axis, change).acceleration, change),
             Demand::Torque(torque) => {
-                let most = self.group(axis, torque).torque[axis].abs();
+                let most = self.group(axis, torque).push.torque[axis].abs();
                 (torque.abs() / most * period, torque)
             }
             Demand::Moment(_) => (0.0, 0.0),
@@ -102,7 +102,8 @@ impl Pulsing {
 
     /// What the pulses of this cycle turn the body by, all together (N m s).
     pub fn impulse(&self) -> Vector {
-        let pulse = |axis: usize| self.group(axis, self.executed[axis]).torque * self.executed[axis].abs();
+        let pulse =
+            |axis: usize| self.group(axis, self.executed[axis]).push.torque * self.executed[axis].abs();
         pulse(0) + pulse(1) + pulse(2)
     }
 
@@ -142,9 +143,7 @@ impl Actuate for Pulsing {
     fn exert(&self, _: Instant, onto: &mut Wrench) {
         for axis in (0..3).filter(|axis| self.ends[*axis].is_some()) {
             let group = self.group(axis, self.executed[axis]);
-            onto.torque += group.torque;
-            onto.forces.resize(group.forces.len(), 0.0);
-            onto.forces.iter_mut().zip(&group.forces).for_each(|(sum, force)| *sum += force);
+            onto.push(&group.push);
         }
     }
 
@@ -153,7 +152,7 @@ impl Actuate for Pulsing {
             Demand::Torque(torque) => torque,
             Demand::Change(change) => {
                 let group = self.group(axis, change);
-                change / group.acceleration * group.torque[axis].abs() / self.period.seconds()
+                change / group.acceleration * group.push.torque[axis].abs() / self.period.seconds()
             }
             Demand::Moment(_) => 0.0,
         }
@@ -161,7 +160,7 @@ impl Actuate for Pulsing {
 
     fn torque(&self, axis: usize) -> f64 {
         let burning = (0..3).filter(|axis| self.ends[*axis].is_some());
-        burning.map(|burning| self.group(burning, self.executed[burning]).torque[axis]).sum()
+        burning.map(|burning| self.group(burning, self.executed[burning]).push.torque[axis]).sum()
     }
 
     fn applied(&self, _: Instant, axis: usize, _: [f64; 2]) -> f64 {

@@ -3,6 +3,7 @@
 use std::sync::Arc as Shared;
 
 use super::mode::Flow;
+use super::spatial::Spatial;
 use crate::attitude::Vector;
 use crate::motion::turning::Rotor;
 use crate::numerics::phasor::Phasor;
@@ -31,10 +32,14 @@ pub struct Wrench {
     /// Torques about the axes at the hub (N m): on a body with one angle the first alone, rad/s² where the hub's motion is
     /// commanded; on one with three axes at the point that its actuators name.
     pub hub: [f64; 3],
-    /// Torque of jets about the centre of mass (N m).
+    /// Torque of jets and of forces at points, about the centre of mass (N m).
     pub torque: Vector,
-    /// Modal forces of jets (N/sqrt(kg)); none at all if no jet is on.
+    /// Modal forces of jets and of forces at points (N/sqrt(kg)); none at all if there are none.
     pub forces: Vec<f64>,
+    /// The sum of these forces, in the body's axes (N).
+    pub force: Vector,
+    /// What a unit of each mode adds to their torque, for it moves the places where they act (N/sqrt(kg)); as `forces`.
+    pub levers: Vec<Vector>,
     /// Rotors that store momentum, each with the torque on it.
     pub rotors: Vec<Rotor>,
     /// Magnetic moment of torquers, in the body's axes (A m²).
@@ -46,9 +51,50 @@ pub struct Wrench {
 impl Wrench {
     /// Nothing acts any more; what was allocated stays so.
     pub fn clear(&mut self) {
-        let mut forces = std::mem::take(&mut self.forces);
+        let (mut forces, mut levers) = (std::mem::take(&mut self.forces), std::mem::take(&mut self.levers));
         forces.clear();
-        *self = Self { forces, ..Self::default() };
+        levers.clear();
+        *self = Self { forces, levers, ..Self::default() };
+    }
+
+    /// Adds a push.
+    pub fn push(&mut self, push: &Push) {
+        self.torque += push.torque;
+        self.force += push.force;
+        self.forces.resize(push.forces.len(), 0.0);
+        self.forces.iter_mut().zip(&push.forces).for_each(|(sum, force)| *sum += force);
+        self.levers.resize(push.levers.len(), Vector::zeros());
+        self.levers.iter_mut().zip(&push.levers).for_each(|(sum, lever)| *sum += lever);
+    }
+}
+
+/// What forces at points do to a body, in its axes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Push {
+    /// Torque about the centre of mass of the body as it is not bent (N m).
+    pub torque: Vector,
+    /// Modal forces (N/sqrt(kg)).
+    pub forces: Vec<f64>,
+    /// The forces together (N).
+    pub force: Vector,
+    /// What a unit of each mode adds to the torque (N/sqrt(kg)).
+    pub levers: Vec<Vector>,
+}
+
+impl Push {
+    /// Adds a force (N) at an offset (m) from a point.
+    pub fn add(&mut self, body: &Spatial, point: &str, offset: &Vector, force: &Vector) {
+        let moment = offset.cross(force);
+        self.torque += body.point(point).unwrap_or_default().cross(force) + moment;
+        self.force += force;
+        let shapes = body.shapes(point);
+        self.forces.resize(shapes.len(), 0.0);
+        for (sum, (translation, rotation)) in self.forces.iter_mut().zip(shapes) {
+            *sum += translation.dot(force) + rotation.dot(&moment);
+        }
+        let shifts = body.shifts(point, offset);
+        self.levers.resize(shifts.len(), Vector::zeros());
+        self.levers.iter_mut().zip(shifts).for_each(|(sum, shift)| *sum += shift.cross(force));
     }
 }
 
@@ -61,13 +107,13 @@ pub struct Forced {
 
 /// The forced part of a motion: angle (rad), rate (rad/s), acceleration (rad/s²).
 #[derive(Copy, Clone, Debug)]
-pub struct Push {
+pub struct Response {
     pub angle: f64,
     pub rate: f64,
     pub acceleration: f64,
 }
 
-impl Push {
+impl Response {
     /// The same for so many times the command.
     pub fn times(self, factor: f64) -> Self {
         let Self { angle, rate, acceleration } = self;
@@ -97,9 +143,9 @@ impl Forced {
     }
 
     /// What it adds to the rigid motion of a body of unit inertia within `h` seconds.
-    pub fn rigid(&self, h: f64) -> Push {
+    pub fn rigid(&self, h: f64) -> Response {
         let to = self.since + h;
-        Push {
+        Response {
             angle: self.waveform.travel(self.since, to),
             rate: self.waveform.impulse(self.since, to),
             acceleration: self.waveform.at(to),
@@ -107,13 +153,13 @@ impl Forced {
     }
 
     /// What it adds to a mode of a body of unit inertia within `h` seconds.
-    pub fn mode(&self, flow: &Flow, h: f64) -> Push {
+    pub fn mode(&self, flow: &Flow, h: f64) -> Response {
         // A scenario with a manoeuvre has no mode without a pole.
-        let Some(pole) = flow.pole() else { return Push { angle: 0.0, rate: 0.0, acceleration: 0.0 } };
+        let Some(pole) = flow.pole() else { return Response { angle: 0.0, rate: 0.0, acceleration: 0.0 } };
         let to = self.since + h;
         let driven: Phasor = self.waveform.response(pole, self.since, to) * (flow.gain / pole.im);
         let (angle, rate) = (driven.im, (pole * driven).im);
         let [_, back] = flow.velocity(angle, rate / flow.frequency);
-        Push { angle, rate, acceleration: flow.gain * self.waveform.at(to) + flow.frequency * back }
+        Response { angle, rate, acceleration: flow.gain * self.waveform.at(to) + flow.frequency * back }
     }
 }

@@ -33,7 +33,7 @@ pub use craft::Craft;
 pub use damping::Damping;
 pub use drift::{Drift, Point, Profile, Ramp, SERIES, Sinusoid};
 pub use drifting::Drifting;
-pub use forced::{Forced, Input, Wrench};
+pub use forced::{Forced, Input, Push, Wrench};
 pub use matrices::{Matrices, Sum};
 pub(crate) use mode::Flow;
 pub use mode::Mode;

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::forced::{Forced, Input, Push};
+use super::forced::{Forced, Input, Response};
 use super::mode::Flow;
 use super::{Drive, Planar};
 use crate::guard::Guard;
@@ -113,7 +113,7 @@ impl Segment {
     /// no waveform, stays small.
     #[inline(never)]
     fn add_forced(&self, forced: &Forced, h: f64, state: &mut State, sensed: &mut Sensed) {
-        let mut show = |push: Push| {
+        let mut show = |push: Response| {
             sensed.angle += push.angle;
             sensed.rate += push.rate;
             sensed.acceleration += push.acceleration;

@@ -8,11 +8,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::filter::Filter;
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule};
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule};
+use crate::attitude::{asymmetry, tensor};
 use crate::belief::Belief;
 use crate::document::Fault;
 use crate::numerics::biquad::Biquad;
-use crate::quantity::Positive;
+use crate::quantity::{Finite, Positive};
 use crate::time::{Instant, Span};
 
 /// The attitude law.
@@ -26,6 +27,12 @@ pub struct AttitudeLaw {
     /// Damping ratio zeta of the error.
     #[serde(default = "damping")]
     pub damping: Positive,
+    /// The inertia tensor that the law takes a body with three axes to have (kg m²), row by row; left out, that which it has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inertia: Option<[[Finite; 3]; 3]>,
+    /// How a rotation counts as an error, on a body with three axes.
+    #[serde(default, skip_serializing_if = "Measure::is_default")]
+    pub error: Measure,
     /// The integral of the error; left out, there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integral: Option<Integral>,
@@ -61,6 +68,15 @@ impl AttitudeLaw {
 
     /// What single values cannot show to be wrong: a key within the law, and why.
     pub fn inconsistency(&self) -> Option<Fault> {
+        if let Some(inertia) = &self.inertia {
+            let inertia = tensor(inertia);
+            if let Some(why) = asymmetry(&inertia) {
+                return Some(Fault::new("inertia", why));
+            }
+            if inertia.cholesky().is_none() {
+                return Some(Fault::new("inertia", "must be positive definite"));
+            }
+        }
         let wrong = |(index, filter): (usize, &Filter)| {
             let fault = filter.sampled(self.period.seconds()).err()?;
             Some(fault.within(&format!("filters[{index}]")))
@@ -145,7 +161,7 @@ impl AtSamples {
 impl Control for AtSamples {
     fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
         let (angle, rate) = goal.at(now);
-        let error = belief.angle - angle;
+        let error = self.spec.error.of(belief) - angle;
         let (feedback, limited) = self.feedback(error, belief.rate - rate);
         let acceleration = feedback + goal.acceleration;
         let [above, below] = self.accelerations;

@@ -8,6 +8,7 @@ mod distribution;
 mod filter;
 mod frame;
 mod itinerary;
+mod measure;
 mod open;
 mod pd;
 mod per_axis;
@@ -30,6 +31,7 @@ pub use crate::belief::Reads;
 use crate::belief::{Belief, Damped};
 use crate::guard::Guard;
 use crate::own::Own;
+use crate::quantity::Finite;
 use crate::time::{Instant, Span};
 
 pub use crate::record::Phase;
@@ -41,6 +43,7 @@ pub use distribution::Distribution;
 pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
 pub use frame::Frame;
 pub use itinerary::Itinerary;
+pub use measure::Measure;
 pub use open::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use per_axis::PerAxis;
@@ -188,6 +191,11 @@ impl Law {
     /// The number that an adaptation tunes unless it names another; NaN of a law without any.
     pub fn tuned(&self) -> f64 {
         self.tunable().first().map_or(f64::NAN, |(_, value)| *value)
+    }
+
+    /// The inertia tensor that it takes a body with three axes to have, row by row (kg m²), if it has one of its own.
+    pub fn inertia(&self) -> Option<&[[Finite; 3]; 3]> {
+        if let Self::Attitude(law) = self { law.inertia.as_ref() } else { None }
     }
 
     /// The kind, as a scenario names it.

@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule};
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule};
 use crate::belief::Belief;
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::{Instant, Span};
@@ -24,6 +24,9 @@ pub struct Pd {
     /// How the derivative is taken.
     #[serde(default)]
     pub differentiation: Differentiation,
+    /// How a rotation counts as an error, on a body with three axes.
+    #[serde(default, skip_serializing_if = "Measure::is_default")]
+    pub error: Measure,
     /// The extra loop over the dominant mode.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extra: Option<Extra>,
@@ -130,7 +133,7 @@ impl Control for Pd {
         }
         let (angle, rate) = goal.at(now);
         let gain = self.extra.as_ref().map_or(0.0, |extra| extra.gain(belief.dominant.frequency));
-        let error = belief.angle - angle + gain * belief.dominant.displacement;
+        let error = self.error.of(belief) - angle + gain * belief.dominant.displacement;
         let difference = error - self.last.unwrap_or(error);
         let derivative = match self.differentiation {
             Differentiation::Exact => belief.rate - rate + gain * belief.dominant.rate,

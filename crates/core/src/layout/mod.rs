@@ -122,6 +122,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
             add(true, topic, Full);
         }
         add(matches!(estimator, Some(Estimator::Adaptive(_))), "/tracking", Full);
+        add(scenario.study.moving.is_some(), "/position", Full);
         add(true, "/plumes", Scene);
         return topics;
     }

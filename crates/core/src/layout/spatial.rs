@@ -40,6 +40,10 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     if let Actuator::Wheels(_) = &scenario.actuator {
         motion.push(Panel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }
+    if scenario.study.moving.is_some() {
+        let along = ["x", "y", "z"].map(|axis| line(format!("/position.{axis}_m"), axis));
+        motion.push(Panel::plot("position", "Position (m)", along.into()));
+    }
     let mut elastic = vec![Panel::plot("energy", "Elastic energy (J)", energies(scenario, body))];
     if let Some(plan) = &scenario.study.adaptive {
         let tracked: Vec<usize> = plan.axes.iter().map(|design| design.modes.len()).collect();
@@ -143,7 +147,7 @@ fn rates(fields: &[(&str, &str)]) -> Vec<Line> {
 /// The energy of all modes, and of those that the jets excite most.
 fn energies(scenario: &Scenario, body: &Spatial) -> Vec<Line> {
     let groups = || scenario.study.groups.iter().flatten().flatten();
-    let push = |mode: usize| groups().map(|group| group.forces[mode].abs()).fold(0.0, f64::max);
+    let push = |mode: usize| groups().map(|group| group.push.forces[mode].abs()).fold(0.0, f64::max);
     let excited = |mode: &usize| push(*mode) / body.modes[*mode].frequency.get();
     let mut modes: Vec<usize> = (0..body.modes.len()).collect();
     modes.sort_by(|a, b| excited(b).total_cmp(&excited(a)));

@@ -1,16 +1,27 @@
 //! Whether a run meets its goal: inside a band about it, without a break, up to the end.
 
-use super::{GOAL, GOAL_BAND, TIME_OUTSIDE, Told, Value};
+use super::{GOAL, GOAL_BAND, REQUIREMENT, TIME_OUTSIDE, Told, Value};
 use crate::numerics::polynomial::Polynomial;
 
 /// The goal is met if the run ends with so much of its time inside the band.
 const LAST: f64 = 0.1;
-/// The name of the verdict among the metrics.
-pub const NAME: &str = GOAL.name;
+/// The names of verdicts among the metrics.
+pub const NAMES: [&str; 2] = [GOAL.name, REQUIREMENT.name];
 /// What it says.
 const MET: &str = "met";
 const MISSED: &str = "missed";
 const NONE: &str = "none";
+
+/// Whether a value is at most another: met or missed, none without a value.
+pub fn within(value: f64, most: f64) -> &'static str {
+    if value.is_nan() {
+        NONE
+    } else if value <= most {
+        MET
+    } else {
+        MISSED
+    }
+}
 
 /// Gathers the time outside a band about the goal.
 #[derive(Copy, Clone, Debug)]

@@ -136,6 +136,10 @@ metrics! {
         "Root mean square of the elastic part of the rates at the gyro, as a vector of three axes, over the cycles of the last 200 s";
     POINTING_END = "pointing_error_end_rad", "rad",
         "Length of the vector of angles beyond the target at the last cycle";
+    POINTING_RMS = "pointing_rms_rad", "rad",
+        "Root mean square of the length of that vector over the law's cycles in reference.pointing.window";
+    REQUIREMENT = "requirement", "",
+        "Whether pointing_rms_rad is at most reference.pointing.rms: met or missed, none without cycles in the window";
     FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
         "Natural frequency of each mode that an adaptive observer tracks, at the last cycle: about x, y and z, by frequency";
     FREQUENCY_ERRORS = "frequency_estimate_errors", "",

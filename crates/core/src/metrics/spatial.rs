@@ -1,13 +1,13 @@
 //! What a run of a spatial body comes to: propellant, firings, elastic energy, pointing.
 
-use super::goal::Verdict;
+use super::goal::{self, Verdict};
 use super::{
     BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, MOMENTUM_END,
-    MOMENTUM_PEAK, POINTING_END, RATE_END, Told, VISIBLE_END, VISIBLE_PEAK, Value,
+    MOMENTUM_PEAK, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, Told, VISIBLE_END, VISIBLE_PEAK, Value,
 };
 use crate::quantity::Positive;
 use crate::record::Cycle;
-use crate::scenario::Scenario;
+use crate::scenario::{Pointing, Scenario};
 use crate::time::Instant;
 
 /// The elastic rates are judged over so much of the run's end (s).
@@ -37,6 +37,9 @@ pub struct Spatial {
     /// Rigid rate last (rad/s); momentum of the wheels at its largest, and last (N m s).
     rate: f64,
     stored: [f64; 2],
+    /// What is asked of the pointing, the sum of the squared errors that count (rad²), and how many they are.
+    asked: Option<Pointing>,
+    pointing: (f64, u64),
     verdict: Verdict,
     /// How near to the target each axis shall be (rad), and since when one is not (s).
     bands: [f64; 3],
@@ -72,6 +75,8 @@ impl Spatial {
             ],
             rate: f64::NAN,
             stored: [0.0, f64::NAN],
+            asked: scenario.reference.pointing.clone(),
+            pointing: (0.0, 0),
         }
     }
 
@@ -100,6 +105,10 @@ impl Spatial {
         self.rate = libm::sqrt(norm(cycle.rigid_rate_rad_s));
         let stored = libm::sqrt(norm(cycle.stored_nm_s));
         self.stored = [self.stored[0].max(stored), stored];
+        if self.asked.as_ref().is_some_and(|asked| asked.counts(t)) {
+            self.pointing.0 += norm(cycle.error_rad);
+            self.pointing.1 += 1;
+        }
         if let Some(since) = self.outside.take() {
             self.verdict.outside(since, t);
         }
@@ -134,6 +143,19 @@ impl Spatial {
         let stored =
             [(&MOMENTUM_PEAK, Value::Number(self.stored[0])), (&MOMENTUM_END, Value::Number(self.stored[1]))];
         let stored = stored.into_iter().filter(|_| unload);
-        jets.chain(metrics).chain(rate).chain(stored).chain(self.verdict.finish(self.end)).collect()
+        let mut pointing: Vec<Told> = Vec::new();
+        if let Some(asked) = &self.asked {
+            // 0/0 of no cycles: no number.
+            let rms = libm::sqrt(self.pointing.0 / self.pointing.1 as f64);
+            pointing.push((&POINTING_RMS, Value::Number(rms)));
+            let met = asked.rms.map(|most| goal::within(rms, most.get()));
+            pointing.extend(met.map(|word| (&REQUIREMENT, Value::Word(word))));
+        }
+        jets.chain(metrics)
+            .chain(rate)
+            .chain(stored)
+            .chain(pointing)
+            .chain(self.verdict.finish(self.end))
+            .collect()
     }
 }

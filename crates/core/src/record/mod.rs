@@ -39,7 +39,7 @@ pub use topics::{
     Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, ChannelState, Command, Energy,
     Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
     MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion,
-    OutputName, Outputs, Params, Pointing, Rate, Rates, Residual, Summary, TOPICS, Torque, Torques,
+    OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Summary, TOPICS, Torque, Torques,
     TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
@@ -334,6 +334,9 @@ trait TakeRow {
                 self.take(now, &motion.rates)?;
                 self.take(now, &motion.vibrations)?;
                 self.take(now, &motion.energy)?;
+                if let Some(position) = &motion.position {
+                    self.take(now, position)?;
+                }
                 if let Some(torques) = &motion.torques {
                     self.take(now, torques)?;
                 }

@@ -1,6 +1,6 @@
 //! What is reported of a body with three axes.
 
-use super::{Energy, Jets, Magnetorquers, Orbit, Pointing, Rates, Torques, Vibrations, Wheels};
+use super::{Energy, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques, Vibrations, Wheels};
 
 /// A cycle of a spatial loop, after its law has decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +34,8 @@ pub struct SpatialMotion {
     pub vibrations: Vibrations,
     /// Energies.
     pub energy: Energy,
+    /// Where it is, if jets or forces push it and its mass is known.
+    pub position: Option<Position>,
     /// Torques of actuators that are no jets.
     pub torques: Option<Torques>,
     /// Wheels about axes of their own.

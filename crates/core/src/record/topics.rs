@@ -382,6 +382,21 @@ rows! {
         /// Absolute value of the angular momentum (N m s).
         momentum_nm_s: f64,
     }
+    /// Where the first point of a spacecraft is that jets or forces push, in inertial axes from where it was at the start.
+    Position = "/position" {
+        /// Along x (m).
+        x_m: f64,
+        /// Along y (m).
+        y_m: f64,
+        /// Along z (m).
+        z_m: f64,
+        /// Its velocity along x (m/s).
+        x_m_s: f64,
+        /// Its velocity along y (m/s).
+        y_m_s: f64,
+        /// Its velocity along z (m/s).
+        z_m_s: f64,
+    }
     /// A cycle in which jets fire: from its start on for these times, with the sign of the rate that they push to.
     Jets = "/jets" {
         /// About x (s).

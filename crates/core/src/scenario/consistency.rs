@@ -6,7 +6,7 @@ use crate::actuator::{Actuator, Wheel};
 use crate::attitude::vector;
 use crate::body::craft::Limit;
 use crate::body::{Drift, Drive, Planar, Profile};
-use crate::disturbance::Disturbance;
+use crate::disturbance::{Disturbance, Pulses};
 use crate::document::Fault;
 use crate::document::key;
 use crate::estimator::Estimator;
@@ -40,6 +40,11 @@ impl Scenario {
         }
         if let Some(fault) = self.log.scene.inconsistency() {
             return Some(fault.within("log.scene"));
+        }
+        if let Some(pointing) = &self.reference.pointing
+            && let Some(fault) = pointing.fault(self.axis_count())
+        {
+            return Some(fault.within("reference.pointing"));
         }
         // The parts of a spatial loop were found to fit each other when it was put together.
         let parts =
@@ -252,6 +257,13 @@ impl Scenario {
         if let Some(index) = self.disturbance.iter().position(heldless) {
             let why = "must be given: how long (s) each draw of the noise is held".to_owned();
             return at(&format!("disturbance[{index}].period"), why);
+        }
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            if let Some(Pulses { period, on }) = disturbance.pulse.filter(|pulse| pulse.on >= pulse.period) {
+                let (period, on) = (period.seconds(), on.seconds());
+                let why = format!("must be shorter than the period of {period} s, got {on}");
+                return at(&format!("disturbance[{index}].pulse.on"), why);
+            }
         }
         let unordered = |outage: Outage| outage.to.is_some_and(|to| outage.from >= to);
         for (number, sensor) in self.sensor.iter().enumerate() {

@@ -231,6 +231,13 @@ impl Scenario {
         }
         for (index, disturbance) in self.disturbance.iter().enumerate() {
             let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
+            if let Some(pulse) = disturbance.pulse {
+                each(
+                    format!("disturbance[{index}].pulse.period"),
+                    until - disturbance.from.get(),
+                    pulse.period,
+                );
+            }
             if let Some(period) = disturbance.period.filter(|_| disturbance.noise > NonNegative::default()) {
                 each(format!("disturbance[{index}].period"), until - disturbance.from.get(), period);
             }

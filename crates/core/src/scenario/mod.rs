@@ -40,7 +40,7 @@ use epoch::nanoseconds_since_1970;
 
 pub use cost::{Cost, MOST_RUNS};
 pub use log::{Log, SceneSpec};
-pub use reference::Reference;
+pub use reference::{Pointing, Reference};
 pub use study::Study;
 
 /// More modes than these are not taken apart into the poles of their coupled motion.

@@ -2,10 +2,11 @@
 
 use super::{Scenario, Study};
 use crate::actuator::Actuator;
+use crate::disturbance::Disturbance;
 use crate::document::Fault;
 use crate::environment::Sky;
 use crate::estimator::Estimator;
-use crate::law::{Itinerary, Law, Reads, Target};
+use crate::law::{Itinerary, Law, Measure, Reads, Target};
 use crate::sensor::Sensor;
 
 impl Scenario {
@@ -96,6 +97,12 @@ impl Scenario {
                     "must be one number for a body with one angle, got one for each of three axes",
                 );
             }
+            let forced =
+                |disturbance: &Disturbance| disturbance.force.is_some() || disturbance.point.is_some();
+            if let Some(index) = self.disturbance.iter().position(forced) {
+                let why = "acts on a body with three axes: one with one angle feels a `torque`";
+                return refused(&format!("disturbance[{index}].force"), why);
+            }
             let about = self.disturbance.iter().position(|disturbance| disturbance.about.is_some())?;
             return refused(&format!("disturbance[{about}].about"), "names an axis of a body with three");
         }
@@ -108,9 +115,10 @@ impl Scenario {
         if self.drift.is_some() {
             return refused("drift", "is for bodies with one angle: the modes of three axes keep theirs");
         }
-        if let Some(index) = self.disturbance.iter().position(|disturbance| disturbance.about.is_none()) {
-            let why = "must be given for a body with three axes: `roll`, `pitch` or `yaw`";
-            return refused(&format!("disturbance[{index}].about"), why);
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            if let Some(fault) = disturbance.three_axes_fault() {
+                return Some(fault.within(&format!("disturbance[{index}]")));
+            }
         }
         if self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) {
             let why = "follows the modes of one angle: the modes of three axes are in the log";
@@ -240,6 +248,22 @@ impl Scenario {
                     }
                 }
                 Law::Pd(_) | Law::Open(_) | Law::Own(_) => {}
+            }
+            if let Law::Attitude(law) = law
+                && law.inertia.is_some()
+                && (self.axis_count() == 1 || matches!(self.law, Law::PerAxis(_)))
+            {
+                let why = "is the tensor of three axes that one law turns: a `[law.attitude]` for all of them has it";
+                return at("inertia", why.to_owned());
+            }
+            let measure = match law {
+                Law::Pd(law) => law.error,
+                Law::Attitude(law) => law.error,
+                _ => Measure::default(),
+            };
+            if self.axis_count() == 1 && measure != Measure::default() {
+                let why = "is of rotations about three axes: one angle counts as it is";
+                return at("error", why.to_owned());
             }
         }
         None

@@ -6,7 +6,8 @@ use super::Scenario;
 use crate::actuator::{
     Actuate, Actuator, Allocation, Group, Opposes, PulseWidth, Pulsing, Setting, Torquers,
 };
-use crate::attitude::{Vector, beyond};
+use crate::attitude::{Vector, beyond, tensor};
+use crate::body::craft::Moving;
 use crate::body::craft::Rotor;
 use crate::body::{Drive, Mode, Planar, Spatial};
 use crate::document::Fault;
@@ -36,6 +37,8 @@ pub struct Study {
     pub sensed_at: Vec<String>,
     /// The point of a body with three axes at which torques act.
     pub acts_at: String,
+    /// What moves a spacecraft that jets or forces push.
+    pub moving: Option<Moving>,
     /// What is around a body with three axes.
     pub around: Option<Around>,
     /// Attitudes to turn to, and the way to them.
@@ -133,6 +136,12 @@ impl Study {
             self.wheels = Some(allocation);
         }
         self.around = surroundings(scenario, body)?;
+        for (index, disturbance) in scenario.disturbance.iter().enumerate() {
+            named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
+        }
+        let pushed = self.fires() || scenario.disturbance.iter().any(|of| of.force.is_some());
+        let craft = scenario.body.craft().filter(|_| pushed);
+        self.moving = craft.map(|craft| Moving::new(body, craft.mass));
         let measured = self.measured(body);
         let angles = beyond(&self.way.target(Instant::START), &body.attitude.get());
         for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.seen).enumerate() {
@@ -164,7 +173,7 @@ impl Study {
         let input = |axis: usize| {
             let (forces, torque, acceleration) = if let Some(groups) = &self.groups {
                 let group = &groups[axis][0];
-                (group.forces.clone(), group.torque, group.acceleration)
+                (group.push.forces.clone(), group.push.torque, group.acceleration)
             } else {
                 let forces = hub.iter().map(|rotation| rotation[axis]).collect();
                 let torque = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
@@ -290,7 +299,9 @@ impl Study {
     pub fn distribution(&self, scenario: &Scenario) -> Distribution {
         match scenario.body.spatial() {
             None => Distribution::of_one_angle(scenario.model.commanded_inertia()),
-            Some(body) => Distribution::of_three_axes(body.tensor()),
+            Some(body) => {
+                Distribution::of_three_axes(scenario.law.inertia().map_or_else(|| body.tensor(), tensor))
+            }
         }
     }
 

@@ -6,6 +6,7 @@ use crate::actuator::Actuator;
 use crate::attitude::turned;
 use crate::body::spatial::SpatialMode;
 use crate::body::{Mode, Spatial};
+use crate::disturbance::Disturbance;
 use crate::law::{Commands, Law};
 use crate::quantity::{Finite, Positive};
 use crate::scenario::Scenario;
@@ -133,7 +134,10 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     let most = study.authorities[axis].accelerations[0] * study.axes[axis].inertia.get();
     let by_law = match scenario.law.about(axis) {
         Law::Relay(relay) => unit * relay.strong.get(),
-        Law::Pd(pd) => unit * pd.k_p.get() * spatial_angle(scenario, body),
+        Law::Pd(pd) => {
+            let limit = pd.limit.map_or(f64::INFINITY, Positive::get);
+            unit * limit.min(pd.k_p.get() * spatial_angle(scenario, body))
+        }
         Law::Attitude(law) => {
             let inertia = study.axes[axis].inertia.get();
             // A turn along a profile asks for its acceleration, and not for all of the angle at once.
@@ -155,18 +159,24 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     by_law.min(most)
 }
 
-/// The same of the modes of a body with three axes (m sqrt(kg)), under the jets or the torque of any axis.
+/// The same of the modes of a body with three axes (m sqrt(kg)), under the jets, the torque of any axis, or a force.
 pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let torques = [0, 1, 2].map(|axis| spatial_torque(scenario, body, axis));
     let hub = body.shapes(&scenario.study.acts_at);
+    // Pulses may come with the period of a mode, and add up.
+    let times = |of: &Disturbance| if of.pulse.is_some() { 2.0 } else { 1.0 };
+    let pushes: Vec<_> =
+        scenario.disturbance.iter().filter_map(|of| Some((of.push(body)?, times(of)))).collect();
     let mode = |(index, mode): (usize, &SpatialMode)| {
         let w = mode.frequency.get();
         let forces: Vec<f64> = match &scenario.study.groups {
-            Some(groups) => groups.iter().flatten().map(|group| group.forces[index]).collect(),
+            Some(groups) => groups.iter().flatten().map(|group| group.push.forces[index]).collect(),
             None => torques.iter().zip(&hub[index].1).map(|(torque, shape)| torque * shape).collect(),
         };
-        let unloading = scenario.study.unloading.iter().flatten().flatten().map(|group| group.forces[index]);
-        let force = forces.into_iter().chain(unloading).map(f64::abs).fold(0.0, f64::max);
+        let unloading =
+            scenario.study.unloading.iter().flatten().flatten().map(|group| group.push.forces[index]);
+        let pushed = pushes.iter().map(|(push, times)| push.forces[index] * times);
+        let force = forces.into_iter().chain(unloading).chain(pushed).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
         held.max(2.0 * force / (w * w))
     };

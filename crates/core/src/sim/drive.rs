@@ -41,7 +41,9 @@ impl Drive {
         let mut drive = Self {
             actuator: scenario.study.actuator(scenario),
             distribution: scenario.study.distribution(scenario),
-            disturbances: disturbances.map(|(index, of)| Disturbing::new(of, stream(index))).collect(),
+            disturbances: disturbances
+                .map(|(index, of)| Disturbing::new(of, scenario.body.spatial(), stream(index)))
+                .collect(),
             edges,
             due: None,
             wrench: Wrench::default(),
@@ -80,7 +82,10 @@ impl Drive {
         self.actuator.exert(now, &mut self.wrench);
         if !self.disturbances.is_empty() {
             for axis in 0..3 {
-                self.wrench.hub[axis] += self.disturbance(now, axis);
+                self.wrench.hub[axis] += self.sum(|disturbance| disturbance.on_hub(now, axis));
+            }
+            for disturbance in &self.disturbances {
+                disturbance.push(now, &mut self.wrench);
             }
         }
         &self.wrench
@@ -88,7 +93,10 @@ impl Drive {
 
     /// The disturbances about an axis (N m).
     pub fn disturbance(&self, now: Instant, axis: usize) -> f64 {
-        let about = self.disturbances.iter().filter(|disturbance| disturbance.axis() == axis);
-        about.map(|disturbance| disturbance.torque(now)).sum()
+        self.sum(|disturbance| disturbance.torque(now, axis))
+    }
+
+    fn sum(&self, of: impl Fn(&Disturbing) -> f64) -> f64 {
+        self.disturbances.iter().map(of).sum()
     }
 }

@@ -274,6 +274,12 @@ impl Simulation {
     /// Asks the laws that an event concerns; tells the cause.
     fn ask(&mut self, event: Event) -> Option<Cause> {
         let Self { reference, now, laws, beliefs, .. } = self;
+        if beliefs.len() > 1 {
+            let square: f64 = beliefs.iter().map(|belief| belief.angle * belief.angle).sum();
+            for belief in beliefs.iter_mut() {
+                belief.whole = libm::sqrt(square);
+            }
+        }
         let led = reference.led(*now, beliefs);
         laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
     }

@@ -312,6 +312,7 @@ impl Simulation {
             rates: Rates { axes: [0, 1, 2].map(axis).into() },
             vibrations: plant.vibrations(),
             energy: plant.energy(),
+            position: plant.position(),
             torques,
             wheels: (!wheels.is_empty()).then_some(Wheels { wheels }),
             orbit: plant.orbit(),

@@ -22,7 +22,7 @@ use crate::{print, say};
 use table::{Metric, Runs};
 
 /// What is drawn of a campaign if no metric is named: the first of these that vary.
-const MAIN: [&str; 22] = [
+const MAIN: [&str; 23] = [
     "goal",
     "envelope_late_mean_rad",
     "gain_final",
@@ -38,6 +38,7 @@ const MAIN: [&str; 22] = [
     "peak_torque_nm",
     "angle_error_peak_rad",
     "spectral_radius",
+    "pointing_rms_rad",
     "pointing_error_end_rad",
     "elastic_rate_rms_rad_s",
     "fuel_kg",

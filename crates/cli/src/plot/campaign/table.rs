@@ -148,7 +148,7 @@ impl Rows {
             let known = scenario.as_ref().map(|(scenario, _)| scenario);
             if let Some(meaning) = metrics::meaning(header, known) {
                 // Words and lists are no numbers.
-                let goal = meaning.name == metrics::goal::NAME;
+                let goal = metrics::goal::NAMES.contains(&meaning.name);
                 if goal || texts.iter().zip(&values).all(|(text, value)| text.is_empty() || !value.is_nan()) {
                     all.push(Metric { meaning, texts, values });
                 }

@@ -23,7 +23,7 @@ fn badness(metric: &Metric, index: usize) -> Option<f64> {
     let neutral = ["gain_", "cycle_", "pushes_"].iter().any(|start| name.starts_with(start));
     let bad = match name {
         // A goal is 1 where it is met.
-        goal::NAME if value > 0.0 => f64::NAN,
+        _ if goal::NAMES.contains(&name) && value > 0.0 => f64::NAN,
         _ if neutral => f64::NAN,
         _ if MORE.contains(&name) => -value,
         _ if ONE.contains(&name) => value.ln().abs(),

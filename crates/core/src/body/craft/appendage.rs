@@ -92,7 +92,12 @@ impl Appendage {
 
     /// Participation of each mode in translation (sqrt(kg)) and in rotation about the root (sqrt(kg) m), in its own axes.
     pub fn participations(&self) -> Vec<(Vector, Vector)> {
-        self.modes.iter().map(|mode| (mode.translation(), rotation_of(&self.moments(mode)))).collect()
+        self.modes.iter().map(|mode| (self.translation(mode), rotation_of(&self.moments(mode)))).collect()
+    }
+
+    /// Participation of a mode in translation, in the axes of the appendage (sqrt(kg)).
+    pub(super) fn translation(&self, mode: &ClampedMode) -> Vector {
+        mode.translation(self.mass.get())
     }
 
     /// First moments of a mode about the root, in the axes of the appendage (sqrt(kg) m).
@@ -101,7 +106,7 @@ impl Appendage {
             return moments;
         }
         if self.is_point() {
-            return vector(&self.centre) * mode.translation().transpose();
+            return vector(&self.centre) * self.translation(mode).transpose();
         }
         let r = mode.rotation.as_ref().map_or_else(Vector::zeros, vector);
         match self.plate {

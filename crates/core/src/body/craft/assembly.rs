@@ -93,7 +93,7 @@ impl Craft {
             flexible: Flexible {
                 inertia: held.inertia,
                 modes: coupled(&parts, &free, &damping),
-                damping: damping.whole(),
+                damping: damping.whole(spacecraft.whole_damping),
             },
             mass: whole.mass,
             centre: whole.centre,
@@ -125,7 +125,7 @@ fn parts(appendages: &[Appendage], centre: &Vector) -> Vec<Part> {
         let (axes, from_centre) = (appendage.turned.matrix(), vector(&appendage.at) - centre);
         let mode = |mode| {
             let mode: &super::ClampedMode = mode;
-            let translation = axes * mode.translation();
+            let translation = axes * appendage.translation(mode);
             let own = axes * appendage.moments(mode) * axes.transpose();
             Part {
                 frequency: mode.frequency.get(),

@@ -130,6 +130,20 @@ fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), Fault> {
         let why = "must be left out: without `inertia` the appendage is a point mass, of which it follows";
         return Err(Fault::new("rotation", why));
     }
+    if let Some(along) = &mode.along {
+        if !appendage.is_point() {
+            let why =
+                "is of a point mass, all of which swings: an appendage with `inertia` has a `translation`";
+            return Err(Fault::new("along", why));
+        }
+        if vector(&mode.translation) != Vector::zeros() {
+            return Err(Fault::new("along", "stands in place of `translation`: give one of them"));
+        }
+        let length = vector(along).norm();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(Fault::new("along", format!("must be a direction, got one of length {length}")));
+        }
+    }
     let of_appendage = |name: &String| appendage.points.iter().any(|point| point.name == *name);
     if let Some(name) = mode.shapes.keys().find(|name| !of_appendage(name)) {
         let key = format!("shapes.{}", bare_or_quoted(name));

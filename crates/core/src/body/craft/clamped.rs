@@ -25,6 +25,9 @@ pub struct ClampedMode {
     /// Participation in translation, the integral of phi dm (sqrt(kg)).
     #[serde(default)]
     pub translation: [Finite; 3],
+    /// Of a point mass, in place of `translation`: the direction in which the whole of it swings, of any length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<[Finite; 3]>,
     /// Participation in rotation about the root, the integral of r x phi dm (sqrt(kg) m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<[Finite; 3]>,
@@ -43,9 +46,11 @@ pub struct ClampedMode {
 }
 
 impl ClampedMode {
-    /// Participation in translation (sqrt(kg)).
-    pub fn translation(&self) -> Vector {
-        vector(&self.translation)
+    /// Participation in translation (sqrt(kg)) of an appendage of this mass (kg).
+    pub fn translation(&self, mass: f64) -> Vector {
+        self.along
+            .as_ref()
+            .map_or_else(|| vector(&self.translation), |along| vector(along).normalize() * libm::sqrt(mass))
     }
 
     /// First moments, if they are given (sqrt(kg) m).
@@ -71,6 +76,7 @@ impl Row for ClampedMode {
             frequency,
             damping: NonNegative::default(),
             translation: <[Finite; 3]>::default(),
+            along: None,
             rotation: None,
             moments: None,
             displacement: Finite::default(),

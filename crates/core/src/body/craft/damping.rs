@@ -43,8 +43,8 @@ impl FreeDamping {
         Self { ratios: ratios.collect(), coupling, matrix }
     }
 
-    /// The whole matrix, if its diagonal does not say enough.
-    pub fn whole(&self) -> Option<DMatrix<f64>> {
-        (self.coupling > SMALL).then(|| self.matrix.clone())
+    /// The whole matrix, if its diagonal does not say enough, or it is asked for.
+    pub fn whole(&self, asked: bool) -> Option<DMatrix<f64>> {
+        (asked || self.coupling > SMALL).then(|| self.matrix.clone())
     }
 }

@@ -28,6 +28,9 @@ pub struct Spacecraft {
     /// vibrates.
     #[serde(default)]
     pub rate: [Finite; 3],
+    /// Whether the damping of the free modes is kept whole even where what is beside the diagonal of its matrix hardly counts.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub whole_damping: bool,
     /// Named points of the hub, at which jets push and gyros look. Left out, there is one at O, named `hub`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,

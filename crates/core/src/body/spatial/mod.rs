@@ -108,6 +108,17 @@ impl Spatial {
         self.modes.iter().map(of).collect()
     }
 
+    /// By how much a place at an offset (m) from a point moves for a unit of each mode, in axes of the hub, which turns as the first
+    /// point does (1/sqrt(kg)).
+    pub fn shifts(&self, point: &str, offset: &Vector) -> Vec<Vector> {
+        let first = self.points.first().map_or("", |point| &point.name);
+        let at = self.point(point).unwrap_or_default();
+        let shift = |((shift, rotation), (_, hub)): (&(Vector, Vector), &(Vector, Vector))| {
+            shift - hub.cross(&at) + (rotation - hub).cross(offset)
+        };
+        self.shapes(point).iter().zip(&self.shapes(first)).map(shift).collect()
+    }
+
     /// What single values cannot show to be wrong.
     ///
     /// # Errors

@@ -48,6 +48,10 @@ pub struct Acting {
     pub torque: Vector,
     /// Modal forces beside phi' times the torque, which the motion has of itself (N/sqrt(kg)); none at all if there are none.
     pub forces: Vec<f64>,
+    /// What a unit of each mode adds to the torque, of forces whose places it moves (N/sqrt(kg)); none at all if there are none.
+    pub levers: Vec<Vector>,
+    /// The acceleration of the centre of mass, in the hub's axes (m/s²).
+    pub push: Vector,
     /// The rotors. One that was not there before brings its momentum with it.
     pub rotors: Vec<Rotor>,
 }
@@ -99,7 +103,9 @@ impl Acting {
             responses,
             h,
             torque: self.torque,
+            push: (self.push != Vector::zeros()).then_some(self.push),
             forces: &self.forces,
+            levers: &self.levers,
             rotors: self.rotors(t),
             around: around.map(|(around, since)| (around, since + t)),
         }
@@ -130,6 +136,7 @@ impl Turning {
             attitude,
             momentum: Bend::new(bent).forward(&momentum),
             turned: Vector::zeros(),
+            moved: [Vector::zeros(); 2],
             lost: (Quaternion::default(), Vector::zeros(), Vector::zeros()),
             modes: moved.map(canonical).collect(),
         };
@@ -165,8 +172,9 @@ impl Turning {
         for rotor in acting.rotors.iter().skip(self.acting.rotors.len()) {
             self.here.momentum += Bend::new(bent).forward(&(rotor.axis * rotor.momentum));
         }
-        self.acting.torque = acting.torque;
+        (self.acting.torque, self.acting.push) = (acting.torque, acting.push);
         self.acting.forces.clone_from(&acting.forces);
+        self.acting.levers.clone_from(&acting.levers);
         self.acting.rotors.clone_from(&acting.rotors);
         self.departed.copy_from(&self.here);
         self.grid.copy_from(&self.here);

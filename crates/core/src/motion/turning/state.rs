@@ -15,7 +15,9 @@ pub(super) struct State {
     pub momentum: Vector,
     /// What the body turned by as if it were rigid: the integral of J^-1 Gt (rad).
     pub turned: Vector,
-    /// What rounding has left out of the three.
+    /// Where the centre of mass is, from where it was at the start (m), and how fast it moves (m/s), in inertial axes.
+    pub moved: [Vector; 2],
+    /// What rounding has left out of the three before.
     pub lost: (Quaternion<f64>, Vector, Vector),
     /// q and P/W of each mode (m sqrt(kg)), and what rounding has left out of both.
     pub modes: Vec<[f64; 4]>,
@@ -24,8 +26,9 @@ pub(super) struct State {
 impl State {
     /// Takes over another state, without allocation.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { attitude, momentum, turned, lost, modes } = self;
+        let Self { attitude, momentum, turned, moved, lost, modes } = self;
         (*attitude, *momentum, *turned, *lost) = (other.attitude, other.momentum, other.turned, other.lost);
+        *moved = other.moved;
         modes.copy_from_slice(&other.modes);
     }
 }
@@ -47,6 +50,8 @@ pub struct Seen {
     pub rotational: f64,
     /// The integral of the rigid rates since the start (rad).
     pub turned: Vector,
+    /// Where the centre of mass is, from where it was at the start (m), and how fast it moves (m/s), in inertial axes.
+    pub moved: [Vector; 2],
     /// Displacements q of the modes (m sqrt(kg)).
     pub displacements: Vec<f64>,
     /// Their rates q' (m sqrt(kg)/s).
@@ -65,6 +70,7 @@ impl Seen {
             momentum: zero,
             rotational: 0.0,
             turned: zero,
+            moved: [zero; 2],
             displacements: vec![0.0; modes],
             rates: vec![0.0; modes],
         }
@@ -88,6 +94,7 @@ impl Seen {
         self.rigid = model.inverse * turning;
         self.rotational = 0.5 * (turning.dot(&self.rigid) + rate.dot(&(changed * rate)));
         self.turned = state.turned;
+        self.moved = state.moved;
         for ((of, [q, p, ..]), (displacement, rate)) in
             model.modes.iter().zip(&state.modes).zip(self.displacements.iter_mut().zip(&mut self.rates))
         {

@@ -28,8 +28,12 @@ pub(super) struct Step<'a> {
     pub h: f64,
     /// Torque on the hub in its axes (N m).
     pub torque: Vector,
+    /// The acceleration of the centre of mass in the hub's axes (m/s²), if anything pushes it.
+    pub push: Option<Vector>,
     /// Modal forces, without what the torque gives (N/sqrt(kg)).
     pub forces: &'a [f64],
+    /// What a unit of each mode adds to the torque (N/sqrt(kg)).
+    pub levers: &'a [Vector],
     /// Momentum of the rotors at the start of the step (N m s), and its rate (N m).
     pub rotors: (Vector, Vector),
     /// The surroundings, and the time since the start of the run (s).
@@ -56,6 +60,8 @@ struct Shape {
     bent: Vector,
     elastic: Vector,
     changed: Matrix3<f64>,
+    /// What the modes add to the torque on the hub (N m).
+    levered: Vector,
 }
 
 /// What a stage comes to.
@@ -67,6 +73,8 @@ struct Stage {
     turn: Quaternion<f64>,
     /// J^-1 Gt.
     rigid: Vector,
+    /// The acceleration of the centre of mass in inertial axes (m/s²).
+    pushed: Vector,
 }
 
 /// Gt, the hub's rate and the surroundings' tide, which modes feel.
@@ -139,7 +147,7 @@ impl Step<'_> {
                 *known = [a * q + b * p + constant[0] * force, c * q + d * p + constant[1] * force];
             }
             memory.rate = self.model.modes[index].frequency * p;
-            sums.add(self.model, index, q, memory.rate);
+            sums.add(self, index, q, memory.rate);
         }
         let (stage, felt) = self.turning(0.0, &sums.shape(), &state.momentum, &state.attitude);
         self.feel(&felt, modes, 0);
@@ -164,7 +172,7 @@ impl Step<'_> {
                 p += dot(of_p, &memory.s);
             }
             memory.rate = self.model.modes[index].frequency * p;
-            sums.add(self.model, index, q, memory.rate);
+            sums.add(self, index, q, memory.rate);
         }
         let [a, b, c] = MATRIX[node].map(|weight| weight * self.h);
         let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
@@ -187,14 +195,22 @@ impl Step<'_> {
             (free, rigid, rigid + shape.elastic + model.bending * free)
         };
         let (mut torque, mut tide) = (self.torque, None);
+        if !self.levers.is_empty() {
+            torque += shape.levered;
+        }
         if let Some((around, since)) = self.around {
             let hub = facing * rotation(&shape.bent);
             torque += around.torque(since + t, &hub, &(model.inertia + shape.changed));
             tide = if model.stretches { around.tide(since + t, &hub) } else { None };
         }
         let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
-        let stage =
-            Stage { push: bend.forward(&torque) - mean.cross(momentum), turn: spin(facing, &mean), rigid };
+        let stage = Stage {
+            push: bend.forward(&torque) - mean.cross(momentum),
+            turn: spin(facing, &mean),
+            rigid,
+            pushed: self.push.map_or_else(Vector::zeros, |push| inertial(facing, &bend.forward(&push))),
+        };
+
         (stage, Felt { turning, rate, tide, t })
     }
 
@@ -233,13 +249,25 @@ impl Step<'_> {
         change
     }
 
+    /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
+    fn move_on(&self, [position, velocity]: &mut [Vector; 2], stages: &[Stage; 3]) {
+        *position += *velocity * self.h;
+        if self.push.is_some() {
+            for ((stage, weight), node) in stages.iter().zip(WEIGHTS).zip(NODES) {
+                *velocity += stage.pushed * (weight * self.h);
+                *position += stage.pushed * (weight * (1.0 - node) * self.h * self.h);
+            }
+        }
+    }
+
     /// The state at the end.
     fn end(&self, state: &mut State, stages: &[Stage; 3], modes: &[Memory]) {
         let [a, b, c] = WEIGHTS.map(|weight| weight * self.h);
         let push = stages[0].push * a + stages[1].push * b + stages[2].push * c;
         let turn = stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
         let rigid = stages[0].rigid * a + stages[1].rigid * b + stages[2].rigid * c;
-        let State { attitude, momentum, turned, lost, modes: states } = state;
+        let State { attitude, momentum, turned, moved, lost, modes: states } = state;
+        self.move_on(moved, stages);
         (attitude.coords, lost.0.coords) = exact_sum(attitude.coords, turn.coords + lost.0.coords);
         (*momentum, lost.1) = exact_sum(*momentum, push + lost.1);
         (*turned, lost.2) = exact_sum(*turned, rigid + lost.2);
@@ -272,26 +300,35 @@ struct Sums {
     bent: Vector,
     elastic: Vector,
     changed: [f64; 6],
+    levered: Vector,
 }
 
 impl Sums {
     #[inline]
-    fn add(&mut self, model: &Model, index: usize, q: f64, p: f64) {
-        let of = &model.modes[index];
+    fn add(&mut self, step: &Step<'_>, index: usize, q: f64, p: f64) {
+        let of = &step.model.modes[index];
         self.bent += of.rotation * q;
         self.elastic += of.rotation * p;
-        if model.stretches {
+        if let Some(lever) = step.levers.get(index) {
+            self.levered += lever * q;
+        }
+        if step.model.stretches {
             self.changed.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
         }
     }
 
     fn shape(&self) -> Shape {
-        Shape { bent: self.bent, elastic: self.elastic, changed: tensor(self.changed) }
+        Shape { bent: self.bent, elastic: self.elastic, changed: tensor(self.changed), levered: self.levered }
     }
 }
 
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// A vector of the mean axes in inertial ones, by a quaternion that is of length 1 but for the error of a stage.
+fn inertial(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
+    (*attitude * Quaternion::from_imag(*v) * attitude.conjugate()).vector() / attitude.norm_squared()
 }
 
 /// Q' = 1/2 Q o (0, w).

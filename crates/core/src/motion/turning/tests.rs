@@ -111,7 +111,7 @@ fn pulses_from_rest() {
     assert_eq!(rows.len(), 15);
     for ((torque, forces), rows) in cases.into_iter().zip(rows.chunks(5)) {
         let mut turning = craft.turning(Vector::zeros());
-        turning.depart(&Acting { torque, forces, rotors: Vec::new() });
+        turning.depart(&Acting { torque, forces, ..Acting::default() });
         let mut began = 0.0;
         for row in rows {
             let t = row[1];
@@ -275,6 +275,8 @@ fn halving_the_step_divides_the_error_by_64() {
         let acting = Acting {
             torque: Vector::new(0.3, -0.2, 0.5),
             forces,
+            levers: vec![Vector::new(0.1, -0.2, 0.3); 6],
+            push: Vector::new(2e-3, -1e-3, 3e-3),
             rotors: rotors(SPUN, [0.1, 0.0, -0.2, 0.0]),
         };
         turning.depart(&acting);
@@ -288,6 +290,8 @@ fn halving_the_step_divides_the_error_by_64() {
             apart(&seen.attitude, &exact.attitude),
             (seen.rate - exact.rate).norm(),
             (seen.turned - exact.turned).norm(),
+            (seen.moved[0] - exact.moved[0]).norm(),
+            (seen.moved[1] - exact.moved[1]).norm(),
         ]
     };
     let (coarse, fine) = (error(1.0 / 4.0), error(1.0 / 8.0));
@@ -306,6 +310,7 @@ fn looking_changes_nothing() {
                 torque: Vector::new(1.0, 0.0, -0.5) * f64::from(leg),
                 forces: craft.jet.clone(),
                 rotors: rotors(SPUN, [0.0; 4]),
+                ..Acting::default()
             };
             turning.depart(&acting);
             for at in looks {
@@ -335,7 +340,7 @@ fn energy_is_the_work_of_what_acts() {
         let (torque, torques) = (Vector::new(1.0, -2.0, 0.7), [0.1, -0.3, 0.2, 0.05]);
         let rotors = rotors(SPUN, torques);
         let on_body = rotors.iter().fold(torque, |sum, rotor| sum - rotor.axis * rotor.torque);
-        turning.depart(&Acting { torque, forces: craft.jet.clone(), rotors });
+        turning.depart(&Acting { torque, forces: craft.jet.clone(), rotors, ..Acting::default() });
         let before = energy(&turning);
         let mut dissipated = 0.0;
         if let Some(damping) = &craft.body.damping {

@@ -9,7 +9,9 @@ use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
 use crate::environment::{Around, Seen, into};
 use crate::motion::turning::{Flexible, Rotor, Surroundings};
 use crate::motion::{Phase, State};
-use crate::record::{Energy, Orbit, OrbitAxis, Pointing, Record, RecordError, Vibration, Vibrations};
+use crate::record::{
+    Energy, Orbit, OrbitAxis, Pointing, Position, Record, RecordError, Vibration, Vibrations,
+};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
@@ -70,7 +72,8 @@ impl SpatialPlant {
         let elsewhere = others.iter().map(beyond_first).collect();
         let hub = rotations(&study.acts_at);
         let around = study.around.clone();
-        let two_way = flexible.map(|of| Box::new(TwoWay::new(body, of, around.clone(), [&sensed, &hub])));
+        let two_way = flexible
+            .map(|of| Box::new(TwoWay::new(body, of, around.clone(), study.moving.clone(), [&sensed, &hub])));
         let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
         Self {
             rigid,
@@ -297,6 +300,12 @@ impl SpatialPlant {
         let (rotational_j, momentum_nm_s) = self.two_way.as_deref().map_or_else(one_way, TwoWay::energy);
         let (elastic_j, visible_j) = self.elastic_energies();
         Energy { rotational_j, elastic_j, visible_j, momentum_nm_s }
+    }
+
+    /// Where the first point is, as logged; none of a body that nothing pushes, or whose mass nobody knows.
+    pub fn position(&self) -> Option<Position> {
+        let [at, speed] = self.two_way.as_deref()?.place()?;
+        Some(Position { x_m: at.x, y_m: at.y, z_m: at.z, x_m_s: speed.x, y_m_s: speed.y, z_m_s: speed.z })
     }
 
     /// The modes, as logged.

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Quaternion};
 
 use crate::attitude::{Vector, vector};
 use crate::body::Wrench;
+use crate::body::craft::Moving;
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
 use crate::environment::{Around, Seen};
 use crate::motion::Phase;
@@ -21,6 +22,8 @@ pub struct TwoWay {
     acts: Vec<Vector>,
     outside: Outside,
     acting: Acting,
+    /// What moves it, and where its first point was at the start, from the centre of mass (m).
+    moving: Option<(Moving, Vector)>,
 }
 
 /// The disturbance of the body, and what is around it.
@@ -62,6 +65,7 @@ impl TwoWay {
         body: &Spatial,
         flexible: &Flexible,
         around: Option<Around>,
+        moving: Option<Moving>,
         [sensed, acts]: [&[Vector]; 2],
     ) -> Self {
         let frequencies: Vec<f64> = flexible.modes.iter().map(|mode| mode.frequency).collect();
@@ -70,8 +74,14 @@ impl TwoWay {
         let modes: Vec<_> = modes.map(|(phase, w)| [phase.displacement, w * phase.quadrature]).collect();
         let hub: Vec<Vector> = flexible.modes.iter().map(|mode| mode.rotation).collect();
         let beyond = |at: &[Vector]| at.iter().zip(&hub).map(|(at, hub)| at - hub).collect();
+        let turning = Turning::new(flexible, body.attitude.get(), vector(&body.rate), &modes);
+        let placed = |moving: Moving| {
+            let [began, _] = moving.place(turning.seen());
+            (moving, began)
+        };
         Self {
-            turning: Turning::new(flexible, body.attitude.get(), vector(&body.rate), &modes),
+            moving: moving.map(placed),
+            turning,
             sensed: beyond(sensed),
             acts: beyond(acts),
             outside: Outside { own: body.disturbance.clone(), around },
@@ -99,7 +109,10 @@ impl TwoWay {
         if let Some(around) = &mut self.outside.around {
             around.hold(wrench.moment);
         }
-        let Acting { torque, forces, rotors } = &mut self.acting;
+        let Acting { torque, forces, levers, rotors, push: accelerated } = &mut self.acting;
+        levers.clone_from(&wrench.levers);
+        let moving = self.moving.as_ref();
+        *accelerated = moving.map_or_else(Vector::zeros, |(moving, _)| moving.acceleration(&wrench.force));
         *torque = push + hub;
         rotors.clone_from(&wrench.rotors);
         // The motion gives modes their part of the torque on the hub: what jets and torques elsewhere give differs from it.
@@ -137,6 +150,14 @@ impl TwoWay {
             sky: Seen::default(),
         };
         (truth, elastic)
+    }
+
+    /// Where the first point is that was at 0 at the start (m), and how fast it moves (m/s), if anything can push it.
+    pub fn place(&self) -> Option<[Vector; 2]> {
+        self.moving.as_ref().map(|(moving, began)| {
+            let [position, velocity] = moving.place(self.turning.seen());
+            [position - began, velocity]
+        })
     }
 
     /// The attitude of the hub.

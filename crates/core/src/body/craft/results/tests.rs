@@ -84,7 +84,7 @@ fn millimetres_and_tonnes_become_metres_and_kilograms() {
     let (metres, small) = (&metres.appendage[0].modes, &small.appendage[0].modes);
     for (metres, small) in metres.iter().zip(small.iter()) {
         assert_eq!(metres.frequency, small.frequency);
-        assert!((small.translation() - metres.translation() * 1000_f64.sqrt()).norm() < 1e-12);
+        assert!((small.translation(1.0) - metres.translation(1.0) * 1000_f64.sqrt()).norm() < 1e-12);
         let rotation = |mode: &super::ClampedMode| crate::attitude::vector(&mode.rotation.expect("one"));
         assert!((rotation(small) - rotation(metres) * 1e-3 * 1000_f64.sqrt()).norm() < 1e-12);
     }

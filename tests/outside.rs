@@ -1,0 +1,212 @@
+//! Problems that others set, against an oracle that shares nothing with the engine: tests/golden/outside_oracle.py, SciPy.
+
+use std::collections::BTreeMap;
+
+use flexsc_core::metrics::{Gather, Value};
+use flexsc_core::record::{Column, Detail, Trace};
+use flexsc_core::{Scenario, Simulation};
+
+use crate::util::SCENARIOS;
+
+const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
+
+/// What the oracle tells of a problem at a time (s), by name.
+fn oracle(problem: &str, time: f64) -> BTreeMap<String, f64> {
+    let mut rows = csv::Reader::from_path(format!("{GOLDEN}/outside.csv")).expect("golden");
+    let rows = rows.deserialize().map(|row| row.expect("a whole row"));
+    let of = |(of, what, at, value): (String, String, f64, f64)| {
+        (of == problem && (at - time).abs() < 1e-12).then_some((what, value))
+    };
+    rows.filter_map(of).collect()
+}
+
+fn scenario(name: &str) -> Scenario {
+    Scenario::load(format!("{GOLDEN}/outside/{name}.toml").as_ref()).expect("a scenario")
+}
+
+/// A full log.
+fn flown(scenario: &Scenario) -> Trace {
+    let mut trace = Trace::new(Detail::Full);
+    Simulation::new(scenario, 0).run(&mut trace).expect("a run");
+    trace
+}
+
+fn number(trace: &Trace, topic: &str, name: &str, row: usize) -> f64 {
+    trace.topic(topic).and_then(|rows| rows.numbers(name)).expect("a column")[row]
+}
+
+/// A column of the rows within a row, of which each has as many.
+fn each(trace: &Trace, topic: &str, rows: &str, name: &str, row: usize) -> Vec<f64> {
+    let Some(Column::Rows(counts, columns)) = trace.topic(topic).and_then(|topic| topic.get(rows)) else {
+        panic!("{topic} {rows}")
+    };
+    let count = counts[row] as usize;
+    columns.numbers(name).expect("numbers")[row * count..(row + 1) * count].to_vec()
+}
+
+/// Modified Rodrigues parameters of the attitude.
+fn rodrigues(trace: &Trace, row: usize) -> [f64; 3] {
+    let [w, x, y, z] = ["q_w", "q_x", "q_y", "q_z"].map(|name| number(trace, "/pointing", name, row));
+    [x, y, z].map(|part| part / (1.0 + w))
+}
+
+/// Translation and rotation of a point against the hub, for modes with these numbers.
+fn against_hub(scenario: &Scenario, point: &str, modes: &[f64]) -> [f64; 6] {
+    let body = scenario.body.spatial().expect("three axes");
+    let (there, hub) = (body.shapes(point), body.shapes("hub"));
+    let mut sum = [0.0; 6];
+    for ((there, hub), q) in there.iter().zip(hub).zip(modes) {
+        for axis in 0..3 {
+            sum[axis] += (there.0 - hub.0)[axis] * q;
+            sum[3 + axis] += (there.1 - hub.1)[axis] * q;
+        }
+    }
+    sum
+}
+
+#[track_caller]
+fn near(found: f64, exact: f64, error: f64) {
+    assert!(
+        (found - exact).abs() <= error * exact.abs(),
+        "{found:e} is off {exact:e} by {:e}",
+        found - exact
+    );
+}
+
+/// Four clamped modes under a held and limited law on modified Rodrigues parameters, 35 degrees from its target.
+#[test]
+fn a_hub_with_four_clamped_modes_moves_as_in_its_own_equations() {
+    let (scenario, exact) = (scenario("four-modes"), oracle("di-gennaro", 10.0));
+    let trace = flown(&scenario);
+    let rates = each(&trace, "/rates", "axes", "rate_rad_s", 1);
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        near(rodrigues(&trace, 1)[axis], exact[&format!("p_{name}")], 1e-9);
+        near(rates[axis], exact[&format!("w_{name}")], 1e-9);
+    }
+    let modes = each(&trace, "/vibrations", "modes", "displacement", 1);
+    let tip = against_hub(&scenario, "tip", &modes);
+    for mode in 0..4 {
+        // The first is 0.17 then, the second hardly anything.
+        let off = (tip[mode] - exact[&format!("eta_{}", mode + 1)]).abs();
+        assert!(off < 5e-10, "mode {mode} is off by {off:e}");
+    }
+}
+
+/// A hub that two forces push, and two hinged panels, in the plane: against the whole kinematics of three rigid bodies.
+#[test]
+fn a_hub_with_two_hinged_panels_is_pushed_as_three_rigid_bodies_are() {
+    let scenario = scenario("two-panels");
+    let trace = flown(&scenario);
+    for (row, time) in [(1, 2.5), (3, 7.5), (5, 12.5)] {
+        let exact = oracle("panels", time);
+        near(number(&trace, "/position", "x_m", row), exact["x"], 2e-8);
+        near(number(&trace, "/position", "y_m", row), exact["y"], 2e-8);
+        near(number(&trace, "/pointing", "yaw_rad", row), exact["theta"], 4e-7);
+        let modes = each(&trace, "/vibrations", "modes", "displacement", row);
+        for side in 1..3 {
+            let turned = against_hub(&scenario, &format!("panel {side}"), &modes)[5];
+            near(turned, exact[&format!("theta{side}")], 1e-5);
+        }
+    }
+}
+
+/// A mode that translation and rotation both push, under a torque and a force of half a second.
+#[test]
+fn a_pulse_pushes_a_mode_by_translation_and_rotation() {
+    let (scenario, exact) = (scenario("pulse"), oracle("pulse", 7.5));
+    let trace = flown(&scenario);
+    let rates = each(&trace, "/rates", "axes", "rate_rad_s", 1);
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        near(rodrigues(&trace, 1)[axis], exact[&format!("p_{name}")], 1e-8);
+        near(rates[axis], exact[&format!("w_{name}")], 1e-8);
+    }
+    // 0.1 m/s² for half a second, while the body turns by 0.01 rad.
+    near(number(&trace, "/position", "y_m_s", 1), 0.05, 1e-4);
+    for (column, name) in [("displacement", "n"), ("rate", "n_rate")] {
+        let modes = each(&trace, "/vibrations", "modes", column, 1);
+        near(against_hub(&scenario, "tip", &modes)[0], exact[name], 1e-8);
+    }
+}
+
+/// A beam that is pinned at one end and has a heavy tip: the roots of its frequency equation, and those that its paper prints.
+#[test]
+fn a_boom_has_the_frequencies_of_its_equation() {
+    let (scenario, exact) = (scenario("boom"), oracle("boom", 0.0));
+    let printed = [3.171_011_466, 6.298_221_427, 9.434_866_134, 12.599_055_3, 15.714_044_95];
+    for (index, mode) in scenario.model.modes.iter().enumerate() {
+        let omega = mode.frequency.get();
+        near(omega, exact[&format!("omega_{}", index + 1)], 1e-9);
+        let mu = (omega / 5.974).sqrt() * 3.372;
+        // The fourth of the paper is a misprint.
+        let off = (mu - printed[index]).abs();
+        assert!(if index == 3 { off > 0.02 } else { off < 5e-9 }, "{index} {mu}");
+    }
+}
+
+/// Four masses on springs: the frequencies with the hub free, two of which the hub's translation makes.
+#[test]
+fn clamped_frequencies_are_not_those_of_the_whole() {
+    let scenario = Scenario::load(format!("{SCENARIOS}/half-turn.toml").as_ref()).expect("a scenario");
+    let modes = &scenario.body.spatial().expect("three axes").modes;
+    let printed = [0.402_619_33, 0.428_596_00, 1.308_649_82, 1.506_435_24];
+    for (mode, hertz) in modes.iter().zip(printed) {
+        near(mode.frequency.get() / std::f64::consts::TAU, hertz, 2e-8);
+    }
+}
+
+/// The comment of the half turn: what its profile is worth.
+#[test]
+fn half_a_turn_meets_its_requirement_by_its_profile() {
+    let text = std::fs::read_to_string(format!("{SCENARIOS}/half-turn.toml")).expect("a file");
+    let rms = |text: &str| {
+        let scenario = Scenario::parse("half-turn.toml", text).expect("a scenario");
+        let mut gather = Gather::new(&scenario);
+        Simulation::new(&scenario, 0).run(&mut gather).expect("a run");
+        let metrics = gather.finish(&scenario);
+        (metrics.number("pointing_rms_rad").expect("a number"), metrics.get("requirement").cloned())
+    };
+    let arcsec = std::f64::consts::PI / 648_000.0;
+    let (smooth, verdict) = rms(&text);
+    assert!(
+        (smooth / arcsec - 1.8).abs() < 0.05 && verdict == Some(Value::Word("met")),
+        "{}",
+        smooth / arcsec
+    );
+    let abrupt = text
+        .replace("profile = \"versine\"", "profile = \"trapezoid\"")
+        .replace("acceleration = 0.027925268031909273", "acceleration = 0.013962634015954637");
+    let (abrupt, verdict) = rms(&abrupt);
+    assert!(
+        (abrupt / arcsec - 9.5).abs() < 0.05 && verdict == Some(Value::Word("missed")),
+        "{}",
+        abrupt / arcsec
+    );
+}
+
+/// The comment of the station-keeping: pulses whose period is that of the slosh, with the hub free.
+#[test]
+fn pulses_of_the_period_of_the_slosh_drive_it() {
+    let flight = |period: &str| {
+        let text = std::fs::read_to_string(format!("{SCENARIOS}/station-keeping.toml")).expect("a file");
+        let text = text.replace("period = 30.0", &format!("period = {period}"));
+        let scenario = Scenario::parse("station-keeping.toml", &text).expect("a scenario");
+        let (mut gather, mut trace) = (Gather::new(&scenario), Trace::new(Detail::Full));
+        Simulation::new(&scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
+        (scenario.clone(), gather.finish(&scenario), trace)
+    };
+    let (scenario, metrics, trace) = flight("30.0");
+    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+    let slosh = scenario.body.spatial().expect("three axes").modes[2].frequency.get();
+    assert!((std::f64::consts::TAU / slosh - 29.96).abs() < 0.005);
+    // 20 pulses of 10 s and 20.1 N on two tonnes.
+    let last = trace.topic("/position").expect("positions").len() - 1;
+    near(number(&trace, "/position", "y_m_s", last), 2.0, 1e-3);
+    let peak =
+        |metrics: &flexsc_core::metrics::Metrics| metrics.number("elastic_energy_peak_j").expect("a number");
+    let (_, calm, _) = flight("40.0");
+    let ratio = peak(&metrics) / peak(&calm);
+    assert!((24.0..30.0).contains(&ratio), "{ratio}");
+    // 180 kg at 0.2 rad/s with all of it.
+    let swing = (2.0 * peak(&metrics) / 180.0).sqrt() / 0.2;
+    assert!((0.2..0.25).contains(&swing), "{swing}");
+}
