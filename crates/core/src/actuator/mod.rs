@@ -1,9 +1,12 @@
 //! Actuators: how commands are executed, as they are, through a hold, by a wheel, or by pulses of thrusters.
 
 mod allocation;
+mod friction;
 mod hold;
 mod ideal;
+mod imbalance;
 mod jets;
+mod per_wheel;
 mod pulse_timing;
 mod pulse_width;
 mod pulsing;
@@ -21,13 +24,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::Wrench;
 use crate::estimator::adaptive::Pulse;
+use crate::motion::turning::Turned;
 use crate::own::Own;
 use crate::record::{self, WheelMotion};
 use crate::time::{Instant, Span};
 
 pub use allocation::{Allocation, Choice};
+pub use friction::Friction;
 pub use hold::ZeroOrderHold;
+pub use imbalance::{Harmonic, Imbalance};
 pub use jets::{Group, Groups, Jets, Pair, Thruster};
+pub use per_wheel::PerWheel;
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use pulsing::Pulsing;
@@ -36,7 +43,7 @@ pub use thrusters::Thrusters;
 pub use torquers::{AxisActuate, Setting, Torquers};
 pub use unloading::{Unloaded, Unloading};
 pub use wheel::{Opposes, Rotor, Wheel};
-pub use wheels::{Arrangement, SpeedBias, Wheels};
+pub use wheels::{Arrangement, Compensation, SpeedBias, Wheels};
 
 /// The kinds of actuator. Those of one angle act on a body with three axes about each.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -91,6 +98,9 @@ pub trait Actuate: fmt::Debug + Send + Sync {
 
     /// Does what is due now, after the laws have decided.
     fn serve(&mut self, _now: Instant, _rigid: [f64; 3]) {}
+
+    /// Takes over how its rotors in bearings are now, which the motion tells.
+    fn turned(&mut self, _now: Instant, _rotors: &[Turned]) {}
 
     /// Adds what it exerts from now on.
     fn exert(&self, now: Instant, onto: &mut Wrench);

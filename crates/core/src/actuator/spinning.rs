@@ -5,14 +5,20 @@
 //! it the instant at which it reaches its limit. The speed Omega also depends on the body's rate.
 
 use super::allocation::Allocation;
-use super::wheels::{SpeedBias, Wheels};
+use super::wheels::{Compensation, SpeedBias, Wheels};
 use super::{Actuate, Demand, Setting};
 use crate::body::Wrench;
 use crate::body::spatial::Vector;
-use crate::motion::turning::Rotor;
+use crate::motion::turning::{Rotor, Turned};
 use crate::quantity::Positive;
 use crate::record;
 use crate::time::{Instant, Span};
+
+/// A wheel with friction is at its limit if it misses it by this part of it.
+const AT_LIMIT: f64 = 1e-12;
+
+/// A wheel with friction is looked at again no sooner than this (s) on its way to its limit.
+const SOONEST: f64 = 1e-6;
 
 /// The wheels of a body.
 #[derive(Clone, Debug)]
@@ -32,6 +38,9 @@ pub struct Spinning {
     wheels: Vec<Spin>,
     /// Since when the wheels' momenta are counted.
     since: Instant,
+    /// How they are, which the motion tells of wheels in bearings.
+    turned: Vec<Turned>,
+    compensation: Option<Compensation>,
 }
 
 /// A wheel.
@@ -74,6 +83,8 @@ impl Spinning {
             wanted: Vector::zeros(),
             against: Vector::zeros(),
             since: Instant::START,
+            turned: Vec::new(),
+            compensation: wheels.compensation.clone(),
         }
     }
 
@@ -97,6 +108,9 @@ impl Spinning {
 
     /// Speeds relative to a body that turns at this rate (rad/s).
     fn speeds(&self, rate: &Vector) -> Vec<f64> {
+        if !self.turned.is_empty() {
+            return self.turned.iter().map(|wheel| wheel.speed).collect();
+        }
         let axes = self.allocation.axes().iter();
         axes.zip(&self.wheels).map(|(axis, wheel)| wheel.momentum / self.inertia - axis.dot(rate)).collect()
     }
@@ -123,12 +137,41 @@ impl Spinning {
         torques
     }
 
-    /// What is left of a torque on a wheel at this speed, and how long until the wheel is at a limit (s).
-    fn within_limits(&self, momentum: f64, speed: f64, torque: f64) -> (f64, f64) {
+    /// What is left of a torque on a wheel at this speed, and how long until the wheel is at a limit (s). With friction that is
+    /// an instant before, from which the rest is found again.
+    fn within_limits(&self, index: usize, speed: f64, torque: f64) -> (f64, f64) {
         let ahead = libm::copysign(1.0, torque);
+        let momentum = self.wheels[index].momentum;
         let room =
             (self.momentum_limit - ahead * momentum).min((self.speed_limit - ahead * speed) * self.inertia);
-        if room <= 0.0 { (0.0, f64::INFINITY) } else { (torque, room / torque.abs()) }
+        let Some(wheel) = self.turned.get(index) else {
+            return if room <= 0.0 { (0.0, f64::INFINITY) } else { (torque, room / torque.abs()) };
+        };
+        let limit = self.momentum_limit.min(self.speed_limit * self.inertia);
+        if room <= AT_LIMIT * limit {
+            return (0.0, f64::INFINITY);
+        }
+        let net = ahead * (torque - wheel.friction);
+        (torque, if net > 0.0 { (room / net).max(SOONEST) } else { f64::INFINITY })
+    }
+
+    /// A wheel gets a torque from now on, as far as its limits let it.
+    fn drive(&mut self, now: Instant, index: usize, speed: f64, torque: f64) {
+        let (torque, seconds) = self.within_limits(index, speed, torque);
+        let full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
+        (self.wheels[index].torque, self.wheels[index].full) = (torque, full);
+    }
+
+    /// What the drives add against friction at these speeds (rad/s), to these torques (N m).
+    fn compensate(&self, speeds: &[f64], torques: &mut [f64]) {
+        let Some(Compensation { coulomb, viscous }) = &self.compensation else { return };
+        for (wheel, (torque, speed)) in torques.iter_mut().zip(speeds).enumerate() {
+            // One at rest is to follow the torque.
+            let way = if *speed == 0.0 { *torque } else { *speed };
+            let coulomb = if way == 0.0 { 0.0 } else { libm::copysign(coulomb.of(wheel).get(), way) };
+            let added = *torque + coulomb + viscous.of(wheel).get() * speed;
+            *torque = added.clamp(-self.torque_limit, self.torque_limit);
+        }
     }
 }
 
@@ -142,11 +185,10 @@ impl Actuate for Spinning {
             };
         }
         let speeds = self.speeds(&rigid.into());
-        for (index, torque) in self.motors(&speeds).into_iter().enumerate() {
-            let (torque, seconds) = self.within_limits(self.wheels[index].momentum, speeds[index], torque);
-            let wheel = &mut self.wheels[index];
-            wheel.torque = torque;
-            wheel.full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
+        let mut torques = self.motors(&speeds);
+        self.compensate(&speeds, &mut torques);
+        for (index, torque) in torques.into_iter().enumerate() {
+            self.drive(now, index, speeds[index], torque);
         }
     }
 
@@ -158,8 +200,14 @@ impl Actuate for Spinning {
     fn serve(&mut self, now: Instant, _: [f64; 3]) {
         if self.wheels.iter().any(|wheel| wheel.full == Some(now)) {
             self.turn(now);
-            for wheel in self.wheels.iter_mut().filter(|wheel| wheel.full == Some(now)) {
-                (wheel.torque, wheel.full) = (0.0, None);
+            let full: Vec<usize> =
+                (0..self.wheels.len()).filter(|index| self.wheels[*index].full == Some(now)).collect();
+            for index in full {
+                if let Some(wheel) = self.turned.get(index) {
+                    self.drive(now, index, wheel.speed, self.wheels[index].torque);
+                } else {
+                    (self.wheels[index].torque, self.wheels[index].full) = (0.0, None);
+                }
             }
         }
     }
@@ -172,6 +220,20 @@ impl Actuate for Spinning {
             torque: wheel.torque,
         };
         onto.rotors.extend(self.allocation.axes().iter().zip(&self.wheels).map(rotor));
+    }
+
+    fn turned(&mut self, now: Instant, rotors: &[Turned]) {
+        self.turn(now);
+        for (wheel, rotor) in self.wheels.iter_mut().zip(rotors) {
+            wheel.momentum = rotor.momentum;
+        }
+        self.turned.clear();
+        self.turned.extend_from_slice(rotors);
+    }
+
+    fn applied(&self, _: Instant, axis: usize, _: [f64; 2]) -> f64 {
+        let held = self.turned.iter().zip(self.allocation.axes());
+        self.torque(axis) + held.map(|(wheel, about)| about[axis] * wheel.friction).sum::<f64>()
     }
 
     fn asked(&self, axis: usize) -> f64 {
@@ -189,12 +251,15 @@ impl Actuate for Spinning {
 
     fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<record::Wheel> {
         let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
-        let motion = |(axis, wheel): (&Vector, &Spin)| record::Wheel {
-            speed_rad_s: wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate),
+        let motion = |(index, (axis, wheel)): (usize, (&Vector, &Spin))| record::Wheel {
+            speed_rad_s: self
+                .turned
+                .get(index)
+                .map_or(wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate), |turned| turned.speed),
             momentum_nm_s: wheel.momentum_at(seconds),
             torque_nm: wheel.torque,
         };
-        self.allocation.axes().iter().zip(&self.wheels).map(motion).collect()
+        self.allocation.axes().iter().zip(&self.wheels).enumerate().map(motion).collect()
     }
 
     fn stored(&self, now: Instant) -> [f64; 3] {

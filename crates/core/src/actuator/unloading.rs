@@ -7,6 +7,7 @@ use super::{Actuate, Cycle, Demand, Group, Jets, Pulsing, Spinning};
 use crate::body::Wrench;
 use crate::body::spatial::Vector;
 use crate::document::Fault;
+use crate::motion::turning::Turned;
 use crate::quantity::{NonNegative, Positive};
 use crate::record;
 use crate::time::{Instant, Span};
@@ -129,6 +130,10 @@ impl Actuate for Unloaded {
                 self.wheels.command(now, &self.demands, rigid);
             }
         }
+    }
+
+    fn turned(&mut self, now: Instant, rotors: &[Turned]) {
+        self.wheels.turned(now, rotors);
     }
 
     fn exert(&self, now: Instant, onto: &mut Wrench) {

@@ -13,6 +13,7 @@ use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
 use crate::law::{ActiveDamping, Authority, Distribution, Law, PhasePlane, Promise, Target, band, targeted};
+use crate::motion::turning::Bearing;
 use crate::quantity::{Finite, Positive};
 use crate::time::{Instant, Span};
 
@@ -46,6 +47,8 @@ pub struct Study {
     pub unloading: Option<[[Group; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
+    /// The bearings of wheels with friction or imbalance.
+    pub bearings: Vec<Bearing>,
     /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.
     pub back_emf: (f64, bool),
     /// The adaptive observers.
@@ -128,6 +131,16 @@ impl Study {
         if let Actuator::Wheels(wheels) = &scenario.actuator {
             let allocation = wheels.allocation().map_err(|fault| fault.within("actuator.wheels"))?;
             self.wheels = Some(allocation);
+            if let Some(key) = wheels.bears() {
+                let key = format!("actuator.wheels.{key}");
+                let Some(flexible) = scenario.body.flexible() else {
+                    let why = "is that of wheels on a `[spacecraft]`: the modes of a `[body.spatial]` do not act back on its \
+                               rotation, which wheels that slip and shake need";
+                    return Err(Fault::new(key, why));
+                };
+                let bearings = wheels.bearings((body, flexible));
+                self.bearings = bearings.map_err(|fault| fault.within("actuator.wheels"))?;
+            }
         }
         self.around = surroundings(scenario, body)?;
         let measured = self.measured(body);

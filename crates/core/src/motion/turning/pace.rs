@@ -13,6 +13,9 @@ const TURN: f64 = 1.0 / 16.0;
 /// The phase of the fastest mode that is resolved, in a step (rad).
 const PHASE: f64 = 1.5;
 
+/// The phase of what shakes the body, in a step (rad): its quadrature errs by 1e-8 of it.
+const SHAKE: f64 = 0.5;
+
 /// Modes above this frequency make no step shorter (rad/s): steps of 15 ms are the shortest for the sake of modes.
 const RESOLVED: f64 = 100.0;
 
@@ -57,6 +60,15 @@ impl Pace {
         // What is not finite needs no short steps.
         while h * (rate + acceleration * h) > self.turn && level < 60 {
             h *= 0.5;
+            level += 1;
+        }
+        level
+    }
+
+    /// This level, or the first beyond it whose steps follow what shakes the body at a frequency (rad/s).
+    pub fn resolving(&self, level: usize, frequency: f64) -> usize {
+        let mut level = level;
+        while frequency > 0.0 && frequency * self.length(level) > SHAKE && level < 60 {
             level += 1;
         }
         level

@@ -4,7 +4,7 @@ use super::two_way::TwoWay;
 use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState, Vector, beyond};
 use crate::body::{Phase, State, Wrench};
 use crate::environment::Around;
-use crate::motion::turning::{Flexible, Rotor, Surroundings};
+use crate::motion::turning::{Flexible, Rotor, Surroundings, Turned};
 use crate::record::{Energy, Pointing, Record, RecordError, Vibration, Vibrations};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
@@ -66,7 +66,9 @@ impl SpatialPlant {
         let elsewhere = others.iter().map(beyond_first).collect();
         let hub = rotations(&study.acts_at);
         let around = study.around.clone();
-        let two_way = flexible.map(|of| Box::new(TwoWay::new(body, of, around.clone(), [&sensed, &hub])));
+        let two_way = flexible.map(|of| {
+            Box::new(TwoWay::new(body, of, around.clone(), [&sensed, &hub], &study.bearings))
+        });
         let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
         Self {
             rigid,
@@ -90,8 +92,13 @@ impl SpatialPlant {
         }
     }
 
-    /// Brings the body to an instant, as long as the record lets it. What is seen on the way does not change the motion.
-    pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    /// Brings the body to an instant, as long as the record lets it, or to one before at which a wheel comes to rest or lets go,
+    /// which it tells. What is seen on the way does not change the motion.
+    pub fn approach(
+        &mut self,
+        now: Instant,
+        record: &mut impl Record,
+    ) -> Result<Option<Instant>, RecordError> {
         record.poll()?;
         if self.two_way.is_some() {
             return self.go(now, record);
@@ -105,12 +112,17 @@ impl SpatialPlant {
         self.go(now, record)
     }
 
-    fn go(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    fn go(&mut self, now: Instant, record: &mut impl Record) -> Result<Option<Instant>, RecordError> {
+        let mut met = None;
         if self.seen != now {
             let h = now.since(self.departed).seconds();
             let began = self.departed.seconds();
             if let Some(two_way) = &mut self.two_way {
-                two_way.advance(h, began, || record.poll())?;
+                if let Some(h) = two_way.advance(h, began, || record.poll())? {
+                    let at = (self.departed + Span::from_seconds(h)).min(now);
+                    two_way.reach(at.since(self.departed).seconds(), began);
+                    met = Some(at);
+                }
                 two_way.show(&self.rigid, &mut self.state);
             } else {
                 let rotors = self.rotors(self.departed);
@@ -121,10 +133,16 @@ impl SpatialPlant {
                 self.state.modes.clone_from(&self.origin.modes);
                 self.elastic.advance(&mut self.state.modes, &self.forces, h);
             }
-            self.seen = now;
+            self.seen = met.unwrap_or(now);
             self.truth = None;
         }
-        Ok(())
+        Ok(met)
+    }
+
+    /// Wheels in bearings at the instant seen last; none without friction, imbalance and tachometer.
+    pub fn borne(&self) -> Vec<Turned> {
+        let began = self.departed.seconds();
+        self.two_way.as_deref().map_or_else(Vec::new, |two_way| two_way.turned(began))
     }
 
     /// What there is to measure at the instant reached; none if the state is no longer finite.
@@ -178,7 +196,7 @@ impl SpatialPlant {
         self.origin.clone_from(&self.state);
         self.departed = self.seen;
         if let Some(two_way) = &mut self.two_way {
-            two_way.depart(wrench);
+            two_way.depart(wrench, self.departed.seconds());
             two_way.show(&self.rigid, &mut self.state);
             return;
         }
