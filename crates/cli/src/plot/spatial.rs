@@ -6,8 +6,8 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::body::spatial::AXES;
 use flexsc_core::record::{
-    AttitudeEstimate, ChannelState, Cycle, Log, Record, RecordError, Sample, SpatialMotion, TrackedMode,
-    Tracking, Wheels,
+    AttitudeEstimate, Bearings, ChannelState, Cycle, Log, Record, RecordError, Sample, SpatialMotion,
+    TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
@@ -28,6 +28,8 @@ pub struct Cycles {
     pub attitude: Vec<(f64, AttitudeEstimate)>,
     /// The wheels, at each period of the log.
     pub wheels: Vec<(f64, Wheels)>,
+    /// Their bearings, if they have any.
+    pub bearings: Vec<(f64, Bearings)>,
 }
 
 impl Cycles {
@@ -66,8 +68,9 @@ impl Record for Cycles {
             Sample::Cycle(cycle) => self.all.push((now.seconds(), cycle.clone())),
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
-            Sample::SpatialMotion(SpatialMotion { wheels: Some(wheels), .. }) => {
+            Sample::SpatialMotion(SpatialMotion { wheels: Some(wheels), bearings, .. }) => {
                 self.wheels.push((now.seconds(), wheels.clone()));
+                self.bearings.extend(bearings.iter().map(|bearings| (now.seconds(), bearings.clone())));
             }
             _ => {}
         }

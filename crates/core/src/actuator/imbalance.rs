@@ -88,7 +88,10 @@ impl Imbalance {
         let name = self.point.as_deref().unwrap_or(first);
         let Some(point) = body.point(name) else {
             let points = body.point_names();
-            return Err(Fault::new("point", format!("must be one of the body's points, {points}, got `{name}`")));
+            return Err(Fault::new(
+                "point",
+                format!("must be one of the body's points, {points}, got `{name}`"),
+            ));
         };
         let offset = self.positions.get(wheel).map_or_else(Vector::zeros, vector);
         let shapes = body.shapes(name);
@@ -98,8 +101,12 @@ impl Imbalance {
             let torque = [0, 1].map(|part| moment[part] + point.cross(&force[part]));
             let beyond = |part: usize| -> Vec<f64> {
                 let modes = shapes.iter().zip(&flexible.modes);
-                let of = |((translation, rotation), mode): (&(Vector, Vector), &crate::motion::turning::FreeMode)| {
-                    translation.dot(&force[part]) + rotation.dot(&moment[part]) - mode.rotation.dot(&torque[part])
+                let of = |((translation, rotation), mode): (
+                    &(Vector, Vector),
+                    &crate::motion::turning::FreeMode,
+                )| {
+                    translation.dot(&force[part]) + rotation.dot(&moment[part])
+                        - mode.rotation.dot(&torque[part])
                 };
                 modes.map(of).collect()
             };
@@ -136,3 +143,6 @@ fn across(axis: &Vector) -> (Vector, Vector) {
     let first = if level.norm() > 1e-9 { level.normalize() } else { Vector::x() };
     (first, axis.cross(&first))
 }
+
+#[cfg(test)]
+mod tests;

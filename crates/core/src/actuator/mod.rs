@@ -139,7 +139,12 @@ pub trait Actuate: fmt::Debug + Send + Sync {
         Vec::new()
     }
 
-    /// The angular momentum that its rotors store now, in the body's axes (N m s).
+    /// Speeds of wheels in bearings as their drives know them (rad/s).
+    fn known_speeds(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The angular momentum that its rotors store now, as far as it is known, in the body's axes (N m s).
     fn stored(&self, _now: Instant) -> [f64; 3] {
         [0.0; 3]
     }

@@ -33,7 +33,8 @@ impl<T: Copy + Default> PerWheel<T> {
     pub fn check(&self, key: &str, wheels: usize) -> Result<(), Fault> {
         match self {
             Self::Each(values) if values.len() != wheels => {
-                let why = format!("must be one number, or one for each of {wheels} wheels, got {}", values.len());
+                let why =
+                    format!("must be one number, or one for each of {wheels} wheels, got {}", values.len());
                 Err(Fault::new(key, why))
             }
             _ => Ok(()),

@@ -11,7 +11,9 @@ use crate::body::Wrench;
 use crate::body::spatial::Vector;
 use crate::motion::turning::{Rotor, Turned};
 use crate::quantity::Positive;
+use crate::random::Seed;
 use crate::record;
+use crate::sensor::{Counting, Tachometer};
 use crate::time::{Instant, Span};
 
 /// A wheel with friction is at its limit if it misses it by this part of it.
@@ -40,6 +42,10 @@ pub struct Spinning {
     since: Instant,
     /// How they are, which the motion tells of wheels in bearings.
     turned: Vec<Turned>,
+    /// By what their drives know the speeds; they know them exactly without it.
+    tachometer: Option<Counting>,
+    /// The momentum that they store by its last reading (N m s).
+    known: Option<Vector>,
     compensation: Option<Compensation>,
 }
 
@@ -84,8 +90,17 @@ impl Spinning {
             against: Vector::zeros(),
             since: Instant::START,
             turned: Vec::new(),
+            tachometer: None,
+            known: None,
             compensation: wheels.compensation.clone(),
         }
+    }
+
+    /// Makes their drives know the speeds by a tachometer alone.
+    pub fn read_by(mut self, tachometer: Option<(&Tachometer, Seed)>) -> Self {
+        let rate = Vector::from_fn(|axis, _| self.settings.get(axis).map_or(0.0, |setting| setting.rate));
+        self.tachometer = tachometer.map(|(tachometer, seed)| tachometer.start(self.speeds(&rate), seed));
+        self
     }
 
     /// Makes them hold against a torque on the body (N m) from the next command on.
@@ -106,8 +121,11 @@ impl Spinning {
         self.since = now;
     }
 
-    /// Speeds relative to a body that turns at this rate (rad/s).
+    /// Speeds relative to a body that turns at this rate (rad/s), as the drives know them.
     fn speeds(&self, rate: &Vector) -> Vec<f64> {
+        if let Some(tachometer) = &self.tachometer {
+            return tachometer.speeds().to_vec();
+        }
         if !self.turned.is_empty() {
             return self.turned.iter().map(|wheel| wheel.speed).collect();
         }
@@ -155,11 +173,31 @@ impl Spinning {
         (torque, if net > 0.0 { (room / net).max(SOONEST) } else { f64::INFINITY })
     }
 
+    /// All wheels get the torques that give what is wanted.
+    fn drive_all(&mut self, now: Instant, rigid: &Vector) {
+        let speeds = self.speeds(rigid);
+        let mut torques = self.motors(&speeds);
+        self.compensate(&speeds, &mut torques);
+        for (index, torque) in torques.into_iter().enumerate() {
+            let speed = self.turned.get(index).map_or(speeds[index], |wheel| wheel.speed);
+            self.drive(now, index, speed, torque);
+        }
+    }
+
     /// A wheel gets a torque from now on, as far as its limits let it.
     fn drive(&mut self, now: Instant, index: usize, speed: f64, torque: f64) {
         let (torque, seconds) = self.within_limits(index, speed, torque);
         let full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
         (self.wheels[index].torque, self.wheels[index].full) = (torque, full);
+    }
+
+    /// The momentum that they store by the speeds that are known, of a body that turns at this rate (rad/s).
+    fn known_momentum(&self, rate: &Vector) -> Option<Vector> {
+        let speeds = self.tachometer.as_ref()?.speeds();
+        let wheels = self.allocation.axes().iter().zip(speeds);
+        Some(wheels.fold(Vector::zeros(), |sum, (axis, speed)| {
+            sum + axis * (self.inertia * (speed + axis.dot(rate)))
+        }))
     }
 
     /// What the drives add against friction at these speeds (rad/s), to these torques (N m).
@@ -184,20 +222,26 @@ impl Actuate for Spinning {
                 Demand::Change(change) => change * setting.inertia / setting.cycle.map_or(1.0, Span::seconds),
             };
         }
-        let speeds = self.speeds(&rigid.into());
-        let mut torques = self.motors(&speeds);
-        self.compensate(&speeds, &mut torques);
-        for (index, torque) in torques.into_iter().enumerate() {
-            self.drive(now, index, speeds[index], torque);
-        }
+        self.drive_all(now, &rigid.into());
     }
 
     fn due(&self) -> Option<Instant> {
-        self.wheels.iter().filter_map(|wheel| wheel.full).min()
+        let read = self.tachometer.as_ref().map(Counting::due);
+        self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).min()
     }
 
-    /// A wheel at its limit stays there until the next command.
-    fn serve(&mut self, now: Instant, _: [f64; 3]) {
+    /// A wheel at its limit stays there until the next command. Tachometers are read, and compensation follows them.
+    fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
+        let turned = self.turned.iter().map(|wheel| [wheel.angle, wheel.speed]);
+        if let Some(tachometer) = self.tachometer.as_mut().filter(|tachometer| tachometer.due() == now) {
+            tachometer.read(now, turned);
+            self.known = self.known_momentum(&rigid.into());
+            if self.compensation.is_some() {
+                self.turn(now);
+                self.drive_all(now, &rigid.into());
+                return;
+            }
+        }
         if self.wheels.iter().any(|wheel| wheel.full == Some(now)) {
             self.turn(now);
             let full: Vec<usize> =
@@ -232,6 +276,9 @@ impl Actuate for Spinning {
     }
 
     fn applied(&self, _: Instant, axis: usize, _: [f64; 2]) -> f64 {
+        if self.turned.is_empty() {
+            return self.torque(axis);
+        }
         let held = self.turned.iter().zip(self.allocation.axes());
         self.torque(axis) + held.map(|(wheel, about)| about[axis] * wheel.friction).sum::<f64>()
     }
@@ -262,7 +309,17 @@ impl Actuate for Spinning {
         self.allocation.axes().iter().zip(&self.wheels).enumerate().map(motion).collect()
     }
 
+    fn known_speeds(&self) -> Vec<f64> {
+        match &self.tachometer {
+            Some(tachometer) => tachometer.speeds().to_vec(),
+            None => self.turned.iter().map(|wheel| wheel.speed).collect(),
+        }
+    }
+
     fn stored(&self, now: Instant) -> [f64; 3] {
+        if let Some(known) = self.known {
+            return known.into();
+        }
         let (seconds, wheels) = (self.elapsed(now), self.allocation.axes().iter().zip(&self.wheels));
         wheels.fold(Vector::zeros(), |sum, (axis, wheel)| sum + axis * wheel.momentum_at(seconds)).into()
     }

@@ -157,6 +157,14 @@ impl Actuate for Unloaded {
         self.wheels.wheels(now, rate)
     }
 
+    fn known_speeds(&self) -> Vec<f64> {
+        self.wheels.known_speeds()
+    }
+
+    fn applied(&self, now: Instant, axis: usize, rates: [f64; 2]) -> f64 {
+        self.wheels.applied(now, axis, rates) + self.jets.torque(axis)
+    }
+
     fn cycle(&self) -> Option<Cycle> {
         self.jets.cycle()
     }

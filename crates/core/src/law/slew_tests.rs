@@ -71,8 +71,10 @@ fn the_same_with_friction() {
     let bearing = Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, lines: Vec::new() };
     let met = turn(wheels(40.0), vec![bearing; 4], RUBBING);
     assert_eq!(met.len(), 6, "{met:?}");
-    for ((found, wheel, slip), (at, way)) in
-        met.iter().filter(|(_, wheel, _)| *wheel == 0).zip([(12.712_848_560_1, -1.0), (166.691_652_789_7, 1.0)])
+    for ((found, wheel, slip), (at, way)) in met
+        .iter()
+        .filter(|(_, wheel, _)| *wheel == 0)
+        .zip([(12.712_848_560_1, -1.0), (166.691_652_789_7, 1.0)])
     {
         assert!((found - at).abs() < 6e-10 && slip.sign() == way, "{wheel}: {found}");
     }

@@ -15,6 +15,7 @@ use serde_json::{Map, Value, json};
 use crate::actuator::Actuator;
 use crate::estimator::Estimator;
 use crate::metrics::Gather;
+use crate::motion::turning::Bearing;
 use crate::record::{Detail, Summary};
 use crate::scenario::Scenario;
 
@@ -116,6 +117,8 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(planar::filters(scenario), "/estimators", Full);
         add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
         add(matches!(scenario.actuator, Actuator::Wheels(_)), "/wheels", Full);
+        add(!scenario.study.bearings.is_empty(), "/bearings", Full);
+        add(scenario.study.bearings.iter().any(Bearing::grips), "/wheel_events", Events);
         for topic in ["/pointing", "/rates", "/vibrations", "/energy"] {
             add(true, topic, Full);
         }

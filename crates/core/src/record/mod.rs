@@ -33,11 +33,11 @@ pub use origin::{There, difference, there};
 pub use recover::recover;
 pub use states::{Gate, Latch, Lock, Trust, Use, Watch};
 pub use topics::{
-    Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, ChannelState, Command, Energy,
-    Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Metric, MetricLine, MetricPage, Metrics,
-    ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs, Params, Pointing, Rate,
-    Rates, Residual, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
-    Wheel, WheelMotion, Wheels, WindowMean,
+    Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
+    ChannelState, Command, Energy, Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Metric, MetricLine,
+    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, OutputMotion, OutputName, Outputs,
+    Params, Pointing, Rate, Rates, Residual, Sliding, Summary, TOPICS, Torque, Torques, TrackedMode,
+    Tracking, Trigger, Vibration, Vibrations, Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -64,6 +64,8 @@ pub enum Sample<'a> {
     Estimates(&'a Estimates),
     /// An attitude filter took a sample.
     AttitudeEstimate(&'a AttitudeEstimate),
+    /// A wheel passed through zero speed, stuck, or slipped again.
+    WheelEvent(&'a WheelEvent),
     /// A cycle of a body with three axes began.
     Cycle(&'a Cycle),
     /// What adaptive observers know after a cycle's sample.
@@ -133,6 +135,8 @@ pub struct Cycle {
     pub elastic_rate_rad_s: [f64; 3],
     /// Angles beyond the target (rad).
     pub error_rad: [f64; 3],
+    /// Heat of the friction of wheels since the start (J); not a number without bearings.
+    pub friction_heat_j: f64,
 }
 
 /// The motion of a spatial body at one instant.
@@ -150,6 +154,8 @@ pub struct SpatialMotion {
     pub torques: Option<Torques>,
     /// Wheels about axes of their own.
     pub wheels: Option<Wheels>,
+    /// Their bearings.
+    pub bearings: Option<Bearings>,
 }
 
 /// Which motions a record wants whole, stretch by stretch.
@@ -356,6 +362,7 @@ trait TakeRow {
             Sample::Estimates(estimates) => self.take(now, estimates),
             Sample::AttitudeEstimate(estimate) => self.take(now, estimate),
             Sample::Tracking(tracking) => self.take(now, tracking),
+            Sample::WheelEvent(event) => self.take(now, event),
             Sample::Log(line) => self.take(now, line),
             Sample::Scene(scene) => self.take(now, scene),
             Sample::Frames(frames) => self.take(now, frames),
@@ -369,6 +376,9 @@ trait TakeRow {
                 self.take(now, &motion.energy)?;
                 if let Some(torques) = &motion.torques {
                     self.take(now, torques)?;
+                }
+                if let Some(bearings) = &motion.bearings {
+                    self.take(now, bearings)?;
                 }
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
             }

@@ -11,6 +11,7 @@ use crate::law::Law;
 use crate::motion::turning::Surroundings;
 use crate::quantity::{NonNegative, Positive};
 use crate::record::Detail;
+use crate::sensor::Sensor;
 use crate::time::Span;
 
 /// No run takes more steps of one kind: it would take days.
@@ -201,7 +202,11 @@ impl Scenario {
             steps.push((key, span.max(0.0) / period.seconds()));
         };
         for (index, sensor) in self.sensor.iter().enumerate() {
-            if let Some(period) = sensor.period(None) {
+            let own = match sensor {
+                Sensor::Tachometer(tachometer) => Some(tachometer.period),
+                _ => sensor.period(None),
+            };
+            if let Some(period) = own {
                 each(format!("{}.period", self.sensor_key(index)), duration, period);
             }
         }

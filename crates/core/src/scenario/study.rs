@@ -15,6 +15,7 @@ use crate::estimator::{Estimator, adaptive, attitude};
 use crate::law::{ActiveDamping, Authority, Distribution, Law, PhasePlane, Promise, Target, band, targeted};
 use crate::motion::turning::Bearing;
 use crate::quantity::{Finite, Positive};
+use crate::random::Seed;
 use crate::time::{Instant, Span};
 
 /// A run without a period of its own is assessed once in so long (s).
@@ -131,11 +132,12 @@ impl Study {
         if let Actuator::Wheels(wheels) = &scenario.actuator {
             let allocation = wheels.allocation().map_err(|fault| fault.within("actuator.wheels"))?;
             self.wheels = Some(allocation);
-            if let Some(key) = wheels.bears() {
-                let key = format!("actuator.wheels.{key}");
+            let tachometer = scenario.sensor.tachometer().map(|(index, _)| scenario.sensor_key(index));
+            let own = wheels.bears().map(|key| format!("actuator.wheels.{key}"));
+            if let Some(key) = own.or(tachometer) {
                 let Some(flexible) = scenario.body.flexible() else {
-                    let why = "is that of wheels on a `[spacecraft]`: the modes of a `[body.spatial]` do not act back on its \
-                               rotation, which wheels that slip and shake need";
+                    let why = "is for wheels on a `[spacecraft]`: the modes of a `[body.spatial]` do not act back on its rotation, \
+                               against which wheels turn";
                     return Err(Fault::new(key, why));
                 };
                 let bearings = wheels.bearings((body, flexible));
@@ -299,7 +301,7 @@ impl Study {
     }
 
     /// The actuator of a run.
-    pub fn actuator(&self, scenario: &Scenario) -> Box<dyn Actuate> {
+    pub fn actuator(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Actuate> {
         let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
         let setting = |(axis, model): (usize, &Planar)| Setting {
             axis,
@@ -313,7 +315,8 @@ impl Study {
         match (&scenario.actuator, &self.groups, &self.wheels) {
             (Actuator::Jets(jets), Some(groups), _) => Box::new(Pulsing::new(jets, groups, self.tick)),
             (Actuator::Wheels(wheels), _, Some(allocation)) => {
-                let spinning = wheels.start(allocation, &settings);
+                let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
+                let spinning = wheels.start(allocation, &settings).read_by(tachometer);
                 match (&wheels.unloading, &self.unloading) {
                     (Some(unloading), Some(groups)) => Box::new(unloading.start(spinning, groups)),
                     _ => Box::new(spinning),

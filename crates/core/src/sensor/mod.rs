@@ -4,6 +4,7 @@ mod counter;
 mod gyro;
 mod sampled;
 mod star_tracker;
+mod tachometer;
 
 use std::fmt;
 
@@ -21,6 +22,7 @@ use crate::time::{Instant, Span};
 pub use gyro::{AtCycles, Gyro};
 pub use sampled::{AtSamples, Fault, Outage, Sampled};
 pub use star_tracker::StarTracker;
+pub use tachometer::{Counting, Tachometer};
 
 /// The kinds of sensor.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -35,6 +37,8 @@ pub enum Sensor {
     Gyro(Gyro),
     /// The attitude at exposures, told later.
     StarTracker(StarTracker),
+    /// The speeds of wheels, which their drives know by it; it tells nothing of the body.
+    Tachometer(Tachometer),
     /// A sensor from outside of this crate, which no scenario file can name.
     Own(Own<dyn Instrument>),
 }
@@ -169,8 +173,14 @@ impl Sensor {
             Self::Sampled(sampled) => Box::new(sampled.start(axes, seed, ordinal)),
             Self::Gyro(gyro) => Box::new(gyro.start(axes, seed, ordinal)),
             Self::StarTracker(tracker) => Box::new(tracker.start(seed, ordinal)),
+            Self::Tachometer(_) => Box::new(tachometer::Blind),
             Self::Own(own) => own.start(axes, seed),
         }
+    }
+
+    /// Whether it measures the body.
+    pub fn sees_body(&self) -> bool {
+        !matches!(self, Self::Tachometer(_))
     }
 
     /// Whether it knows the motion at every instant.
@@ -185,14 +195,16 @@ impl Sensor {
             Self::Sampled(_) => "sampled",
             Self::Gyro(_) => "gyro",
             Self::StarTracker(_) => "star_tracker",
+            Self::Tachometer(_) => "tachometer",
             Self::Own(_) => "own",
         }
     }
 
-    /// The period of its samples under a law with a period of its own or none; none of a continuous sensor.
+    /// The period of its samples of the body under a law with a period of its own or none; none of a continuous sensor, and of
+    /// a tachometer, which tells nothing of the body.
     pub fn period(&self, law: Option<Span>) -> Option<Span> {
         match self {
-            Self::Continuous => None,
+            Self::Continuous | Self::Tachometer(_) => None,
             Self::Sampled(sampled) => Some(sampled.period),
             Self::Gyro(gyro) => gyro.period.or(law),
             Self::StarTracker(tracker) => Some(tracker.period),
@@ -203,7 +215,7 @@ impl Sensor {
     /// The point of the structure at which it is, if it names one.
     pub fn point(&self) -> Option<&str> {
         match self {
-            Self::Continuous | Self::Own(_) => None,
+            Self::Continuous | Self::Tachometer(_) | Self::Own(_) => None,
             Self::Sampled(sampled) => sampled.point.as_deref(),
             Self::Gyro(gyro) => gyro.point.as_deref(),
             Self::StarTracker(tracker) => tracker.point.as_deref(),
@@ -213,7 +225,7 @@ impl Sensor {
     /// Standard deviation of a measured rate about an axis (rad/s), if rates are measured.
     pub fn rate_noise(&self, axis: usize) -> Option<f64> {
         match self {
-            Self::Continuous | Self::StarTracker(_) => None,
+            Self::Continuous | Self::StarTracker(_) | Self::Tachometer(_) => None,
             Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
             Self::Gyro(gyro) => Some(gyro.rate_noise(axis)),
             Self::Own(own) => own.rate_noise(),
@@ -226,7 +238,7 @@ impl Sensor {
             Self::Sampled(sampled) => sampled.angle_noise(),
             Self::StarTracker(tracker) => tracker.angle_noise(),
             Self::Own(own) => own.angle_noise(),
-            Self::Continuous | Self::Gyro(_) => 0.0,
+            Self::Continuous | Self::Gyro(_) | Self::Tachometer(_) => 0.0,
         }
     }
 
@@ -235,6 +247,7 @@ impl Sensor {
         match self {
             Self::Sampled(sampled) => &sampled.faults,
             Self::StarTracker(tracker) => &tracker.faults,
+            Self::Tachometer(tachometer) => &tachometer.faults,
             Self::Continuous | Self::Gyro(_) | Self::Own(_) => &[],
         }
     }
@@ -255,6 +268,19 @@ impl Parts<Sensor> {
         &self[0]
     }
 
+    /// How many measure the body.
+    pub fn of_body(&self) -> usize {
+        self.iter().filter(|sensor| sensor.sees_body()).count()
+    }
+
+    /// The tachometer, and its place among the sensors, if there is one.
+    pub fn tachometer(&self) -> Option<(usize, &Tachometer)> {
+        self.iter().enumerate().find_map(|(index, sensor)| match sensor {
+            Sensor::Tachometer(tachometer) => Some((index, tachometer)),
+            _ => None,
+        })
+    }
+
     /// How many of its kind come before a sensor.
     pub fn ordinal(&self, index: usize) -> usize {
         let kind = self[index].kind();
@@ -263,8 +289,10 @@ impl Parts<Sensor> {
 
     /// Whether a sensor tells where the body points: a gyro only where no other does, which then is known exactly.
     pub fn orients(&self, index: usize) -> bool {
-        let gyro = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(_));
-        !gyro(&self[index]) || self.iter().all(gyro) && index == 0
+        let rates = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(_));
+        let mut of_body = self.iter().filter(|sensor| sensor.sees_body());
+        let is_first = self[..index].iter().all(|sensor| !sensor.sees_body());
+        self[index].sees_body() && (!rates(&self[index]) || of_body.all(rates) && is_first)
     }
 
     /// The shortest period of their samples under a law with a period of its own or none; none of a continuous sensor.

@@ -4,7 +4,7 @@ use crate::body::spatial::{AXES, angles};
 use crate::law::Damped;
 use crate::record::foxglove::Level;
 use crate::record::row::Stamp;
-use crate::record::{Adaptation, Arrival, Record, RecordError};
+use crate::record::{Adaptation, Arrival, Record, RecordError, Sliding, WheelEvent};
 use crate::scenario::Scenario;
 use crate::sensor::Orientation;
 use crate::sim::journal::{Journal, adapted, opening};
@@ -123,6 +123,22 @@ impl Events {
             self.journal.tell(now, manoeuvre, line, record)?;
         }
         Ok(())
+    }
+
+    /// A wheel passes through zero speed, sticks, or slips again.
+    pub fn slipped(
+        &self,
+        now: Instant,
+        event: &WheelEvent,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        let what = match (event.before, event.after) {
+            (_, Sliding::Stuck) => "sticks",
+            (Sliding::Stuck, _) => "slips again",
+            _ => "passes through zero speed",
+        };
+        let line = format!("wheel {} {what}", event.wheel + 1);
+        self.journal.tell(now, (Level::Info, "wheels"), line, record)
     }
 
     /// What has changed in active damping, and in the trust in what it acts on.

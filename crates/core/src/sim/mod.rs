@@ -191,6 +191,7 @@ impl Simulation {
         self.drive.serve(self.now, truth.rigid);
         self.depart(record)?;
         self.turned(self.now);
+        self.tell_first_slips();
         self.tell_begin(record)
     }
 
@@ -259,6 +260,7 @@ impl Simulation {
             self.drive.serve(now, truth.rigid);
             self.depart(record)?;
         }
+        self.tell_slips(record)?;
         self.tell(record)?;
         self.show(record)
     }

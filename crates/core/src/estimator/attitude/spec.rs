@@ -145,7 +145,7 @@ impl AttitudeFilter {
                 let noise = known([sampled.angle_noise(); 3]);
                 Some((Span::ZERO, noise.map(|noise| Matrix3::from_diagonal(&squares(noise)))))
             }
-            Sensor::Continuous | Sensor::Gyro(_) | Sensor::Own(_) => None,
+            Sensor::Continuous | Sensor::Gyro(_) | Sensor::Tachometer(_) | Sensor::Own(_) => None,
         }
     }
 

@@ -118,10 +118,9 @@ impl Borne<'_> {
     /// Momentum of the rotors that slip (N m s).
     pub fn stored(&self, spins: impl Iterator<Item = f64>) -> Vector {
         let rotors = self.rotors.iter().zip(self.slips).zip(spins);
-        rotors.filter(|((_, slip), _)| **slip != Slip::Stuck).fold(
-            Vector::zeros(),
-            |sum, ((rotor, _), momentum)| sum + rotor.axis * momentum,
-        )
+        rotors
+            .filter(|((_, slip), _)| **slip != Slip::Stuck)
+            .fold(Vector::zeros(), |sum, ((rotor, _), momentum)| sum + rotor.axis * momentum)
     }
 
     /// Whether any rotor is stuck.
@@ -152,8 +151,11 @@ impl Borne<'_> {
             let stuck = slip == Slip::Stuck;
             let speed = if stuck { 0.0 } else { self.speed(index, at.x, rate) };
             let friction = bearing.friction(speed, slip);
-            spun.now[index] =
-                if stuck { Vector::zeros() } else { Vector::new(rotor.torque - friction, speed, friction * speed) };
+            spun.now[index] = if stuck {
+                Vector::zeros()
+            } else {
+                Vector::new(rotor.torque - friction, speed, friction * speed)
+            };
             for line in &bearing.lines {
                 let (sin, cos) = libm::sincos(line.order * at.y);
                 let wave = [speed * speed * cos, speed * speed * sin];

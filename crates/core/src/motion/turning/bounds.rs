@@ -106,11 +106,7 @@ impl Turning {
                 waves.push((line, wave));
             }
         }
-        let torque = [
-            held + bound + shaken[0],
-            bound * slow + shaken[1],
-            bound * slow * slow + shaken[2],
-        ];
+        let torque = [held + bound + shaken[0], bound * slow + shaken[1], bound * slow * slow + shaken[2]];
         let size = |index: usize| tensor(model.modes[index].moments).norm();
         let changed = |of: &[f64]| (0..of.len()).map(|index| size(index) * of[index]).sum::<f64>();
         let own = |index: usize, order: usize| {
@@ -131,11 +127,13 @@ impl Turning {
         let stiff = 1.0 / ((model.inverse + model.bending).norm());
         let mobility = if c0 < 0.5 * stiff { 1.0 / (stiff - c0) } else { f64::INFINITY };
         let left = model.left.norm();
-        let elastic = |of: &[f64]| left * modes.iter().zip(of).map(|(mode, p)| mode.rotation.norm() * p).sum::<f64>();
+        let elastic =
+            |of: &[f64]| left * modes.iter().zip(of).map(|(mode, p)| mode.rotation.norm() * p).sum::<f64>();
         let h0 = self.seen.momentum.norm() + h * torque[0];
         let h1 = torque[0] + w0 * h0;
         // First derivatives.
-        let u0: Vec<f64> = each().map(|((of, rotor), speed)| rotor.torque.abs() + of.coulomb + of.viscous * speed).collect();
+        let u0: Vec<f64> =
+            each().map(|((of, rotor), speed)| rotor.torque.abs() + of.coulomb + of.viscous * speed).collect();
         let g1 = h1 + u0.iter().sum::<f64>();
         let given = |index: usize| self.acting.forces.get(index).map_or(0.0, |force| force.abs());
         let f0: Vec<f64> = (0..count)
@@ -143,17 +141,18 @@ impl Turning {
             .collect();
         let damped = |of: usize| 2.0 * modes[of].damping * modes[of].frequency;
         let square = |of: usize| modes[of].frequency * modes[of].frequency;
-        let p1: Vec<f64> = (0..count).map(|of| square(of) * still[of] + damped(of) * q1[of] + f0[of]).collect();
+        let p1: Vec<f64> =
+            (0..count).map(|of| square(of) * still[of] + damped(of) * q1[of] + f0[of]).collect();
         let w1 = mobility * (g1 + elastic(&p1) + c1 * w0);
         let turning = g1 + c1 * w0 + (c0 + locked) * w1;
         let q2: Vec<f64> = (0..count).map(|of| p1[of] + modes[of].rotation.norm() * turning).collect();
         // Second ones.
         let h2 = torque[1] + w1 * h0 + w0 * h1;
-        let u1: Vec<f64> = each().zip(&u0).map(|(((of, _), _), u)| of.viscous * (u / of.inertia + w1)).collect();
+        let u1: Vec<f64> =
+            each().zip(&u0).map(|(((of, _), _), u)| of.viscous * (u / of.inertia + w1)).collect();
         let g2 = h2 + u1.iter().sum::<f64>();
-        let f1: Vec<f64> = (0..count)
-            .map(|of| size(of) * (w0 * w1 + tide * slow) + own(of, 1) + beside(of, &q2))
-            .collect();
+        let f1: Vec<f64> =
+            (0..count).map(|of| size(of) * (w0 * w1 + tide * slow) + own(of, 1) + beside(of, &q2)).collect();
         let p2: Vec<f64> = (0..count).map(|of| square(of) * q1[of] + damped(of) * q2[of] + f1[of]).collect();
         let c2 = changed(&q2);
         let w2 = mobility * (g2 + elastic(&p2) + 2.0 * c1 * w1 + c2 * w0);
@@ -162,9 +161,8 @@ impl Turning {
         // Third ones.
         let u2 = each().zip(&u1).map(|(((of, _), _), u)| of.viscous * (u / of.inertia + w2)).sum::<f64>();
         let g3 = torque[2] + w2 * h0 + 2.0 * w1 * h1 + w0 * h2 + u2;
-        let f2 = |of: usize| {
-            size(of) * (w1 * w1 + w0 * w2 + tide * slow * slow) + own(of, 2) + beside(of, &q3)
-        };
+        let f2 =
+            |of: usize| size(of) * (w1 * w1 + w0 * w2 + tide * slow * slow) + own(of, 2) + beside(of, &q3);
         let p3: Vec<f64> = (0..count).map(|of| square(of) * q2[of] + damped(of) * q3[of] + f2(of)).collect();
         let third = mobility * (g3 + elastic(&p3) + 3.0 * c1 * w2 + 3.0 * c2 * w1 + changed(&q3) * w0);
         let grown = Assumed {

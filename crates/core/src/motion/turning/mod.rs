@@ -13,6 +13,8 @@
 //! seen between is one shorter step beside it, so that looking changes nothing.
 
 mod bearing;
+#[cfg(test)]
+mod borne_tests;
 mod bounds;
 mod flow;
 mod model;

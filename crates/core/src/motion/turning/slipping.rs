@@ -67,7 +67,8 @@ impl Turning {
                 force += mode.pulled(tide);
             }
             if let Some(beside) = &model.beside {
-                force -= seen.rates.iter().enumerate().map(|(other, of)| beside[(index, other)] * of).sum::<f64>();
+                force -=
+                    seen.rates.iter().enumerate().map(|(other, of)| beside[(index, other)] * of).sum::<f64>();
             }
             let w = mode.frequency;
             pushed += mode.rotation * (force - w * w * q - 2.0 * mode.damping * w * rate);
@@ -91,7 +92,8 @@ impl Turning {
         if resting.is_empty() {
             return;
         }
-        let with_body = |index: usize| self.bearings[index].inertia * self.acting.rotors[index].axis.dot(&rate);
+        let with_body =
+            |index: usize| self.bearings[index].inertia * self.acting.rotors[index].axis.dot(&rate);
         let momenta: Vec<f64> = resting.iter().map(|index| with_body(*index)).collect();
         for (index, momentum) in resting.iter().zip(momenta) {
             let spin = &mut self.here.spins[*index];
@@ -120,7 +122,8 @@ impl Turning {
             return (friction.abs() > bearing.breakaway * HOLDS).then(|| (index, Slip::of(friction)));
         }
         let torque = rotor.torque - bearing.friction(0.0, slip);
-        (slip.sign() * (torque / bearing.inertia - along) < 0.0).then_some((index, Slip::Stuck))
+        let back = slip.sign() * (bearing.inertia * along - torque);
+        (back > bearing.breakaway * (1.0 - HOLDS)).then_some((index, Slip::Stuck))
     }
 
     /// Whether a rotor of such a momentum (N m s) is at rest when it is there first, and how it slips.
@@ -134,10 +137,21 @@ impl Turning {
         }
     }
 
+    /// How the rotors in bearings slip.
+    pub fn slips(&self) -> &[Slip] {
+        &self.slips
+    }
+
+    /// Heat of the friction of all of them since the start (J), if there are any.
+    pub fn friction_heat(&self) -> Option<f64> {
+        (!self.bearings.is_empty()).then(|| self.here.spins.iter().map(|spin| spin.sums.z).sum())
+    }
+
     /// The rotors in bearings at the instant seen last.
     pub fn turned(&self, around: Option<(&dyn Surroundings, f64)>) -> Vec<Turned> {
         let borne = self.borne_by(&self.slips);
-        let acceleration = if borne.sticks() { self.acceleration(&self.slips, around) } else { Vector::zeros() };
+        let acceleration =
+            if borne.sticks() { self.acceleration(&self.slips, around) } else { Vector::zeros() };
         let of = |(index, spin): (usize, &Spin)| {
             let (bearing, rotor, slip) = (&self.bearings[index], &borne.rotors[index], borne.slips[index]);
             let (angle, heat) = (spin.sums.y + spin.lost.y, spin.sums.z);
@@ -147,7 +161,14 @@ impl Turning {
                 return Turned { momentum, speed: 0.0, angle, friction, heat, slip };
             }
             let speed = borne.speed(index, spin.sums.x, &self.seen.rate);
-            Turned { momentum: spin.sums.x, speed, angle, friction: bearing.friction(speed, slip), heat, slip }
+            Turned {
+                momentum: spin.sums.x,
+                speed,
+                angle,
+                friction: bearing.friction(speed, slip),
+                heat,
+                slip,
+            }
         };
         self.here.spins.iter().enumerate().take(borne.rotors.len()).map(of).collect()
     }

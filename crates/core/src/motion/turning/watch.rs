@@ -10,15 +10,17 @@ use super::flow::Turning;
 use super::model::Surroundings;
 use super::state::State;
 
+/// A rotor that lets go begins at a margin of 0, which this keeps apart from rounding (rad/s).
+const SPARE: f64 = 1e-12;
+
 /// No part of a step is shorter (s): an instant has so many.
 const TICK: f64 = 1e-15;
 
 /// The step that follows, and what happens on it.
 #[derive(Clone, Debug)]
 pub(super) struct Ahead {
-    /// Seconds from the departure to the start of the step, and its length.
+    /// Seconds from the departure to the start of the step.
     pub from: f64,
-    pub h: f64,
     /// The state at its end.
     pub to: State,
     /// The first instant since the departure (s) at which a rotor comes to rest or lets go, and which one.
@@ -67,18 +69,22 @@ impl Turning {
                 Margin::Speed(index, _) => (index, bounds.jerk_of(index)),
                 Margin::Grip(index, _) => (index, bounds.third * self.bearings[index].inertia),
             };
-            if let Some(t) = self.first((margin, most), (0.0, start), (h, end), around) {
+            // One that has just let go turns back only if it does so by more than rounding.
+            let spare = if let (Margin::Speed(..), true) = (margin, start < SPARE) { SPARE } else { 0.0 };
+            let margin = (margin, spare, most);
+            if let Some(t) = self.first(margin, (0.0, start + spare), (h, end + spare), around) {
                 let at = from + t;
                 if meets.is_none_or(|(before, _)| at < before) {
                     meets = Some((at, index));
                 }
             }
         }
-        self.ahead = Some(Ahead { from, h, to, meets });
+        self.ahead = Some(Ahead { from, to, meets });
     }
 
     fn margins(&self) -> Vec<Margin> {
-        let gripped = (0..self.acting.rotors.len().min(self.bearings.len())).filter(|of| self.bearings[*of].grips());
+        let gripped =
+            (0..self.acting.rotors.len().min(self.bearings.len())).filter(|of| self.bearings[*of].grips());
         let of = |index: usize| match self.slips[index] {
             Slip::Stuck => vec![Margin::Grip(index, 1.0), Margin::Grip(index, -1.0)],
             slip => vec![Margin::Speed(index, slip.sign())],
@@ -104,7 +110,7 @@ impl Turning {
     /// The first zero of a margin, whose second derivative is at most so much, between two instants of the step.
     fn first(
         &mut self,
-        (margin, most): (Margin, f64),
+        (margin, spare, most): (Margin, f64, f64),
         low: (f64, f64),
         high: (f64, f64),
         around: Around,
@@ -119,16 +125,22 @@ impl Turning {
             return (slope <= bend && high.1 <= 0.0).then_some(high.0);
         }
         if slope < -bend {
-            return (high.1 <= 0.0).then(|| self.zero(margin, low, high, around));
+            return (high.1 <= 0.0).then(|| self.zero((margin, spare), low, high, around));
         }
         let middle = low.0 + 0.5 * width;
-        let value = self.margin_at(margin, middle, around);
-        let before = self.first((margin, most), low, (middle, value), around);
-        before.or_else(|| self.first((margin, most), (middle, value), high, around))
+        let value = self.margin_at((margin, spare), middle, around);
+        let before = self.first((margin, spare, most), low, (middle, value), around);
+        before.or_else(|| self.first((margin, spare, most), (middle, value), high, around))
     }
 
     /// The zero of a margin that falls between two instants, by regula falsi (Illinois).
-    fn zero(&mut self, margin: Margin, mut low: (f64, f64), mut high: (f64, f64), around: Around) -> f64 {
+    fn zero(
+        &mut self,
+        margin: (Margin, f64),
+        mut low: (f64, f64),
+        mut high: (f64, f64),
+        around: Around,
+    ) -> f64 {
         if low.1 <= 0.0 {
             return low.0;
         }
@@ -159,9 +171,9 @@ impl Turning {
         high.0
     }
 
-    fn margin_at(&mut self, margin: Margin, t: f64, around: Around) -> f64 {
+    fn margin_at(&mut self, (margin, spare): (Margin, f64), t: f64, around: Around) -> f64 {
         self.step_beside(t, around);
-        self.margin(margin, around)
+        self.margin(margin, around) + spare
     }
 
     /// A rotor comes to rest, or lets go, at the instant seen last: the departure decides what it does.

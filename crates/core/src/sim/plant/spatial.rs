@@ -4,7 +4,7 @@ use super::two_way::TwoWay;
 use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState, Vector, beyond};
 use crate::body::{Phase, State, Wrench};
 use crate::environment::Around;
-use crate::motion::turning::{Flexible, Rotor, Surroundings, Turned};
+use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
 use crate::record::{Energy, Pointing, Record, RecordError, Vibration, Vibrations};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
@@ -66,9 +66,8 @@ impl SpatialPlant {
         let elsewhere = others.iter().map(beyond_first).collect();
         let hub = rotations(&study.acts_at);
         let around = study.around.clone();
-        let two_way = flexible.map(|of| {
-            Box::new(TwoWay::new(body, of, around.clone(), [&sensed, &hub], &study.bearings))
-        });
+        let two_way = flexible
+            .map(|of| Box::new(TwoWay::new(body, of, around.clone(), [&sensed, &hub], &study.bearings)));
         let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
         Self {
             rigid,
@@ -137,6 +136,16 @@ impl SpatialPlant {
             self.truth = None;
         }
         Ok(met)
+    }
+
+    /// How wheels in bearings slip.
+    pub fn slips(&self) -> &[Slip] {
+        self.two_way.as_deref().map_or(&[], TwoWay::slips)
+    }
+
+    /// Heat of the friction of wheels since the start (J); not a number without bearings.
+    pub fn friction_heat(&self) -> f64 {
+        self.two_way.as_deref().and_then(TwoWay::friction_heat).unwrap_or(f64::NAN)
     }
 
     /// Wheels in bearings at the instant seen last; none without friction, imbalance and tachometer.

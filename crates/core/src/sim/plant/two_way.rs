@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Quaternion};
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState, Vector, vector};
 use crate::body::{Phase, Wrench};
 use crate::environment::Around;
-use crate::motion::turning::{Acting, Bearing, Flexible, Surroundings, Turned, Turning};
+use crate::motion::turning::{Acting, Bearing, Flexible, Slip, Surroundings, Turned, Turning};
 use crate::sensor::{Orientation, Truth};
 
 /// The motion, and what the plant needs to turn what acts and what is seen into its terms.
@@ -100,6 +100,16 @@ impl TwoWay {
     /// Brings the body to the instant at which a rotor comes to rest or lets go.
     pub fn reach(&mut self, h: f64, began: f64) {
         self.turning.reach(h, self.outside.since(began));
+    }
+
+    /// How rotors in bearings slip.
+    pub fn slips(&self) -> &[Slip] {
+        self.turning.slips()
+    }
+
+    /// Heat of the friction of all rotors since the start (J), if they have bearings.
+    pub fn friction_heat(&self) -> Option<f64> {
+        self.turning.friction_heat()
     }
 
     /// Rotors in bearings at the instant seen last, after a departure so long after the start (s).
