@@ -17,7 +17,7 @@ const SHIPPED: [(&str, &str); 5] = [
 ];
 
 /// Runs that have what the others have not: other estimators, actuators and bodies.
-const OTHERS: [(&str, &str); 10] = [
+const OTHERS: [(&str, &str); 12] = [
     ("relay-sampled", "--set duration=1000"),
     ("rotation-thrusters", ""),
     ("rotation-nonlinear", ""),
@@ -28,6 +28,8 @@ const OTHERS: [(&str, &str); 10] = [
     ("slew-wheel-lqg", ""),
     ("momentum-unloading", "--set duration=1400"),
     ("thruster-phase-plane", "--set duration=60"),
+    ("wheel-friction", "--set duration=60"),
+    ("wheel-run-up", "--set duration=10"),
 ];
 
 /// What a layout's panels show: paths and topics.

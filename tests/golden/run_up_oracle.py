@@ -3,16 +3,18 @@
     pip install numpy scipy
     python3 tests/golden/run_up_oracle.py > tests/golden/turning/run-up.csv
 
-The reference spacecraft of craft_oracle.py with its four wheels. The first is out of balance, 7.2e-6 kg m and
-3.0e-7 kg m^2, at (.3, .3, -.4); it speeds up by 1 rad/s^2 from 40 rad/s. The wheels' momenta cancel and so do their
-torques, so that the body moves by the imbalance alone, by 1e-6 rad, and linear equations do: those of
-6 + 8 coordinates, translation and rotation of the hub and the clamped modes, with the full mass matrix. Free modes and
-the reduction about the centre of mass are not used. Explicit Runge-Kutta of order 8, relative tolerance 1e-12.
+The reference spacecraft of craft_oracle.py with its four wheels. The first is out of balance, 7.2e-6 kg m
+and 3.0e-7 kg m^2, at (.3, .3, -.4); it speeds up by 1 rad/s^2 from 40 rad/s. The wheels' momenta cancel and
+so do their torques, so that the body moves by the imbalance alone, by 1e-6 rad, and linear equations do:
+those of 6 + 8 coordinates, translation and rotation of the hub and the clamped modes, with the full mass
+matrix. Free modes and the reduction about the centre of mass are not used. Explicit Runge-Kutta of order 8,
+relative tolerance 1e-12.
 
 A line each: time, the hub's rate (3), the speed of the wheel.
 
-turning/f.csv, steady amplitudes of the rate over the speed of that wheel, is not made here: it is from the full 6 + 8
-problem and from free modes, which agree to 1.8e-12.
+turning/f.csv, steady amplitudes of the rate over the speed of that wheel, is not made here: it is from the
+full 6 + 8 problem and from free modes, which agree to 1.8e-12. turning/e.csv, a slew by wheels with friction,
+is from the two codes of turning_oracle.py.
 """
 
 import numpy as np
@@ -65,7 +67,9 @@ for panel, (root, turn) in enumerate(PANELS):
     t, r = turn @ TRANSLATION, turn @ ROTATION
     dt[:, 4 * panel : 4 * panel + 4] = t
     dr[:, 4 * panel : 4 * panel + 4] = r + cross(root) @ t
-full = np.block([[mass * np.eye(3), -cross(static), dt], [cross(static), inertia, dr], [dt.T, dr.T, np.eye(8)]])
+full = np.block(
+    [[mass * np.eye(3), -cross(static), dt], [cross(static), inertia, dr], [dt.T, dr.T, np.eye(8)]]
+)
 solved = np.linalg.inv(full)
 
 

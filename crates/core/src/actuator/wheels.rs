@@ -162,6 +162,12 @@ impl Wheels {
         }
     }
 
+    /// The largest speed at the start, or of the bias (rad/s).
+    pub fn fastest(&self) -> f64 {
+        let bias = self.speed_bias.map_or(0.0, |bias| bias.speed.get().abs());
+        self.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::max)
+    }
+
     /// The bearings of the wheels on a body.
     ///
     /// # Errors

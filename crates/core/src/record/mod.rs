@@ -374,12 +374,8 @@ trait TakeRow {
                 self.take(now, &motion.rates)?;
                 self.take(now, &motion.vibrations)?;
                 self.take(now, &motion.energy)?;
-                if let Some(torques) = &motion.torques {
-                    self.take(now, torques)?;
-                }
-                if let Some(bearings) = &motion.bearings {
-                    self.take(now, bearings)?;
-                }
+                motion.torques.as_ref().map_or(Ok(()), |torques| self.take(now, torques))?;
+                motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take(now, bearings))?;
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
             }
             Sample::Motion(motion) => {

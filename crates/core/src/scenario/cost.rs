@@ -8,7 +8,7 @@ use crate::body::spatial::{LONGEST_TURN, Periodic, vector};
 use crate::document::Fault;
 use crate::estimator::Estimator;
 use crate::law::Law;
-use crate::motion::turning::Surroundings;
+use crate::motion::turning::{Bearing, SHAKE, Surroundings};
 use crate::quantity::{NonNegative, Positive};
 use crate::record::Detail;
 use crate::sensor::Sensor;
@@ -251,6 +251,7 @@ impl Scenario {
         if let Some(body) = self.body.spatial() {
             let rate = self.fastest_turn(body);
             let step = self.body.flexible().map_or(LONGEST_TURN / rate, |flexible| flexible.step(rate));
+            let step = step.min(self.shaken_every());
             if step.is_finite() {
                 steps.push((TURNS.to_owned(), duration / step));
             }
@@ -265,6 +266,13 @@ impl Scenario {
         let around = self.study.around.as_ref().map_or(0.0, Surroundings::frequency);
         let own = body.disturbance.as_ref().map_or(0.0, Periodic::frequency);
         limits.fold(start, f64::max) + around + own
+    }
+
+    /// How often steps follow the imbalance of wheels, at their speed at the start or their bias (s).
+    fn shaken_every(&self) -> f64 {
+        let Actuator::Wheels(wheels) = &self.actuator else { return f64::INFINITY };
+        let highest = self.study.bearings.iter().map(Bearing::highest).fold(0.0, f64::max);
+        SHAKE / (highest * wheels.fastest())
     }
 
     /// What a log of this detail holds beside what changes: the key, and how many messages.

@@ -31,5 +31,6 @@ mod watch;
 pub use bearing::{Bearing, Line, Slip};
 pub use flow::{Acting, Effort, Turning};
 pub use model::{Flexible, FreeMode, Rotor, Surroundings};
+pub use pace::SHAKE;
 pub use slipping::Turned;
 pub use state::Seen;
