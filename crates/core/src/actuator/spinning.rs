@@ -46,7 +46,7 @@ pub struct Spinning {
     tachometer: Option<Counting>,
     /// The momentum that they store by its last reading (N m s).
     known: Option<Vector>,
-    compensation: Option<Compensation>,
+    compensation: Option<Box<Compensation>>,
 }
 
 /// A wheel.
@@ -97,6 +97,7 @@ impl Spinning {
     }
 
     /// Makes their drives know the speeds by a tachometer alone.
+    #[must_use]
     pub fn read_by(mut self, tachometer: Option<(&Tachometer, Seed)>) -> Self {
         let rate = Vector::from_fn(|axis, _| self.settings.get(axis).map_or(0.0, |setting| setting.rate));
         self.tachometer = tachometer.map(|(tachometer, seed)| tachometer.start(self.speeds(&rate), seed));
@@ -202,7 +203,7 @@ impl Spinning {
 
     /// What the drives add against friction at these speeds (rad/s), to these torques (N m).
     fn compensate(&self, speeds: &[f64], torques: &mut [f64]) {
-        let Some(Compensation { coulomb, viscous }) = &self.compensation else { return };
+        let Some(Compensation { coulomb, viscous }) = self.compensation.as_deref() else { return };
         for (wheel, (torque, speed)) in torques.iter_mut().zip(speeds).enumerate() {
             // One at rest is to follow the torque.
             let way = if *speed == 0.0 { *torque } else { *speed };

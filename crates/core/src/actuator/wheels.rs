@@ -46,10 +46,10 @@ pub struct Wheels {
     pub speeds: Vec<Finite>,
     /// Friction in their bearings; left out, there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub friction: Option<Friction>,
+    pub friction: Option<Box<Friction>>,
     /// Torque that their drives add against friction, by the speeds that they know; left out, none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub compensation: Option<Compensation>,
+    pub compensation: Option<Box<Compensation>>,
     /// Imbalance; left out, they have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imbalance: Option<Box<Imbalance>>,
@@ -143,7 +143,7 @@ impl Wheels {
             friction.check(count).map_err(|fault| fault.within("friction"))?;
         }
         if let Some(compensation) = &self.compensation {
-            let Compensation { coulomb, viscous } = compensation;
+            let Compensation { coulomb, viscous } = &**compensation;
             let checked = coulomb.check("coulomb", count).and_then(|()| viscous.check("viscous", count));
             checked.map_err(|fault| fault.within("compensation"))?;
         }
