@@ -15,7 +15,7 @@ fn fingerprint(text: &str) -> u64 {
 #[test]
 fn runs_repeat_to_the_last_bit() {
     // (scenario, topic, fingerprint): undamped with adaptation; coupled modes; damped with noise, quadrature and drawn numbers;
-    // three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
+    // wheels with friction, tachometers and an attitude filter; three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
     let runs = [
         ("relay-adaptive", "", "/command", 0xfed5_1b8d_2885_31dd),
         ("relay-adaptive", "", "/adaptation", 0x6fc9_7027_b350_262f),
@@ -24,6 +24,8 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
         ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xe18f_c212_5f78_e08b),
+        ("wheel-friction", " --runs 5:6", "/wheel_events", 0),
+        ("wheel-friction", " --runs 5:6", "/metrics", 0),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
     ];

@@ -17,7 +17,7 @@ const SHIPPED: [(&str, &str); 5] = [
 ];
 
 /// Runs that have what the others have not: other estimators, actuators and bodies.
-const OTHERS: [(&str, &str); 11] = [
+const OTHERS: [(&str, &str); 13] = [
     ("relay-sampled", "--set duration=1000"),
     ("rotation-thrusters", ""),
     ("rotation-nonlinear", ""),
@@ -30,6 +30,8 @@ const OTHERS: [(&str, &str); 11] = [
     ("thruster-phase-plane", "--set duration=60"),
     ("detumble-and-point", "--set duration=60"),
     ("station-keeping", "--set duration=300"),
+    ("wheel-friction", "--set duration=60"),
+    ("wheel-run-up", "--set duration=10"),
 ];
 
 /// What a layout's panels show: paths and topics.

@@ -9,6 +9,7 @@ mod bad_manoeuvres;
 mod bad_scenarios;
 mod bad_spatial;
 mod bad_structures;
+mod bearings;
 mod calculix;
 mod campaign_figures;
 mod campaigns;

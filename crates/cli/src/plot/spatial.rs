@@ -6,8 +6,8 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    AttitudeEstimate, ChannelState, Cycle, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample,
-    SpatialMotion, TrackedMode, Tracking, Wheels,
+    AttitudeEstimate, Bearings, ChannelState, Cycle, Log, Magnetorquers, Orbit, Position, Record,
+    RecordError, Sample, SpatialMotion, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
@@ -34,6 +34,8 @@ pub struct Cycles {
     pub magnetorquers: Vec<(f64, Magnetorquers)>,
     /// Where it is, at the same times.
     position: Vec<(f64, Position)>,
+    /// Their bearings, if they have any.
+    pub bearings: Vec<(f64, Bearings)>,
 }
 
 impl Cycles {
@@ -72,12 +74,15 @@ impl Record for Cycles {
             Sample::Cycle(cycle) => self.all.push((now.seconds(), cycle.clone())),
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
-            Sample::SpatialMotion(SpatialMotion { wheels, orbit, magnetorquers, position, .. }) => {
+            Sample::SpatialMotion(SpatialMotion {
+                wheels, orbit, magnetorquers, position, bearings, ..
+            }) => {
                 let t = now.seconds();
                 self.wheels.extend(wheels.clone().map(|wheels| (t, wheels)));
                 self.orbit.extend(orbit.clone().map(|orbit| (t, orbit)));
                 self.magnetorquers.extend(magnetorquers.clone().map(|moments| (t, moments)));
                 self.position.extend(position.iter().map(|position| (t, position.clone())));
+                self.bearings.extend(bearings.iter().map(|bearings| (t, bearings.clone())));
             }
             _ => {}
         }

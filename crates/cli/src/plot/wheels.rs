@@ -1,6 +1,8 @@
-//! Figure `wheel` of three axes: speed and torque of each wheel, with their limits.
+//! Figure `wheel` of three axes: speed and torque of each wheel, with their limits; with friction this and the pointing error too.
 
 use flexsc_core::actuator::{Actuator, Wheels};
+use flexsc_core::attitude::AXES;
+use flexsc_core::motion::turning::Bearing;
 use flexsc_core::quantity::Positive;
 use flexsc_core::record;
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
@@ -24,31 +26,45 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         let speeds = [wheels.speed_limit.map(Positive::get), by_momentum];
         (speeds.into_iter().flatten().reduce(f64::min), wheels.torque.map(Positive::get))
     });
+    let rubs = story.scenario.study.bearings.iter().any(Bearing::grips);
     let count = cycles.wheels.first().map_or(0, |(_, row)| row.wheels.len());
-    let panel =
-        |x: Axis, name: &str, unit: &'static str, limit: Option<f64>, of: fn(&record::Wheel) -> f64| {
-            let line = |wheel: usize| -> Vec<Point> {
-                cycles.wheels.iter().map(|(time, row)| (*time, of(&row.wheels[wheel]))).collect()
-            };
-            let lines: Vec<_> = (0..count).map(line).collect();
-            let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
-            let values = lines.iter().flatten().map(|(_, value)| *value);
-            let y = Axis::around(name, unit, values.chain(limits.iter().copied()));
-            let level = |(index, height): (usize, &f64)| {
-                let name = if index == 0 { "limits" } else { "" };
-                Layer::new(name, colour::GREY, Shape::Dashes, vec![(0.0, *height), (story.end, *height)])
-            };
-            let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
-            layers.extend(lines.into_iter().enumerate().map(|(wheel, points)| {
-                let name = format!("wheel {}", wheel + 1);
-                Layer::new(&name, COLOURS[wheel % COLOURS.len()], Shape::Line(1.2), points)
-            }));
-            Panel::new(x, y, layers)
+    let each = |of: fn(&record::Wheel) -> f64| -> Vec<Vec<Point>> {
+        let line =
+            |wheel: usize| cycles.wheels.iter().map(|(time, row)| (*time, of(&row.wheels[wheel]))).collect();
+        (0..count).map(line).collect()
+    };
+    let panel = |x: Axis, name: &str, unit: &'static str, limit: Option<f64>, lines: Vec<Vec<Point>>| {
+        let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
+        let values = lines.iter().flatten().map(|(_, value)| *value);
+        let y = Axis::around(name, unit, values.chain(limits.iter().copied()));
+        let level = |(index, height): (usize, &f64)| {
+            let name = if index == 0 { "limits" } else { "" };
+            Layer::new(name, colour::GREY, Shape::Dashes, vec![(0.0, *height), (story.end, *height)])
         };
+        let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
+        layers.extend(lines.into_iter().enumerate().map(|(wheel, points)| {
+            let name = format!("wheel {}", wheel + 1);
+            Layer::new(&name, COLOURS[wheel % COLOURS.len()], Shape::Line(1.2), points)
+        }));
+        Panel::new(x, y, layers)
+    };
     let x = time(0.0..story.end);
-    let panels = vec![
-        panel(x.unnamed(), "speed", "rad/s", speed, |wheel| wheel.speed_rad_s),
-        panel(x, "torque", "N m", torque, |wheel| wheel.torque_nm),
+    let last = if rubs { x.unnamed() } else { x.clone() };
+    let mut panels = vec![
+        panel(x.unnamed(), "speed", "rad/s", speed, each(|wheel| wheel.speed_rad_s)),
+        panel(last, "torque", "N m", torque, each(|wheel| wheel.torque_nm)),
     ];
+    if rubs {
+        let friction = |wheel: usize| {
+            cycles.bearings.iter().map(|(time, row)| (*time, row.wheels[wheel].friction_nm)).collect()
+        };
+        panels.push(panel(x.unnamed(), "friction", "N m", None, (0..count).map(friction).collect()));
+        let error = |axis: usize| cycles.over_time(|cycle| cycle.error_rad[axis]);
+        let axes = AXES.iter().enumerate().map(|(axis, name)| {
+            Layer::new(name, COLOURS[axis % COLOURS.len()], Shape::Line(1.2), error(axis))
+        });
+        let values = (0..3).flat_map(|axis| error(axis).into_iter().map(|(_, value)| value));
+        panels.push(Panel::new(x, Axis::around("error", "rad", values), axes.collect()));
+    }
     Figure { title: title(story, "wheels"), panels, panel_height: 200 }
 }

@@ -1,11 +1,14 @@
 //! Actuators: how commands are executed, as they are, through a hold, by a wheel, or by pulses of thrusters.
 
 mod allocation;
+mod friction;
 mod hold;
 mod ideal;
+mod imbalance;
 mod jets;
 mod magnetic_unloading;
 mod magnetorquers;
+mod per_wheel;
 mod pulse_timing;
 mod pulse_width;
 mod pulsing;
@@ -23,15 +26,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
 use crate::body::Wrench;
+use crate::motion::turning::Turned;
 use crate::own::Own;
 use crate::record::{self, WheelMotion};
 use crate::time::{Instant, Span};
 
 pub use allocation::{Allocation, Choice};
+pub use friction::Friction;
 pub use hold::ZeroOrderHold;
+pub use imbalance::{Harmonic, Imbalance};
 pub use jets::{Group, Groups, Jets, Pair, Thruster};
 pub use magnetic_unloading::Magnetic;
 pub use magnetorquers::{Magnetorquers, Torquing};
+pub use per_wheel::PerWheel;
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use pulsing::{Pulse, Pulsing};
@@ -40,7 +47,7 @@ pub use thrusters::Thrusters;
 pub use torquers::{AxisActuate, Setting, Torquers};
 pub use unloading::{Unloaded, Unloading};
 pub use wheel::{Opposes, Rotor, Wheel};
-pub use wheels::{Arrangement, SpeedBias, Wheels};
+pub use wheels::{Arrangement, Compensation, SpeedBias, Wheels};
 
 /// The kinds of actuator. Those of one angle act on a body with three axes about each.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -103,6 +110,9 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     /// Does what is due now, after the laws have decided.
     fn serve(&mut self, _now: Instant, _rigid: [f64; 3]) {}
 
+    /// Takes over how its rotors in bearings are now, which the motion tells.
+    fn turned(&mut self, _now: Instant, _rotors: &[Turned]) {}
+
     /// Adds what it exerts from now on.
     fn exert(&self, now: Instant, onto: &mut Wrench);
 
@@ -145,7 +155,12 @@ pub trait Actuate: fmt::Debug + Send + Sync {
         None
     }
 
-    /// The angular momentum that its rotors store now, in the body's axes (N m s).
+    /// Speeds of wheels in bearings as their drives know them (rad/s).
+    fn known_speeds(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The angular momentum that its rotors store now, as far as it is known, in the body's axes (N m s).
     fn stored(&self, _now: Instant) -> [f64; 3] {
         [0.0; 3]
     }

@@ -5,14 +5,22 @@
 //! it the instant at which it reaches its limit. The speed Omega also depends on the body's rate.
 
 use super::allocation::Allocation;
-use super::wheels::{SpeedBias, Wheels};
+use super::wheels::{Compensation, SpeedBias, Wheels};
 use super::{Actuate, Demand, Setting};
 use crate::attitude::Vector;
 use crate::body::Wrench;
-use crate::motion::turning::Rotor;
+use crate::motion::turning::{Rotor, Turned};
 use crate::quantity::Positive;
+use crate::random::Seed;
 use crate::record;
+use crate::sensor::{Counting, Tachometer};
 use crate::time::{Instant, Span};
+
+/// A wheel with friction is at its limit if it misses it by this part of it.
+const AT_LIMIT: f64 = 1e-12;
+
+/// A wheel with friction is looked at again no sooner than this (s) on its way to its limit.
+const SOONEST: f64 = 1e-6;
 
 /// The wheels of a body.
 #[derive(Clone, Debug)]
@@ -32,6 +40,13 @@ pub struct Spinning {
     wheels: Vec<Spin>,
     /// Since when the wheels' momenta are counted.
     since: Instant,
+    /// How they are, which the motion tells of wheels in bearings.
+    turned: Vec<Turned>,
+    /// By what their drives know the speeds; they know them exactly without it.
+    tachometer: Option<Counting>,
+    /// The momentum that they store by its last reading (N m s).
+    known: Option<Vector>,
+    compensation: Option<Box<Compensation>>,
 }
 
 /// A wheel.
@@ -74,7 +89,19 @@ impl Spinning {
             wanted: Vector::zeros(),
             against: Vector::zeros(),
             since: Instant::START,
+            turned: Vec::new(),
+            tachometer: None,
+            known: None,
+            compensation: wheels.compensation.clone(),
         }
+    }
+
+    /// Makes their drives know the speeds by a tachometer alone.
+    #[must_use]
+    pub fn read_by(mut self, tachometer: Option<(&Tachometer, Seed)>) -> Self {
+        let rate = Vector::from_fn(|axis, _| self.settings.get(axis).map_or(0.0, |setting| setting.rate));
+        self.tachometer = tachometer.map(|(tachometer, seed)| tachometer.start(self.speeds(&rate), seed));
+        self
     }
 
     /// Makes them hold against a torque on the body (N m) from the next command on.
@@ -95,8 +122,14 @@ impl Spinning {
         self.since = now;
     }
 
-    /// Speeds relative to a body that turns at this rate (rad/s).
+    /// Speeds relative to a body that turns at this rate (rad/s), as the drives know them.
     fn speeds(&self, rate: &Vector) -> Vec<f64> {
+        if let Some(tachometer) = &self.tachometer {
+            return tachometer.speeds().to_vec();
+        }
+        if !self.turned.is_empty() {
+            return self.turned.iter().map(|wheel| wheel.speed).collect();
+        }
         let axes = self.allocation.axes().iter();
         axes.zip(&self.wheels).map(|(axis, wheel)| wheel.momentum / self.inertia - axis.dot(rate)).collect()
     }
@@ -123,12 +156,61 @@ impl Spinning {
         torques
     }
 
-    /// What is left of a torque on a wheel at this speed, and how long until the wheel is at a limit (s).
-    fn within_limits(&self, momentum: f64, speed: f64, torque: f64) -> (f64, f64) {
+    /// What is left of a torque on a wheel at this speed, and how long until the wheel is at a limit (s). With friction that is
+    /// an instant before, from which the rest is found again.
+    fn within_limits(&self, index: usize, speed: f64, torque: f64) -> (f64, f64) {
         let ahead = libm::copysign(1.0, torque);
+        let momentum = self.wheels[index].momentum;
         let room =
             (self.momentum_limit - ahead * momentum).min((self.speed_limit - ahead * speed) * self.inertia);
-        if room <= 0.0 { (0.0, f64::INFINITY) } else { (torque, room / torque.abs()) }
+        let Some(wheel) = self.turned.get(index) else {
+            return if room <= 0.0 { (0.0, f64::INFINITY) } else { (torque, room / torque.abs()) };
+        };
+        let limit = self.momentum_limit.min(self.speed_limit * self.inertia);
+        if limit.is_finite() && room <= AT_LIMIT * limit {
+            return (0.0, f64::INFINITY);
+        }
+        let net = ahead * (torque - wheel.friction);
+        (torque, if net > 0.0 { (room / net).max(SOONEST) } else { f64::INFINITY })
+    }
+
+    /// All wheels get the torques that give what is wanted.
+    fn drive_all(&mut self, now: Instant, rigid: &Vector) {
+        let speeds = self.speeds(rigid);
+        let mut torques = self.motors(&speeds);
+        self.compensate(&speeds, &mut torques);
+        for (index, torque) in torques.into_iter().enumerate() {
+            let speed = self.turned.get(index).map_or(speeds[index], |wheel| wheel.speed);
+            self.drive(now, index, speed, torque);
+        }
+    }
+
+    /// A wheel gets a torque from now on, as far as its limits let it.
+    fn drive(&mut self, now: Instant, index: usize, speed: f64, torque: f64) {
+        let (torque, seconds) = self.within_limits(index, speed, torque);
+        let full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
+        (self.wheels[index].torque, self.wheels[index].full) = (torque, full);
+    }
+
+    /// The momentum that they store by the speeds that are known, of a body that turns at this rate (rad/s).
+    fn known_momentum(&self, rate: &Vector) -> Option<Vector> {
+        let speeds = self.tachometer.as_ref()?.speeds();
+        let wheels = self.allocation.axes().iter().zip(speeds);
+        Some(wheels.fold(Vector::zeros(), |sum, (axis, speed)| {
+            sum + axis * (self.inertia * (speed + axis.dot(rate)))
+        }))
+    }
+
+    /// What the drives add against friction at these speeds (rad/s), to these torques (N m).
+    fn compensate(&self, speeds: &[f64], torques: &mut [f64]) {
+        let Some(Compensation { coulomb, viscous }) = self.compensation.as_deref() else { return };
+        for (wheel, (torque, speed)) in torques.iter_mut().zip(speeds).enumerate() {
+            // One at rest is to follow the torque.
+            let way = if *speed == 0.0 { *torque } else { *speed };
+            let coulomb = if way == 0.0 { 0.0 } else { libm::copysign(coulomb.of(wheel).get(), way) };
+            let added = *torque + coulomb + viscous.of(wheel).get() * speed;
+            *torque = added.clamp(-self.torque_limit, self.torque_limit);
+        }
     }
 }
 
@@ -142,25 +224,36 @@ impl Actuate for Spinning {
                 Demand::Moment(_) => 0.0,
             };
         }
-        let speeds = self.speeds(&rigid.into());
-        for (index, torque) in self.motors(&speeds).into_iter().enumerate() {
-            let (torque, seconds) = self.within_limits(self.wheels[index].momentum, speeds[index], torque);
-            let wheel = &mut self.wheels[index];
-            wheel.torque = torque;
-            wheel.full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
-        }
+        self.drive_all(now, &rigid.into());
     }
 
     fn due(&self) -> Option<Instant> {
-        self.wheels.iter().filter_map(|wheel| wheel.full).min()
+        let read = self.tachometer.as_ref().map(Counting::due);
+        self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).min()
     }
 
-    /// A wheel at its limit stays there until the next command.
-    fn serve(&mut self, now: Instant, _: [f64; 3]) {
+    /// A wheel at its limit stays there until the next command. Tachometers are read, and compensation follows them.
+    fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
+        let turned = self.turned.iter().map(|wheel| [wheel.angle, wheel.speed]);
+        if let Some(tachometer) = self.tachometer.as_mut().filter(|tachometer| tachometer.due() == now) {
+            tachometer.read(now, turned);
+            self.known = self.known_momentum(&rigid.into());
+            if self.compensation.is_some() {
+                self.turn(now);
+                self.drive_all(now, &rigid.into());
+                return;
+            }
+        }
         if self.wheels.iter().any(|wheel| wheel.full == Some(now)) {
             self.turn(now);
-            for wheel in self.wheels.iter_mut().filter(|wheel| wheel.full == Some(now)) {
-                (wheel.torque, wheel.full) = (0.0, None);
+            let full: Vec<usize> =
+                (0..self.wheels.len()).filter(|index| self.wheels[*index].full == Some(now)).collect();
+            for index in full {
+                if let Some(wheel) = self.turned.get(index) {
+                    self.drive(now, index, wheel.speed, self.wheels[index].torque);
+                } else {
+                    (self.wheels[index].torque, self.wheels[index].full) = (0.0, None);
+                }
             }
         }
     }
@@ -173,6 +266,23 @@ impl Actuate for Spinning {
             torque: wheel.torque,
         };
         onto.rotors.extend(self.allocation.axes().iter().zip(&self.wheels).map(rotor));
+    }
+
+    fn turned(&mut self, now: Instant, rotors: &[Turned]) {
+        self.turn(now);
+        for (wheel, rotor) in self.wheels.iter_mut().zip(rotors) {
+            wheel.momentum = rotor.momentum;
+        }
+        self.turned.clear();
+        self.turned.extend_from_slice(rotors);
+    }
+
+    fn applied(&self, _: Instant, axis: usize, _: [f64; 2]) -> f64 {
+        if self.turned.is_empty() {
+            return self.torque(axis);
+        }
+        let held = self.turned.iter().zip(self.allocation.axes());
+        self.torque(axis) + held.map(|(wheel, about)| about[axis] * wheel.friction).sum::<f64>()
     }
 
     fn asked(&self, axis: usize) -> f64 {
@@ -190,15 +300,28 @@ impl Actuate for Spinning {
 
     fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<record::Wheel> {
         let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
-        let motion = |(axis, wheel): (&Vector, &Spin)| record::Wheel {
-            speed_rad_s: wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate),
+        let motion = |(index, (axis, wheel)): (usize, (&Vector, &Spin))| record::Wheel {
+            speed_rad_s: self
+                .turned
+                .get(index)
+                .map_or(wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate), |turned| turned.speed),
             momentum_nm_s: wheel.momentum_at(seconds),
             torque_nm: wheel.torque,
         };
-        self.allocation.axes().iter().zip(&self.wheels).map(motion).collect()
+        self.allocation.axes().iter().zip(&self.wheels).enumerate().map(motion).collect()
+    }
+
+    fn known_speeds(&self) -> Vec<f64> {
+        match &self.tachometer {
+            Some(tachometer) => tachometer.speeds().to_vec(),
+            None => self.turned.iter().map(|wheel| wheel.speed).collect(),
+        }
     }
 
     fn stored(&self, now: Instant) -> [f64; 3] {
+        if let Some(known) = self.known {
+            return known.into();
+        }
         let (seconds, wheels) = (self.elapsed(now), self.allocation.axes().iter().zip(&self.wheels));
         wheels.fold(Vector::zeros(), |sum, (axis, wheel)| sum + axis * wheel.momentum_at(seconds)).into()
     }
@@ -209,127 +332,4 @@ impl Actuate for Spinning {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const PERIOD: f64 = 0.25;
-
-    fn start(keys: &str) -> Spinning {
-        let text = format!(
-            "arrangement = \"pyramid\"\ncant = 0.610_865_238_198_015_3\ninertia = 0.04\n{keys}\n\
-             speeds = [200.0, -200.0, 200.0, -200.0]"
-        );
-        let wheels: Wheels = toml::from_str(&text).unwrap();
-        let setting = |axis| Setting {
-            axis,
-            inertia: 1000.0,
-            planned_inertia: 1000.0,
-            rate: 0.0,
-            cycle: Some(Span::from_seconds(PERIOD)),
-            waveform: None,
-        };
-        wheels.start(&wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
-    }
-
-    fn at(seconds: f64) -> Instant {
-        Instant::START + Span::from_seconds(seconds)
-    }
-
-    fn ask(wheels: &mut Spinning, now: Instant, torque: [f64; 3]) {
-        wheels.command(now, &torque.map(Demand::Torque), [0.0; 3]);
-    }
-
-    fn given(wheels: &Spinning) -> [f64; 3] {
-        [0, 1, 2].map(|axis| wheels.torque(axis))
-    }
-
-    #[test]
-    fn wheels_take_the_momentum_that_the_body_gets() {
-        let mut wheels = start("torque = 0.4");
-        let before = Vector::from(wheels.stored(at(0.0)));
-        assert!(before.norm() < 1e-14, "two turn one way and two the other: {before}");
-        let torque = [0.1, -0.05, 0.2];
-        ask(&mut wheels, at(0.0), torque);
-        for (found, exact) in given(&wheels).into_iter().zip(torque) {
-            assert!((found - exact).abs() < 1e-15);
-        }
-        let after = Vector::from(wheels.stored(at(2.0)));
-        assert!((after + Vector::from(torque) * 2.0).norm() < 1e-14, "{after}");
-        let speed = wheels.wheels(at(2.0), [0.0; 3])[0].speed_rad_s;
-        assert!((speed - (200.0 - 2.0 * 0.108_752_79 / 0.04)).abs() < 1e-5, "{speed}");
-        // A body that turns makes a wheel of the same momentum slower.
-        let turning = wheels.wheels(at(2.0), [0.0, 0.0, 1.0])[0].speed_rad_s;
-        assert!((speed - turning - 0.573_576_436_351_046).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_torque_that_is_too_large_keeps_its_axis() {
-        let mut wheels = start("torque = 0.4");
-        ask(&mut wheels, at(0.0), [1.0, -0.5, 2.0]);
-        // Ten times the torque that asks 0.1519 of a wheel.
-        let part = 0.4 / 1.519_136_9;
-        for (found, exact) in given(&wheels).into_iter().zip([1.0, -0.5, 2.0]) {
-            assert!((found - part * exact).abs() < 1e-7, "{found}");
-        }
-    }
-
-    #[test]
-    fn a_wheel_stops_at_its_limit_exactly() {
-        // Of 8 N m s at the start, 1 more at |u| = 0.4 takes 2.5 s.
-        let mut wheels = start("torque = 0.4\nmomentum = 9.0");
-        ask(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
-        assert_eq!(wheels.due(), Some(at(2.5)));
-        wheels.serve(at(2.5), [0.0; 3]);
-        let motion = wheels.wheels(at(9.0), [0.0; 3]);
-        assert!(
-            (motion[0].momentum_nm_s - 9.0).abs() < 1e-14 && (motion[1].momentum_nm_s + 4.4).abs() < 1e-13
-        );
-        // Two of four are left, which go on; away from the limit all do.
-        ask(&mut wheels, at(9.0), [0.0, 0.0, -5.0]);
-        assert_eq!(wheels.wheels.iter().filter(|wheel| wheel.torque == 0.0).count(), 2);
-        ask(&mut wheels, at(9.0), [0.0, 0.0, 5.0]);
-        assert!(wheels.wheels.iter().all(|wheel| wheel.torque == -0.4));
-        let mut wheels = start("torque = 0.4\nspeed_limit = 250.0");
-        ask(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
-        assert_eq!(wheels.due(), Some(at(5.0)), "50 rad/s at 10 rad/s²");
-    }
-
-    #[test]
-    fn a_speed_bias_gives_the_body_nothing() {
-        let mut wheels = start("torque = 0.4\nspeed_bias = { speed = 100.0, gain = 0.02 }");
-        let torque = [0.1, -0.05, 0.2];
-        for k in 0..1600 {
-            ask(&mut wheels, at(PERIOD * f64::from(k)), if k < 8 { torque } else { [0.0; 3] });
-            let wanted = if k < 8 { torque } else { [0.0; 3] };
-            for (found, exact) in given(&wheels).into_iter().zip(wanted) {
-                assert!((found - exact).abs() < 1e-14);
-            }
-            assert!(wheels.wheels.iter().all(|wheel| wheel.torque.abs() <= 0.4 + 1e-15));
-        }
-        let speeds: Vec<f64> =
-            wheels.wheels(at(400.0), [0.0; 3]).iter().map(|wheel| wheel.speed_rad_s).collect();
-        let bias = (speeds[0] - speeds[1] + speeds[2] - speeds[3]) / 4.0;
-        // (1 - gain T)^1600 of the 100 rad/s that were too many are left.
-        assert!((bias - 100.0 - 100.0 * libm::pow(0.995, 1600.0)).abs() < 0.1, "{bias}");
-    }
-
-    #[test]
-    fn what_cannot_be_built_is_refused_with_its_key() {
-        let fault = |text: &str| {
-            let wheels: Wheels = toml::from_str(&format!("inertia = 0.04\n{text}")).unwrap();
-            wheels.allocation().unwrap_err().to_string()
-        };
-        assert!(fault("").starts_with("`axes` must be given without an `arrangement`"));
-        assert!(fault("axes = [[1, 0, 0], [0, 1, 0]]").contains("must reach all three axes"));
-        assert!(
-            fault("axes = [[1, 0, 0], [0, 1, 0], [0, 0, 0]]").starts_with("`axes[2]` must have a length")
-        );
-        assert!(fault("arrangement = \"pyramid\"\nspeeds = [1.0]").contains("one for each of 4 wheels"));
-        let bias = "speed_bias = { speed = 1.0, gain = 1.0 }";
-        assert!(
-            fault(&format!("arrangement = \"orthogonal\"\n{bias}")).starts_with("`speed_bias` needs four")
-        );
-        let fast = "arrangement = \"orthogonal\"\nmomentum = 1.0\nspeeds = [0.0, 30.0, 0.0]";
-        assert!(fault(fast).starts_with("`speeds[1]` must be within"));
-    }
-}
+mod tests;

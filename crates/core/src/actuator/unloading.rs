@@ -7,6 +7,7 @@ use super::{Actuate, Cycle, Demand, Group, Jets, Magnetic, Magnetorquers, Pulsin
 use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::document::Fault;
+use crate::motion::turning::Turned;
 use crate::quantity::{NonNegative, Positive};
 use crate::record;
 use crate::time::{Instant, Span};
@@ -180,6 +181,10 @@ impl Actuate for Unloaded {
         }
     }
 
+    fn turned(&mut self, now: Instant, rotors: &[Turned]) {
+        self.wheels.turned(now, rotors);
+    }
+
     fn exert(&self, now: Instant, onto: &mut Wrench) {
         self.wheels.exert(now, onto);
         self.jets.exert(now, onto);
@@ -199,6 +204,14 @@ impl Actuate for Unloaded {
 
     fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<record::Wheel> {
         self.wheels.wheels(now, rate)
+    }
+
+    fn known_speeds(&self) -> Vec<f64> {
+        self.wheels.known_speeds()
+    }
+
+    fn applied(&self, now: Instant, axis: usize, rates: [f64; 2]) -> f64 {
+        self.wheels.applied(now, axis, rates) + self.jets.torque(axis)
     }
 
     fn cycle(&self) -> Option<Cycle> {

@@ -3,14 +3,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Setting;
 use super::allocation::{Allocation, Choice};
+use super::per_wheel::PerWheel;
 use super::spinning::Spinning;
 use super::unloading::Unloading;
+use super::{Friction, Imbalance, Setting};
 use crate::attitude::Vector;
+use crate::body::Spatial;
 use crate::body::craft::Rotor;
 use crate::document::Fault;
-use crate::quantity::{Finite, Positive};
+use crate::motion::turning::{Bearing, Flexible};
+use crate::quantity::{Finite, NonNegative, Positive};
 
 /// Reaction wheels, alike but for their axes and speeds at the start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -41,6 +44,15 @@ pub struct Wheels {
     /// Speed of each at the start, relative to the body (rad/s); left out, 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub speeds: Vec<Finite>,
+    /// Friction in their bearings; left out, there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Box<Friction>>,
+    /// Torque that their drives add against friction, by the speeds that they know; left out, none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compensation: Option<Box<Compensation>>,
+    /// Imbalance; left out, they have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub imbalance: Option<Box<Imbalance>>,
     /// Which of all torques that give what is wanted are taken.
     #[serde(default)]
     pub allocation: Choice,
@@ -50,6 +62,18 @@ pub struct Wheels {
     /// How jets or magnetorquers unload them; left out, none do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unloading: Option<Box<Unloading>>,
+}
+
+/// What drives take the friction of their wheels to be.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Compensation {
+    /// Coulomb friction (N m), of each or of all.
+    #[serde(default)]
+    pub coulomb: PerWheel<NonNegative>,
+    /// Viscous friction (N m s/rad), of each or of all.
+    #[serde(default)]
+    pub viscous: PerWheel<NonNegative>,
 }
 
 /// How wheels are arranged.
@@ -115,7 +139,55 @@ impl Wheels {
         if let Some(fault) = self.unloading.as_deref().and_then(Unloading::inconsistency) {
             return Err(fault.within("unloading"));
         }
+        if let Some(friction) = &self.friction {
+            friction.check(count).map_err(|fault| fault.within("friction"))?;
+        }
+        if let Some(compensation) = &self.compensation {
+            let Compensation { coulomb, viscous } = &**compensation;
+            let checked = coulomb.check("coulomb", count).and_then(|()| viscous.check("viscous", count));
+            checked.map_err(|fault| fault.within("compensation"))?;
+        }
+        if let Some(imbalance) = &self.imbalance {
+            imbalance.check(count).map_err(|fault| fault.within("imbalance"))?;
+        }
         Ok(allocation)
+    }
+
+    /// The key of what makes a wheel's motion depend on that of the body, if there is any.
+    pub fn bears(&self) -> Option<&'static str> {
+        match (&self.friction, &self.imbalance) {
+            (Some(_), _) => Some("friction"),
+            (None, Some(_)) => Some("imbalance"),
+            (None, None) => None,
+        }
+    }
+
+    /// The largest speed at the start, or of the bias (rad/s).
+    pub fn fastest(&self) -> f64 {
+        let bias = self.speed_bias.map_or(0.0, |bias| bias.speed.get().abs());
+        self.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::max)
+    }
+
+    /// The bearings of the wheels on a body.
+    ///
+    /// # Errors
+    /// A key within the wheels, and why.
+    pub fn bearings(&self, body: (&Spatial, &Flexible)) -> Result<Vec<Bearing>, Fault> {
+        let bearing = |(wheel, rotor): (usize, Rotor)| {
+            let friction = self.friction.as_ref();
+            let lines = match &self.imbalance {
+                Some(of) => of.lines(wheel, &rotor, body).map_err(|fault| fault.within("imbalance"))?,
+                None => Vec::new(),
+            };
+            Ok(Bearing {
+                inertia: rotor.spin_inertia,
+                viscous: friction.map_or(0.0, |of| of.viscous.of(wheel).get()),
+                coulomb: friction.map_or(0.0, |of| of.coulomb.of(wheel).get()),
+                breakaway: friction.map_or(0.0, |of| of.holds(wheel)),
+                lines,
+            })
+        };
+        self.rotors()?.into_iter().enumerate().map(bearing).collect()
     }
 
     /// The rotors.

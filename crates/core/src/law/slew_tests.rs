@@ -1,4 +1,5 @@
-//! A turn of 60 degrees by law, allocation and wheels on a flexible spacecraft, against a second code: tests/golden/turning/d.csv.
+//! A turn of 60 degrees by law, allocation and wheels on a flexible spacecraft, against a second code: tests/golden/turning/d.csv
+//! without friction, e.csv with it.
 
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
@@ -8,12 +9,13 @@ use crate::attitude::{Vector, beyond, rotation};
 use crate::belief::Belief;
 use crate::body::Wrench;
 use crate::manoeuvre::{Profile, Slew};
-use crate::motion::turning::{Acting, Flexible, FreeMode, Turning};
+use crate::motion::turning::{Acting, Bearing, Flexible, FreeMode, Slip, Turning};
 use crate::time::{Instant, Span};
 
 const MODES: &str = include_str!("../../../../tests/golden/turning/modes.csv");
 /// t, attitude, rate, speeds of the wheels, angle beyond the reference.
 const TURN: &str = include_str!("../../../../tests/golden/turning/d.csv");
+const RUBBING: &str = include_str!("../../../../tests/golden/turning/e.csv");
 const PERIOD: f64 = 0.25;
 
 fn rows(text: &str) -> Vec<Vec<f64>> {
@@ -37,11 +39,11 @@ fn craft() -> Flexible {
     }
 }
 
-fn wheels() -> Spinning {
-    let wheels: Wheels = toml::from_str(
+fn wheels(speed: f64) -> Spinning {
+    let wheels: Wheels = toml::from_str(&format!(
         "arrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = 0.04\ntorque = 0.4\nspeed_limit = 600.0\n\
-         speeds = [200.0, -200.0, 200.0, -200.0]",
-    )
+         speeds = [{speed}, -{speed}, {speed}, -{speed}]"
+    ))
     .unwrap();
     let setting = |axis| Setting {
         axis,
@@ -54,11 +56,36 @@ fn wheels() -> Spinning {
     wheels.start(&wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
 }
 
+/// When a wheel came to rest (s), which one, and how it slipped then.
+type Met = (f64, usize, Slip);
+
 #[test]
 fn sixty_degrees_by_four_wheels() {
+    let met = turn(wheels(200.0), Vec::new(), TURN);
+    assert!(met.is_empty());
+}
+
+/// Six times a wheel comes to rest; each time it slips on the other way. The instants of the first two are those of both codes.
+#[test]
+fn the_same_with_friction() {
+    let bearing = Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, lines: Vec::new() };
+    let met = turn(wheels(40.0), vec![bearing; 4], RUBBING);
+    assert_eq!(met.len(), 6, "{met:?}");
+    for ((found, wheel, slip), (at, way)) in met
+        .iter()
+        .filter(|(_, wheel, _)| *wheel == 0)
+        .zip([(12.712_848_560_1, -1.0), (166.691_652_789_7, 1.0)])
+    {
+        assert!((found - at).abs() < 6e-10 && slip.sign() == way, "{wheel}: {found}");
+    }
+}
+
+/// The turn against a table of a second code; tells when wheels came to rest.
+fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
     let craft = craft();
     let mut turning = Turning::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
-    let mut wheels = wheels();
+    turning.bear(bearings);
+    let mut events = Vec::new();
     let to = rotation(&(Vector::new(1.0, 2.0, 2.0) * (std::f64::consts::FRAC_PI_3 / 3.0)));
     let slew = Slew::new([Quaternion::identity(), to], 2e-4, 8e-3, Profile::Trapezoid);
     let law: AttitudeLaw = toml::from_str("period = 0.25\nbandwidth = 0.1\ndamping = 0.8").unwrap();
@@ -70,7 +97,7 @@ fn sixty_degrees_by_four_wheels() {
     };
     let mut laws: [Box<dyn Control>; 3] = [0, 1, 2].map(|_| law.start(&authority));
     let distribution = Distribution::of_three_axes(craft.inertia);
-    let table = rows(TURN);
+    let table = rows(table);
     let mut met = 0;
     for k in 0..=920 {
         let (t, now) = (PERIOD * f64::from(k), Instant::START + Span::from_seconds(PERIOD * f64::from(k)));
@@ -102,10 +129,30 @@ fn sixty_degrees_by_four_wheels() {
         wheels.command(now, &demands, rate.into());
         let mut wrench = Wrench::default();
         wheels.exert(now, &mut wrench);
-        turning.depart(&Acting { rotors: wrench.rotors, ..Acting::default() });
-        turning.advance(PERIOD, None, || Ok::<(), std::convert::Infallible>(())).unwrap();
+        let acting = Acting { rotors: wrench.rotors, ..Acting::default() };
+        turning.depart(&acting);
+        turning.settle(None);
+        let mut began = 0.0;
+        while let Some(at) = go(&mut turning, PERIOD - began) {
+            let before: Vec<Slip> = turning.turned(None).iter().map(|wheel| wheel.slip).collect();
+            turning.reach(at, None);
+            began += at;
+            turning.depart(&acting);
+            turning.settle(None);
+            for (wheel, (turned, before)) in turning.turned(None).iter().zip(before).enumerate() {
+                if turned.slip != before {
+                    events.push((t + began, wheel, turned.slip));
+                }
+            }
+        }
+        wheels.turned(now + Span::from_seconds(PERIOD), &turning.turned(None));
     }
     assert_eq!(met, table.len());
+    events
+}
+
+fn go(turning: &mut Turning, t: f64) -> Option<f64> {
+    turning.advance(t, None, || Ok::<(), std::convert::Infallible>(())).unwrap()
 }
 
 #[test]

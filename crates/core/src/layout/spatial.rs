@@ -5,6 +5,7 @@ use super::{Tab, metrics};
 use crate::actuator::Actuator;
 use crate::attitude::AXES;
 use crate::body::Spatial;
+use crate::motion::turning::Bearing;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
 
@@ -43,6 +44,16 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     if scenario.study.moving.is_some() {
         let along = ["x", "y", "z"].map(|axis| line(format!("/position.{axis}_m"), axis));
         motion.push(Panel::plot("position", "Position (m)", along.into()));
+    }
+    if scenario.study.bearings.iter().any(Bearing::grips) {
+        let each = |field: &str| -> Vec<Line> {
+            let of = |wheel: usize| {
+                line(format!("/bearings.wheels[{wheel}].{field}"), format!("wheel {}", wheel + 1))
+            };
+            (0..scenario.study.bearings.len().min(MOST_LINES)).map(of).collect()
+        };
+        motion.push(Panel::plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
+        motion.push(Panel::states("sliding", "Which way wheels turn", each("sliding")));
     }
     let mut elastic = vec![Panel::plot("energy", "Elastic energy (J)", energies(scenario, body))];
     if let Some(plan) = &scenario.study.adaptive {

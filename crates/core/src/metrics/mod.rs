@@ -122,6 +122,9 @@ metrics! {
     FUEL = "fuel_kg", "kg", "Propellant that the jets used";
     FIRINGS = "firings", "", "Pulses of the jets, of all axes together";
     FIRING_CYCLES = "firing_cycles", "", "Cycles of the law in which any jet fires";
+    ZERO_CROSSINGS = "wheel_zero_crossings", "", "How often wheels with friction passed through zero speed, or slipped on the other way after they had stuck";
+    WHEEL_STOPS = "wheel_stops", "", "How often wheels stuck in their bearings";
+    FRICTION_HEAT = "friction_heat_j", "J", "Heat of the friction of all wheels, until the last cycle";
     ELASTIC_PEAK = "elastic_energy_peak_j", "J",
         "Largest energy of motion and deformation of the elastic modes, at the starts of the law's cycles";
     ELASTIC_END = "elastic_energy_end_j", "J", "The same at the last cycle";
@@ -264,6 +267,7 @@ impl Record for Gather {
             Kind::Spatial(spatial) => {
                 match sample {
                     Sample::Cycle(cycle) => spatial.see(now, cycle),
+                    Sample::WheelEvent(event) => spatial.slip(event),
                     Sample::Tracking(tracking) => self.tracked.see(tracking),
                     _ => {}
                 }

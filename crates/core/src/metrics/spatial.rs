@@ -2,11 +2,12 @@
 
 use super::goal::{self, Verdict};
 use super::{
-    BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FUEL, MOMENTUM_END,
-    MOMENTUM_PEAK, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, Told, VISIBLE_END, VISIBLE_PEAK, Value,
+    BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FRICTION_HEAT, FUEL,
+    MOMENTUM_END, MOMENTUM_PEAK, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, Told, VISIBLE_END,
+    VISIBLE_PEAK, Value, WHEEL_STOPS, ZERO_CROSSINGS,
 };
 use crate::quantity::Positive;
-use crate::record::Cycle;
+use crate::record::{Cycle, Sliding, WheelEvent};
 use crate::scenario::{Pointing, Scenario};
 use crate::time::Instant;
 
@@ -20,6 +21,11 @@ pub struct Spatial {
     late: f64,
     /// Whether there are jets, whose propellant and pulses count.
     jets: bool,
+    /// Whether wheels have friction, how often they passed through zero and stuck, which way each turned last, and their heat (J).
+    rubs: bool,
+    slips: (u64, u64),
+    ways: Vec<Option<Sliding>>,
+    heat: f64,
     fuel: f64,
     /// Pulses, and cycles with any.
     firings: (u64, u64),
@@ -62,6 +68,10 @@ impl Spatial {
             end: end.seconds(),
             late: scenario.duration.seconds() - LATE,
             jets: scenario.study.fires(),
+            rubs: scenario.study.bearings.iter().any(|bearing| bearing.viscous + bearing.breakaway > 0.0),
+            slips: (0, 0),
+            ways: vec![None; scenario.study.bearings.len()],
+            heat: 0.0,
             fuel: 0.0,
             firings: (0, 0),
             energy: (f64::NAN, 0.0, f64::NAN),
@@ -85,6 +95,7 @@ impl Spatial {
         let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
         let norm = |of: [f64; 3]| of.iter().map(|value| value * value).sum::<f64>();
         self.fuel = cycle.jets.fuel_kg;
+        self.heat = cycle.friction_heat_j;
         self.firings.0 += cycle.pulses;
         self.firings.1 += u64::from(cycle.pulses > 0);
         if self.energy.0.is_nan() {
@@ -116,6 +127,18 @@ impl Spatial {
         self.outside = is_outside.then_some(t);
     }
 
+    /// Takes a wheel that slips otherwise.
+    pub fn slip(&mut self, event: &WheelEvent) {
+        let Some(way) = self.ways.get_mut(event.wheel as usize) else { return };
+        if event.after == Sliding::Stuck {
+            self.slips.1 += 1;
+            *way = Some(event.before);
+        } else {
+            let came = if event.before == Sliding::Stuck { way.take() } else { Some(event.before) };
+            self.slips.0 += u64::from(came.is_some_and(|came| came != event.after));
+        }
+    }
+
     /// The metrics of the run that has ended.
     pub fn finish(mut self) -> Vec<Told> {
         if let Some(since) = self.outside {
@@ -126,6 +149,11 @@ impl Spatial {
             (&FUEL, Value::Number(self.fuel)),
             (&FIRINGS, Value::Count(self.firings.0)),
             (&FIRING_CYCLES, Value::Count(self.firings.1)),
+        ];
+        let friction = [
+            (&ZERO_CROSSINGS, Value::Count(self.slips.0)),
+            (&WHEEL_STOPS, Value::Count(self.slips.1)),
+            (&FRICTION_HEAT, Value::Number(self.heat)),
         ];
         let metrics = [
             (&ELASTIC_PEAK, Value::Number(self.energy.1)),
@@ -138,6 +166,7 @@ impl Spatial {
             (&POINTING_END, Value::Number(self.error)),
         ];
         let jets = jets.into_iter().filter(|_| self.jets);
+        let friction = friction.into_iter().filter(|_| self.rubs);
         let [torquers, unload] = self.magnetic;
         let rate = [(&RATE_END, Value::Number(self.rate))].into_iter().filter(|_| torquers);
         let stored =
@@ -151,7 +180,8 @@ impl Spatial {
             let met = asked.rms.map(|most| goal::within(rms, most.get()));
             pointing.extend(met.map(|word| (&REQUIREMENT, Value::Word(word))));
         }
-        jets.chain(metrics)
+        jets.chain(friction)
+            .chain(metrics)
             .chain(rate)
             .chain(stored)
             .chain(pointing)

@@ -36,11 +36,12 @@ pub use recover::recover;
 pub use spatial::{Cycle, SpatialMotion};
 pub use states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
 pub use topics::{
-    Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, ChannelState, Command, Energy,
-    Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
-    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion,
-    OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Summary, TOPICS, Torque, Torques,
-    TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelMotion, Wheels, WindowMean,
+    Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
+    ChannelState, Command, Energy, Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Magnetorquer,
+    Magnetorquers, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes,
+    Orbit, OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual,
+    Sliding, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel,
+    WheelEvent, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -67,6 +68,8 @@ pub enum Sample<'a> {
     Estimates(&'a Estimates),
     /// An attitude filter took a sample.
     AttitudeEstimate(&'a AttitudeEstimate),
+    /// A wheel passed through zero speed, stuck, or slipped again.
+    WheelEvent(&'a WheelEvent),
     /// A cycle of a body with three axes began.
     Cycle(&'a Cycle),
     /// What adaptive observers know after a cycle's sample.
@@ -323,6 +326,7 @@ trait TakeRow {
             Sample::Estimates(estimates) => self.take(now, estimates),
             Sample::AttitudeEstimate(estimate) => self.take(now, estimate),
             Sample::Tracking(tracking) => self.take(now, tracking),
+            Sample::WheelEvent(event) => self.take(now, event),
             Sample::Log(line) => self.take(now, line),
             Sample::Scene(scene) => self.take(now, scene),
             Sample::Frames(frames) => self.take(now, frames),
@@ -346,6 +350,7 @@ trait TakeRow {
                 if let Some(magnetorquers) = &motion.magnetorquers {
                     self.take(now, magnetorquers)?;
                 }
+                motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take(now, bearings))?;
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
             }
             Sample::Motion(motion) => {

@@ -1,6 +1,8 @@
 //! What is reported of a body with three axes.
 
-use super::{Energy, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques, Vibrations, Wheels};
+use super::{
+    Bearings, Energy, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques, Vibrations, Wheels,
+};
 
 /// A cycle of a spatial loop, after its law has decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +21,8 @@ pub struct Cycle {
     pub elastic_rate_rad_s: [f64; 3],
     /// Angles beyond the target (rad).
     pub error_rad: [f64; 3],
+    /// Heat of the friction of wheels since the start (J); not a number without bearings.
+    pub friction_heat_j: f64,
     /// Momentum of the wheels, in the body's axes (N m s).
     pub stored_nm_s: [f64; 3],
 }
@@ -40,6 +44,8 @@ pub struct SpatialMotion {
     pub torques: Option<Torques>,
     /// Wheels about axes of their own.
     pub wheels: Option<Wheels>,
+    /// Their bearings.
+    pub bearings: Option<Bearings>,
     /// Where the body is on its orbit.
     pub orbit: Option<Orbit>,
     /// Magnetic moments of torquers.

@@ -5,6 +5,7 @@ use super::row::{Topic, TopicRow, label_cells, rows};
 use super::states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
 use crate::adaptation::Decision;
 use crate::label::{Labels, labels};
+use crate::motion::turning::Slip;
 use crate::time::Instant;
 
 labels! {
@@ -17,7 +18,29 @@ labels! {
     }
 }
 
-label_cells!(Trigger, Decision);
+labels! {
+    /// Whether a wheel turns in its bearing, and which way.
+    Sliding {
+        /// To negative speeds.
+        Backward = "backward",
+        /// It is at rest in the body.
+        Stuck = "stuck",
+        /// To positive speeds.
+        Forward = "forward",
+    }
+}
+
+label_cells!(Trigger, Decision, Sliding);
+
+impl From<Slip> for Sliding {
+    fn from(slip: Slip) -> Self {
+        match slip {
+            Slip::Backward => Self::Backward,
+            Slip::Stuck => Self::Stuck,
+            Slip::Forward => Self::Forward,
+        }
+    }
+}
 
 rows! {
     package "flexsc.v1";
@@ -333,6 +356,39 @@ rows! {
         axes: Vec<OrbitAxis>,
         /// Whether the Sun shines on the body.
         light: Light,
+    }
+    /// The bearings of the wheels of a spatial body, with friction, imbalance or a tachometer.
+    Bearings = "/bearings" {
+        /// That of each wheel, in the order of the scenario.
+        wheels: Vec<BearingMotion>,
+    }
+    /// A wheel in its bearing.
+    BearingMotion {
+        /// Whether the wheel turns, and which way.
+        sliding: Sliding,
+        /// Friction (N m), which takes from the torque of the motor.
+        friction_nm: f64,
+        /// Heat of the friction since the start (J).
+        heat_j: f64,
+        /// Speed as the drive knows it (rad/s): by a tachometer, if there is one.
+        known_rad_s: f64,
+    }
+    /// A wheel passes through zero speed, sticks, or slips again.
+    WheelEvent = "/wheel_events" {
+        /// Time since the start, rounded to a double (s).
+        time_s: f64,
+        /// Whole seconds of the exact time.
+        time_whole_s: u64,
+        /// Femtoseconds of the exact time past the whole second.
+        time_fs: u64,
+        /// The wheel, from 0.
+        wheel: u64,
+        /// How it was.
+        before: Sliding,
+        /// How it is from now on.
+        after: Sliding,
+        /// Torque of its motor (N m).
+        torque_nm: f64,
     }
     /// The attitude of a spatial body.
     Pointing = "/pointing" {

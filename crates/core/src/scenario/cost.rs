@@ -9,9 +9,10 @@ use crate::body::spatial::{LONGEST_TURN, Periodic};
 use crate::document::Fault;
 use crate::estimator::Estimator;
 use crate::law::{Law, Target};
-use crate::motion::turning::Surroundings;
+use crate::motion::turning::{Bearing, SHAKE, Surroundings};
 use crate::quantity::NonNegative;
 use crate::record::Detail;
+use crate::sensor::Sensor;
 use crate::time::Span;
 
 /// No run takes more steps of one kind: it would take days.
@@ -202,7 +203,11 @@ impl Scenario {
             steps.push((key, span.max(0.0) / period.seconds()));
         };
         for (index, sensor) in self.sensor.iter().enumerate() {
-            if let Some(period) = sensor.period(None) {
+            let own = match sensor {
+                Sensor::Tachometer(tachometer) => Some(tachometer.period),
+                _ => sensor.period(None),
+            };
+            if let Some(period) = own {
                 each(format!("{}.period", self.sensor_key(index)), duration, period);
             }
         }
@@ -255,6 +260,7 @@ impl Scenario {
         if let Some(body) = self.body.spatial() {
             let rate = self.fastest_turn(body);
             let step = self.body.flexible().map_or(LONGEST_TURN / rate, |flexible| flexible.step(rate));
+            let step = step.min(self.shaken_every());
             if step.is_finite() {
                 steps.push((TURNS.to_owned(), duration / step));
             }
@@ -269,6 +275,13 @@ impl Scenario {
         let around = self.study.around.as_ref().map_or(0.0, Surroundings::frequency);
         let own = body.disturbance.as_ref().map_or(0.0, Periodic::frequency);
         limits.fold(start, f64::max) + around + own
+    }
+
+    /// How often steps follow the imbalance of wheels, at their speed at the start or their bias (s).
+    fn shaken_every(&self) -> f64 {
+        let Actuator::Wheels(wheels) = &self.actuator else { return f64::INFINITY };
+        let highest = self.study.bearings.iter().map(Bearing::highest).fold(0.0, f64::max);
+        SHAKE / (highest * wheels.fastest())
     }
 
     /// What a log of this detail holds beside what changes: the key, and how many messages.

@@ -284,7 +284,7 @@ impl Scenario {
     fn sensor_fault(&self) -> Option<Fault> {
         let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
         for (index, sensor) in self.sensor.iter().enumerate() {
-            if !sensor.is_continuous() && sensor.period(self.law.period()).is_none() {
+            if !sensor.is_continuous() && sensor.sees_body() && sensor.period(self.law.period()).is_none() {
                 return at(index, "must have a `period` with a law that has none of its own");
             }
             if let Sensor::Gyro(gyro) = sensor
@@ -295,9 +295,12 @@ impl Scenario {
             if let Some(fault) = self.vector_fault(sensor) {
                 return Some(fault.within(&self.sensor_key(index)));
             }
-            if self.sensor.len() > 1 && sensor.is_continuous() {
+            if self.sensor.of_body() > 1 && sensor.is_continuous() {
                 return at(index, "knows the motion at every instant, and there is nothing that others add");
             }
+        }
+        if let Some(fault) = self.tachometer_fault() {
+            return Some(fault);
         }
         if self.estimator.as_ref().is_some_and(Estimator::combines) {
             return None;
@@ -307,7 +310,7 @@ impl Scenario {
             let why = "tells no attitude and no rate, which the law reads: give it a `gyro` and an `[estimator.attitude]`";
             return at(0, why);
         }
-        if self.sensor.len() == 1 {
+        if self.sensor.of_body() == 1 {
             return None;
         }
         if let Some(estimator) = self.estimator.as_ref().filter(|estimator| !estimator.reads_rates_alone()) {
@@ -339,6 +342,21 @@ impl Scenario {
             }
             _ => None,
         }
+    }
+
+    /// A tachometer without wheels, without another sensor, or beside another.
+    fn tachometer_fault(&self) -> Option<Fault> {
+        let (index, _) = self.sensor.tachometer()?;
+        let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
+        if !matches!(self.actuator, Actuator::Wheels(_)) {
+            return at(index, "is on the wheels of `[actuator.wheels]`, and there are none");
+        }
+        if self.sensor.of_body() == 0 {
+            let why = "measures wheels alone: list a sensor of the body beside it, \"continuous\" for one that knows the motion";
+            return at(index, why);
+        }
+        let mut tachometers = self.sensor.iter().enumerate().filter(|(_, sensor)| !sensor.sees_body());
+        tachometers.nth(1).and_then(|(other, _)| at(other, "is on each wheel already: list one alone"))
     }
 
     /// The key of a sensor, its kind included.

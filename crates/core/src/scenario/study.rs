@@ -14,7 +14,9 @@ use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
 use crate::law::{ActiveDamping, Authority, Distribution, Itinerary, Law, PhasePlane, Promise, Target, band};
+use crate::motion::turning::Bearing;
 use crate::quantity::{Finite, Positive};
+use crate::random::Seed;
 use crate::time::{Instant, Span};
 
 /// A run without a period of its own is assessed once in so long (s).
@@ -51,6 +53,8 @@ pub struct Study {
     pub unloading: Option<[[Group; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
+    /// The bearings of wheels with friction or imbalance.
+    pub bearings: Vec<Bearing>,
     /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.
     pub back_emf: (f64, bool),
     /// The adaptive observers.
@@ -134,6 +138,17 @@ impl Study {
         if let Actuator::Wheels(wheels) = &scenario.actuator {
             let allocation = wheels.allocation().map_err(|fault| fault.within("actuator.wheels"))?;
             self.wheels = Some(allocation);
+            let tachometer = scenario.sensor.tachometer().map(|(index, _)| scenario.sensor_key(index));
+            let own = wheels.bears().map(|key| format!("actuator.wheels.{key}"));
+            if let Some(key) = own.or(tachometer) {
+                let Some(flexible) = scenario.body.flexible() else {
+                    let why = "is for wheels on a `[spacecraft]`: the modes of a `[body.spatial]` do not act back on its rotation, \
+                               against which wheels turn";
+                    return Err(Fault::new(key, why));
+                };
+                let bearings = wheels.bearings((body, flexible));
+                self.bearings = bearings.map_err(|fault| fault.within("actuator.wheels"))?;
+            }
         }
         self.around = surroundings(scenario, body)?;
         for (index, disturbance) in scenario.disturbance.iter().enumerate() {
@@ -306,7 +321,7 @@ impl Study {
     }
 
     /// The actuator of a run.
-    pub fn actuator(&self, scenario: &Scenario) -> Box<dyn Actuate> {
+    pub fn actuator(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Actuate> {
         let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
         let setting = |(axis, model): (usize, &Planar)| Setting {
             axis,
@@ -320,7 +335,8 @@ impl Study {
         match (&scenario.actuator, &self.groups, &self.wheels) {
             (Actuator::Jets(jets), Some(groups), _) => Box::new(Pulsing::new(jets, groups, self.tick)),
             (Actuator::Wheels(wheels), _, Some(allocation)) => {
-                let spinning = wheels.start(allocation, &settings);
+                let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
+                let spinning = wheels.start(allocation, &settings).read_by(tachometer);
                 let Some(unloading) = &wheels.unloading else { return Box::new(spinning) };
                 if let Some(magnetic) = unloading.start_magnetic(spinning.clone(), &settings) {
                     return Box::new(magnetic);

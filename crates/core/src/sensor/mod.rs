@@ -7,6 +7,7 @@ mod magnetometer;
 mod sampled;
 mod star_tracker;
 mod sun_sensor;
+mod tachometer;
 mod vector;
 
 use std::fmt;
@@ -28,6 +29,7 @@ pub use magnetometer::Magnetometer;
 pub use sampled::{AtSamples, Fault, Outage, Sampled};
 pub use star_tracker::StarTracker;
 pub use sun_sensor::SunSensor;
+pub use tachometer::{Counting, Tachometer};
 
 /// The kinds of sensor.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -46,6 +48,8 @@ pub enum Sensor {
     Magnetometer(Magnetometer),
     /// The direction to the Sun.
     SunSensor(SunSensor),
+    /// The speeds of wheels, which their drives know by it; it tells nothing of the body.
+    Tachometer(Tachometer),
     /// A sensor from outside of this crate, which no scenario file can name.
     Own(Own<dyn Instrument>),
 }
@@ -197,8 +201,14 @@ impl Sensor {
             Self::StarTracker(tracker) => Box::new(tracker.start(seed, ordinal)),
             Self::Magnetometer(magnetometer) => magnetometer.start(seed, ordinal),
             Self::SunSensor(sensor) => sensor.start(seed, ordinal),
+            Self::Tachometer(_) => Box::new(tachometer::Blind),
             Self::Own(own) => own.start(axes, seed),
         }
+    }
+
+    /// Whether it measures the body.
+    pub fn sees_body(&self) -> bool {
+        !matches!(self, Self::Tachometer(_))
     }
 
     /// Whether it knows the motion at every instant.
@@ -215,14 +225,16 @@ impl Sensor {
             Self::StarTracker(_) => "star_tracker",
             Self::Magnetometer(_) => "magnetometer",
             Self::SunSensor(_) => "sun_sensor",
+            Self::Tachometer(_) => "tachometer",
             Self::Own(_) => "own",
         }
     }
 
-    /// The period of its samples under a law with a period of its own or none; none of a continuous sensor.
+    /// The period of its samples of the body under a law with a period of its own or none; none of a continuous sensor, and of
+    /// a tachometer, which tells nothing of the body.
     pub fn period(&self, law: Option<Span>) -> Option<Span> {
         match self {
-            Self::Continuous => None,
+            Self::Continuous | Self::Tachometer(_) => None,
             Self::Sampled(sampled) => Some(sampled.period),
             Self::Gyro(gyro) => gyro.period.or(law),
             Self::StarTracker(tracker) => Some(tracker.period),
@@ -235,7 +247,7 @@ impl Sensor {
     /// The point of the structure at which it is, if it names one.
     pub fn point(&self) -> Option<&str> {
         match self {
-            Self::Continuous | Self::Own(_) => None,
+            Self::Continuous | Self::Tachometer(_) | Self::Own(_) => None,
             Self::Sampled(sampled) => sampled.point.as_deref(),
             Self::Gyro(gyro) => gyro.point.as_deref(),
             Self::StarTracker(tracker) => tracker.point.as_deref(),
@@ -247,7 +259,11 @@ impl Sensor {
     /// Standard deviation of a measured rate about an axis (rad/s), if rates are measured.
     pub fn rate_noise(&self, axis: usize) -> Option<f64> {
         match self {
-            Self::Continuous | Self::StarTracker(_) | Self::Magnetometer(_) | Self::SunSensor(_) => None,
+            Self::Continuous
+            | Self::StarTracker(_)
+            | Self::Magnetometer(_)
+            | Self::SunSensor(_)
+            | Self::Tachometer(_) => None,
             Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
             Self::Gyro(gyro) => Some(gyro.rate_noise(axis)),
             Self::Own(own) => own.rate_noise(),
@@ -260,7 +276,11 @@ impl Sensor {
             Self::Sampled(sampled) => sampled.angle_noise(),
             Self::StarTracker(tracker) => tracker.angle_noise(),
             Self::Own(own) => own.angle_noise(),
-            Self::Continuous | Self::Gyro(_) | Self::Magnetometer(_) | Self::SunSensor(_) => 0.0,
+            Self::Continuous
+            | Self::Gyro(_)
+            | Self::Magnetometer(_)
+            | Self::SunSensor(_)
+            | Self::Tachometer(_) => 0.0,
         }
     }
 
@@ -276,6 +296,7 @@ impl Sensor {
             Self::StarTracker(tracker) => &tracker.faults,
             Self::Magnetometer(magnetometer) => &magnetometer.faults,
             Self::SunSensor(sensor) => &sensor.faults,
+            Self::Tachometer(tachometer) => &tachometer.faults,
             Self::Continuous | Self::Gyro(_) | Self::Own(_) => &[],
         }
     }
@@ -296,6 +317,19 @@ impl Parts<Sensor> {
         &self[0]
     }
 
+    /// How many measure the body.
+    pub fn of_body(&self) -> usize {
+        self.iter().filter(|sensor| sensor.sees_body()).count()
+    }
+
+    /// The tachometer, and its place among the sensors, if there is one.
+    pub fn tachometer(&self) -> Option<(usize, &Tachometer)> {
+        self.iter().enumerate().find_map(|(index, sensor)| match sensor {
+            Sensor::Tachometer(tachometer) => Some((index, tachometer)),
+            _ => None,
+        })
+    }
+
     /// How many of its kind come before a sensor.
     pub fn ordinal(&self, index: usize) -> usize {
         let kind = self[index].kind();
@@ -304,12 +338,11 @@ impl Parts<Sensor> {
 
     /// Whether a sensor tells where the body points: a gyro only where no other does, which then is known exactly.
     pub fn orients(&self, index: usize) -> bool {
-        let gyro = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(_));
-        if self[index].is_of_a_vector() {
-            return false;
-        }
-        let first = self.iter().position(gyro);
-        !gyro(&self[index]) || self.iter().all(|of| gyro(of) || of.is_of_a_vector()) && first == Some(index)
+        let rates = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(_));
+        let of_body = |sensor: &Sensor| sensor.sees_body() && !sensor.is_of_a_vector();
+        let alone = self.iter().filter(|sensor| of_body(sensor)).all(rates);
+        let is_first = !self[..index].iter().any(of_body);
+        of_body(&self[index]) && (!rates(&self[index]) || alone && is_first)
     }
 
     /// The shortest period of their samples under a law with a period of its own or none; none of a continuous sensor.

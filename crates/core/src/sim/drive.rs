@@ -39,7 +39,7 @@ impl Drive {
         let stream = |index: usize| seed.stream(&format!("disturbance {index}"));
         let disturbances = scenario.disturbance.iter().enumerate();
         let mut drive = Self {
-            actuator: scenario.study.actuator(scenario),
+            actuator: scenario.study.actuator(scenario, seed),
             distribution: scenario.study.distribution(scenario),
             disturbances: disturbances
                 .map(|(index, of)| Disturbing::new(of, scenario.body.spatial(), stream(index)))

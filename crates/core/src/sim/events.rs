@@ -5,7 +5,7 @@ use crate::belief::Damped;
 use crate::law::Frame;
 use crate::record::foxglove::Level;
 use crate::record::row::Stamp;
-use crate::record::{Adaptation, Arrival, Record, RecordError};
+use crate::record::{Adaptation, Arrival, Record, RecordError, Sliding, WheelEvent};
 use crate::scenario::Scenario;
 use crate::sim::journal::{Journal, adapted, opening};
 use crate::time::Instant;
@@ -125,6 +125,22 @@ impl Events {
             self.journal.tell(now, manoeuvre, line, record)?;
         }
         Ok(())
+    }
+
+    /// A wheel passes through zero speed, sticks, or slips again.
+    pub fn slipped(
+        &self,
+        now: Instant,
+        event: &WheelEvent,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        let what = match (event.before, event.after) {
+            (_, Sliding::Stuck) => "sticks",
+            (Sliding::Stuck, _) => "slips again",
+            _ => "passes through zero speed",
+        };
+        let line = format!("wheel {} {what}", event.wheel + 1);
+        self.journal.tell(now, (Level::Info, "wheels"), line, record)
     }
 
     /// What has changed in active damping, and in the trust in what it acts on.

@@ -54,6 +54,14 @@ pub enum SimulationError {
         /// How often.
         count: u32,
     },
+    /// Wheels slip and stick without end.
+    #[error("chatter: wheels slipped and stuck {count} times within a nanosecond at t = {at} s")]
+    WheelChatter {
+        /// When.
+        at: Instant,
+        /// How often.
+        count: u32,
+    },
     /// The record could not be kept.
     #[error(transparent)]
     Record(#[from] RecordError),
@@ -84,6 +92,9 @@ pub struct Simulation {
     /// The instant and index of the guard that trips next, as long as the hold lasts.
     trip: Option<(Instant, usize)>,
     decisions: u32,
+    /// Whether a wheel has come to rest or let go now, how often in the last nanosecond, and since when.
+    met: bool,
+    slips: (u32, Instant),
     telling: Telling,
 }
 
@@ -110,6 +121,8 @@ impl Simulation {
             exerted: Exerted::default(),
             trip: None,
             decisions: 0,
+            met: false,
+            slips: (0, Instant::START),
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -132,8 +145,12 @@ impl Simulation {
             self.begin(record)?;
         }
         loop {
-            let next = self.next();
-            self.plant.approach(next.min(until), record)?;
+            let mut next = self.next();
+            if let Some(at) = self.plant.approach(next.min(until), record)? {
+                next = at;
+                self.slips(at)?;
+            }
+            self.turned(next.min(until));
             if next > until {
                 self.now = until;
                 self.plant.view(until)?;
@@ -175,7 +192,31 @@ impl Simulation {
         self.drive.command(self.now, self.laws.commands(), &self.beliefs, truth.rigid);
         self.drive.serve(self.now, truth.rigid);
         self.depart(record)?;
+        self.turned(self.now);
+        self.tell_first_slips();
         self.tell_begin(record)
+    }
+
+    /// A wheel comes to rest or lets go at an instant.
+    fn slips(&mut self, at: Instant) -> Result<(), SimulationError> {
+        let (count, since) = &mut self.slips;
+        if at.since(*since).seconds() > 1e-9 {
+            (*count, *since) = (0, at);
+        }
+        *count += 1;
+        if *count > MOST_DECISIONS {
+            return Err(SimulationError::WheelChatter { at, count: *count });
+        }
+        self.met = true;
+        Ok(())
+    }
+
+    /// Wheels in bearings are as the motion has them.
+    fn turned(&mut self, now: Instant) {
+        let turned = self.plant.borne();
+        if !turned.is_empty() {
+            self.drive.actuator.turned(now, &turned);
+        }
     }
 
     /// Ends the run, if this is its end and it has not ended yet.
@@ -215,12 +256,14 @@ impl Simulation {
         if matches!(event, Event::Guard(_)) || self.laws.concerned(now, sampled, &self.beliefs) {
             self.decide(event, record)?;
         }
-        if self.drive.due == Some(now) {
+        let met = std::mem::take(&mut self.met);
+        if met || self.drive.due == Some(now) {
             let truth = self.plant.view(now)?;
             self.feel(&truth);
             self.drive.serve(now, truth.rigid);
             self.depart(record)?;
         }
+        self.tell_slips(record)?;
         self.tell(record)?;
         self.show(record)
     }

@@ -47,7 +47,11 @@ impl Sensing {
         let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
         let feels = all.iter().position(|sensor| matches!(sensor, Sensor::Magnetometer(_)));
         let due = |(index, sensor): (usize, &Sensor)| {
-            let period = if all.len() == 1 { study.sampling } else { sensor.period(study.cycle) };
+            let period = if all.of_body() == 1 && sensor.sees_body() {
+                study.sampling
+            } else {
+                sensor.period(study.cycle)
+            };
             Due {
                 sensor: sensor.start(axes, seed, all.ordinal(index)),
                 orients: all.orients(index),

@@ -7,6 +7,7 @@ use super::reference::Reference;
 use super::{Simulation, SimulationError};
 use crate::estimator::Closed;
 use crate::law::{Cause, Phase};
+use crate::motion::turning::{Slip, Turned};
 use crate::record::{
     self, AxisRate, Command, Cycle, Estimates, GoalMotion, Jets, Motion, Rates, Record, RecordError, Sample,
     SpatialMotion, Torques, Trigger, Wheels,
@@ -30,6 +31,8 @@ pub struct Telling {
     next_law: Instant,
     /// The cycles of a body with three axes.
     cycle: Option<Span>,
+    /// How wheels slipped when it was told last.
+    slips: Vec<Slip>,
     /// Pulses of jets that were told.
     pulses: u64,
     next_cycle: Option<Instant>,
@@ -59,6 +62,7 @@ impl Telling {
             next_dense: None,
             next_law: Instant::START,
             cycle: scenario.body.spatial().map(|_| scenario.study.tick),
+            slips: Vec::new(),
             pulses: 0,
             next_cycle: None,
             arrival: Arrival::new(scenario, &reference.goal),
@@ -263,6 +267,7 @@ impl Simulation {
                 elastic_rate_rad_s: elastic.into(),
                 error_rad: error,
                 stored_nm_s: self.drive.actuator.stored(now),
+                friction_heat_j: plant.friction_heat(),
             };
             record.record(now, Sample::Cycle(&cycle))?;
             if let Some(written) = self.reference.written(now) {
@@ -278,6 +283,55 @@ impl Simulation {
                 let trusted = |axis: usize| self.beliefs[axis].trusted;
                 self.telling.events.damping(now, &damped(), [0, 1, 2].map(trusted), record)?;
             }
+        }
+        Ok(())
+    }
+
+    /// The bearings of wheels, if they have any.
+    fn bearings(&self, plant: &SpatialPlant) -> Option<record::Bearings> {
+        let of = |(wheel, known_rad_s): (Turned, f64)| record::BearingMotion {
+            sliding: wheel.slip.into(),
+            friction_nm: wheel.friction,
+            heat_j: wheel.heat,
+            known_rad_s,
+        };
+        let wheels: Vec<_> =
+            plant.borne().into_iter().zip(self.drive.actuator.known_speeds()).map(of).collect();
+        (!wheels.is_empty()).then_some(record::Bearings { wheels })
+    }
+
+    /// How wheels slip at the start.
+    pub(super) fn tell_first_slips(&mut self) {
+        if let Plant::Spatial(plant) = &self.plant {
+            self.telling.slips = plant.slips().to_vec();
+        }
+    }
+
+    /// What wheels do otherwise than at the last instant: they pass through zero speed, stick, or slip again.
+    pub(super) fn tell_slips(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let (Plant::Spatial(plant), now) = (&self.plant, self.now) else { return Ok(()) };
+        let slips = plant.slips();
+        if self.telling.slips == slips {
+            return Ok(());
+        }
+        let before = std::mem::replace(&mut self.telling.slips, slips.to_vec());
+        let wheels = self.drive.actuator.wheels(now, [0.0; 3]);
+        let (time_s, time_whole_s, time_fs) = Command::times(now);
+        for (index, (before, after)) in before.iter().zip(plant.slips()).enumerate() {
+            if before == after {
+                continue;
+            }
+            let event = record::WheelEvent {
+                time_s,
+                time_whole_s,
+                time_fs,
+                wheel: index as u64,
+                before: (*before).into(),
+                after: (*after).into(),
+                torque_nm: wheels.get(index).map_or(0.0, |wheel| wheel.torque_nm),
+            };
+            record.record(now, Sample::WheelEvent(&event))?;
+            self.telling.events.slipped(now, &event, record)?;
         }
         Ok(())
     }
@@ -317,6 +371,7 @@ impl Simulation {
             wheels: (!wheels.is_empty()).then_some(Wheels { wheels }),
             orbit: plant.orbit(),
             magnetorquers: actuator.magnetic(),
+            bearings: self.bearings(plant),
         }
     }
 }

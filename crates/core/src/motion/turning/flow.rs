@@ -2,12 +2,14 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
+use super::bearing::{Bearing, Borne, Slip, Spin};
 use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
 use super::pace::{Pace, Pose};
 use super::response::Response;
 use super::rotation::Bend;
 use super::state::{Seen, State};
 use super::step::{Step, Work};
+use super::watch::Ahead;
 use crate::attitude::Vector;
 
 /// Steps after which the motion asks whether it may go on.
@@ -19,17 +21,23 @@ const BESIDE: usize = 16;
 /// A flexible body that turns, and what acts on it since it departed.
 #[derive(Clone, Debug)]
 pub struct Turning {
-    model: Model,
+    pub(super) model: Model,
     pace: Pace,
     /// The state at the departure, at the instant of the grid that was reached last, and at the instant seen last.
-    departed: State,
-    grid: State,
-    here: State,
+    pub(super) departed: State,
+    pub(super) grid: State,
+    pub(super) here: State,
     /// Seconds since the departure of the last two.
-    reached: f64,
-    now: f64,
-    seen: Seen,
-    acting: Acting,
+    pub(super) reached: f64,
+    pub(super) now: f64,
+    pub(super) seen: Seen,
+    pub(super) acting: Acting,
+    /// The bearings of the rotors, if they have any, how each rotor slips, and whether it has just come to rest or let go.
+    pub(super) bearings: Vec<Bearing>,
+    pub(super) slips: Vec<Slip>,
+    pub(super) resting: Vec<bool>,
+    /// The step that follows, once it was looked at for rotors that come to rest.
+    pub(super) ahead: Option<Ahead>,
     /// Responses over a step of the grid at each level, once they were needed.
     regular: Vec<Option<Regular>>,
     /// Those over the last steps that were beside the grid, and the place of the next.
@@ -93,11 +101,14 @@ impl Acting {
     fn step<'a>(
         &'a self,
         model: &'a Model,
-        responses: &'a [Response],
+        (responses, bearings, slips): (&'a [Response], &'a [Bearing], &'a [Slip]),
         h: f64,
         t: f64,
         around: Option<(&'a dyn Surroundings, f64)>,
     ) -> Step<'a> {
+        let count = self.rotors.len().min(bearings.len());
+        let borne = Borne { bearings: &bearings[..count], rotors: &self.rotors, slips: &slips[..count] };
+        let is_borne = count > 0;
         Step {
             model,
             responses,
@@ -106,7 +117,8 @@ impl Acting {
             push: (self.push != Vector::zeros()).then_some(self.push),
             forces: &self.forces,
             levers: &self.levers,
-            rotors: self.rotors(t),
+            rotors: if is_borne { (Vector::zeros(), Vector::zeros()) } else { self.rotors(t) },
+            borne: is_borne.then_some(borne),
             around: around.map(|(around, since)| (around, since + t)),
         }
     }
@@ -139,6 +151,7 @@ impl Turning {
             moved: [Vector::zeros(); 2],
             lost: (Quaternion::default(), Vector::zeros(), Vector::zeros()),
             modes: moved.map(canonical).collect(),
+            spins: Vec::new(),
         };
         let mut turning = Self {
             pace: Pace::new(&model),
@@ -148,6 +161,10 @@ impl Turning {
             now: 0.0,
             seen: Seen::empty(state.modes.len()),
             acting: Acting::default(),
+            bearings: Vec::new(),
+            slips: Vec::new(),
+            resting: Vec::new(),
+            ahead: None,
             regular: Vec::new(),
             beside: Vec::new(),
             next_beside: 0,
@@ -161,7 +178,17 @@ impl Turning {
         turning
     }
 
-    /// Begins a new motion at the instant seen last, under what acts from now on.
+    /// Gives the rotors bearings, one each, before the first departure.
+    pub fn bear(&mut self, bearings: Vec<Bearing>) {
+        for state in [&mut self.departed, &mut self.grid, &mut self.here] {
+            state.spins = vec![Spin::default(); bearings.len()];
+        }
+        self.slips = vec![Slip::default(); bearings.len()];
+        self.resting = vec![false; bearings.len()];
+        self.bearings = bearings;
+    }
+
+    /// Begins a new motion at the instant seen last, under what acts from now on; rotors in bearings have to `settle` then.
     pub fn depart(&mut self, acting: &Acting) {
         let bent = self
             .here
@@ -169,9 +196,14 @@ impl Turning {
             .iter()
             .zip(&self.model.modes)
             .fold(Vector::zeros(), |sum, ([q, ..], mode)| sum + mode.rotation * *q);
-        for rotor in acting.rotors.iter().skip(self.acting.rotors.len()) {
+        for (index, rotor) in acting.rotors.iter().enumerate().skip(self.acting.rotors.len()) {
             self.here.momentum += Bend::new(bent).forward(&(rotor.axis * rotor.momentum));
+            if index < self.bearings.len() {
+                self.slips[index] = self.first_slip(index, &rotor.axis, rotor.momentum);
+                self.here.spins[index].sums.x = rotor.momentum;
+            }
         }
+        self.ahead = None;
         (self.acting.torque, self.acting.push) = (acting.torque, acting.push);
         self.acting.forces.clone_from(&acting.forces);
         self.acting.levers.clone_from(&acting.levers);
@@ -183,7 +215,7 @@ impl Turning {
     }
 
     /// Brings the body to `t` seconds after the departure, which was so long after the start of the run (s), as long as it
-    /// may `go_on`.
+    /// may `go_on`, or to the first instant before at which a rotor comes to rest or lets go, which it tells (s).
     ///
     /// # Errors
     /// What `go_on` says.
@@ -192,16 +224,25 @@ impl Turning {
         t: f64,
         around: Option<(&dyn Surroundings, f64)>,
         mut go_on: impl FnMut() -> Result<(), E>,
-    ) -> Result<(), E> {
+    ) -> Result<Option<f64>, E> {
         if t < self.reached {
             self.grid.copy_from(&self.departed);
             self.reached = 0.0;
         }
-        let mut steps = 0_u64;
+        let (mut steps, watches) = (0_u64, self.watches());
         loop {
             let level = self.level(around);
             self.prepare(level);
-            let Some(Some(Regular { h, responses })) = self.regular.get(level) else { break };
+            if watches {
+                self.foresee(level, around);
+                let meets = self.ahead.as_ref().and_then(|ahead| ahead.meets);
+                if let Some((at, _)) = meets.filter(|(at, _)| *at <= t) {
+                    self.step_beside(at - self.reached, around);
+                    return Ok(Some(at));
+                }
+            }
+            let Some(Some(Regular { h, .. })) = self.regular.get(level) else { break };
+            let h = *h;
             if self.reached + h > t {
                 break;
             }
@@ -209,29 +250,66 @@ impl Turning {
             if steps.is_multiple_of(STEPS) {
                 go_on()?;
             }
-            let step = self.acting.step(&self.model, responses, *h, self.reached, around);
-            self.effort.passes += u64::from(step.take(&mut self.grid, &mut self.work));
-            self.effort.steps += 1;
+            if let Some(ahead) = self.ahead.as_ref().filter(|ahead| watches && ahead.from == self.reached) {
+                self.grid.copy_from(&ahead.to);
+            } else {
+                let mut grid = std::mem::take(&mut self.grid);
+                self.take_step(level, &mut grid, around);
+                self.grid = grid;
+            }
             self.reached += h;
         }
+        self.step_beside(t - self.reached, around);
+        Ok(None)
+    }
+
+    /// Takes a state of the grid a step further, of this level; tells how long it is (s).
+    pub(super) fn take_step(
+        &mut self,
+        level: usize,
+        state: &mut State,
+        around: Option<(&dyn Surroundings, f64)>,
+    ) -> Option<f64> {
+        let Some(Some(Regular { h, responses })) = self.regular.get(level) else { return None };
+        let borne = (&responses[..], &self.bearings[..], &self.slips[..]);
+        let step = self.acting.step(&self.model, borne, *h, self.reached, around);
+        self.effort.passes += u64::from(step.take(state, &mut self.work));
+        self.effort.steps += 1;
+        Some(*h)
+    }
+
+    /// Brings the body to `h` seconds after the instant of the grid, and looks.
+    pub(super) fn step_beside(&mut self, h: f64, around: Option<(&dyn Surroundings, f64)>) {
         self.here.copy_from(&self.grid);
-        self.now = t;
-        let h = t - self.reached;
+        self.now = self.reached + h;
         if h > 0.0 {
             let place = self.prepare_beside(h);
-            let responses = &self.beside[place].responses;
-            let step = self.acting.step(&self.model, responses, h, self.reached, around);
+            let borne = (&self.beside[place].responses[..], &self.bearings[..], &self.slips[..]);
+            let step = self.acting.step(&self.model, borne, h, self.reached, around);
             self.effort.passes += u64::from(step.take(&mut self.here, &mut self.work));
             self.effort.steps += 1;
         }
         self.look();
-        Ok(())
+    }
+
+    /// Brings the body to `t` seconds after the departure, an instant within a tick of that at which it stopped, and remembers that
+    /// a rotor comes to rest there, or lets go.
+    pub fn reach(&mut self, t: f64, around: Option<(&dyn Surroundings, f64)>) {
+        self.step_beside(t - self.reached, around);
+        self.meet();
     }
 
     /// The level of the next step.
     fn level(&mut self, around: Option<(&dyn Surroundings, f64)>) -> usize {
         let (exerted, slow) = around.map_or((0.0, 0.0), |(around, _)| (around.bound(), around.frequency()));
-        let (rotors, change) = self.acting.rotors(self.reached);
+        let (mut rotors, change) = self.acting.rotors(self.reached);
+        if !self.bearings.is_empty() {
+            rotors = self.borne_by(&self.slips).stored(self.grid.spins.iter().map(|spin| spin.sums.x));
+        }
+        // What wheels in bearings, warmth and levers do to modes is not estimated: steps resolve all modes.
+        let known = self.bearings.is_empty()
+            && self.acting.levers.is_empty()
+            && around.is_none_or(|(around, _)| around.heated().is_empty());
         let Self { model, grid, acting, amplitudes, .. } = self;
         let push = acting.torque.norm() + exerted + change.norm();
         // Gt but for how much the body is bent now.
@@ -246,13 +324,20 @@ impl Turning {
                 + (p + of.rotation.dot(&turning) / w).abs()
                 + (of.rotation.dot(&net) + forced).abs() / (w * w);
         }
+        if !known {
+            amplitudes.fill(f64::MAX);
+        }
         let pose = Pose {
             rate: model.mobility * (size + turning.norm()) + slow,
             carried: (model.inverse * turning).norm() + model.mobility * size + slow,
             acceleration: model.mobility * push,
             amplitudes: &*amplitudes,
         };
-        self.pace.level(pose)
+        let turns = self.pace.level(pose);
+        let shakes = self.bearings.iter().zip(&self.grid.spins).map(|(bearing, spin)| {
+            bearing.highest() * ((spin.sums.x / bearing.inertia).abs() + self.model.mobility * size)
+        });
+        self.pace.resolving(turns, shakes.fold(0.0, f64::max))
     }
 
     /// Makes sure that there are responses over a step beside the grid, of `h` seconds; tells their place.
@@ -292,8 +377,16 @@ impl Turning {
         modes.fold(self.model.inertia, |sum, (of, q)| sum + tensor(of.moments) * *q)
     }
 
-    fn look(&mut self) {
-        self.seen.look(&self.model, &self.here, &self.acting.rotors(self.now).0);
+    pub(super) fn look(&mut self) {
+        let (mut stored, mut locked) = (Vector::zeros(), Matrix3::zeros());
+        if self.bearings.is_empty() {
+            stored = self.acting.rotors(self.now).0;
+        } else {
+            let borne = self.borne_by(&self.slips);
+            stored += borne.stored(self.here.spins.iter().map(|spin| spin.sums.x));
+            locked += borne.locked();
+        }
+        self.seen.look(&self.model, &self.here, &stored, &locked);
     }
 
     /// The body at the instant seen last.

@@ -12,18 +12,27 @@
 //! oscillators (\[HairerLubichWanner06\], \[Likins70\]). Steps lie on a grid that depends on the departure alone, and what is
 //! seen between is one shorter step beside it, so that looking changes nothing.
 
+mod bearing;
+#[cfg(test)]
+mod borne_tests;
+mod bounds;
 mod flow;
 mod heated;
 mod model;
 mod pace;
 mod response;
 mod rotation;
+mod slipping;
 mod state;
 mod step;
 #[cfg(test)]
 mod tests;
+mod watch;
 
+pub use bearing::{Bearing, Line, Slip};
 pub use flow::{Acting, Effort, Turning};
 pub use heated::Heated;
 pub use model::{Flexible, FreeMode, Rotor, Surroundings};
+pub use pace::SHAKE;
+pub use slipping::Turned;
 pub use state::Seen;

@@ -17,6 +17,9 @@ const TURN: f64 = 1.0 / 16.0;
 /// The phase of the fastest mode that is resolved whatever its amplitude, in a step (rad).
 const PHASE: f64 = 1.5;
 
+/// The phase of what shakes the body, in a step (rad): what modes near it make of it errs by 1e-8 of itself.
+pub const SHAKE: f64 = 0.25;
+
 /// Modes above this frequency make no step shorter (rad/s): steps of 15 ms are the shortest for the sake of modes.
 const RESOLVED: f64 = 100.0;
 
@@ -112,6 +115,15 @@ impl Pace {
         };
         let lost = self.modes.iter().zip(pose.amplitudes).map(lost).sum::<f64>();
         (pose.carried + pose.acceleration * h) * lost
+    }
+
+    /// This level, or the first beyond it whose steps follow what shakes the body at a frequency (rad/s).
+    pub fn resolving(&self, level: usize, frequency: f64) -> usize {
+        let mut level = level;
+        while frequency > 0.0 && frequency * self.length(level) > SHAKE && level < 60 {
+            level += 1;
+        }
+        level
     }
 
     /// The length of a step (s), a number of few bits so that sums of steps are exact.

@@ -1,13 +1,14 @@
 //! Where a turning body is, in mean axes, and what that looks like from the hub.
 
-use nalgebra::Quaternion;
+use nalgebra::{Matrix3, Quaternion};
 
+use super::bearing::Spin;
 use super::model::{Model, tensor};
 use super::rotation::Bend;
 use crate::attitude::{Vector, rotation};
 
 /// The state that steps carry on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct State {
     /// Unit quaternion that turns vectors of the mean axes into inertial ones.
     pub attitude: Quaternion<f64>,
@@ -21,15 +22,18 @@ pub(super) struct State {
     pub lost: (Quaternion<f64>, Vector, Vector),
     /// q and P/W of each mode (m sqrt(kg)), and what rounding has left out of both.
     pub modes: Vec<[f64; 4]>,
+    /// Rotors in bearings.
+    pub spins: Vec<Spin>,
 }
 
 impl State {
     /// Takes over another state, without allocation.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { attitude, momentum, turned, moved, lost, modes } = self;
+        let Self { attitude, momentum, turned, moved, lost, modes, spins } = self;
         (*attitude, *momentum, *turned, *lost) = (other.attitude, other.momentum, other.turned, other.lost);
         *moved = other.moved;
         modes.copy_from_slice(&other.modes);
+        spins.copy_from_slice(&other.spins);
     }
 }
 
@@ -76,8 +80,9 @@ impl Seen {
         }
     }
 
-    /// Looks at a state, in which rotors have this momentum (N m s).
-    pub(super) fn look(&mut self, model: &Model, state: &State, rotors: &Vector) {
+    /// Looks at a state, in which rotors have this momentum (N m s), and those that are stuck add such a tensor to the inertia
+    /// (kg m²).
+    pub(super) fn look(&mut self, model: &Model, state: &State, rotors: &Vector, locked: &Matrix3<f64>) {
         let (mut bent, mut elastic, mut changed) = (Vector::zeros(), Vector::zeros(), [0.0; 6]);
         for (of, [q, p, ..]) in model.modes.iter().zip(&state.modes) {
             bent += of.rotation * *q;
@@ -89,7 +94,7 @@ impl Seen {
         self.mean = state.attitude;
         self.attitude = state.attitude * rotation(&bent);
         self.momentum = bend.back(&state.momentum);
-        let (turning, rate) = model.rates(&(self.momentum - rotors), &elastic, &changed);
+        let (turning, rate) = model.rates(&(self.momentum - rotors), &elastic, &(changed + locked));
         self.rate = rate;
         self.rigid = model.inverse * turning;
         self.rotational = 0.5 * (turning.dot(&self.rigid) + rate.dot(&(changed * rate)));

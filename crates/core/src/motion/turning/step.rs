@@ -6,6 +6,7 @@
 
 use nalgebra::{Matrix3, Quaternion, Vector2};
 
+use super::bearing::{Borne, Spun};
 use super::model::{Model, Surroundings, tensor};
 use super::response::Response;
 use super::rotation::Bend;
@@ -36,13 +37,18 @@ pub(super) struct Step<'a> {
     pub levers: &'a [Vector],
     /// Momentum of the rotors at the start of the step (N m s), and its rate (N m).
     pub rotors: (Vector, Vector),
+    /// Rotors in bearings, which are not among them; their momenta are parts of the state.
+    pub borne: Option<Borne<'a>>,
     /// The surroundings, and the time since the start of the run (s).
     pub around: Option<(&'a dyn Surroundings, f64)>,
 }
 
-/// The memory of steps: what they keep of each mode.
+/// The memory of steps: what they keep of each mode, and of rotors in bearings.
 #[derive(Clone, Debug)]
-pub(super) struct Work(Vec<Memory>);
+pub(super) struct Work {
+    modes: Vec<Memory>,
+    spun: Spun,
+}
 
 #[derive(Clone, Debug, Default)]
 struct Memory {
@@ -89,15 +95,15 @@ struct Felt {
 impl Work {
     /// Memory for so many modes.
     pub fn new(modes: usize) -> Self {
-        Self(vec![Memory::default(); modes])
+        Self { modes: vec![Memory::default(); modes], spun: Spun::default() }
     }
 }
 
 impl Step<'_> {
     /// Takes the step; tells the number of passes.
     pub fn take(&self, state: &mut State, work: &mut Work) -> u32 {
-        let modes = &mut work.0[..];
-        let mut stages = self.guess(state, modes);
+        let (modes, spun) = (&mut work.modes[..], &mut work.spun);
+        let mut stages = self.guess(state, modes, spun);
         let speed =
             modes.iter().fold(0.0, |most, mode| mode.rate.abs().max(self.h * mode.s[0].abs()).max(most));
         let size = state.momentum.norm() + self.h * self.torque.norm();
@@ -106,7 +112,8 @@ impl Step<'_> {
             passes += 1;
             let mut change = 0.0_f64;
             for node in 0..3 {
-                let (found, forced) = self.stage(node, state, &stages, modes);
+                let (found, forced) = self.stage(node, state, &stages, modes, spun);
+                change = change.max(self.slipped(node, spun));
                 let last = &stages[node];
                 if size > 0.0 {
                     change = change.max((found.push - last.push).norm() * self.h / size);
@@ -123,8 +130,21 @@ impl Step<'_> {
             }
             before = change;
         }
-        self.end(state, &stages, modes);
+        self.end(state, &stages, modes, spun);
         passes
+    }
+
+    /// Takes over the rates of rotors in bearings at a node; tells by which part of their momenta that changed.
+    fn slipped(&self, node: usize, spun: &mut Spun) -> f64 {
+        let mut change = 0.0_f64;
+        for ((rates, now), at) in spun.rates.iter_mut().zip(&spun.now).zip(&spun.at) {
+            let size = at.x.abs() + self.h * now.x.abs();
+            if size > 0.0 {
+                change = change.max((now.x - rates[node].x).abs() * self.h / size);
+            }
+            rates[node] = *now;
+        }
+        change
     }
 
     /// Whether modes are forced by more than Gt and constants.
@@ -132,10 +152,11 @@ impl Step<'_> {
         self.model.stretches
             || self.model.beside.is_some()
             || self.around.is_some_and(|(around, _)| !around.heated().is_empty())
+            || self.borne.is_some_and(|borne| borne.shakes())
     }
 
     /// What the state comes to by itself, and the first guess: all stages are like the start.
-    fn guess(&self, state: &State, modes: &mut [Memory]) -> [Stage; 3] {
+    fn guess(&self, state: &State, modes: &mut [Memory], spun: &mut Spun) -> [Stage; 3] {
         let mut sums = Sums::default();
         for (index, (memory, response)) in modes.iter_mut().zip(self.responses).enumerate() {
             let [q, p, ..] = state.modes[index];
@@ -149,8 +170,17 @@ impl Step<'_> {
             memory.rate = self.model.modes[index].frequency * p;
             sums.add(self, index, q, memory.rate);
         }
-        let (stage, felt) = self.turning(0.0, &sums.shape(), &state.momentum, &state.attitude);
-        self.feel(&felt, modes, 0);
+        if self.borne.is_some() {
+            spun.at.clear();
+            spun.at.extend(state.spins.iter().map(|spin| spin.sums));
+            spun.now.resize(spun.at.len(), Vector::zeros());
+        }
+        let (stage, felt) = self.turning(0.0, &sums.shape(), &state.momentum, &state.attitude, spun);
+        if self.borne.is_some() {
+            spun.rates.clear();
+            spun.rates.extend(spun.now.iter().map(|now| [*now; 3]));
+        }
+        self.feel(&felt, modes, &spun.waves, 0);
         for mode in modes {
             (mode.g, mode.s) = ([mode.g[0]; 3], [mode.s[0]; 3]);
         }
@@ -158,7 +188,14 @@ impl Step<'_> {
     }
 
     /// The stage at a node, and by how much the forces on modes changed.
-    fn stage(&self, node: usize, state: &State, stages: &[Stage; 3], modes: &mut [Memory]) -> (Stage, f64) {
+    fn stage(
+        &self,
+        node: usize,
+        state: &State,
+        stages: &[Stage; 3],
+        modes: &mut [Memory],
+        spun: &mut Spun,
+    ) -> (Stage, f64) {
         let mut sums = Sums::default();
         let loud = self.is_loud();
         for (index, (memory, response)) in modes.iter_mut().zip(self.responses).enumerate() {
@@ -177,18 +214,36 @@ impl Step<'_> {
         let [a, b, c] = MATRIX[node].map(|weight| weight * self.h);
         let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
         let facing = state.attitude + stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
-        let (stage, felt) = self.turning(NODES[node] * self.h, &sums.shape(), &momentum, &facing);
-        (stage, self.feel(&felt, modes, node))
+        if self.borne.is_some() {
+            for ((at, rates), spin) in spun.at.iter_mut().zip(&spun.rates).zip(&state.spins) {
+                *at = spin.sums + rates[0] * a + rates[1] * b + rates[2] * c;
+            }
+        }
+        let (stage, felt) = self.turning(NODES[node] * self.h, &sums.shape(), &momentum, &facing, spun);
+        (stage, self.feel(&felt, modes, &spun.waves, node))
     }
 
     /// How the body turns `t` seconds after the start of the step.
-    fn turning(&self, t: f64, shape: &Shape, momentum: &Vector, facing: &Quaternion<f64>) -> (Stage, Felt) {
+    fn turning(
+        &self,
+        t: f64,
+        shape: &Shape,
+        momentum: &Vector,
+        facing: &Quaternion<f64>,
+        spun: &mut Spun,
+    ) -> (Stage, Felt) {
         let model = self.model;
         let bend = Bend::new(shape.bent);
         let (rotors, change) = &self.rotors;
-        let free = bend.back(momentum) - (rotors + change * t);
-        let (turning, rigid, rate) = if model.stretches {
-            let (turning, rate) = model.rates(&free, &shape.elastic, &shape.changed);
+        let mut free = bend.back(momentum) - (rotors + change * t);
+        let mut locked = None;
+        if let Some(borne) = &self.borne {
+            free -= borne.stored(spun.at.iter().map(|at| at.x));
+            locked = borne.sticks().then(|| borne.locked());
+        }
+        let (turning, rigid, rate) = if model.stretches || locked.is_some() {
+            let changed = locked.map_or(shape.changed, |locked| shape.changed + locked);
+            let (turning, rate) = model.rates(&free, &shape.elastic, &changed);
             (turning, model.inverse * turning, rate)
         } else {
             let rigid = model.inverse * free;
@@ -202,6 +257,9 @@ impl Step<'_> {
             let hub = facing * rotation(&shape.bent);
             torque += around.torque(since + t, &hub, &(model.inertia + shape.changed));
             tide = if model.stretches { around.tide(since + t, &hub) } else { None };
+        }
+        if let Some(borne) = &self.borne {
+            torque += borne.feel(&rate, spun);
         }
         let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
         let stage = Stage {
@@ -221,7 +279,7 @@ impl Step<'_> {
     }
 
     /// Gives the modes what they feel at a node; tells by how much their forces changed.
-    fn feel(&self, felt: &Felt, modes: &mut [Memory], node: usize) -> f64 {
+    fn feel(&self, felt: &Felt, modes: &mut [Memory], waves: &[[f64; 2]], node: usize) -> f64 {
         for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
             memory.g[node] = of.rotation.dot(&felt.turning);
             memory.rate += memory.g[node];
@@ -233,6 +291,9 @@ impl Step<'_> {
                 let mut force = mode.centrifugal(&felt.rate);
                 if let Some(tide) = &felt.tide {
                     force += mode.pulled(tide);
+                }
+                if let Some(borne) = self.borne.filter(|_| !waves.is_empty()) {
+                    force += borne.force(index, waves);
                 }
                 if let Some(beside) = &self.model.beside {
                     force -= modes
@@ -261,13 +322,19 @@ impl Step<'_> {
     }
 
     /// The state at the end.
-    fn end(&self, state: &mut State, stages: &[Stage; 3], modes: &[Memory]) {
+    fn end(&self, state: &mut State, stages: &[Stage; 3], modes: &[Memory], spun: &Spun) {
         let [a, b, c] = WEIGHTS.map(|weight| weight * self.h);
         let push = stages[0].push * a + stages[1].push * b + stages[2].push * c;
         let turn = stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
         let rigid = stages[0].rigid * a + stages[1].rigid * b + stages[2].rigid * c;
-        let State { attitude, momentum, turned, moved, lost, modes: states } = state;
+        let State { attitude, momentum, turned, moved, lost, modes: states, spins } = state;
         self.move_on(moved, stages);
+        if self.borne.is_some() {
+            for (spin, rates) in spins.iter_mut().zip(&spun.rates) {
+                let change = rates[0] * a + rates[1] * b + rates[2] * c;
+                (spin.sums, spin.lost) = exact_sum(spin.sums, change + spin.lost);
+            }
+        }
         (attitude.coords, lost.0.coords) = exact_sum(attitude.coords, turn.coords + lost.0.coords);
         (*momentum, lost.1) = exact_sum(*momentum, push + lost.1);
         (*turned, lost.2) = exact_sum(*turned, rigid + lost.2);

@@ -10,6 +10,7 @@ use super::SimulationError;
 use crate::body::Wrench;
 use crate::environment::Seen;
 use crate::guard::Guard;
+use crate::motion::turning::Turned;
 use crate::motion::{Sensed, State};
 use crate::record::{Course, Record, RecordError};
 use crate::scenario::Scenario;
@@ -39,12 +40,22 @@ impl Plant {
         }
     }
 
-    /// Integrates up to an instant what has no closed form, as long as the record lets it.
-    pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    /// Integrates up to an instant what has no closed form, as long as the record lets it; tells the instant before, at which it
+    /// stopped because a wheel came to rest or let go.
+    pub fn approach(
+        &mut self,
+        now: Instant,
+        record: &mut impl Record,
+    ) -> Result<Option<Instant>, RecordError> {
         match self {
-            Self::Planar(plant) => plant.approach(now, record),
+            Self::Planar(plant) => plant.approach(now, record).map(|()| None),
             Self::Spatial(plant) => plant.approach(now, record),
         }
+    }
+
+    /// Wheels in bearings at the instant seen last.
+    pub fn borne(&self) -> Vec<Turned> {
+        if let Self::Spatial(plant) = self { plant.borne() } else { Vec::new() }
     }
 
     /// What there is to measure at an instant, to which the body is brought.

@@ -7,7 +7,7 @@ use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
 use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
 use crate::environment::{Around, Seen, into};
-use crate::motion::turning::{Flexible, Rotor, Surroundings};
+use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
 use crate::motion::{Phase, State};
 use crate::record::{
     Energy, Orbit, OrbitAxis, Pointing, Position, Record, RecordError, Vibration, Vibrations,
@@ -72,8 +72,10 @@ impl SpatialPlant {
         let elsewhere = others.iter().map(beyond_first).collect();
         let hub = rotations(&study.acts_at);
         let around = study.around.clone();
-        let two_way = flexible
-            .map(|of| Box::new(TwoWay::new(body, of, around.clone(), study.moving.clone(), [&sensed, &hub])));
+        let two_way = flexible.map(|of| {
+            let shapes = [&sensed[..], &hub];
+            Box::new(TwoWay::new(body, of, around.clone(), study.moving.clone(), shapes, &study.bearings))
+        });
         let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
         Self {
             rigid,
@@ -97,8 +99,13 @@ impl SpatialPlant {
         }
     }
 
-    /// Brings the body to an instant, as long as the record lets it. What is seen on the way does not change the motion.
-    pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    /// Brings the body to an instant, as long as the record lets it, or to one before at which a wheel comes to rest or lets go,
+    /// which it tells. What is seen on the way does not change the motion.
+    pub fn approach(
+        &mut self,
+        now: Instant,
+        record: &mut impl Record,
+    ) -> Result<Option<Instant>, RecordError> {
         record.poll()?;
         if self.two_way.is_some() {
             return self.go(now, record);
@@ -112,12 +119,17 @@ impl SpatialPlant {
         self.go(now, record)
     }
 
-    fn go(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    fn go(&mut self, now: Instant, record: &mut impl Record) -> Result<Option<Instant>, RecordError> {
+        let mut met = None;
         if self.seen != now {
             let h = now.since(self.departed).seconds();
             let began = self.departed.seconds();
             if let Some(two_way) = &mut self.two_way {
-                two_way.advance(h, began, || record.poll())?;
+                if let Some(h) = two_way.advance(h, began, || record.poll())? {
+                    let at = (self.departed + Span::from_seconds(h)).min(now);
+                    two_way.reach(at.since(self.departed).seconds(), began);
+                    met = Some(at);
+                }
                 two_way.show(&self.rigid, &mut self.state);
             } else {
                 let rotors = self.rotors(self.departed);
@@ -128,10 +140,26 @@ impl SpatialPlant {
                 self.state.modes.clone_from(&self.origin.modes);
                 self.elastic.advance(&mut self.state.modes, &self.forces, h);
             }
-            self.seen = now;
+            self.seen = met.unwrap_or(now);
             self.truth = None;
         }
-        Ok(())
+        Ok(met)
+    }
+
+    /// How wheels in bearings slip.
+    pub fn slips(&self) -> &[Slip] {
+        self.two_way.as_deref().map_or(&[], TwoWay::slips)
+    }
+
+    /// Heat of the friction of wheels since the start (J); not a number without bearings.
+    pub fn friction_heat(&self) -> f64 {
+        self.two_way.as_deref().and_then(TwoWay::friction_heat).unwrap_or(f64::NAN)
+    }
+
+    /// Wheels in bearings at the instant seen last; none without friction, imbalance and tachometer.
+    pub fn borne(&self) -> Vec<Turned> {
+        let began = self.departed.seconds();
+        self.two_way.as_deref().map_or_else(Vec::new, |two_way| two_way.turned(began))
     }
 
     /// What there is to measure at the instant reached; none if the state is no longer finite.
@@ -190,7 +218,7 @@ impl SpatialPlant {
             around.hold(wrench.moment);
         }
         if let Some(two_way) = &mut self.two_way {
-            two_way.depart(wrench);
+            two_way.depart(wrench, self.departed.seconds());
             two_way.show(&self.rigid, &mut self.state);
             return;
         }

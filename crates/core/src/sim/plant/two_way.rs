@@ -8,7 +8,7 @@ use crate::body::craft::Moving;
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
 use crate::environment::{Around, Seen};
 use crate::motion::Phase;
-use crate::motion::turning::{Acting, Flexible, Heated, Surroundings, Turning};
+use crate::motion::turning::{Acting, Bearing, Flexible, Heated, Slip, Surroundings, Turned, Turning};
 use crate::sensor::{Orientation, Truth};
 
 /// The motion, and what the plant needs to turn what acts and what is seen into its terms.
@@ -31,6 +31,14 @@ pub struct TwoWay {
 struct Outside {
     own: Option<Periodic>,
     around: Option<Around>,
+}
+
+impl Outside {
+    /// What acts after a departure so long after the start (s), if there is anything.
+    fn since(&self, began: f64) -> Option<(&dyn Surroundings, f64)> {
+        let acts = self.own.is_some() || self.around.is_some();
+        acts.then_some((self as &dyn Surroundings, began))
+    }
 }
 
 impl Surroundings for Outside {
@@ -60,13 +68,14 @@ impl Surroundings for Outside {
 
 impl TwoWay {
     /// The body at the start, which nothing pushes but what is around it, with the rotations of each mode at the sensor and
-    /// where torques act.
+    /// where torques act, and the bearings of its rotors, if they have any.
     pub fn new(
         body: &Spatial,
         flexible: &Flexible,
         around: Option<Around>,
         moving: Option<Moving>,
         [sensed, acts]: [&[Vector]; 2],
+        bearings: &[Bearing],
     ) -> Self {
         let frequencies: Vec<f64> = flexible.modes.iter().map(|mode| mode.frequency).collect();
         let start = Elastic::start(body);
@@ -79,6 +88,8 @@ impl TwoWay {
             let [began, _] = moving.place(turning.seen());
             (moving, began)
         };
+        let mut turning = Turning::new(flexible, body.attitude.get(), vector(&body.rate), &modes);
+        turning.bear(bearings.to_vec());
         Self {
             moving: moving.map(placed),
             turning,
@@ -91,11 +102,35 @@ impl TwoWay {
         }
     }
 
-    /// Brings the body to `h` seconds after its departure, which was so long after the start (s), as long as it may `go_on`.
-    pub fn advance<E>(&mut self, h: f64, began: f64, go_on: impl FnMut() -> Result<(), E>) -> Result<(), E> {
-        let Outside { own, around } = &self.outside;
-        let acts = own.is_some() || around.is_some();
-        self.turning.advance(h, acts.then_some((&self.outside as &dyn Surroundings, began)), go_on)
+    /// Brings the body to `h` seconds after its departure, which was so long after the start (s), as long as it may `go_on`, or to
+    /// where a rotor comes to rest or lets go before, which it tells (s after the departure).
+    pub fn advance<E>(
+        &mut self,
+        h: f64,
+        began: f64,
+        go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Option<f64>, E> {
+        self.turning.advance(h, self.outside.since(began), go_on)
+    }
+
+    /// Brings the body to the instant at which a rotor comes to rest or lets go.
+    pub fn reach(&mut self, h: f64, began: f64) {
+        self.turning.reach(h, self.outside.since(began));
+    }
+
+    /// How rotors in bearings slip.
+    pub fn slips(&self) -> &[Slip] {
+        self.turning.slips()
+    }
+
+    /// Heat of the friction of all rotors since the start (J), if they have bearings.
+    pub fn friction_heat(&self) -> Option<f64> {
+        self.turning.friction_heat()
+    }
+
+    /// Rotors in bearings at the instant seen last, after a departure so long after the start (s).
+    pub fn turned(&self, began: f64) -> Vec<Turned> {
+        self.turning.turned(self.outside.since(began))
     }
 
     /// The torque of the surroundings at the instant seen last, which is so long after the start (s), in the hub's axes (N m).
@@ -103,8 +138,8 @@ impl TwoWay {
         self.outside.torque(t, self.attitude(), &self.turning.inertia())
     }
 
-    /// Begins a new motion at the instant seen last, under what acts from now on.
-    pub fn depart(&mut self, wrench: &Wrench) {
+    /// Begins a new motion at the instant seen last, so long after the start (s), under what acts from now on.
+    pub fn depart(&mut self, wrench: &Wrench, began: f64) {
         let (push, hub) = (wrench.torque, Vector::from(wrench.hub));
         if let Some(around) = &mut self.outside.around {
             around.hold(wrench.moment);
@@ -121,6 +156,7 @@ impl TwoWay {
         forces.clear();
         forces.extend(beyond.map(|((of_hub, acts), force)| force - of_hub.dot(&push) + acts.dot(&hub)));
         self.turning.depart(&self.acting);
+        self.turning.settle(self.outside.since(began));
     }
 
     /// Puts the state as seen from the mean axes into another.

@@ -1,0 +1,50 @@
+//! Friction in the bearings of wheels, and what their drives add against it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::per_wheel::PerWheel;
+use crate::document::Fault;
+use crate::quantity::NonNegative;
+
+/// Friction: c Omega + t sgn Omega of a wheel that turns, and up to its breakaway torque of one at rest.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Friction {
+    /// Coulomb friction t (N m), of each or of all.
+    #[serde(default)]
+    pub coulomb: PerWheel<NonNegative>,
+    /// Viscous friction c (N m s/rad), of each or of all.
+    #[serde(default)]
+    pub viscous: PerWheel<NonNegative>,
+    /// Torque up to which the bearing holds a wheel at rest (N m); left out, that of Coulomb.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub breakaway: Option<PerWheel<NonNegative>>,
+}
+
+impl Friction {
+    /// The torque up to which the bearing of a wheel holds it (N m).
+    pub fn holds(&self, wheel: usize) -> f64 {
+        self.breakaway.as_ref().map_or(self.coulomb.of(wheel), |of| of.of(wheel)).get()
+    }
+
+    /// What single values cannot show to be wrong, of so many wheels.
+    ///
+    /// # Errors
+    /// A key within the friction, and why.
+    pub fn check(&self, wheels: usize) -> Result<(), Fault> {
+        self.coulomb.check("coulomb", wheels)?;
+        self.viscous.check("viscous", wheels)?;
+        if let Some(breakaway) = &self.breakaway {
+            breakaway.check("breakaway", wheels)?;
+            for wheel in 0..wheels {
+                let (coulomb, holds) = (self.coulomb.of(wheel).get(), self.holds(wheel));
+                if holds < coulomb {
+                    let why = format!("must be at least `coulomb`, {coulomb} N m, got {holds}");
+                    return Err(Fault::new("breakaway", why));
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,82 @@
+//! Values of wheels: one for all, or one for each.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::document::Fault;
+
+/// One value for all wheels, or one for each.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PerWheel<T> {
+    /// For all.
+    All(T),
+    /// For each, in the order of the scenario.
+    Each(Vec<T>),
+}
+
+impl<T: Copy + Default> PerWheel<T> {
+    /// The value of a wheel.
+    pub fn of(&self, wheel: usize) -> T {
+        match self {
+            Self::All(value) => *value,
+            Self::Each(values) => values.get(wheel).copied().unwrap_or_default(),
+        }
+    }
+
+    /// Whether there are as many as wheels, if there is one for each.
+    ///
+    /// # Errors
+    /// The key, and why.
+    pub fn check(&self, key: &str, wheels: usize) -> Result<(), Fault> {
+        match self {
+            Self::Each(values) if values.len() != wheels => {
+                let why =
+                    format!("must be one number, or one for each of {wheels} wheels, got {}", values.len());
+                Err(Fault::new(key, why))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl<T: Default> Default for PerWheel<T> {
+    fn default() -> Self {
+        Self::All(T::default())
+    }
+}
+
+impl<T: Serialize> Serialize for PerWheel<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::All(value) => value.serialize(serializer),
+            Self::Each(values) => values.serialize(serializer),
+        }
+    }
+}
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for PerWheel<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        use serde::de::Error;
+        let value = toml::Value::deserialize(deserializer)?;
+        let message = |error: toml::de::Error| D::Error::custom(error.message());
+        if value.is_array() {
+            return value.try_into().map(Self::Each).map_err(message);
+        }
+        value.try_into().map(Self::All).map_err(message)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for PerWheel<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("PerWheel{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<T>();
+        let each = generator.subschema_for::<Vec<T>>();
+        json_schema!({ "anyOf": [one, each] })
+    }
+}

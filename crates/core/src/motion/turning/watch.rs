@@ -1,0 +1,185 @@
+//! The first instant at which a rotor comes to rest or lets go, by a search that can miss none.
+//!
+//! Over a step of the grid the second derivative of a margin, a rotor's speed or what its bearing has left, is at most M
+//! (`bounds.rs`). Over a part d of the step the margin is therefore nowhere less than the smaller one at its ends less M d²/8.
+//! Where that is not positive the part is halved, until it is, or the margin falls all along it and has one zero. Steps are those of the
+//! grid, whatever is looked at, so that the instant does not depend on it.
+
+use super::bearing::Slip;
+use super::flow::Turning;
+use super::model::Surroundings;
+use super::state::State;
+
+/// A rotor that lets go begins at a margin of 0, which this keeps apart from rounding (rad/s).
+const SPARE: f64 = 1e-12;
+
+/// No part of a step is shorter (s): an instant has so many.
+const TICK: f64 = 1e-15;
+
+/// The step that follows, and what happens on it.
+#[derive(Clone, Debug)]
+pub(super) struct Ahead {
+    /// Seconds from the departure to the start of the step.
+    pub from: f64,
+    /// The state at its end.
+    pub to: State,
+    /// The first instant since the departure (s) at which a rotor comes to rest or lets go, and which one.
+    pub meets: Option<(f64, usize)>,
+}
+
+/// What must stay positive.
+#[derive(Copy, Clone, Debug)]
+enum Margin {
+    /// The speed of a rotor, the way it slips.
+    Speed(usize, f64),
+    /// What the bearing of a rotor can hold beyond what it holds, one way.
+    Grip(usize, f64),
+}
+
+type Around<'a> = Option<(&'a dyn Surroundings, f64)>;
+
+impl Turning {
+    /// Whether any rotor may stick.
+    pub(super) fn watches(&self) -> bool {
+        self.bearings.iter().zip(&self.acting.rotors).any(|(bearing, _)| bearing.grips())
+    }
+
+    /// Looks at the step of the grid that follows, once.
+    pub(super) fn foresee(&mut self, level: usize, around: Around) {
+        if self.ahead.as_ref().is_some_and(|ahead| ahead.from == self.reached) {
+            return;
+        }
+        let from = self.reached;
+        let mut to = self.ahead.take().map_or_else(|| self.grid.clone(), |ahead| ahead.to);
+        to.copy_from(&self.grid);
+        let Some(h) = self.take_step(level, &mut to, around) else { return };
+        self.here.copy_from(&self.grid);
+        self.now = from;
+        self.look();
+        let margins = self.margins();
+        let bounds = self.bounds(h, around);
+        let starts: Vec<f64> = margins.iter().map(|margin| self.margin(*margin, around)).collect();
+        self.here.copy_from(&to);
+        self.now = from + h;
+        self.look();
+        let ends: Vec<f64> = margins.iter().map(|margin| self.margin(*margin, around)).collect();
+        let mut meets: Option<(f64, usize)> = None;
+        for ((margin, start), end) in margins.into_iter().zip(starts).zip(ends) {
+            let (index, most) = match margin {
+                Margin::Speed(index, _) => (index, bounds.jerk_of(index)),
+                Margin::Grip(index, _) => (index, bounds.third * self.bearings[index].inertia),
+            };
+            // One that has just let go turns back only if it does so by more than rounding.
+            let spare = if let (Margin::Speed(..), true) = (margin, start < SPARE) { SPARE } else { 0.0 };
+            let margin = (margin, spare, most);
+            if let Some(t) = self.first(margin, (0.0, start + spare), (h, end + spare), around) {
+                let at = from + t;
+                if meets.is_none_or(|(before, _)| at < before) {
+                    meets = Some((at, index));
+                }
+            }
+        }
+        self.ahead = Some(Ahead { from, to, meets });
+    }
+
+    fn margins(&self) -> Vec<Margin> {
+        let gripped =
+            (0..self.acting.rotors.len().min(self.bearings.len())).filter(|of| self.bearings[*of].grips());
+        let of = |index: usize| match self.slips[index] {
+            Slip::Stuck => vec![Margin::Grip(index, 1.0), Margin::Grip(index, -1.0)],
+            slip => vec![Margin::Speed(index, slip.sign())],
+        };
+        gripped.flat_map(of).collect()
+    }
+
+    /// A margin at the instant seen last.
+    fn margin(&self, margin: Margin, around: Around) -> f64 {
+        let borne = self.borne_by(&self.slips);
+        match margin {
+            Margin::Speed(index, sign) => {
+                sign * borne.speed(index, self.here.spins[index].sums.x, &self.seen.rate)
+            }
+            Margin::Grip(index, sign) => {
+                let (bearing, rotor) = (&self.bearings[index], &self.acting.rotors[index]);
+                let along = rotor.axis.dot(&self.acceleration(&self.slips, around));
+                bearing.breakaway - sign * (rotor.torque - bearing.inertia * along)
+            }
+        }
+    }
+
+    /// The first zero of a margin, whose second derivative is at most so much, between two instants of the step.
+    fn first(
+        &mut self,
+        (margin, spare, most): (Margin, f64, f64),
+        low: (f64, f64),
+        high: (f64, f64),
+        around: Around,
+    ) -> Option<f64> {
+        let width = high.0 - low.0;
+        if low.1.min(high.1) > most * width * width / 8.0 {
+            return None;
+        }
+        let (slope, bend) = ((high.1 - low.1) / width, most * width);
+        if slope > bend || width <= TICK {
+            // It rises all along, from 0 where a rotor just let go.
+            return (slope <= bend && high.1 <= 0.0).then_some(high.0);
+        }
+        if slope < -bend {
+            return (high.1 <= 0.0).then(|| self.zero((margin, spare), low, high, around));
+        }
+        let middle = low.0 + 0.5 * width;
+        let value = self.margin_at((margin, spare), middle, around);
+        let before = self.first((margin, spare, most), low, (middle, value), around);
+        before.or_else(|| self.first((margin, spare, most), (middle, value), high, around))
+    }
+
+    /// The zero of a margin that falls between two instants, by regula falsi (Illinois).
+    fn zero(
+        &mut self,
+        margin: (Margin, f64),
+        mut low: (f64, f64),
+        mut high: (f64, f64),
+        around: Around,
+    ) -> f64 {
+        if low.1 <= 0.0 {
+            return low.0;
+        }
+        let mut side = 0;
+        for _ in 0..100 {
+            let at = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+            if high.0 - low.0 <= TICK || at <= low.0 || at >= high.0 {
+                break;
+            }
+            let value = self.margin_at(margin, at, around);
+            if value > 0.0 {
+                low = (at, value);
+                if side == 1 {
+                    high.1 *= 0.5;
+                }
+                side = 1;
+            } else {
+                high = (at, value);
+                if side == -1 {
+                    low.1 *= 0.5;
+                }
+                side = -1;
+                if value == 0.0 {
+                    break;
+                }
+            }
+        }
+        high.0
+    }
+
+    fn margin_at(&mut self, (margin, spare): (Margin, f64), t: f64, around: Around) -> f64 {
+        self.step_beside(t, around);
+        self.margin(margin, around) + spare
+    }
+
+    /// A rotor comes to rest, or lets go, at the instant seen last: the departure decides what it does.
+    pub fn meet(&mut self) {
+        if let Some((_, index)) = self.ahead.take().and_then(|ahead| ahead.meets) {
+            self.resting[index] = true;
+        }
+    }
+}

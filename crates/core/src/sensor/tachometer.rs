@@ -1,0 +1,153 @@
+//! A tachometer on each wheel: pulses that are counted over its period, with noise and failures.
+
+use std::f64::consts::TAU;
+use std::num::NonZeroU32;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Fault, Reading, Sense, Truth};
+use crate::quantity::NonNegative;
+use crate::random::{Seed, Stream};
+use crate::time::{Instant, Span};
+
+/// Tachometers, one on each wheel of `[actuator.wheels]`.
+///
+/// Their drives know the speeds by them, and nothing else: friction compensation, speed bias, and the momentum that the law and
+/// unloading reckon with. Between two readings they keep the last.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tachometer {
+    /// Period of the readings (s).
+    pub period: Span,
+    /// Pulses in a turn: a reading is those of a period over the period, what is left counts in the next. Left out, the speed at the
+    /// instant is read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pulses: Option<NonZeroU32>,
+    /// Standard deviation of the white noise of each reading (rad/s).
+    #[serde(default)]
+    pub noise: NonNegative,
+    /// Times at which they fail: then the drives keep the last reading.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
+}
+
+/// Tachometers at work.
+#[derive(Clone, Debug)]
+pub struct Counting {
+    spec: Tachometer,
+    noise: Vec<Stream>,
+    /// Pulses counted at the last reading.
+    counted: Vec<f64>,
+    /// What was read last (rad/s).
+    speeds: Vec<f64>,
+    next: Instant,
+}
+
+impl Tachometer {
+    /// The tachometers of wheels that turn at these speeds at the start (rad/s), which they know.
+    pub fn start(&self, speeds: Vec<f64>, seed: Seed) -> Counting {
+        Counting {
+            noise: (1..=speeds.len()).map(|wheel| seed.stream(&format!("tachometer {wheel}"))).collect(),
+            counted: vec![0.0; speeds.len()],
+            speeds,
+            next: Instant::START + self.period,
+            spec: self.clone(),
+        }
+    }
+}
+
+impl Counting {
+    /// When they are read next.
+    pub fn due(&self) -> Instant {
+        self.next
+    }
+
+    /// Reads the wheels, each with its angle (rad) and its speed (rad/s) against the body.
+    pub fn read(&mut self, now: Instant, wheels: impl Iterator<Item = [f64; 2]>) {
+        let Self { spec, noise, counted, speeds, next } = self;
+        *next = now + spec.period;
+        let fails = spec.faults.iter().any(|fault| fault.outage().lasts(now));
+        let each = wheels.zip(noise).zip(counted).zip(speeds);
+        for ((([angle, speed], noise), counted), known) in each {
+            let mut read = speed;
+            if let Some(pulses) = spec.pulses {
+                let quantum = TAU / f64::from(pulses.get());
+                let count = libm::floor(angle / quantum);
+                read = (count - *counted) * quantum / spec.period.seconds();
+                *counted = count;
+            }
+            // Draws are made in a failure too.
+            if spec.noise.get() > 0.0 {
+                read += spec.noise.get() * noise.normal();
+            }
+            if !fails {
+                *known = read;
+            }
+        }
+    }
+
+    /// The speeds that are known (rad/s).
+    pub fn speeds(&self) -> &[f64] {
+        &self.speeds
+    }
+}
+
+/// What it tells of the body: nothing.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Blind;
+
+impl Sense for Blind {
+    fn read(&mut self, _: Instant, _: &Truth, _: Option<&Reading>) -> Option<Reading> {
+        None
+    }
+
+    fn copy(&self) -> Box<dyn Sense> {
+        Box::new(*self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn start(keys: &str) -> Counting {
+        let spec: Tachometer = toml::from_str(&format!("period = 0.1\n{keys}")).unwrap();
+        spec.start(vec![10.0], Seed { scenario: 1, run: 0 })
+    }
+
+    fn read(tachometer: &mut Counting, k: i32, angle: f64, speed: f64) -> f64 {
+        tachometer
+            .read(Instant::START + Span::from_seconds(0.1 * f64::from(k)), [[angle, speed]].into_iter());
+        tachometer.speeds()[0]
+    }
+
+    /// 24 pulses a turn are 2.618 rad/s for each pulse in 0.1 s; what is left counts in the next reading.
+    #[test]
+    fn pulses_are_counted_and_none_is_lost() {
+        let mut tachometer = start("pulses = 24");
+        assert_eq!(tachometer.speeds(), [10.0]);
+        let quantum = TAU / 24.0 / 0.1;
+        let mut sum = 0.0;
+        for k in 1..=1000 {
+            let speed = read(&mut tachometer, k, 1.0 * 0.1 * f64::from(k), 1.0);
+            assert!(speed == 0.0 || (speed - quantum).abs() < 1e-12);
+            sum += speed;
+        }
+        // 100 rad are 381 pulses and a part of one.
+        assert!((sum * 0.1 - 381.0 * TAU / 24.0).abs() < 1e-9, "{sum}");
+        // Backwards the first pulse is passed at once.
+        let mut tachometer = start("pulses = 24");
+        assert!((read(&mut tachometer, 1, -1e-6, -1e-5) + quantum).abs() < 1e-12);
+    }
+
+    #[test]
+    fn without_pulses_it_reads_the_speed_and_a_failure_keeps_the_last() {
+        let mut tachometer = start("faults = [{ silent = { from = 0.25, to = 0.45 } }]");
+        let speeds: Vec<f64> = (1..=6).map(|k| read(&mut tachometer, k, 0.0, f64::from(k))).collect();
+        assert_eq!(speeds, [1.0, 2.0, 2.0, 2.0, 5.0, 6.0]);
+        let mut noisy = start("noise = 0.5");
+        let square: f64 = (1..=4000).map(|k| read(&mut noisy, k, 0.0, 0.0)).map(|speed| speed * speed).sum();
+        assert!((libm::sqrt(square / 4000.0) - 0.5).abs() < 0.02);
+    }
+}
