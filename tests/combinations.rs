@@ -33,9 +33,9 @@ const LAWS: [Kind; 10] = [
     ),
     ("b_dot", "", "b_dot = { period = 1.0, gain = 1e5 }"),
     (
-        "sequence",
+        "stages",
         "",
-        "sequence = [{ law = { open = {} } }, { from = 10.0, law = { attitude = { period = 0.2, bandwidth = 0.06 } } }]",
+        "stages = [{ law = { open = {} } }, { from = 10.0, law = { attitude = { period = 0.2, bandwidth = 0.06 } } }]",
     ),
 ];
 

@@ -243,6 +243,10 @@ fn panels_visibly_bend() {
     let names =
         shipped.filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned));
     for name in names {
+        // A rigid body has nothing to bend.
+        if name == "detumble-and-point" {
+            continue;
+        }
         let dir = Dir::with(&[&name]);
         let shorter =
             if name.starts_with("relay") { "--set duration=2000 --set log.scene.period=1" } else { "" };

@@ -82,7 +82,8 @@ impl Around {
         let aims = || self.sky.edges().map(level);
         let heated = |of: &Bending| Heated::new(of.forces.clone(), of.time_constant, aims());
         let heated = bendings.iter().map(heated).collect();
-        Self { heated, ..self }
+        let fastest = bendings.iter().map(|of| 1.0 / of.time_constant).fold(0.0, f64::max);
+        Self { heated, frequency: self.frequency + fastest, ..self }
     }
 
     /// Takes over the magnetic moment that torquers hold from now on, in the body's axes (A m²).

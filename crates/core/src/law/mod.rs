@@ -14,9 +14,9 @@ mod pd;
 mod per_axis;
 mod phase_plane;
 mod relay;
-mod sequence;
 #[cfg(test)]
 mod slew_tests;
+mod stages;
 mod state_space;
 mod switching_lines;
 
@@ -49,7 +49,7 @@ pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use per_axis::PerAxis;
 pub use phase_plane::{PhasePlane, Target};
 pub use relay::{Relay, Sides};
-pub use sequence::{Sequence, Stage};
+pub use stages::{Stage, Stages};
 pub use state_space::{Commands, Of, StateSpace};
 pub use switching_lines::{SwitchingLines, band};
 
@@ -74,7 +74,7 @@ pub enum Law {
     /// Magnetic moments against the change of the field, of a body that tumbles.
     BDot(BDot),
     /// Laws one after the other.
-    Sequence(Sequence),
+    Stages(Stages),
     /// A law from outside of this crate, which no scenario file can name.
     Own(Own<dyn Rule + Send + Sync>),
 }
@@ -176,7 +176,7 @@ impl Deref for Law {
             Self::PhasePlane(law) => law,
             Self::PerAxis(laws) => laws.as_ref(),
             Self::BDot(law) => law,
-            Self::Sequence(laws) => laws,
+            Self::Stages(laws) => laws,
             Self::Own(law) => &**law,
         }
     }
@@ -209,7 +209,7 @@ impl Law {
             Self::PhasePlane(_) => "phase_plane",
             Self::PerAxis(_) => "per_axis",
             Self::BDot(_) => "b_dot",
-            Self::Sequence(_) => "sequence",
+            Self::Stages(_) => "stages",
             Self::Own(_) => "own",
         }
     }

@@ -239,7 +239,7 @@ impl Scenario {
                         return Some(fault.within(&key));
                     }
                 }
-                Law::Sequence(laws) => {
+                Law::Stages(laws) => {
                     let commands = laws.laws().position(|law| matches!(law, Law::BDot(_)));
                     let magnetic = commands
                         .and_then(|index| Some(self.b_dot_fault()?.within(&format!("[{index}].law.b_dot"))));

@@ -132,7 +132,13 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     let unit = if let Actuator::Wheel(wheel) = &scenario.actuator { wheel.gain.get() } else { 1.0 };
     let study = &scenario.study;
     let most = study.authorities[axis].accelerations[0] * study.axes[axis].inertia.get();
-    let by_law = match scenario.law.about(axis) {
+    by_law(scenario, body, axis, scenario.law.about(axis), (unit, most)).min(most)
+}
+
+/// The same that a law asks for, of an actuator with this unit of its command and this largest torque (N m).
+fn by_law(scenario: &Scenario, body: &Spatial, axis: usize, law: &Law, (unit, most): (f64, f64)) -> f64 {
+    let study = &scenario.study;
+    match law {
         Law::Relay(relay) => unit * relay.strong.get(),
         Law::Pd(pd) => {
             let limit = pd.limit.map_or(f64::INFINITY, Positive::get);
@@ -154,9 +160,15 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
             }
         },
         Law::PhasePlane(_) => most,
-        Law::Open(_) | Law::PerAxis(_) | Law::BDot(_) | Law::Sequence(_) | Law::Own(_) => 0.0,
-    };
-    by_law.min(most)
+        Law::Stages(laws) => {
+            laws.laws().map(|law| by_law(scenario, body, axis, law, (unit, most))).fold(0.0, f64::max)
+        }
+        Law::BDot(_) => scenario.actuator.magnetorquers().map_or(0.0, |(torquers, _)| {
+            let field = study.around.as_ref().map_or(0.0, |around| around.sky().field_bound());
+            torquers.largest() * field
+        }),
+        Law::Open(_) | Law::PerAxis(_) | Law::Own(_) => 0.0,
+    }
 }
 
 /// The same of the modes of a body with three axes (m sqrt(kg)), under the jets, the torque of any axis, or a force.

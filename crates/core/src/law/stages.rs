@@ -12,7 +12,7 @@ use crate::time::{Instant, Span};
 /// Laws one after the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
-pub struct Sequence(Vec<Stage>);
+pub struct Stages(Vec<Stage>);
 
 /// A law that acts from a time on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -31,7 +31,7 @@ impl Stage {
     }
 }
 
-impl Sequence {
+impl Stages {
     /// Its laws.
     pub fn laws(&self) -> impl Iterator<Item = &Law> {
         self.0.iter().map(|stage| &stage.law)
@@ -42,7 +42,7 @@ impl Sequence {
         self.0.last().map_or(Instant::START, Stage::begins)
     }
 
-    /// What single values cannot show to be wrong: a key within the sequence, and why.
+    /// What single values cannot show to be wrong: a key within the stages, and why.
     pub fn inconsistency(&self) -> Option<Fault> {
         let Some(first) = self.0.first() else {
             return Some(Fault::new("", "must have one law or more, got none"));
@@ -61,7 +61,7 @@ impl Sequence {
                 Law::BDot(_) | Law::Pd(_) | Law::Open(_) | Law::Own(_) => None,
                 Law::Attitude(law) => law.inconsistency().map(|fault| fault.within(&key)),
                 Law::StateSpace(law) => law.inconsistency().map(|fault| fault.within(&key)),
-                Law::Relay(_) | Law::PhasePlane(_) | Law::PerAxis(_) | Law::Sequence(_) => {
+                Law::Relay(_) | Law::PhasePlane(_) | Law::PerAxis(_) | Law::Stages(_) => {
                     let why =
                         "must be one of `attitude`, `b_dot`, `pd`, `state_space` and `open`: others are laws of a whole run";
                     Some(Fault::new(key, why))
@@ -71,7 +71,7 @@ impl Sequence {
     }
 }
 
-impl Rule for Sequence {
+impl Rule for Stages {
     fn start(&self, authority: &Authority) -> Box<dyn Control> {
         let stages = self.0.iter().map(|stage| (stage.begins(), stage.law.start(authority)));
         Box::new(InTurn { stages: stages.collect(), active: 0 })
@@ -131,19 +131,19 @@ mod tests {
     use crate::actuator::PulseWidth;
     use crate::law::Command;
 
-    fn sequence(text: &str) -> Sequence {
+    fn stages(text: &str) -> Stages {
         #[derive(serde::Deserialize)]
         struct Of {
-            sequence: Sequence,
+            stages: Stages,
         }
-        toml::from_str::<Of>(text).unwrap().sequence
+        toml::from_str::<Of>(text).unwrap().stages
     }
 
     #[test]
     fn each_law_acts_from_its_time_on() {
-        let laws = sequence(
-            "[[sequence]]\nlaw.b_dot = { period = 2.0, gain = 1e4 }\n\
-             [[sequence]]\nfrom = 5.0\nlaw.attitude = { period = 1.0, bandwidth = 0.1 }",
+        let laws = stages(
+            "[[stages]]\nlaw.b_dot = { period = 2.0, gain = 1e4 }\n\
+             [[stages]]\nfrom = 5.0\nlaw.attitude = { period = 1.0, bandwidth = 0.1 }",
         );
         assert_eq!(laws.inconsistency(), None);
         assert_eq!(laws.period(), Some(Span::from_seconds(1.0)));
@@ -171,17 +171,17 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_sequence_is_refused() {
-        let fault = |text: &str| sequence(text).inconsistency().unwrap().to_string();
+    fn what_are_no_stages_is_refused() {
+        let fault = |text: &str| stages(text).inconsistency().unwrap().to_string();
         let b_dot = "law.b_dot = { period = 2.0, gain = 1e4 }";
-        assert!(fault("sequence = []").contains("one law or more"));
-        assert!(fault(&format!("[[sequence]]\nfrom = 1.0\n{b_dot}")).starts_with("`[0].from` must be 0"));
+        assert!(fault("stages = []").contains("one law or more"));
+        assert!(fault(&format!("[[stages]]\nfrom = 1.0\n{b_dot}")).starts_with("`[0].from` must be 0"));
         assert!(
-            fault(&format!("[[sequence]]\n{b_dot}\n[[sequence]]\n{b_dot}"))
+            fault(&format!("[[stages]]\n{b_dot}\n[[stages]]\n{b_dot}"))
                 .starts_with("`[1].from` must be later")
         );
         let relay =
             "law.relay = { dead_zone = 1e-3, hysteresis = 1e-4, strong = 1.0, weak = 0.1, k_t = 0.3 }";
-        assert!(fault(&format!("[[sequence]]\n{relay}")).starts_with("`[0].law.relay` must be one of"));
+        assert!(fault(&format!("[[stages]]\n{relay}")).starts_with("`[0].law.relay` must be one of"));
     }
 }
