@@ -20,6 +20,7 @@ mod convergence;
 mod costs;
 mod coupled;
 mod craft;
+mod craft_written;
 mod cycles;
 mod damping;
 mod damping_relay;
@@ -33,6 +34,7 @@ mod exact;
 mod extending;
 mod filters;
 mod forces;
+mod foreign;
 mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;

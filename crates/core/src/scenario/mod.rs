@@ -1,13 +1,16 @@
 //! The scenario: everything that a user writes about a study, and nothing that moves.
 
+mod authority;
 mod consistency;
 mod cost;
+mod coupled;
 mod epoch;
 mod known;
 mod learning;
 mod log;
 mod parts;
 mod reference;
+mod sensing;
 mod spacecraft;
 mod study;
 
@@ -20,10 +23,10 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 use toml::value::Datetime;
 
-use crate::actuator::{Actuator, Opposes};
+use crate::actuator::Actuator;
 use crate::adaptation::Adaptation;
 use crate::body::craft::{Appendage, Spacecraft};
-use crate::body::{Body, Chain, Coupled, Coupling, Drift, Planar};
+use crate::body::{Body, Chain, Drift, Planar};
 use crate::disturbance::Disturbance;
 use crate::document::{Document, Fault, Parts, ScenarioError};
 use crate::environment::Environment;
@@ -32,7 +35,6 @@ use crate::law::{Goal, Law, Promise, Target};
 use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::motion::linear::Linear;
 use crate::sensor::Sensor;
-use crate::structure::TOO_FAR_APART;
 use crate::time::{Instant, Span};
 use crate::uncertain::Distribution;
 
@@ -42,9 +44,6 @@ pub use cost::{Cost, MOST_RUNS};
 pub use log::{Log, SceneSpec};
 pub use reference::{Pointing, Reference};
 pub use study::Study;
-
-/// More modes than these are not taken apart into the poles of their coupled motion.
-const MOST_COUPLED: usize = 100;
 
 /// A scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -282,52 +281,6 @@ impl Scenario {
     /// The scenario with all its defaults, as TOML.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).unwrap_or_default()
-    }
-
-    /// The motion of a body whose modes a wheel or damping couples, or whose frequencies drift; none if they move on their
-    /// own.
-    pub fn coupling(&self) -> Option<Coupling> {
-        let (back_emf, total) = self.back_emf();
-        if let Some(flow) = &self.linear {
-            return Some(Coupling::by_poles(&self.model, flow, back_emf, total));
-        }
-        let wheel = matches!(self.actuator, Actuator::Wheel(_));
-        (wheel || self.drift.is_some())
-            .then(|| Coupling::new(&self.model, self.drift.as_ref(), back_emf, total))
-    }
-
-    /// What a wheel's back-EMF takes from a rate (1/s), and whether from that of the elastic body.
-    fn back_emf(&self) -> (f64, bool) {
-        match &self.actuator {
-            Actuator::Wheel(wheel) => {
-                (wheel.back_emf.get() / self.model.inertia.get(), wheel.opposes == Opposes::BodyRate)
-            }
-            _ => (0.0, true),
-        }
-    }
-
-    /// The flow by poles of a body that a damping matrix couples, or a wheel under a law that switches at crossings.
-    fn flow(&self) -> Result<Option<Arc<Linear>>, Fault> {
-        let wheel = matches!(self.actuator, Actuator::Wheel(_));
-        let crosses = self.law.switches() && self.study.sampling.is_none();
-        let damped = !self.model.damping_matrix.is_empty();
-        if self.body.spatial().is_some() || !(damped || wheel && crosses) {
-            return Ok(None);
-        }
-        let key = if damped { self.damping_key() } else { "actuator.wheel".to_owned() };
-        let modes = self.model.modes.len();
-        if modes > MOST_COUPLED {
-            return Err(Fault::new(
-                key,
-                format!("couples at most {MOST_COUPLED} modes, and the body has {modes}"),
-            ));
-        }
-        let (back_emf, total) = self.back_emf();
-        let coupled = Coupled::new(&self.model, back_emf, total, &vec![1.0; self.model.modes.len()]);
-        match coupled.flow() {
-            Some(flow) => Ok(Some(Arc::new(flow))),
-            None => Err(Fault::new(key, format!("with the modes {TOO_FAR_APART}"))),
-        }
     }
 
     /// The body that the manoeuvre is planned for.

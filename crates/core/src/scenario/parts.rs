@@ -6,7 +6,7 @@ use crate::disturbance::Disturbance;
 use crate::document::Fault;
 use crate::environment::Sky;
 use crate::estimator::Estimator;
-use crate::law::{Itinerary, Law, Measure, Reads, Target};
+use crate::law::{Itinerary, Law, Measure, Target};
 use crate::sensor::Sensor;
 
 impl Scenario {
@@ -281,89 +281,6 @@ impl Scenario {
         Some(Fault::new("", why))
     }
 
-    fn sensor_fault(&self) -> Option<Fault> {
-        let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
-        for (index, sensor) in self.sensor.iter().enumerate() {
-            if !sensor.is_continuous() && sensor.sees_body() && sensor.period(self.law.period()).is_none() {
-                return at(index, "must have a `period` with a law that has none of its own");
-            }
-            if let Sensor::Gyro(gyro) = sensor
-                && let Some(fault) = gyro.inconsistency()
-            {
-                return Some(fault.within(&self.sensor_key(index)));
-            }
-            if let Some(fault) = self.vector_fault(sensor) {
-                return Some(fault.within(&self.sensor_key(index)));
-            }
-            if self.sensor.of_body() > 1 && sensor.is_continuous() {
-                return at(index, "knows the motion at every instant, and there is nothing that others add");
-            }
-        }
-        if let Some(fault) = self.tachometer_fault() {
-            return Some(fault);
-        }
-        if self.estimator.as_ref().is_some_and(Estimator::combines) {
-            return None;
-        }
-        let moves = |axis: usize| !matches!(self.law.about(axis).reads(), Reads::Nothing | Reads::Field);
-        if (0..self.axis_count()).any(moves) && self.sensor.iter().all(Sensor::is_of_a_vector) {
-            let why = "tells no attitude and no rate, which the law reads: give it a `gyro` and an `[estimator.attitude]`";
-            return at(0, why);
-        }
-        if self.sensor.of_body() == 1 {
-            return None;
-        }
-        if let Some(estimator) = self.estimator.as_ref().filter(|estimator| !estimator.reads_rates_alone()) {
-            let why = "takes the samples of one sensor, and there are several";
-            return Some(Fault::new(format!("estimator.{}", estimator.kind()), why));
-        }
-        let of =
-            |measures: &dyn Fn(usize) -> bool| (0..self.sensor.len()).filter(|index| measures(*index)).nth(1);
-        let rates = of(&|index| self.sensor[index].rate_noise(0).is_some());
-        if let Some(index) = rates.or(of(&|index| self.sensor.orients(index))) {
-            return at(index, "measures what another sensor measures too, and no estimator combines them");
-        }
-        None
-    }
-
-    /// A sensor of a vector that there is not, or with keys that do not fit.
-    fn vector_fault(&self, sensor: &Sensor) -> Option<Fault> {
-        let around = self.environment.as_ref();
-        match sensor {
-            Sensor::Magnetometer(magnetometer) => {
-                let why = "measures the field of `[environment.magnetic_field]`, and there is none";
-                let dark = around.is_none_or(|around| around.magnetic_field.is_none());
-                magnetometer.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
-            }
-            Sensor::SunSensor(sensor) => {
-                let why = "measures the direction to `environment.sun`, and there is none";
-                let dark = around.is_none_or(|around| around.sun.is_none());
-                sensor.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
-            }
-            _ => None,
-        }
-    }
-
-    /// A tachometer without wheels, without another sensor, or beside another.
-    fn tachometer_fault(&self) -> Option<Fault> {
-        let (index, _) = self.sensor.tachometer()?;
-        let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
-        if !matches!(self.actuator, Actuator::Wheels(_)) {
-            return at(index, "is on the wheels of `[actuator.wheels]`, and there are none");
-        }
-        if self.sensor.of_body() == 0 {
-            let why = "measures wheels alone: list a sensor of the body beside it, \"continuous\" for one that knows the motion";
-            return at(index, why);
-        }
-        let mut tachometers = self.sensor.iter().enumerate().filter(|(_, sensor)| !sensor.sees_body());
-        tachometers.nth(1).and_then(|(other, _)| at(other, "is on each wheel already: list one alone"))
-    }
-
-    /// The key of a sensor, its kind included.
-    pub fn sensor_key(&self, index: usize) -> String {
-        format!("{}.{}", self.sensor.key("sensor", index), self.sensor[index].kind())
-    }
-
     fn actuator_fault(&self) -> Option<Fault> {
         if let Some((_, key)) = self.actuator.magnetorquers()
             && self.environment.as_ref().is_none_or(|around| around.magnetic_field.is_none())
@@ -393,50 +310,5 @@ impl Scenario {
         }
         (jets.delay > 1)
             .then(|| Fault::new("actuator.jets.delay", format!("must be 0 or 1 cycles, got {}", jets.delay)))
-    }
-
-    /// An estimator that nothing reads, or a law that reads what no estimator tells.
-    fn reading_fault(&self) -> Option<Fault> {
-        let reads: Vec<Reads> = (0..self.axis_count()).map(|axis| self.law.about(axis).reads()).collect();
-        if let Some(axis) = reads.iter().position(|reads| *reads == Reads::DominantMode) {
-            let blind = match &self.estimator {
-                None | Some(Estimator::Envelope(_) | Estimator::RigidRate(_) | Estimator::Attitude(_)) => {
-                    true
-                }
-                Some(estimator) => estimator.watches_only(),
-            };
-            if blind && !self.estimator.as_ref().is_some_and(Estimator::watches_only) {
-                let why = "feeds back the dominant mode, which an `[estimator]` that acts at samples (`truth`, `kalman`, \
-                           `extended_kalman`, `unscented_kalman`, `adaptive`) tells, and there is none";
-                return Some(Fault::new(format!("{}.extra", self.law_key(axis)), why));
-            }
-        }
-        let estimator = self.estimator.as_ref()?;
-        let (kind, watching) = (estimator.kind(), estimator.watches_only());
-        let at = |key: &str, why: String| Some(Fault::new(format!("estimator.{kind}{key}"), why));
-        if matches!(estimator, Estimator::Envelope(_)) {
-            return None;
-        }
-        if self.sensor.period(self.law.period()).or(self.law.period()).is_none() {
-            return at("", Estimator::AT_SAMPLES.to_owned());
-        }
-        if watching {
-            let reader = reads.iter().position(|reads| *reads == Reads::DominantMode)?;
-            return at(
-                ".watch_only",
-                format!("must be left out where `{}.extra` reads the filter", self.law_key(reader)),
-            );
-        }
-        let unread = reads.iter().all(|reads| matches!(reads, Reads::Nothing | Reads::Field));
-        if unread && !matches!(estimator, Estimator::Adaptive(_) | Estimator::Own(_)) {
-            let instead = if estimator.filters() || matches!(estimator, Estimator::Attitude(_)) {
-                "with `watch_only = true` the filter is assessed and changes nothing"
-            } else {
-                "leave it out"
-            };
-            let law = self.law.kind();
-            return at("", format!("is read by nothing, for the law is `{law}`: {instead}"));
-        }
-        None
     }
 }

@@ -3,17 +3,14 @@
 use nalgebra::{Cholesky, Matrix3};
 
 use super::Scenario;
-use crate::actuator::{
-    Actuate, Actuator, Allocation, Group, Opposes, PulseWidth, Pulsing, Setting, Torquers,
-};
+use crate::actuator::{Actuate, Actuator, Allocation, Group, Opposes, Pulsing, Setting, Torquers};
 use crate::attitude::{Vector, beyond, tensor};
-use crate::body::craft::Moving;
-use crate::body::craft::Rotor;
+use crate::body::craft::{Moving, Rotor};
 use crate::body::{Drive, Mode, Planar, Spatial};
 use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
-use crate::law::{ActiveDamping, Authority, Distribution, Itinerary, Law, PhasePlane, Promise, Target, band};
+use crate::law::{Authority, Distribution, Itinerary, Target};
 use crate::motion::turning::Bearing;
 use crate::quantity::{Finite, Positive};
 use crate::random::Seed;
@@ -205,100 +202,6 @@ impl Study {
         }
     }
 
-    fn authority(&self, scenario: &Scenario, axis: usize) -> Authority {
-        let inertia = self.axes[axis].commanded_inertia();
-        let (accelerations, width, delay) = match &scenario.actuator {
-            Actuator::Ideal | Actuator::Hold(_) => ([f64::INFINITY; 2], PulseWidth::default(), 0.0),
-            Actuator::Own(own) => {
-                let most = own.limit(axis).map_or(f64::INFINITY, |limit| limit / inertia);
-                ([most; 2], PulseWidth::default(), 0.0)
-            }
-            Actuator::Thrusters(thrusters) => {
-                ([thrusters.torque.about(axis).get() / inertia; 2], thrusters.width(), 0.0)
-            }
-            Actuator::Wheel(wheel) => {
-                let most = wheel.limit.map_or(f64::INFINITY, Positive::get) * wheel.gain.get() / inertia;
-                ([most; 2], PulseWidth::default(), wheel.delay.get())
-            }
-            Actuator::Wheels(wheels) => {
-                let limit = wheels.torque.map_or(f64::INFINITY, Positive::get);
-                let most = self.wheels.as_ref().map_or(f64::INFINITY, |wheels| wheels.most(axis, limit));
-                ([most / inertia; 2], PulseWidth::default(), 0.0)
-            }
-            Actuator::Magnetorquers(torquers) => {
-                let field = self.around.as_ref().map_or(0.0, |around| around.sky().field_bound());
-                ([torquers.largest() * field / inertia; 2], PulseWidth::default(), 0.0)
-            }
-            Actuator::Jets(jets) => {
-                let groups = self.groups.as_ref().map(|groups| &groups[axis]);
-                let of = |sign: usize| groups.map_or(f64::INFINITY, |groups| groups[sign].acceleration);
-                let period = jets.period.or(self.cycle).unwrap_or(self.tick);
-                ([of(0), of(1)], jets.width(), f64::from(jets.delay) * period.seconds())
-            }
-        };
-        Authority { accelerations, width, delay, threshold: 0.0 }
-    }
-
-    /// The elastic rate beyond which the active damping of an axis acts (rad/s); 0 of a law without it.
-    fn threshold(&self, scenario: &Scenario, axis: usize) -> Result<f64, Fault> {
-        let Law::PhasePlane(PhasePlane { damping: Some(damping), .. }) = scenario.law.about(axis) else {
-            return Ok(0.0);
-        };
-        let key = format!("{}.damping", scenario.law_key(axis));
-        let Some(plan) = &self.adaptive else {
-            let why = "needs the elastic rates of an `[estimator.adaptive]`, and there is none";
-            return Err(Fault::new(key, why));
-        };
-        let threshold = threshold(damping, plan, &self.authorities[axis], axis);
-        if damping.threshold.is_none() && threshold >= NO_MOTION {
-            let name = if self.axes.len() == 1 { "the law" } else { crate::attitude::AXES[axis] };
-            return Err(Fault::new(
-                key,
-                format!(
-                    "gives {name} a threshold of {threshold:e} rad/s, which is never reached: with this delay an undamped mode \
-                     has no stable gain; give `threshold`, or the estimator a damping ratio above 0"
-                ),
-            ));
-        }
-        Ok(threshold)
-    }
-
-    fn band(&self, scenario: &Scenario, body: Option<&Spatial>, axis: usize) -> Option<f64> {
-        match (scenario.law.about(axis), body) {
-            (Law::PhasePlane(law), _) => Some(band(law, &self.authorities[axis])),
-            (law, Some(body)) => match law.promise() {
-                Promise::Nothing => None,
-                Promise::Within(band) => Some(band),
-                Promise::Part(part) => {
-                    // Of the whole turn to the last target.
-                    let end = Instant::START + scenario.duration;
-                    let goal = self.way.target(end);
-                    let from = self
-                        .targets
-                        .iter()
-                        .rev()
-                        .nth(1)
-                        .map_or_else(|| body.attitude.get(), |target| self.way.target(target.begins()));
-                    let distance = beyond(&goal, &from).norm();
-                    (distance > 0.0).then_some(part * distance)
-                }
-            },
-            _ => None,
-        }
-    }
-
-    /// How near to a target the body has arrived, about each axis (rad).
-    pub fn zones(&self, scenario: &Scenario) -> [f64; 3] {
-        let mut zones = [f64::NAN; 3];
-        for (axis, (zone, band)) in zones.iter_mut().zip(&self.bands).enumerate() {
-            *zone = match scenario.law.about(axis) {
-                Law::PhasePlane(law) => law.dead_zone.get(),
-                _ => band.unwrap_or(f64::NAN),
-            };
-        }
-        zones
-    }
-
     /// Whether jets fire.
     pub fn fires(&self) -> bool {
         self.groups.is_some() || self.unloading.is_some()
@@ -373,30 +276,6 @@ fn surroundings(scenario: &Scenario, body: &Spatial) -> Result<Option<Around>, F
     let centre = scenario.body.craft().map_or_else(Vector::zeros, |craft| craft.centre);
     let around = Around::new(environment, scenario.sky(), [body.tensor(), spinning], &centre);
     Ok(Some(around.warming(bendings)))
-}
-
-/// No structure has elastic rates like this (rad/s).
-const NO_MOTION: f64 = 1.0;
-
-/// The threshold of active damping about an axis, for the modes of the design.
-fn threshold(
-    damping: &ActiveDamping,
-    plan: &adaptive::ObserverDesign,
-    authority: &Authority,
-    axis: usize,
-) -> f64 {
-    let ratio = match &plan.form {
-        adaptive::Form::Gradient(form) => form.damping.get(),
-        adaptive::Form::Recurrence(form) => form.damping.get(),
-    };
-    let design = &plan.axes[axis];
-    let own = design.own(axis);
-    let mode = |mode: &adaptive::Merged| {
-        let influence = mode.tracker.influence.get(own).map_or(0.0, |influence| influence.get());
-        [mode.tracker.frequency.get(), influence.max(0.0) * authority.accelerations[0]]
-    };
-    let modes: Vec<_> = design.modes.iter().map(mode).collect();
-    damping.threshold(axis, &modes, plan.period, authority.delay, ratio)
 }
 
 /// Rotations of the modes at a point (rad/(m sqrt(kg))).

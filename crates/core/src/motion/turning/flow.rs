@@ -2,6 +2,8 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
+mod level;
+
 use super::bearing::{Bearing, Borne, Slip, Spin};
 use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
 use super::pace::{Pace, Pose};
@@ -297,78 +299,6 @@ impl Turning {
     pub fn reach(&mut self, t: f64, around: Option<(&dyn Surroundings, f64)>) {
         self.step_beside(t - self.reached, around);
         self.meet();
-    }
-
-    /// The level of the next step.
-    fn level(&mut self, around: Option<(&dyn Surroundings, f64)>) -> usize {
-        let (exerted, slow) = around.map_or((0.0, 0.0), |(around, _)| (around.bound(), around.frequency()));
-        let (mut rotors, change) = self.acting.rotors(self.reached);
-        if !self.bearings.is_empty() {
-            rotors = self.borne_by(&self.slips).stored(self.grid.spins.iter().map(|spin| spin.sums.x));
-        }
-        // What wheels in bearings, warmth and levers do to modes is not estimated: steps resolve all modes.
-        let known = self.bearings.is_empty()
-            && self.acting.levers.is_empty()
-            && around.is_none_or(|(around, _)| around.heated().is_empty());
-        let Self { model, grid, acting, amplitudes, .. } = self;
-        let push = acting.torque.norm() + exerted + change.norm();
-        // Gt but for how much the body is bent now.
-        let turning = grid.momentum - rotors;
-        let size = grid.momentum.norm();
-        let net = acting.torque - change;
-        for (index, (amplitude, of)) in amplitudes.iter_mut().zip(&model.modes).enumerate() {
-            let [q, p, ..] = grid.modes[index];
-            let (w, forced) = (of.frequency, acting.forces.get(index).copied().unwrap_or(0.0));
-            // At least the displacement, the rate, and what the torque bends, each.
-            *amplitude = q.abs()
-                + (p + of.rotation.dot(&turning) / w).abs()
-                + (of.rotation.dot(&net) + forced).abs() / (w * w);
-        }
-        if !known {
-            amplitudes.fill(f64::MAX);
-        }
-        let pose = Pose {
-            rate: model.mobility * (size + turning.norm()) + slow,
-            carried: (model.inverse * turning).norm() + model.mobility * size + slow,
-            acceleration: model.mobility * push,
-            amplitudes: &*amplitudes,
-        };
-        let turns = self.pace.level(pose);
-        let shakes = self.bearings.iter().zip(&self.grid.spins).map(|(bearing, spin)| {
-            bearing.highest() * ((spin.sums.x / bearing.inertia).abs() + self.model.mobility * size)
-        });
-        self.pace.resolving(turns, shakes.fold(0.0, f64::max))
-    }
-
-    /// Makes sure that there are responses over a step beside the grid, of `h` seconds; tells their place.
-    fn prepare_beside(&mut self, h: f64) -> usize {
-        if let Some(place) = self.beside.iter().position(|known| known.h.to_bits() == h.to_bits()) {
-            return place;
-        }
-        let modes = self.model.modes.iter();
-        let known =
-            Regular { h, responses: modes.map(|of| Response::new(of.frequency, of.damping, h)).collect() };
-        if self.beside.len() < BESIDE {
-            self.beside.push(known);
-            return self.beside.len() - 1;
-        }
-        let place = self.next_beside;
-        self.next_beside = (place + 1) % BESIDE;
-        self.beside[place] = known;
-        place
-    }
-
-    /// Makes sure that there are responses for a level.
-    fn prepare(&mut self, level: usize) {
-        if self.regular.len() <= level {
-            self.regular.resize(level + 1, None);
-        }
-        if self.regular[level].is_none() {
-            let h = self.pace.length(level);
-            let modes = self.model.modes.iter();
-            let responses = modes.map(|of| Response::new(of.frequency, of.damping, h)).collect();
-            self.regular[level] = Some(Regular { h, responses });
-        }
     }
 
     /// The inertia tensor of the body as it is bent at the instant seen last (kg m²).

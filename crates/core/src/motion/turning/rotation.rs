@@ -1,5 +1,7 @@
 //! Finite rotations by a small vector, and the rate that a change of the vector makes.
 
+use nalgebra::Quaternion;
+
 use crate::attitude::Vector;
 
 /// Squares of an angle below which the coefficients come from their series (rad²).
@@ -54,6 +56,16 @@ impl Bend {
         let once = self.by.cross(v);
         once * self.second - self.by.cross(&once) * self.third
     }
+}
+
+/// A vector of the mean axes in inertial ones, by a quaternion that is of length 1 but for the error of a stage.
+pub fn inertial(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
+    (*attitude * Quaternion::from_imag(*v) * attitude.conjugate()).vector() / attitude.norm_squared()
+}
+
+/// Q' = 1/2 Q o (0, w).
+pub fn spin(attitude: &Quaternion<f64>, rate: &Vector) -> Quaternion<f64> {
+    *attitude * Quaternion::from_imag(rate * 0.5)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Quaternion, Vector2};
 use super::bearing::{Borne, Spun};
 use super::model::{Model, Surroundings, tensor};
 use super::response::Response;
-use super::rotation::Bend;
+use super::rotation::{Bend, inertial, spin};
 use super::state::State;
 use crate::attitude::{Vector, rotation};
 use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
@@ -391,14 +391,4 @@ impl Sums {
 
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// A vector of the mean axes in inertial ones, by a quaternion that is of length 1 but for the error of a stage.
-fn inertial(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
-    (*attitude * Quaternion::from_imag(*v) * attitude.conjugate()).vector() / attitude.norm_squared()
-}
-
-/// Q' = 1/2 Q o (0, w).
-fn spin(attitude: &Quaternion<f64>, rate: &Vector) -> Quaternion<f64> {
-    *attitude * Quaternion::from_imag(rate * 0.5)
 }

@@ -1,0 +1,61 @@
+//! What couples the modes of a body with one angle: a wheel, or damping.
+
+use std::sync::Arc;
+
+use super::Scenario;
+use crate::actuator::{Actuator, Opposes};
+use crate::body::{Coupled, Coupling};
+use crate::document::Fault;
+use crate::motion::linear::Linear;
+use crate::structure::TOO_FAR_APART;
+
+/// More modes than these are not taken apart into the poles of their coupled motion.
+const MOST_COUPLED: usize = 100;
+
+impl Scenario {
+    /// The motion of a body whose modes a wheel or damping couples, or whose frequencies drift; none if they move on their
+    /// own.
+    pub fn coupling(&self) -> Option<Coupling> {
+        let (back_emf, total) = self.back_emf();
+        if let Some(flow) = &self.linear {
+            return Some(Coupling::by_poles(&self.model, flow, back_emf, total));
+        }
+        let wheel = matches!(self.actuator, Actuator::Wheel(_));
+        (wheel || self.drift.is_some())
+            .then(|| Coupling::new(&self.model, self.drift.as_ref(), back_emf, total))
+    }
+
+    /// What a wheel's back-EMF takes from a rate (1/s), and whether from that of the elastic body.
+    pub(super) fn back_emf(&self) -> (f64, bool) {
+        match &self.actuator {
+            Actuator::Wheel(wheel) => {
+                (wheel.back_emf.get() / self.model.inertia.get(), wheel.opposes == Opposes::BodyRate)
+            }
+            _ => (0.0, true),
+        }
+    }
+
+    /// The flow by poles of a body that a damping matrix couples, or a wheel under a law that switches at crossings.
+    pub(super) fn flow(&self) -> Result<Option<Arc<Linear>>, Fault> {
+        let wheel = matches!(self.actuator, Actuator::Wheel(_));
+        let crosses = self.law.switches() && self.study.sampling.is_none();
+        let damped = !self.model.damping_matrix.is_empty();
+        if self.body.spatial().is_some() || !(damped || wheel && crosses) {
+            return Ok(None);
+        }
+        let key = if damped { self.damping_key() } else { "actuator.wheel".to_owned() };
+        let modes = self.model.modes.len();
+        if modes > MOST_COUPLED {
+            return Err(Fault::new(
+                key,
+                format!("couples at most {MOST_COUPLED} modes, and the body has {modes}"),
+            ));
+        }
+        let (back_emf, total) = self.back_emf();
+        let coupled = Coupled::new(&self.model, back_emf, total, &vec![1.0; self.model.modes.len()]);
+        match coupled.flow() {
+            Some(flow) => Ok(Some(Arc::new(flow))),
+            None => Err(Fault::new(key, format!("with the modes {TOO_FAR_APART}"))),
+        }
+    }
+}
