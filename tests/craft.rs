@@ -11,13 +11,12 @@ use flexsc_core::body::craft::{Craft, Rotor};
 use flexsc_core::{Document, Scenario, ScenarioError};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, matrix, vector};
 
-use crate::util::Dir;
 
 /// The reference spacecraft.
 pub const CRAFT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/craft.toml");
 
 /// A hub with a panel of one bending mode.
-const ONE: &str = r#"duration = 10.0
+pub const ONE: &str = r#"duration = 10.0
 [spacecraft]
 mass = 400.0
 inertia = [[300.0, 0.0, 0.0], [0.0, 200.0, 0.0], [0.0, 0.0, 250.0]]

@@ -17,7 +17,7 @@ const SHIPPED: [(&str, &str); 5] = [
 ];
 
 /// Runs that have what the others have not: other estimators, actuators and bodies.
-const OTHERS: [(&str, &str); 13] = [
+const OTHERS: [(&str, &str); 14] = [
     ("relay-sampled", "--set duration=1000"),
     ("rotation-thrusters", ""),
     ("rotation-nonlinear", ""),
