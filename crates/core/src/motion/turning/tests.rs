@@ -240,9 +240,9 @@ fn halving_the_step_divides_the_error_by_64() {
         let acting = Acting {
             torque: Vector::new(0.3, -0.2, 0.5),
             forces,
-            levers: vec![Vector::new(0.1, -0.2, 0.3); 6],
             push: Vector::new(2e-3, -1e-3, 3e-3),
             rotors: rotors(SPUN, [0.1, 0.0, -0.2, 0.0]),
+            ..Acting::default()
         };
         turning.depart(&acting);
         go(&mut turning, 20.0);
