@@ -140,7 +140,7 @@ fn a_force_turns_every_body_with_three_axes() {
             trace.topic("/pointing").and_then(|rows| rows.numbers(name)).expect("rows").to_vec()
         };
         for (a, b) in of(&spacecraft).into_iter().zip(of(&spatial)) {
-            near(a, b, 1e-12);
+            near(a, b, 1e-10);
         }
     }
 }
