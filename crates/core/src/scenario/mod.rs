@@ -7,6 +7,7 @@ mod learning;
 mod log;
 mod parts;
 mod reference;
+mod sky;
 mod spacecraft;
 mod study;
 
@@ -16,8 +17,7 @@ use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use toml::Table;
-use toml::value::Datetime;
+use toml::{Table, value::Datetime};
 
 use crate::actuator::{Actuator, Opposes};
 use crate::adaptation::Adaptation;

@@ -3,7 +3,6 @@
 use super::{Scenario, Study};
 use crate::actuator::Actuator;
 use crate::document::Fault;
-use crate::environment::Sky;
 use crate::estimator::Estimator;
 use crate::law::{Itinerary, Law, Reads, Target};
 use crate::sensor::Sensor;
@@ -125,17 +124,6 @@ impl Scenario {
         None
     }
 
-    fn environment_fault(&self) -> Option<Fault> {
-        let fault = self.environment.as_ref()?.fault()?;
-        Some(fault.within("environment"))
-    }
-
-    /// What is around the body wherever it faces.
-    pub fn sky(&self) -> Sky {
-        let of = |environment| Sky::new(environment, self.duration);
-        self.environment.as_ref().map(of).unwrap_or_default()
-    }
-
     fn target_fault(&self) -> Option<Fault> {
         if let Law::PhasePlane(law) = &self.law
             && !law.targets.is_empty()
@@ -240,18 +228,6 @@ impl Scenario {
         None
     }
 
-    /// Why a B-dot law cannot act.
-    fn b_dot_fault(&self) -> Option<Fault> {
-        let why = if !self.sensor.iter().any(|sensor| matches!(sensor, Sensor::Magnetometer(_))) {
-            "reads the field of a `[sensor.magnetometer]`, and there is none"
-        } else if self.actuator.magnetorquers().is_none() {
-            "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them"
-        } else {
-            return None;
-        };
-        Some(Fault::new("", why))
-    }
-
     fn sensor_fault(&self) -> Option<Fault> {
         let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
         for (index, sensor) in self.sensor.iter().enumerate() {
@@ -292,24 +268,6 @@ impl Scenario {
             return at(index, "measures what another sensor measures too, and no estimator combines them");
         }
         None
-    }
-
-    /// A sensor of a vector that there is not, or with keys that do not fit.
-    fn vector_fault(&self, sensor: &Sensor) -> Option<Fault> {
-        let around = self.environment.as_ref();
-        match sensor {
-            Sensor::Magnetometer(magnetometer) => {
-                let why = "measures the field of `[environment.magnetic_field]`, and there is none";
-                let dark = around.is_none_or(|around| around.magnetic_field.is_none());
-                magnetometer.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
-            }
-            Sensor::SunSensor(sensor) => {
-                let why = "measures the direction to `environment.sun`, and there is none";
-                let dark = around.is_none_or(|around| around.sun.is_none());
-                sensor.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
-            }
-            _ => None,
-        }
     }
 
     /// The key of a sensor, its kind included.
