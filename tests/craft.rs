@@ -11,7 +11,6 @@ use flexsc_core::body::craft::{Craft, Rotor};
 use flexsc_core::{Document, Scenario, ScenarioError};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, matrix, vector};
 
-
 /// The reference spacecraft.
 pub const CRAFT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/craft.toml");
 

@@ -9,10 +9,13 @@ use crate::rooms::sources;
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 /// The row of the document, the folder of the role, how code names a kind of it, and in how many files elsewhere it may.
-const KINDS: [(&str, &str, &str, usize); 6] = [
+const KINDS: [(&str, &str, &str, usize); 9] = [
     ("| a law |", "law", "Law::Attitude", 2),
     ("| a sensor |", "sensor", "Sensor::StarTracker", 2),
     ("| a sensor |", "sensor", "Sensor::Gyro", 2),
+    ("| a law |", "law", "Law::BDot", 2),
+    ("| a sensor |", "sensor", "Sensor::Magnetometer", 2),
+    ("| a sensor |", "sensor", "Sensor::SunSensor", 2),
     ("| an estimator |", "estimator", "Estimator::RigidRate", 2),
     ("| an estimator |", "estimator", "Estimator::Attitude", 2),
     ("| an actuator about each axis |", "actuator", "Actuator::Hold", 4),

@@ -316,6 +316,10 @@ fn what_does_not_fit_is_refused() {
         &[("orbit = { semi_major_axis = 7e6, inclination = 1.2, node = 0.4 }", "")],
         &["`environment.magnetic_field`", "`orbit`"],
     );
+    refused(
+        &[("duration = 5828.0", "duration = 1e11"), ("[environment]\n", "[environment]\nsun = [1, 0, 0]\n")],
+        &["`environment.orbit`", "shadows are known"],
+    );
     refused(&[("7e6", "6e6")], &["`environment.orbit.semi_major_axis`", "above the planet's radius"]);
     refused(&[("gain = 2e-4, ", "")], &["`actuator.wheels.unloading.gain`", "must be given"]);
     refused(&[("gain = 2e-4", "gain = 2e-4, torque = 1.0")], &["unloading.torque", "that of `jets`"]);

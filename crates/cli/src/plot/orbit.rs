@@ -7,6 +7,9 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
+/// A number of each axis.
+type Of = fn(&OrbitAxis) -> f64;
+
 const COLOURS: [(&str, plotters::style::RGBColor); 3] =
     [("x", colour::BLUE), ("y", colour::VERMILLION), ("z", colour::GREEN)];
 
@@ -16,7 +19,7 @@ pub fn of(story: &Story) -> bool {
 }
 
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
-    let shown: [(&str, &str, fn(&OrbitAxis) -> f64); 3] =
+    let shown: [(&str, &str, Of); 3] =
         [("field", "T", |axis| axis.field_t), ("nadir", "", |axis| axis.nadir), ("Sun", "", |axis| axis.sun)];
     let mut panels = Vec::new();
     for (name, unit, of) in shown {

@@ -82,7 +82,7 @@ impl Study {
                 Promise::Part(part) => {
                     // Of the whole turn to the last target.
                     let end = Instant::START + scenario.duration;
-                    let goal = self.way.target(end);
+                    let goal = self.way.target(self.last_target(end));
                     let from = self
                         .targets
                         .iter()

@@ -11,6 +11,7 @@ mod log;
 mod parts;
 mod reference;
 mod sensing;
+mod sky;
 mod spacecraft;
 mod study;
 
@@ -20,8 +21,7 @@ use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use toml::Table;
-use toml::value::Datetime;
+use toml::{Table, value::Datetime};
 
 use crate::actuator::Actuator;
 use crate::adaptation::Adaptation;

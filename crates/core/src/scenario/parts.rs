@@ -4,7 +4,6 @@ use super::{Scenario, Study};
 use crate::actuator::Actuator;
 use crate::disturbance::Disturbance;
 use crate::document::Fault;
-use crate::environment::Sky;
 use crate::estimator::Estimator;
 use crate::law::{Itinerary, Law, Measure, Target};
 use crate::sensor::Sensor;
@@ -133,17 +132,6 @@ impl Scenario {
         None
     }
 
-    fn environment_fault(&self) -> Option<Fault> {
-        let fault = self.environment.as_ref()?.fault()?;
-        Some(fault.within("environment"))
-    }
-
-    /// What is around the body wherever it faces.
-    pub fn sky(&self) -> Sky {
-        let of = |environment| Sky::new(environment, self.duration);
-        self.environment.as_ref().map(of).unwrap_or_default()
-    }
-
     fn target_fault(&self) -> Option<Fault> {
         if let Law::PhasePlane(law) = &self.law
             && !law.targets.is_empty()
@@ -267,18 +255,6 @@ impl Scenario {
             }
         }
         None
-    }
-
-    /// Why a B-dot law cannot act.
-    fn b_dot_fault(&self) -> Option<Fault> {
-        let why = if !self.sensor.iter().any(|sensor| matches!(sensor, Sensor::Magnetometer(_))) {
-            "reads the field of a `[sensor.magnetometer]`, and there is none"
-        } else if self.actuator.magnetorquers().is_none() {
-            "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them"
-        } else {
-            return None;
-        };
-        Some(Fault::new("", why))
     }
 
     fn actuator_fault(&self) -> Option<Fault> {

@@ -53,24 +53,6 @@ impl Scenario {
         None
     }
 
-    /// A sensor of a vector that there is not, or with keys that do not fit.
-    fn vector_fault(&self, sensor: &Sensor) -> Option<Fault> {
-        let around = self.environment.as_ref();
-        match sensor {
-            Sensor::Magnetometer(magnetometer) => {
-                let why = "measures the field of `[environment.magnetic_field]`, and there is none";
-                let dark = around.is_none_or(|around| around.magnetic_field.is_none());
-                magnetometer.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
-            }
-            Sensor::SunSensor(sensor) => {
-                let why = "measures the direction to `environment.sun`, and there is none";
-                let dark = around.is_none_or(|around| around.sun.is_none());
-                sensor.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
-            }
-            _ => None,
-        }
-    }
-
     /// A tachometer without wheels, without another sensor, or beside another.
     fn tachometer_fault(&self) -> Option<Fault> {
         let (index, _) = self.sensor.tachometer()?;

@@ -7,9 +7,10 @@ use crate::attitude::turned;
 use crate::body::spatial::SpatialMode;
 use crate::body::{Mode, Spatial};
 use crate::disturbance::Disturbance;
-use crate::law::{Commands, Law};
+use crate::law::{Commands, Frame, Law};
 use crate::quantity::{Finite, Positive};
 use crate::scenario::Scenario;
+use crate::time::Instant;
 
 /// The bending that shall show (rad), and the turning.
 const BENDING: f64 = 0.35;
@@ -78,7 +79,10 @@ pub fn spatial_angle(scenario: &Scenario, body: &Spatial) -> f64 {
         let [roll, pitch, yaw] = [target.roll, target.pitch, target.yaw].map(Finite::get);
         turned(roll, pitch, yaw)
     });
-    let start = body.attitude.get();
+    // In axes that turn with the orbit, or to the Sun, it turns from where it is to where they are.
+    let inertial = scenario.targets().iter().all(|target| target.frame == Frame::Inertial);
+    let at_start = scenario.study.way.target(Instant::START).conjugate() * body.attitude.get();
+    let start = if inertial { body.attitude.get() } else { at_start };
     let angle = |q: nalgebra::Quaternion<f64>| 2.0 * libm::acos(q.w.abs().min(1.0));
     let zones = scenario.study.zones(scenario).into_iter().fold(0.0, f64::max);
     targets.chain([start]).map(angle).fold(zones, f64::max)
@@ -179,6 +183,7 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let times = |of: &Disturbance| if of.pulse.is_some() { 2.0 } else { 1.0 };
     let pushes: Vec<_> =
         scenario.disturbance.iter().filter_map(|of| Some((of.push(body)?, times(of)))).collect();
+    let warmed = scenario.body.craft().map_or(&[][..], |craft| &craft.bendings);
     let mode = |(index, mode): (usize, &SpatialMode)| {
         let w = mode.frequency.get();
         let forces: Vec<f64> = match &scenario.study.groups {
@@ -190,7 +195,8 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
         let pushed = pushes.iter().map(|(push, times)| push.forces[index] * times);
         let force = forces.into_iter().chain(unloading).chain(pushed).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
-        held.max(2.0 * force / (w * w))
+        let bent = warmed.iter().map(|of| of.forces[index].abs()).fold(0.0, f64::max);
+        held.max(2.0 * force / (w * w)).max(bent / (w * w))
     };
     body.modes.iter().enumerate().map(mode).collect()
 }

@@ -289,6 +289,11 @@ impl Sensor {
         matches!(self, Self::Magnetometer(_) | Self::SunSensor(_))
     }
 
+    /// Whether it measures the magnetic field.
+    pub fn measures_field(&self) -> bool {
+        matches!(self, Self::Magnetometer(_))
+    }
+
     /// Its failures.
     pub fn faults(&self) -> &[Fault] {
         match self {

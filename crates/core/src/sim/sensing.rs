@@ -45,7 +45,7 @@ impl Sensing {
         let (study, axes) = (&scenario.study, scenario.study.axes.len());
         let all = &scenario.sensor;
         let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
-        let feels = all.iter().position(|sensor| matches!(sensor, Sensor::Magnetometer(_)));
+        let feels = all.iter().position(Sensor::measures_field);
         let due = |(index, sensor): (usize, &Sensor)| {
             let period = if all.of_body() == 1 && sensor.sees_body() {
                 study.sampling

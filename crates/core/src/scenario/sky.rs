@@ -1,0 +1,63 @@
+//! What parts need of the surroundings: orbit, field and Sun.
+
+use std::f64::consts::TAU;
+
+use super::Scenario;
+use crate::document::Fault;
+use crate::environment::Sky;
+use crate::sensor::Sensor;
+
+/// The planet's shadow is known for so many orbits at most.
+const MOST_ORBITS: f64 = 1e6;
+
+impl Scenario {
+    /// An environment that does not fit itself, or the run.
+    pub(super) fn environment_fault(&self) -> Option<Fault> {
+        let around = self.environment.as_ref()?;
+        if let Some(fault) = around.fault() {
+            return Some(fault.within("environment"));
+        }
+        let turns =
+            around.orbit.filter(|_| around.sun.is_some())?.mean_motion() * self.duration.seconds() / TAU;
+        let why = || {
+            format!("goes around {turns:.1e} times in this run, and shadows are known for {MOST_ORBITS:.0e}")
+        };
+        (turns > MOST_ORBITS).then(|| Fault::new("environment.orbit", why()))
+    }
+
+    /// What is around the body wherever it faces.
+    pub fn sky(&self) -> Sky {
+        let of = |environment| Sky::new(environment, self.duration);
+        self.environment.as_ref().map(of).unwrap_or_default()
+    }
+
+    /// Why a B-dot law cannot act.
+    pub(super) fn b_dot_fault(&self) -> Option<Fault> {
+        let why = if !self.sensor.iter().any(Sensor::measures_field) {
+            "reads the field of a `[sensor.magnetometer]`, and there is none"
+        } else if self.actuator.magnetorquers().is_none() {
+            "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them"
+        } else {
+            return None;
+        };
+        Some(Fault::new("", why))
+    }
+
+    /// A sensor of a vector that there is not, or with keys that do not fit.
+    pub(super) fn vector_fault(&self, sensor: &Sensor) -> Option<Fault> {
+        let around = self.environment.as_ref();
+        match sensor {
+            Sensor::Magnetometer(magnetometer) => {
+                let why = "measures the field of `[environment.magnetic_field]`, and there is none";
+                let dark = around.is_none_or(|around| around.magnetic_field.is_none());
+                magnetometer.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
+            }
+            Sensor::SunSensor(sensor) => {
+                let why = "measures the direction to `environment.sun`, and there is none";
+                let dark = around.is_none_or(|around| around.sun.is_none());
+                sensor.inconsistency().or_else(|| dark.then(|| Fault::new("", why)))
+            }
+            _ => None,
+        }
+    }
+}
