@@ -3,11 +3,12 @@
 //! A run does not know its largest motion beforehand. What its actuator can do, and how it begins, give the order of magnitude.
 
 use crate::actuator::Actuator;
-use crate::attitude::turned;
+use crate::attitude::{Vector, turned};
 use crate::body::spatial::SpatialMode;
 use crate::body::{Mode, Spatial};
 use crate::disturbance::Disturbance;
 use crate::law::{Commands, Frame, Law};
+use crate::motion::turning::Line;
 use crate::quantity::{Finite, Positive};
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -15,6 +16,8 @@ use crate::time::Instant;
 /// The bending that shall show (rad), and the turning.
 const BENDING: f64 = 0.35;
 const TURNING: f64 = 0.5;
+/// A mode damped by less than this is not in resonance for long enough to tell.
+const LEAST_DAMPING: f64 = 1e-3;
 /// The largest step of a disc (rad).
 const TURN: f64 = 1.0;
 
@@ -196,9 +199,31 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
         let force = forces.into_iter().chain(unloading).chain(pushed).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
         let bent = warmed.iter().map(|of| of.forces[index].abs()).fold(0.0, f64::max);
-        held.max(2.0 * force / (w * w)).max(bent / (w * w))
+        held.max(2.0 * force / (w * w)).max(bent / (w * w)).max(shaken(scenario, index, mode, &hub[index].1))
     };
     body.modes.iter().enumerate().map(mode).collect()
+}
+
+/// The displacement of a mode that imbalance makes (m sqrt(kg)), about: that in resonance, if wheels get there from their slowest
+/// speed at the start or their bias, else that at their fastest.
+fn shaken(scenario: &Scenario, index: usize, mode: &SpatialMode, hub: &Vector) -> f64 {
+    let Actuator::Wheels(wheels) = &scenario.actuator else { return 0.0 };
+    let (w, damping) = (mode.frequency.get(), mode.damping.get().max(LEAST_DAMPING));
+    let bias = wheels.speed_bias.map_or(f64::INFINITY, |bias| bias.speed.get().abs());
+    let slowest = wheels.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::min);
+    let fastest = wheels.fastest();
+    let of = |line: &Line| {
+        let push = [0, 1].map(|part| line.forces[part][index] + hub.dot(&line.torque[part]));
+        let size = libm::hypot(push[0], push[1]);
+        let speed = w / line.order;
+        if (slowest..=fastest).contains(&speed) {
+            size * speed * speed / (2.0 * damping * w * w)
+        } else {
+            let turns = line.order * fastest;
+            size * fastest * fastest / (w * w - turns * turns).abs()
+        }
+    };
+    scenario.study.bearings.iter().flat_map(|bearing| &bearing.lines).map(of).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

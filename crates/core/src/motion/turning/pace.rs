@@ -17,7 +17,7 @@ const TURN: f64 = 1.0 / 16.0;
 /// The phase of the fastest mode that is resolved whatever its amplitude, in a step (rad).
 const PHASE: f64 = 1.5;
 
-/// The phase of what shakes the body, in a step (rad): what modes near it make of it errs by 1e-8 of itself.
+/// The phase of what shakes the body, in a step (rad): what modes make of it errs by less than 1e-7 of itself.
 pub const SHAKE: f64 = 0.25;
 
 /// Modes above this frequency make no step shorter (rad/s): steps of 15 ms are the shortest for the sake of modes.
