@@ -160,7 +160,7 @@ def flexsc(program, name, changes):
 
         pointing, wheels = table("/pointing"), table("/wheels")
         times = []
-        for _ in range(5):
+        for _ in range(25):
             told = subprocess.run(
                 [*run, "--log", "none"], cwd=directory, check=True, capture_output=True, text=True
             )
