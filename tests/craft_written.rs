@@ -6,7 +6,7 @@ use flexsc_core::Scenario;
 use flexsc_core::attitude::Vector;
 use flexsc_core::body::craft::{Craft, Rotor};
 
-use crate::body::craft::{CRAFT, ONE, craft, golden, near, reference, three};
+use crate::craft::{CRAFT, ONE, craft, golden, near, reference, three};
 use crate::util::Dir;
 
 /// Modes of a file are those of the scenario, a scenario that is written again is the same spacecraft, keys can be drawn.

@@ -12,6 +12,7 @@ mod plant;
 mod reference;
 mod sensing;
 mod showing;
+mod slipping;
 mod telling;
 
 use thiserror::Error;
@@ -195,28 +196,6 @@ impl Simulation {
         self.turned(self.now);
         self.tell_first_slips();
         self.tell_begin(record)
-    }
-
-    /// A wheel comes to rest or lets go at an instant.
-    fn slips(&mut self, at: Instant) -> Result<(), SimulationError> {
-        let (count, since) = &mut self.slips;
-        if at.since(*since).seconds() > 1e-9 {
-            (*count, *since) = (0, at);
-        }
-        *count += 1;
-        if *count > MOST_DECISIONS {
-            return Err(SimulationError::WheelChatter { at, count: *count });
-        }
-        self.met = true;
-        Ok(())
-    }
-
-    /// Wheels in bearings are as the motion has them.
-    fn turned(&mut self, now: Instant) {
-        let turned = self.plant.borne();
-        if !turned.is_empty() {
-            self.drive.actuator.turned(now, &turned);
-        }
     }
 
     /// Ends the run, if this is its end and it has not ended yet.
