@@ -38,6 +38,14 @@ fn spatial(metrics: &Metrics, bends: bool) {
             number("firing_cycles"),
         );
     }
+    if number("friction_heat_j").is_finite() {
+        say!(
+            "  wheels         {} passages through zero speed, {} stops, {:.1} J of friction",
+            number("wheel_zero_crossings"),
+            number("wheel_stops"),
+            number("friction_heat_j"),
+        );
+    }
     let below = |name: &str, part: &str| match number(name) {
         time if time.is_finite() => format!(", below {part} of the first at {time:.1} s"),
         _ => String::new(),
