@@ -24,7 +24,7 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
         ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xe18f_c212_5f78_e08b),
-        ("wheel-friction", " --runs 5:6", "/wheel_events", 0x5ce6_83ae_1b91_7f41),
+        ("wheel-friction", " --runs 5:6", "/wheel_events", 0x3a71_9dcc_5160_ed41),
         ("wheel-friction", " --runs 5:6", "/metrics", 0x79e9_922b_d747_0bd4),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use flexsc_core::campaign::Run;
 use flexsc_core::estimator::Estimator;
 use flexsc_core::law::Law;
+use flexsc_core::motion::turning::Bearing;
 use flexsc_core::record::{Detail, Encode, Message, Messages, Provenance, RecordError, TOPICS};
 use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, Simulation};
@@ -32,6 +33,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/adaptation", scenario.adaptation.is_some()),
         ("/arrival", scenario.plan.is_some()),
         ("/jets", scenario.study.fires()),
+        ("/wheel_events", scenario.study.bearings.iter().any(Bearing::grips)),
         ("/summary", true),
         ("/metrics", true),
     ];
@@ -69,8 +71,13 @@ mod tests {
             let from = Campaign::provenance(&run, Detail::Scene);
             let (expected, mut seen) = (expected(&run, &from), Topics::default());
             let mut messages = Encode::new(&mut seen, &from, Detail::Scene).expect("messages");
-            // Long enough for an arrival, and for the windows of an adaptation.
-            let seconds = if run.scenario.adaptation.is_some() { 1100.0 } else { 25.0 };
+            // Long enough for an arrival, the windows of an adaptation, and a wheel that passes through zero.
+            let grips = run.scenario.study.bearings.iter().any(Bearing::grips);
+            let seconds = match (run.scenario.adaptation.is_some(), grips) {
+                (true, _) => 1100.0,
+                (_, true) => 60.0,
+                _ => 25.0,
+            };
             let until = Instant::START + Span::from_seconds(seconds);
             let mut simulation = Simulation::new(&run.scenario, 0);
             simulation.draw(&run.scenario);

@@ -4,7 +4,6 @@ use super::{Scenario, Study};
 use crate::actuator::Actuator;
 use crate::disturbance::Disturbance;
 use crate::document::Fault;
-use crate::estimator::Estimator;
 use crate::law::{Itinerary, Law, Measure, Target};
 use crate::sensor::Sensor;
 
@@ -70,7 +69,7 @@ impl Scenario {
                 let Sensor::Gyro(gyro) = sensor else { return None };
                 gyro.three().map(|key| format!("{}.{key}", self.sensor_key(index)))
             });
-            if matches!(self.estimator, Some(Estimator::Attitude(_))) {
+            if self.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some()) {
                 let why = "estimates three axes: a body with one angle has `[estimator.kalman]`";
                 return refused("estimator.attitude", why);
             }

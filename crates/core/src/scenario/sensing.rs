@@ -14,9 +14,7 @@ impl Scenario {
             if !sensor.is_continuous() && sensor.sees_body() && sensor.period(self.law.period()).is_none() {
                 return at(index, "must have a `period` with a law that has none of its own");
             }
-            if let Sensor::Gyro(gyro) = sensor
-                && let Some(fault) = gyro.inconsistency()
-            {
+            if let Some(fault) = sensor.inconsistency() {
                 return Some(fault.within(&self.sensor_key(index)));
             }
             if let Some(fault) = self.vector_fault(sensor) {

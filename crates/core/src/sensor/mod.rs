@@ -17,7 +17,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::{AXES, Vector, beyond, rotation};
-use crate::document::Parts;
+use crate::document::{self, Parts};
 use crate::environment::Seen;
 use crate::own::Own;
 use crate::quantity::Positive;
@@ -192,6 +192,20 @@ impl Sense for Exact {
 }
 
 impl Sensor {
+    /// What single values cannot show to be wrong: a key within the sensor, and why.
+    pub fn inconsistency(&self) -> Option<document::Fault> {
+        match self {
+            Self::Gyro(gyro) => gyro.inconsistency(),
+            Self::Magnetometer(magnetometer) => magnetometer.inconsistency(),
+            Self::SunSensor(sensor) => sensor.inconsistency(),
+            Self::Continuous
+            | Self::Sampled(_)
+            | Self::StarTracker(_)
+            | Self::Tachometer(_)
+            | Self::Own(_) => None,
+        }
+    }
+
     /// The sensor in a run of a body with so many axes, after so many others of its kind.
     pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
         match self {

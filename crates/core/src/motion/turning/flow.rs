@@ -86,8 +86,7 @@ impl Flexible {
     /// Length of the steps that resolve all modes while the body turns, and torques change, at such a rate (rad/s), in s.
     pub fn step(&self, rate: f64) -> f64 {
         let pace = Pace::new(&Model::new(self));
-        let amplitudes = vec![f64::MAX; self.modes.len()];
-        pace.length(pace.level(Pose { rate, carried: rate, acceleration: 0.0, amplitudes: &amplitudes }))
+        pace.length(pace.level(Pose { rate, carried: rate, acceleration: 0.0, amplitudes: None }))
     }
 }
 

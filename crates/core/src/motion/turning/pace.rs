@@ -39,6 +39,9 @@ const DOUBLINGS: i32 = 6;
 /// 1e4 s.
 const DRIFT: f64 = 1e-14;
 
+/// The same where steps resolve all modes (rad/s): large amplitudes of a body that turns make steps shorter still.
+const RESOLVED_DRIFT: f64 = 1e-11;
+
 /// The part of a mode's displacement that a step of a radian of it loses, by the sixth power of the radians: measured on the
 /// reference craft, from 1.5 to 23 radians, and rounded up.
 const LOST: f64 = 1e-8;
@@ -65,8 +68,8 @@ pub(super) struct Pose<'a> {
     pub carried: f64,
     /// Its angular acceleration, at most (rad/s²).
     pub acceleration: f64,
-    /// The amplitude of each mode, at most (m sqrt(kg)).
-    pub amplitudes: &'a [f64],
+    /// The amplitude of each mode, at most (m sqrt(kg)), where it is known: else steps resolve all modes.
+    pub amplitudes: Option<&'a [f64]>,
 }
 
 impl Pace {
@@ -97,10 +100,14 @@ impl Pace {
         let mut level = 0;
         let mut h = self.base;
         // What is not finite needs no short steps.
-        while level < 60
-            && (h * (pose.rate + pose.acceleration * h) > self.turn
-                || h > self.resolving && self.drift(h, pose) > DRIFT)
-        {
+        let drifts = |h: f64| match pose.amplitudes {
+            Some(amplitudes) => {
+                let most = if h > self.resolving { DRIFT } else { RESOLVED_DRIFT };
+                self.drift(h, pose, amplitudes) > most
+            }
+            None => h > self.resolving,
+        };
+        while level < 60 && (h * (pose.rate + pose.acceleration * h) > self.turn || drifts(h)) {
             h *= 0.5;
             level += 1;
         }
@@ -108,12 +115,12 @@ impl Pace {
     }
 
     /// How fast the attitude drifts at most for the sake of modes that steps of `h` seconds do not resolve (rad/s).
-    fn drift(&self, h: f64, pose: Pose<'_>) -> f64 {
+    fn drift(&self, h: f64, pose: Pose<'_>, amplitudes: &[f64]) -> f64 {
         let lost = |((w, turning), amplitude): (&(f64, f64), &f64)| {
             let square = w * h * w * h;
             turning * amplitude * (LOST * square * square * square).min(1.0)
         };
-        let lost = self.modes.iter().zip(pose.amplitudes).map(lost).sum::<f64>();
+        let lost = self.modes.iter().zip(amplitudes).map(lost).sum::<f64>();
         (pose.carried + pose.acceleration * h) * lost
     }
 
@@ -199,16 +206,22 @@ mod tests {
     fn steps_resolve_slow_modes_follow_the_rotation_and_keep_off_aliases() {
         let pace = pace(&[1.1475, 50.4, 92.94]);
         let at = |rate, acceleration, amplitudes: &[f64]| {
-            let h = pace.length(pace.level(Pose { rate, carried: rate, acceleration, amplitudes }));
+            let h = pace.length(pace.level(Pose {
+                rate,
+                carried: rate,
+                acceleration,
+                amplitudes: Some(amplitudes),
+            }));
             h * 92.94
         };
         // Modes that move resolve; with those at rest, or a body that hardly turns, steps are longer.
-        let phase = at(0.07, 0.0, &[1e-3; 3]);
+        let phase = at(0.07, 0.0, &[1e-5; 3]);
         assert!(phase <= 1.5 && phase > 1.49, "{phase}");
+        assert!(at(0.07, 0.0, &[1e-1; 3]) < 0.8);
         let unresolved = at(0.0, 0.0, &[1e-3; 3]);
         assert!(unresolved > 95.0, "{unresolved}");
         assert!(at(1e-6, 0.0, &[1e-6; 3]) > at(1e-3, 0.0, &[1e-6; 3]));
-        assert!(at(6.0, 0.0, &[1e-3; 3]) < 0.8);
+        assert!(at(6.0, 0.0, &[1e-9; 3]) < 0.8);
         // A torque alone makes steps shorter too.
         assert!(at(0.0, 1000.0, &[0.0; 3]) < 1.0);
         // 418.9 rad/s is a whole turn in 15 ms.
@@ -223,7 +236,7 @@ mod tests {
         }
         // Without modes, rotation and torque alone.
         let pace = self::pace(&[]);
-        let pose = Pose { rate: 1e-3, carried: 1e-3, acceleration: 0.0, amplitudes: &[] };
+        let pose = Pose { rate: 1e-3, carried: 1e-3, acceleration: 0.0, amplitudes: Some(&[]) };
         assert!(pace.length(pace.level(pose)) * 1e-3 <= TURN);
     }
 }

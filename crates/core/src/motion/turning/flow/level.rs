@@ -1,6 +1,7 @@
 //! The level of the next step, and the responses of the modes over it.
 
 use super::{BESIDE, Regular, Turning};
+use crate::attitude::Vector;
 use crate::motion::turning::Surroundings;
 use crate::motion::turning::pace::Pose;
 use crate::motion::turning::response::Response;
@@ -13,9 +14,10 @@ impl Turning {
         if !self.bearings.is_empty() {
             rotors = self.borne_by(&self.slips).stored(self.grid.spins.iter().map(|spin| spin.sums.x));
         }
-        // What wheels in bearings, warmth and levers do to modes is not estimated: steps resolve all modes.
+        // What wheels in bearings, warmth and forces do to modes and place is not estimated: steps resolve all modes.
         let known = self.bearings.is_empty()
             && self.acting.levers.is_empty()
+            && self.acting.push == Vector::zeros()
             && around.is_none_or(|(around, _)| around.heated().is_empty());
         let Self { model, grid, acting, amplitudes, .. } = self;
         let push = acting.torque.norm() + exerted + change.norm();
@@ -31,14 +33,11 @@ impl Turning {
                 + (p + of.rotation.dot(&turning) / w).abs()
                 + (of.rotation.dot(&net) + forced).abs() / (w * w);
         }
-        if !known {
-            amplitudes.fill(f64::MAX);
-        }
         let pose = Pose {
-            rate: model.mobility * (size + turning.norm()) + slow,
+            rate: model.mobility * (size + rotors.norm()) + slow,
             carried: (model.inverse * turning).norm() + model.mobility * size + slow,
             acceleration: model.mobility * push,
-            amplitudes: &*amplitudes,
+            amplitudes: known.then_some(&*amplitudes),
         };
         let turns = self.pace.level(pose);
         let shakes = self.bearings.iter().zip(&self.grid.spins).map(|(bearing, spin)| {
