@@ -10,8 +10,8 @@ modes. A line each: J by rows; then of each mode W, phi (3), the rotation of the
 hub's (3), the modal force of jet 1 beside what its torque gives, J1 by rows (9) and its row of the damping
 matrix (8).
 
-turning/b.csv, c.csv, c2.csv, d.csv and e.csv are not made here. They come from two codes that share nothing: free
-modes and the total momentum by Gauss-Legendre steps, and clamped modes and the hub's rate by an explicit
+turning/b.csv, c.csv, c2.csv, d.csv and e.csv are not made here. They come from two codes that share nothing:
+free modes and the total momentum by Gauss-Legendre steps, and clamped modes and the hub's rate by an explicit
 method of order 8 with relative tolerance 2e-14, which agree as far as tests/turning.rs asks. Pulses of 2 s
 from rest (b), tumbling without and with first moments (c and c2), and a slew by wheels without and with
 friction (d and e).
