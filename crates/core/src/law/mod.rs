@@ -29,6 +29,7 @@ use serde::{Deserialize, Serialize};
 use crate::actuator::PulseWidth;
 pub use crate::belief::Reads;
 use crate::belief::{Belief, Damped};
+use crate::document::Fault;
 use crate::guard::Guard;
 use crate::own::Own;
 use crate::quantity::Finite;
@@ -186,6 +187,22 @@ impl Law {
     /// The law about an axis: 0, or 0 to 2 for roll, pitch and yaw.
     pub fn about(&self, axis: usize) -> &Self {
         if let Self::PerAxis(laws) = self { laws.about(axis) } else { self }
+    }
+
+    /// What single values cannot show to be wrong in its own keys: a key within the law, and why.
+    pub fn inconsistency(&self) -> Option<Fault> {
+        match self {
+            Self::Attitude(law) => law.inconsistency(),
+            Self::StateSpace(law) => law.inconsistency(),
+            Self::PhasePlane(law) => law.inconsistency(),
+            Self::Stages(laws) => laws.inconsistency(),
+            Self::Relay(_)
+            | Self::Pd(_)
+            | Self::Open(_)
+            | Self::PerAxis(_)
+            | Self::BDot(_)
+            | Self::Own(_) => None,
+        }
     }
 
     /// The number that an adaptation tunes unless it names another; NaN of a law without any.

@@ -58,9 +58,12 @@ impl Stages {
         self.0.iter().enumerate().find_map(|(index, stage)| {
             let key = format!("[{index}].law.{}", stage.law.kind());
             match &stage.law {
-                Law::BDot(_) | Law::Pd(_) | Law::Open(_) | Law::Own(_) => None,
-                Law::Attitude(law) => law.inconsistency().map(|fault| fault.within(&key)),
-                Law::StateSpace(law) => law.inconsistency().map(|fault| fault.within(&key)),
+                law @ (Law::BDot(_)
+                | Law::Pd(_)
+                | Law::Attitude(_)
+                | Law::StateSpace(_)
+                | Law::Open(_)
+                | Law::Own(_)) => law.inconsistency().map(|fault| fault.within(&key)),
                 Law::Relay(_) | Law::PhasePlane(_) | Law::PerAxis(_) | Law::Stages(_) => {
                     let why =
                         "must be one of `attitude`, `b_dot`, `pd`, `state_space` and `open`: others are laws of a whole run";

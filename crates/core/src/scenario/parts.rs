@@ -156,6 +156,9 @@ impl Scenario {
         for axis in 0..self.axis_count() {
             let (law, key) = (self.law.about(axis), self.law_key(axis));
             let at = |inner: &str, why: String| Some(Fault::new(inner, why).within(&key));
+            if let Some(fault) = law.inconsistency() {
+                return Some(fault.within(&key));
+            }
             match law {
                 Law::PerAxis(_) => return at("", "must be a law of one axis".to_owned()),
                 Law::Relay(relay) => {
@@ -173,9 +176,6 @@ impl Scenario {
                     }
                 }
                 Law::PhasePlane(law) => {
-                    if let Some(fault) = law.inconsistency() {
-                        return Some(fault.within(&key));
-                    }
                     if self.axis_count() == 1 && !law.targets.is_empty() {
                         let why =
                             "are for a body with three axes: a `[manoeuvre]` turns a body with one angle";
@@ -211,16 +211,6 @@ impl Scenario {
                         return at("", why.to_owned());
                     }
                 }
-                Law::Attitude(law) => {
-                    if let Some(fault) = law.inconsistency() {
-                        return Some(fault.within(&key));
-                    }
-                }
-                Law::StateSpace(law) => {
-                    if let Some(fault) = law.inconsistency() {
-                        return Some(fault.within(&key));
-                    }
-                }
                 Law::BDot(_) => {
                     if let Some(fault) = self.b_dot_fault() {
                         return Some(fault.within(&key));
@@ -230,11 +220,11 @@ impl Scenario {
                     let commands = laws.laws().position(|law| matches!(law, Law::BDot(_)));
                     let magnetic = commands
                         .and_then(|index| Some(self.b_dot_fault()?.within(&format!("[{index}].law.b_dot"))));
-                    if let Some(fault) = laws.inconsistency().or(magnetic) {
+                    if let Some(fault) = magnetic {
                         return Some(fault.within(&key));
                     }
                 }
-                Law::Pd(_) | Law::Open(_) | Law::Own(_) => {}
+                Law::Pd(_) | Law::Attitude(_) | Law::StateSpace(_) | Law::Open(_) | Law::Own(_) => {}
             }
             if let Law::Attitude(law) = law
                 && law.inertia.is_some()
