@@ -26,10 +26,10 @@ def test_a_design_becomes_a_law() -> None:
     lead = np.array([[-2.5]]), np.array([[2.5]]), np.array([[-12.5]]), np.array([[13.3]])
     a, b, c, d, _ = cont2discrete(lead, PERIOD, "bilinear")
     law = {"period": PERIOD, "a": a, "b": b, "c": c, "d": d}
-    run = Scenario({**study().to_dict(), "law": {"state_space": law}}).simulate()
+    run = Scenario({**study().to_dict(), "law": {"state_space": law}}).simulate(log="full")
     # The same by flexsc's own rule.
     whole = {"period": PERIOD, "of": "tustin", **dict(zip("abcd", lead, strict=True))}
-    again = Scenario({**study().to_dict(), "law": {"state_space": whole}}).simulate()
+    again = Scenario({**study().to_dict(), "law": {"state_space": whole}}).simulate(log="full")
     angle, rate, state, angles = 0.02, 0.0, 0.0, []
     for _ in range(81):
         angles.append(angle)
