@@ -110,7 +110,7 @@ fn matrices_that_do_not_fit_are_refused() {
         ("", "law.state_space.d", "must be there where there are no states"),
         ("d = [[1.0, 2.0, 3.0]]", "law.state_space.d[0]", "angle and rate, got 3"),
         ("d = [[1.0], [2.0]]", "law.state_space.d", "must be one row, got 2"),
-        ("a = [[1.0, 2.0]]\nb = [[1.0]]\nc = [[1.0]]", "law.state_space.a[0]", "must have 1 columns, got 2"),
+        ("a = [[1.0, 2.0]]\nb = [[1.0]]\nc = [[1.0]]", "law.state_space.a[0]", "must have 1 column, got 2"),
         ("a = [[0.5]]\nb = [[1.0], [1.0]]\nc = [[1.0]]", "law.state_space.b", "each of the 1 states, got 2"),
         ("a = [[0.5]]\nb = [[1.0]]", "law.state_space.c", "states are not seen"),
         (

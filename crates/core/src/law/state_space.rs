@@ -88,7 +88,11 @@ fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix<f64
     match rows.iter().position(|row| row.len() != columns) {
         Some(row) => Err(Fault::new(
             format!("{key}[{row}]"),
-            format!("must have {columns} columns, got {}", rows[row].len()),
+            format!(
+                "must have {columns} column{}, got {}",
+                if columns == 1 { "" } else { "s" },
+                rows[row].len()
+            ),
         )),
         None => Ok(DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column].get())),
     }
