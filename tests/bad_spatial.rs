@@ -12,7 +12,7 @@ const CASES: &[Case] = &[
     ("3.0, 0.1]", "-3.0, 0.1]", 3, &["`body.spatial.inertia` must be positive definite"]),
     ("[[5.0, 0.4, -0.2], ", "[", 3, &["`body.spatial.inertia`", "expected an array of length 3"]),
     ("5.0, 0.4, -0.2]", "5.0, 0.4]", 3, &["`body.spatial.inertia", "expected an array of length 3"]),
-    ("rate = [0.3, -0.2, 0.5]", "rate = [0.3, nan, 0.5]", 4, &["`body.spatial.rate`", "must be a finite number, got NaN"]),
+    ("rate = [0.3, -0.2, 0.5]", "rate = [0.3, nan, 0.5]", 4, &["`body.spatial.rate[1]`", "must be a finite number, got NaN"]),
     ("rate = [0.3, -0.2, 0.5]", "attitude = [2, 0, 0, 0]", 4, &["`body.spatial.attitude`", "must be a unit quaternion [w, x, y, z]", "of length 2"]),
     ("rate = [0.3, -0.2, 0.5]", "attitude = [0, 0, 0, 0]", 4, &["`body.spatial.attitude`", "of length 0"]),
     ("rate = [0.3, -0.2, 0.5]", "rates = [0.3, -0.2, 0.5]", 4, &["unknown key `rates`", "`rate`"]),

@@ -6,6 +6,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::document::read_value;
+
 /// An axis of a body with three.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -72,16 +74,15 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Each<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         use serde::de::Error;
         let value = toml::Value::deserialize(deserializer)?;
-        let message = |error: toml::de::Error| D::Error::custom(error.message());
         if let toml::Value::Array(values) = &value {
             let found = values.len();
             if found != 3 {
                 let why = format!("must be one number, or three for roll, pitch and yaw, got {found}");
                 return Err(D::Error::custom(why));
             }
-            return value.try_into().map(Self::Three).map_err(message);
+            return read_value(&value).map(Self::Three).map_err(D::Error::custom);
         }
-        value.try_into().map(Self::All).map_err(message)
+        read_value(&value).map(Self::All).map_err(D::Error::custom)
     }
 }
 

@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     fn start(text: &str) -> Torquing {
-        let torquers: Magnetorquers = toml::from_str(text).unwrap();
+        let torquers: Magnetorquers = crate::document::from_text(text).unwrap();
         let setting = |axis| Setting {
             axis,
             inertia: 10.0,

@@ -6,7 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::document::Fault;
+use crate::document::{Fault, read_value};
 
 /// One value for all wheels, or one for each.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,11 +61,10 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for PerWheel<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         use serde::de::Error;
         let value = toml::Value::deserialize(deserializer)?;
-        let message = |error: toml::de::Error| D::Error::custom(error.message());
         if value.is_array() {
-            return value.try_into().map(Self::Each).map_err(message);
+            return read_value(&value).map(Self::Each).map_err(D::Error::custom);
         }
-        value.try_into().map(Self::All).map_err(message)
+        read_value(&value).map(Self::All).map_err(D::Error::custom)
     }
 }
 

@@ -96,6 +96,17 @@ pub fn set(table: &mut Table, path: &str, value: Value) -> Result<(), String> {
 
 /// Where the value at a path stands in the text; the nearest table above it if it is not written.
 pub fn span_of(table: &DeTable<'_>, path: &str) -> Option<Range<usize>> {
+    nearest(table, path).map(Spanned::span)
+}
+
+/// Where a key of the table at a path stands in the text, the path of the whole being empty.
+pub fn span_of_key(table: &DeTable<'_>, path: &str, key: &str) -> Option<Range<usize>> {
+    let within = if path.is_empty() { table } else { nearest(table, path)?.get_ref().as_table()? };
+    within.get_key_value(key).map(|(key, _)| key.span())
+}
+
+/// The value at a path, or the nearest table above it.
+fn nearest<'a>(table: &'a DeTable<'a>, path: &str) -> Option<&'a Spanned<DeValue<'a>>> {
     let mut steps = steps(path)?.into_iter();
     let Some(Step::Key(first)) = steps.next() else { return None };
     let mut value = table.get(first)?;
@@ -110,54 +121,26 @@ pub fn span_of(table: &DeTable<'_>, path: &str) -> Option<Range<usize>> {
             None => break,
         }
     }
-    Some(value.span())
+    Some(value)
 }
 
-/// The path and the value of a place in the text: of the value that stands there exactly, or else of the innermost
-/// one around it.
-pub fn place_of<'a>(table: &'a DeTable<'a>, span: &Range<usize>) -> Option<(String, &'a DeValue<'a>)> {
-    let mut around = None;
-    for (key, value) in table {
-        let found = place_in(bare_or_quoted(key.get_ref()), value, span);
-        match found {
-            Some((true, path, value)) => return Some((path, value)),
-            Some((false, path, value)) => around = around.or(Some((path, value))),
-            None => {}
-        }
-    }
-    around
+/// The path of the innermost value around a place in the text.
+pub fn path_of(table: &DeTable<'_>, place: &Range<usize>) -> Option<String> {
+    table.iter().find_map(|(key, value)| path_in(bare_or_quoted(key.get_ref()), value, place))
 }
 
-/// The same within one value, and whether the place is exact.
-fn place_in<'a>(
-    path: String,
-    value: &'a Spanned<DeValue<'a>>,
-    span: &Range<usize>,
-) -> Option<(bool, String, &'a DeValue<'a>)> {
-    // The first table of an array of tables stands where the array does.
-    let first = value.get_ref().as_array().and_then(|array| array.first());
-    if value.span() == *span && first.is_none_or(|first| first.span() != *span) {
-        return Some((true, path, value.get_ref()));
-    }
-    let parts: Vec<(String, &Spanned<DeValue<'_>>)> = match value.get_ref() {
-        DeValue::Table(table) => {
-            let path_of = |key: &str| format!("{path}.{}", bare_or_quoted(key));
-            table.iter().map(|(key, value)| (path_of(key.get_ref()), value)).collect()
-        }
+fn path_in(path: String, value: &Spanned<DeValue<'_>>, place: &Range<usize>) -> Option<String> {
+    let inner = match value.get_ref() {
+        DeValue::Table(table) => table.iter().find_map(|(key, value)| {
+            path_in(format!("{path}.{}", bare_or_quoted(key.get_ref())), value, place)
+        }),
         DeValue::Array(array) => {
-            array.iter().enumerate().map(|(index, value)| (format!("{path}[{index}]"), value)).collect()
+            let mut values = array.iter().enumerate();
+            values.find_map(|(index, value)| path_in(format!("{path}[{index}]"), value, place))
         }
-        _ => Vec::new(),
+        _ => None,
     };
-    let mut inner = None;
-    for (path, part) in parts {
-        match place_in(path, part, span) {
-            Some(found @ (true, ..)) => return Some(found),
-            found => inner = inner.or(found),
-        }
-    }
-    let around = value.span().contains(&span.start);
-    inner.or_else(|| around.then(|| (false, path, value.get_ref())))
+    inner.or_else(|| value.span().contains(&place.start).then_some(path))
 }
 
 #[cfg(test)]

@@ -4,7 +4,9 @@ mod deep;
 mod fault;
 pub mod key;
 mod parts;
+mod reader;
 mod words;
+mod wrong;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,9 +17,11 @@ use toml::{Table, Value};
 
 pub use fault::Fault;
 pub use parts::Parts;
+pub use reader::{DATE, read_value};
+pub use wrong::Wrong;
 
 use key::{bare_or_quoted, span_of};
-use words::{explained, point, pointed, shortened, told};
+use words::{point, shortened, told, unfit, unparsed};
 
 /// No scenario is longer (bytes).
 const LONGEST: u64 = 4 << 20;
@@ -83,7 +87,7 @@ impl Document {
 
     /// Takes a text. `origin` is what errors call it.
     pub fn parse(origin: &str, text: String) -> Result<Self, ScenarioError> {
-        let table = text.parse::<Table>().map_err(|error| pointed(origin, &text, &error))?;
+        let table = text.parse::<Table>().map_err(|error| unparsed(origin, &text, &error))?;
         Ok(Self { origin: origin.to_owned(), text: Some(text), table, changed: Vec::new() })
     }
 
@@ -129,21 +133,15 @@ impl Document {
 
     /// The document as the type that it describes.
     pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, ScenarioError> {
-        if let (Some(text), true) = (&self.text, self.changed.is_empty()) {
-            return toml::from_str(text).map_err(|error| pointed(&self.origin, text, &error));
-        }
-        Value::Table(self.table.clone()).try_into().map_err(|error: toml::de::Error| {
-            // As a text, it shows which value is meant.
-            let text = toml::to_string(&self.table).unwrap_or_default();
-            let message = match toml::from_str::<T>(&text) {
-                Err(error) => told(&text, &error).0,
-                Ok(_) => explained(error.message(), None),
-            };
-            let set = match self.changed.as_slice() {
-                [] => String::new(),
-                changed => format!(" (with {} set)", changed.join(", ")),
-            };
-            ScenarioError::Invalid(format!("{}: {message}{set}", self.origin))
+        reader::read(&self.table).map_err(|wrong| match &self.text {
+            Some(text) if self.changed.is_empty() => unfit(&self.origin, text, &wrong),
+            _ => {
+                let set = match self.changed.as_slice() {
+                    [] => String::new(),
+                    changed => format!(" (with {} set)", changed.join(", ")),
+                };
+                ScenarioError::Invalid(format!("{}: {}{set}", self.origin, told(&wrong)))
+            }
         })
     }
 
@@ -169,6 +167,13 @@ impl Document {
     fn key_error(&self, key: &str, why: String) -> ScenarioError {
         ScenarioError::Key { origin: self.origin.clone(), key: shortened(key), why }
     }
+}
+
+/// Reads a part from a TOML text, as the tests of parts do.
+#[cfg(test)]
+pub fn from_text<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ScenarioError> {
+    let table = text.parse().map_err(|error| unparsed("text", text, &error))?;
+    read_value(&Value::Table(table)).map_err(|wrong| unfit("text", text, &wrong))
 }
 
 /// The first part of a value that is not in what was read of it.

@@ -105,8 +105,8 @@ mod tests {
     #[test]
     fn a_plate_is_pushed_back_where_it_meets_the_flow() {
         // Without the planet's rotation: rho/2 C A v² at its arm.
-        let orbit: Kepler = toml::from_str("semi_major_axis = 6.8e6").unwrap();
-        let drag: Drag = toml::from_str(
+        let orbit: Kepler = crate::document::from_text("semi_major_axis = 6.8e6").unwrap();
+        let drag: Drag = crate::document::from_text(
             "density = 4e-12\nscale_height = 6e4\nrotation = 0\nplates = [{ area = 2.0, normal = [0, 3, 0], at = [0.1, 0, 0.5] }]",
         )
         .unwrap();

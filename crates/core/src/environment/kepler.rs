@@ -242,7 +242,7 @@ mod tests {
     use super::*;
 
     fn orbit(text: &str) -> Kepler {
-        let orbit: Kepler = toml::from_str(text).unwrap();
+        let orbit: Kepler = crate::document::from_text(text).unwrap();
         assert_eq!(orbit.fault(), None);
         orbit
     }
@@ -334,7 +334,8 @@ mod tests {
 
     #[test]
     fn an_orbit_through_the_planet_is_refused() {
-        let fault = |text: &str| toml::from_str::<Kepler>(text).unwrap().fault().unwrap().to_string();
+        let fault =
+            |text: &str| crate::document::from_text::<Kepler>(text).unwrap().fault().unwrap().to_string();
         assert!(
             fault("semi_major_axis = 7e6\neccentricity = 0.1").starts_with("`semi_major_axis` must keep")
         );

@@ -59,9 +59,10 @@ mod tests {
     #[test]
     fn without_a_tilt_it_is_that_of_the_local_axes() {
         // b (cos u sin i, -cos i, 2 sin u sin i) in local axes, at the angle u past the ascending node.
-        let field: MagneticField = toml::from_str("coefficients = [0, 0, -3e-5]\nradius = 6.4e6").unwrap();
+        let field: MagneticField =
+            crate::document::from_text("coefficients = [0, 0, -3e-5]\nradius = 6.4e6").unwrap();
         let (inclination, radius) = (0.9, 7e6);
-        let orbit: Kepler = toml::from_str(&format!(
+        let orbit: Kepler = crate::document::from_text(&format!(
             "semi_major_axis = {radius}\ninclination = {inclination}\nnode = 0.4\nperigee = 0.3\nanomaly = 0.2"
         ))
         .unwrap();

@@ -22,7 +22,7 @@ fn upright() -> Matrix3<f64> {
 }
 
 fn around(text: &str, inertia: &Matrix3<f64>) -> Around {
-    let environment: Environment = toml::from_str(text).expect("an environment");
+    let environment: Environment = crate::document::from_text(text).expect("an environment");
     let sky = Sky::new(&environment, Span::from_seconds(1e5));
     Around::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
 }
@@ -39,7 +39,7 @@ impl One {
     fn new(inertia: &Matrix3<f64>, around: Around, attitude: Quaternion<f64>, rate: Vector) -> Self {
         let rows = (0..3).map(|row| format!("{:?}", inertia.row(row).iter().collect::<Vec<_>>()));
         let text = format!("inertia = [{}]", rows.collect::<Vec<_>>().join(", "));
-        let body: Spatial = toml::from_str(&text).expect("a body");
+        let body: Spatial = crate::document::from_text(&text).expect("a body");
         let rigid = Rigid::new(&body);
         Self { turn: rigid.start(attitude, rate), rigid, around, t: 0.0 }
     }
@@ -257,7 +257,7 @@ fn the_field_is_that_of_a_dipole_along_the_axis() {
         "dipole = {{ moment = [1.0, -2.0, 0.5], strength = {strength}, inclination = {inclination}, from_node = {node}, \
          orbit_rate = {RATE} }}"
     );
-    let environment: Environment = toml::from_str(&text).expect("an environment");
+    let environment: Environment = crate::document::from_text(&text).expect("an environment");
     let dipole = environment.dipole.expect("a dipole");
     // In axes of the equator, x to the ascending node, z north; of the local axes at the start, in those.
     let (sin_i, cos_i) = libm::sincos(inclination);
@@ -285,7 +285,7 @@ fn the_field_is_that_of_a_dipole_along_the_axis() {
 #[test]
 fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     let text = "solar_pressure = { force = [1e-4, 0.0, 0.0], at = [0.1, 0.5, 0.0], shadow = [[10.0, 20.0]] }";
-    let environment: Environment = toml::from_str(text).expect("an environment");
+    let environment: Environment = crate::document::from_text(text).expect("an environment");
     let centre = Vector::new(0.1, 0.3, 0.0);
     let sky = Sky::new(&environment, Span::from_seconds(100.0));
     let around = Around::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);

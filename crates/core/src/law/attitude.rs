@@ -209,7 +209,7 @@ mod tests {
 
     fn start(keys: &str, most: f64) -> Box<dyn Control> {
         let text = format!("period = {PERIOD}\nbandwidth = 0.1\ndamping = 0.8\n{keys}");
-        let law: AttitudeLaw = toml::from_str(&text).unwrap();
+        let law: AttitudeLaw = crate::document::from_text(&text).unwrap();
         assert_eq!(law.inconsistency(), None);
         let width = PulseWidth::default();
         law.start(&Authority { accelerations: [most; 2], width, delay: 0.0, threshold: 0.0 })
@@ -245,7 +245,7 @@ mod tests {
     fn what_the_reference_accelerates_passes_the_filters_by() {
         let mut law = start("filters = [{ notch = { frequency = 1.1475, depth = 0.05 } }]", f64::INFINITY);
         assert_eq!(command(&mut *law, 0.0, 0.0, 2e-4), 2e-4);
-        let biquad = toml::from_str::<AttitudeLaw>(
+        let biquad = crate::document::from_text::<AttitudeLaw>(
             "period = 0.25\nbandwidth = 0.1\nfilters = [{ low_pass = { frequency = 20.0 } }]",
         );
         let fault = biquad.unwrap().inconsistency().unwrap();

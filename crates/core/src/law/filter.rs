@@ -131,7 +131,7 @@ mod tests {
     use super::*;
 
     fn filter(text: &str) -> Filter {
-        toml::from_str(text).unwrap()
+        crate::document::from_text(text).unwrap()
     }
 
     fn close(found: [f64; 2], exact: [f64; 2], within: f64) {

@@ -206,7 +206,7 @@ mod tests {
         struct Of {
             target: Vec<Target>,
         }
-        toml::from_str::<Of>(text).unwrap().target
+        crate::document::from_text::<Of>(text).unwrap().target
     }
 
     fn at(seconds: f64) -> Instant {
@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_target_of_the_orbit_turns_with_it_and_is_reached_from_where_the_body_was() {
-        let environment = toml::from_str(
+        let environment = crate::document::from_text(
             "orbit = { semi_major_axis = 8e6, eccentricity = 0.1, inclination = 1.2 }\nsun = [1, 2, 3]",
         );
         let sky = Sky::new(&environment.unwrap(), Span::from_seconds(1e4));

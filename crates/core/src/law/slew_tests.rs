@@ -40,7 +40,7 @@ fn craft() -> Flexible {
 }
 
 fn wheels(speed: f64) -> Spinning {
-    let wheels: Wheels = toml::from_str(&format!(
+    let wheels: Wheels = crate::document::from_text(&format!(
         "arrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = 0.04\ntorque = 0.4\nspeed_limit = 600.0\n\
          speeds = [{speed}, -{speed}, {speed}, -{speed}]"
     ))
@@ -88,7 +88,8 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
     let mut events = Vec::new();
     let to = rotation(&(Vector::new(1.0, 2.0, 2.0) * (std::f64::consts::FRAC_PI_3 / 3.0)));
     let slew = Slew::new([Quaternion::identity(), to], 2e-4, 8e-3, Profile::Trapezoid);
-    let law: AttitudeLaw = toml::from_str("period = 0.25\nbandwidth = 0.1\ndamping = 0.8").unwrap();
+    let law: AttitudeLaw =
+        crate::document::from_text("period = 0.25\nbandwidth = 0.1\ndamping = 0.8").unwrap();
     let authority = Authority {
         accelerations: [f64::INFINITY; 2],
         width: PulseWidth::default(),

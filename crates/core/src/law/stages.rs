@@ -139,7 +139,7 @@ mod tests {
         struct Of {
             stages: Stages,
         }
-        toml::from_str::<Of>(text).unwrap().stages
+        crate::document::from_text::<Of>(text).unwrap().stages
     }
 
     #[test]

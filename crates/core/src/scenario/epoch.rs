@@ -1,6 +1,29 @@
 //! The date of a run's start, as a count of nanoseconds.
 
+use std::fmt;
+
+use serde::Deserializer;
+use serde::de::{Error, Visitor};
 use toml::value::Datetime;
+
+use crate::document::DATE;
+
+/// Reads a date.
+pub fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Datetime>, D::Error> {
+    struct Date;
+    impl Visitor<'_> for Date {
+        type Value = Datetime;
+
+        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+            formatter.write_str("a date and time without quotes, such as 2026-03-20T14:46:00Z")
+        }
+
+        fn visit_str<E: Error>(self, text: &str) -> Result<Datetime, E> {
+            text.parse().map_err(E::custom)
+        }
+    }
+    deserializer.deserialize_newtype_struct(DATE, Date).map(Some)
+}
 
 /// Nanoseconds from 1970 to a date and time, which is UTC unless it has an offset; within 1970 to 2500.
 pub fn nanoseconds_since_1970(epoch: &Datetime) -> Option<u64> {

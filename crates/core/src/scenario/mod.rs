@@ -61,7 +61,7 @@ pub struct Scenario {
     /// Simulated time (s).
     pub duration: Span,
     /// Date and time of the start; a log counts its time from here.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "epoch::read")]
     #[schemars(with = "Option<String>")]
     pub epoch: Option<Datetime>,
     /// What is controlled, if it is not a `spacecraft`.
@@ -280,7 +280,7 @@ impl Scenario {
 
     /// The scenario with all its defaults, as TOML.
     pub fn to_toml(&self) -> String {
-        toml::to_string(self).unwrap_or_default()
+        toml::to_string(&self.to_table()).unwrap_or_default()
     }
 
     /// The body that the manoeuvre is planned for.

@@ -96,7 +96,7 @@ mod tests {
     const PERIOD: f64 = 0.25;
 
     fn readings(keys: &str, count: usize, rate: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
-        let gyro: Gyro = toml::from_str(&format!("period = {PERIOD}\n{keys}")).unwrap();
+        let gyro: Gyro = crate::document::from_text(&format!("period = {PERIOD}\n{keys}")).unwrap();
         assert_eq!(gyro.inconsistency(), None);
         let mut gyro = gyro.start(3, Seed { scenario: 5, run: 0 }, 0);
         let (mut told, mut biases) = (Vec::new(), Vec::new());
@@ -161,7 +161,7 @@ mod tests {
             assert!((found - exact).abs() < 1e-11, "{found} {exact}");
         }
         let refused = |keys: &str| {
-            let gyro: Gyro = toml::from_str(keys).unwrap();
+            let gyro: Gyro = crate::document::from_text(keys).unwrap();
             gyro.inconsistency().unwrap().to_string()
         };
         assert!(

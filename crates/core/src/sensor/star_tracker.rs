@@ -131,7 +131,7 @@ mod tests {
     }
 
     fn start(keys: &str) -> Exposing {
-        let tracker: StarTracker = toml::from_str(&format!("period = 1.0\n{keys}")).unwrap();
+        let tracker: StarTracker = crate::document::from_text(&format!("period = 1.0\n{keys}")).unwrap();
         tracker.start(Seed { scenario: 3, run: 0 }, 0)
     }
 

@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn it_sees_the_sun_within_its_field_of_view_alone() {
         let sensor: SunSensor =
-            toml::from_str("period = 1.0\nboresight = [2, 0, 0]\nfield_of_view = 0.5").unwrap();
+            crate::document::from_text("period = 1.0\nboresight = [2, 0, 0]\nfield_of_view = 0.5").unwrap();
         let mut at_work = sensor.start(Seed { scenario: 1, run: 0 }, 0);
         let mut seen = |t: f64, turned: f64, sun: Option<Vector>| {
             let now = Instant::START + Span::from_seconds(t);
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn noise_is_across_and_errors_are_those_that_are_asked_for() {
-        let sensor: SunSensor = toml::from_str("period = 1.0\nnoise = 1e-3").unwrap();
+        let sensor: SunSensor = crate::document::from_text("period = 1.0\nnoise = 1e-3").unwrap();
         let mut at_work = sensor.start(Seed { scenario: 1, run: 0 }, 0);
         let count = 20_000;
         let mut squares = Vector::zeros();
@@ -171,7 +171,7 @@ mod tests {
         }
         // Three standard errors: 3 sqrt(2/n).
         assert!((squares.x / 1e-6 - 1.0).abs() < 0.03 && (squares.y / 1e-6 - 1.0).abs() < 0.03, "{squares}");
-        let magnetometer: crate::sensor::Magnetometer = toml::from_str(
+        let magnetometer: crate::sensor::Magnetometer = crate::document::from_text(
             "period = 1.0\nlatency = 0.5\nbias = [1e-6, 0, 0]\nscale = 0.01\nmisalignment = [[0, 0, 0], [0.1, 0, 0], [0, 0, 0]]\n\
              resolution = [0, 0, 7e-6]\nfaults = [{ stuck = { from = 2.0, to = 3.0 } }, { silent = { from = 3.0 } }]",
         )

@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     fn start(keys: &str) -> Counting {
-        let spec: Tachometer = toml::from_str(&format!("period = 0.1\n{keys}")).unwrap();
+        let spec: Tachometer = crate::document::from_text(&format!("period = 0.1\n{keys}")).unwrap();
         spec.start(vec![10.0], Seed { scenario: 1, run: 0 })
     }
 

@@ -28,7 +28,7 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
 }
 
 fn wheels(imbalance: &str) -> Wheels {
-    toml::from_str(&format!(
+    crate::document::from_text(&format!(
         "arrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\nimbalance = {{ {imbalance} }}"
     ))
     .unwrap()

@@ -239,9 +239,10 @@ mod tests {
         assert_eq!(spec.inconsistency(&tracker(0.2, 2.0), CYCLE).expect("wrong").key, "influence_bounds");
         let spec = Gradient { damping: number(1.0), ..Gradient::default() };
         assert_eq!(spec.inconsistency(&[tracker(0.2, 2.0)], 1, CYCLE).expect("wrong").key, "damping");
-        let unknown: Result<Gradient, _> = toml::from_str("damping = 0.01\nlg = 0.1");
+        let unknown: Result<Gradient, _> = crate::document::from_text("damping = 0.01\nlg = 0.1");
         assert!(unknown.is_err());
-        let known: Gradient = toml::from_str("damping = 0.01\nelastic_gain = 0.1").expect("known");
+        let known: Gradient =
+            crate::document::from_text("damping = 0.01\nelastic_gain = 0.1").expect("known");
         assert_eq!(known.damping, number(0.01));
     }
 }

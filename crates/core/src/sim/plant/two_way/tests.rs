@@ -37,7 +37,7 @@ fn body(disturbed: bool, coupled: bool) -> Spatial {
         hub[0],
         hub[1]
     );
-    toml::from_str(&text).expect("a body")
+    crate::document::from_text(&text).expect("a body")
 }
 
 fn flexible(body: &Spatial) -> Flexible {

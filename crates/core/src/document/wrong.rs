@@ -1,0 +1,167 @@
+//! What does not fit the type of a part: at which key, and why, in an engineer's words.
+
+use std::fmt;
+
+use serde::de::{Error, Expected, Unexpected};
+use toml::Value;
+
+use super::key::bare_or_quoted;
+use super::words::shortened;
+
+/// Beginning of the text about several kinds.
+pub const MORE_THAN_ONE: &str = "exactly one kind is accepted here, and more than one is given";
+
+/// Something that does not fit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Wrong {
+    /// The way to the value, innermost step first, each as it stands in a path.
+    steps: Vec<String>,
+    /// The key within that value, if the key itself is wrong.
+    key: Option<String>,
+    why: String,
+}
+
+impl Wrong {
+    fn because(why: impl Into<String>) -> Self {
+        Self { steps: Vec::new(), key: None, why: why.into() }
+    }
+
+    /// Something else than a kind.
+    pub fn no_kind(value: &Value) -> Self {
+        let found = match value {
+            Value::Datetime(_) => "a date",
+            Value::Array(_) => "an array",
+            Value::Integer(_) | Value::Float(_) => "a number",
+            Value::Boolean(_) => "true or false",
+            Value::String(_) => "a string",
+            Value::Table(_) => "a table",
+        };
+        Self::because(format!("found {found}, expected the name of a kind or a table"))
+    }
+
+    /// A name where a kind needs a table.
+    pub fn only_a_name() -> Self {
+        Self::because("found only the name of a kind that needs values of its own: a table")
+    }
+
+    /// The same, at the key itself, not at its value.
+    pub fn at_key(self, key: &str) -> Self {
+        Self { key: Some(key.to_owned()), ..self }
+    }
+
+    /// The same, within the value of a key.
+    pub fn in_key(mut self, key: &str) -> Self {
+        self.steps.push(bare_or_quoted(key));
+        self
+    }
+
+    /// The same, within an element of an array.
+    pub fn in_element(mut self, index: usize) -> Self {
+        self.steps.push(format!("[{index}]"));
+        self
+    }
+
+    /// The path of the value.
+    pub fn path(&self) -> String {
+        let mut path = String::new();
+        for step in self.steps.iter().rev() {
+            if !path.is_empty() && !step.starts_with('[') {
+                path.push('.');
+            }
+            path.push_str(step);
+        }
+        path
+    }
+
+    /// The key in it that is wrong, if it is not the value.
+    pub fn key(&self) -> Option<&str> {
+        self.key.as_deref()
+    }
+}
+
+impl fmt::Display for Wrong {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.why)
+    }
+}
+
+impl std::error::Error for Wrong {}
+
+impl Error for Wrong {
+    fn custom<T: fmt::Display>(message: T) -> Self {
+        Self::because(message.to_string())
+    }
+
+    fn invalid_type(found: Unexpected, expected: &dyn Expected) -> Self {
+        let found = match found {
+            Unexpected::UnitVariant | Unexpected::NewtypeVariant | Unexpected::StructVariant => {
+                return Self::only_a_name();
+            }
+            Unexpected::Map => "a table".to_owned(),
+            Unexpected::Seq => "an array".to_owned(),
+            found => shortened(&found.to_string().replacen("floating point", "number", 1)),
+        };
+        Self::because(format!("found {found}, expected {}", wanted(expected)))
+    }
+
+    fn invalid_value(found: Unexpected, expected: &dyn Expected) -> Self {
+        Self::invalid_type(found, expected)
+    }
+
+    fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
+        Self::because(format!("found an array of length {length}, expected {}", wanted(expected)))
+    }
+
+    fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
+        Self::because(format!(
+            "`{}` is not known here, {}",
+            shortened(name),
+            one_of(known, "there are no kinds here")
+        ))
+    }
+
+    fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
+        Self::because(format!(
+            "unknown key `{}`, {}",
+            shortened(name),
+            one_of(known, "there are no keys here")
+        ))
+    }
+
+    fn missing_field(name: &'static str) -> Self {
+        Self::because(format!("missing key `{name}`"))
+    }
+
+    fn duplicate_field(name: &'static str) -> Self {
+        Self::because(format!("`{name}` is given twice"))
+    }
+}
+
+/// What is accepted, of several names.
+fn one_of(known: &[&str], none: &str) -> String {
+    match known {
+        [] => none.to_owned(),
+        [one] => format!("expected `{one}`"),
+        [one, other] => format!("expected `{one}` or `{other}`"),
+        _ => format!(
+            "expected one of {}",
+            known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+        ),
+    }
+}
+
+/// What serde expected, in words of a scenario.
+fn wanted(expected: &dyn Expected) -> String {
+    let wanted = expected.to_string();
+    let known = match wanted.as_str() {
+        "f64" => "a number",
+        "u32" => "a whole number from 0 to 4294967295",
+        "u64" | "usize" => "a whole number from 0 to 9223372036854775807",
+        "a sequence" => "an array",
+        "a map" => "a table",
+        "a boolean" => "true or false",
+        _ if wanted.starts_with("struct ") => "a table",
+        _ => return wanted,
+    };
+    known.to_owned()
+}
