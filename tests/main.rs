@@ -75,6 +75,7 @@ mod stops_soon;
 mod structure;
 mod study;
 mod tuning;
+mod typos;
 mod unloading;
 mod unwatched;
 mod util;

@@ -3,11 +3,10 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use flexsc_core::Scenario;
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::{print, say};
+use crate::{print, say, scenario};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -21,7 +20,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     for path in &args.scenarios {
-        let scenario = Scenario::load(path)?;
+        let scenario = scenario::load(path, &[], None)?;
         let modes = scenario.mode_count();
         let costly = scenario.cost(None, false).excess();
         if args.json {

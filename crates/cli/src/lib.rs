@@ -6,6 +6,7 @@ mod consent;
 mod cycle;
 mod damping;
 mod drawing;
+mod examples;
 mod export;
 mod failure;
 mod files;
@@ -88,6 +89,10 @@ enum Verb {
     Layout(layout::Args),
     /// Check scenario files
     Check(check::Args),
+    /// Write a new scenario, a commented copy of an example
+    New(examples::NewArgs),
+    /// List the shipped scenarios, or copy some
+    Examples(examples::Args),
     /// Print the JSON Schema of scenarios, for editors, or what the metrics mean
     Schema(schema::Args),
     /// Print a completion script for a shell
@@ -138,6 +143,8 @@ fn execute(verb: Verb) -> Result<(), Failure> {
         Verb::Log(args) => log::run(&args),
         Verb::Layout(args) => layout::run(&args),
         Verb::Check(args) => check::run(&args),
+        Verb::New(args) => examples::new(&args),
+        Verb::Examples(args) => examples::run(&args),
         Verb::Schema(args) => schema::run(&args),
         Verb::Completions { shell } => {
             let mut script = Vec::new();

@@ -1,8 +1,9 @@
 //! Which scenario is meant, with which keys set.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use flexsc_core::{Document, Scenario};
+use flexsc_core::{Document, LONGEST, Scenario};
 
 use crate::failure::Failure;
 
@@ -31,7 +32,19 @@ impl Args {
 
 /// Reads a scenario file with some keys set.
 pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
-    with(Document::load(path)?, set, seed)
+    with(document(path)?, set, seed)
+}
+
+/// Reads a document; `-` is stdin.
+pub fn document(path: &Path) -> Result<Document, Failure> {
+    if path != Path::new("-") {
+        return Ok(Document::load(path)?);
+    }
+    let unread =
+        |why: std::io::Error| Failure::Arguments(format!("cannot read a scenario from stdin: {why}"));
+    let mut text = Vec::new();
+    std::io::stdin().lock().take(LONGEST + 1).read_to_end(&mut text).map_err(unread)?;
+    Ok(Document::read_bytes(Path::new("stdin"), text)?)
 }
 
 /// A document's scenario with some keys set.

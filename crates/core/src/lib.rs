@@ -73,6 +73,6 @@ pub mod uncertain;
 pub mod waveform;
 pub mod whole;
 
-pub use document::{Document, ScenarioError};
+pub use document::{Document, LONGEST, ScenarioError, nearest};
 pub use scenario::Scenario;
 pub use sim::{Simulation, SimulationError};

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 use toml::{Spanned, Table, Value};
 
 use super::deep::{DEEPEST, WHY};
+use super::nearest::{american, spelt};
 
 /// One step of a path: a key, or a place in an array.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +29,7 @@ fn steps(path: &str) -> Option<Vec<Step<'_>>> {
             if key.is_empty() {
                 return None;
             }
-            steps.push(key.parse().map_or(Step::Key(key), Step::Index));
+            steps.push(key.parse().map_or(Step::Key(spelt(key)), Step::Index));
             rest = after;
         }
         while let Some(indexed) = rest.strip_prefix('[') {
@@ -41,6 +42,22 @@ fn steps(path: &str) -> Option<Vec<Step<'_>>> {
         }
         rest = rest.strip_prefix('.')?;
     }
+}
+
+/// Spells the keys of a table as they are spelt here: `centre`, also where `center` was written.
+pub fn respell(table: &mut Table) {
+    fn within(value: &mut Value) {
+        match value {
+            Value::Table(table) => respell(table),
+            Value::Array(values) => values.iter_mut().for_each(within),
+            _ => {}
+        }
+    }
+    if table.keys().any(|key| spelt(key) != key && !table.contains_key(spelt(key))) {
+        *table =
+            std::mem::take(table).into_iter().map(|(key, value)| (spelt(&key).to_owned(), value)).collect();
+    }
+    table.iter_mut().for_each(|(_, value)| within(value));
 }
 
 /// A key as it stands in a path.
@@ -102,17 +119,25 @@ pub fn span_of(table: &DeTable<'_>, path: &str) -> Option<Range<usize>> {
 /// Where a key of the table at a path stands in the text, the path of the whole being empty.
 pub fn span_of_key(table: &DeTable<'_>, path: &str, key: &str) -> Option<Range<usize>> {
     let within = if path.is_empty() { table } else { nearest(table, path)?.get_ref().as_table()? };
-    within.get_key_value(key).map(|(key, _)| key.span())
+    written(within, key).map(|(key, _)| key.span())
+}
+
+/// A key as it is written in the text, in either spelling, and its value.
+fn written<'a>(
+    table: &'a DeTable<'a>,
+    key: &str,
+) -> Option<(&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>)> {
+    table.get_key_value(key).or_else(|| table.get_key_value(american(key)?))
 }
 
 /// The value at a path, or the nearest table above it.
 fn nearest<'a>(table: &'a DeTable<'a>, path: &str) -> Option<&'a Spanned<DeValue<'a>>> {
     let mut steps = steps(path)?.into_iter();
     let Some(Step::Key(first)) = steps.next() else { return None };
-    let mut value = table.get(first)?;
+    let mut value = written(table, first)?.1;
     for step in steps {
         let inner = match (step, value.get_ref()) {
-            (Step::Key(key), DeValue::Table(table)) => table.get(key),
+            (Step::Key(key), DeValue::Table(table)) => written(table, key).map(|(_, value)| value),
             (Step::Index(index), DeValue::Array(array)) => array.get(index),
             _ => None,
         };

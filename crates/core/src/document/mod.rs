@@ -3,6 +3,8 @@
 mod deep;
 mod fault;
 pub mod key;
+mod mistakes;
+mod nearest;
 mod parts;
 mod reader;
 mod words;
@@ -16,6 +18,7 @@ use toml::de::DeTable;
 use toml::{Table, Value};
 
 pub use fault::Fault;
+pub use nearest::meant as nearest;
 pub use parts::Parts;
 pub use reader::{DATE, read_value};
 pub use wrong::Wrong;
@@ -24,7 +27,7 @@ use key::{bare_or_quoted, span_of};
 use words::{point, shortened, told, unfit, unparsed};
 
 /// No scenario is longer (bytes).
-const LONGEST: u64 = 4 << 20;
+pub const LONGEST: u64 = 4 << 20;
 
 /// A scenario that cannot be used. Its text names file, line, key, what was found and what is accepted.
 #[derive(Debug, Error)]
@@ -71,12 +74,18 @@ impl Document {
             return Err(unreadable("not a file".to_owned()));
         }
         if metadata.len() > LONGEST {
-            return Err(unreadable(format!(
-                "a scenario has at most {LONGEST} bytes, this file has {}",
-                metadata.len()
-            )));
+            return Err(unreadable(too_long(metadata.len())));
         }
         let bytes = fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+        Self::read_bytes(path, bytes)
+    }
+
+    /// Takes what was read from somewhere that errors call `path`.
+    pub fn read_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, ScenarioError> {
+        let unreadable = |why: String| ScenarioError::Unreadable { path: path.to_owned(), why };
+        if bytes.len() as u64 > LONGEST {
+            return Err(unreadable(too_long(bytes.len() as u64)));
+        }
         let text = String::from_utf8(bytes).map_err(|error| {
             let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let line = 1 + valid.iter().filter(|byte| **byte == b'\n').count();
@@ -87,12 +96,14 @@ impl Document {
 
     /// Takes a text. `origin` is what errors call it.
     pub fn parse(origin: &str, text: String) -> Result<Self, ScenarioError> {
-        let table = text.parse::<Table>().map_err(|error| unparsed(origin, &text, &error))?;
+        let mut table = text.parse::<Table>().map_err(|error| unparsed(origin, &text, &error))?;
+        key::respell(&mut table);
         Ok(Self { origin: origin.to_owned(), text: Some(text), table, changed: Vec::new() })
     }
 
     /// Takes a table that has no text, such as a Python dictionary.
-    pub fn from_table(origin: &str, table: Table) -> Self {
+    pub fn from_table(origin: &str, mut table: Table) -> Self {
+        key::respell(&mut table);
         Self { origin: origin.to_owned(), text: None, table, changed: Vec::new() }
     }
 
@@ -107,6 +118,11 @@ impl Document {
         let mut tables = tables.split('.').filter(|name| !name.is_empty());
         let within = tables.try_fold(&self.table, |table, name| table.get(name)?.as_table());
         within.is_some_and(|table| table.contains_key(last))
+    }
+
+    /// The text of a key at the top, if it is one.
+    pub fn text_of(&self, key: &str) -> Option<&str> {
+        self.table.get(key).and_then(Value::as_str)
     }
 
     /// An error for a key at the top that is missing.
@@ -133,16 +149,22 @@ impl Document {
 
     /// The document as the type that it describes.
     pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, ScenarioError> {
-        reader::read(&self.table).map_err(|wrong| match &self.text {
-            Some(text) if self.changed.is_empty() => unfit(&self.origin, text, &wrong),
-            _ => {
-                let set = match self.changed.as_slice() {
-                    [] => String::new(),
-                    changed => format!(" (with {} set)", changed.join(", ")),
-                };
-                ScenarioError::Invalid(format!("{}: {}{set}", self.origin, told(&wrong)))
-            }
-        })
+        let wrong = match reader::read(&self.table) {
+            Ok(part) => return Ok(part),
+            Err(wrong) => wrong,
+        };
+        let all = mistakes::all::<T>(&self.table, wrong);
+        let told: Vec<_> = all.iter().map(|wrong| self.unfit(wrong)).collect();
+        Err(ScenarioError::Invalid(told.join("\n")))
+    }
+
+    /// What does not fit, pointed at its place if the text has it.
+    fn unfit(&self, wrong: &Wrong) -> String {
+        match (&self.text, self.changed.as_slice()) {
+            (Some(text), []) => unfit(&self.origin, text, wrong),
+            (_, []) => format!("{}: {}", self.origin, told(wrong)),
+            (_, changed) => format!("{}: {} (with {} set)", self.origin, told(wrong), changed.join(", ")),
+        }
     }
 
     /// An error at the first value of which a part was left unread: what was read of it is in `understood`.
@@ -169,11 +191,15 @@ impl Document {
     }
 }
 
+fn too_long(length: u64) -> String {
+    format!("a scenario has at most {LONGEST} bytes, this file has {length}")
+}
+
 /// Reads a part from a TOML text, as the tests of parts do.
 #[cfg(test)]
 pub fn from_text<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ScenarioError> {
     let table = text.parse().map_err(|error| unparsed("text", text, &error))?;
-    read_value(&Value::Table(table)).map_err(|wrong| unfit("text", text, &wrong))
+    read_value(&Value::Table(table)).map_err(|wrong| ScenarioError::Invalid(unfit("text", text, &wrong)))
 }
 
 /// The first part of a value that is not in what was read of it.

@@ -322,13 +322,16 @@ mod tests {
             told("kind.simple.x = 1"),
             at("kind.simple", Some("x"), "unknown key `x`, there are no keys here")
         );
-        let unknown = "`ful` is not known here, expected `simple` or `full`";
+        let unknown = "`ful` is not known here, expected `simple` or `full`; did you mean `full`?";
         assert_eq!(told("kind.ful = 1"), at("kind", Some("ful"), unknown));
         assert_eq!(told("kind = 'ful'"), at("kind", None, unknown));
         assert_eq!(
             told("kind = 'simple'\nlist = [[1, 2], [1]]"),
             at("list[1]", None, "found an array of length 1, expected an array of length 2")
         );
-        assert_eq!(told("knd = 1"), at("", Some("knd"), "unknown key `knd`, expected `kind` or `list`"));
+        assert_eq!(
+            told("knd = 1"),
+            at("", Some("knd"), "unknown key `knd`, expected `kind` or `list`; did you mean `kind`?")
+        );
     }
 }

@@ -24,7 +24,7 @@ pub fn unparsed(origin: &str, text: &str, error: &toml::de::Error) -> ScenarioEr
 }
 
 /// What does not fit, pointed at its key or value where the text has it.
-pub fn unfit(origin: &str, text: &str, wrong: &Wrong) -> ScenarioError {
+pub fn unfit(origin: &str, text: &str, wrong: &Wrong) -> String {
     let path = wrong.path();
     let table = DeTable::parse(text).ok();
     let span = table.and_then(|table| match wrong.key() {
@@ -35,10 +35,10 @@ pub fn unfit(origin: &str, text: &str, wrong: &Wrong) -> ScenarioError {
     });
     let from = span.as_ref().map_or("", |span| &text[span.start..]);
     let message = bracketed(&path, from, &wrong.to_string()).unwrap_or_else(|| told(wrong));
-    ScenarioError::Invalid(match span {
+    match span {
         Some(span) => point(origin, text, span, &message),
         None => format!("{origin}: {message}"),
-    })
+    }
 }
 
 /// What does not fit, with the path of the part that it is about.

@@ -6,6 +6,7 @@ use serde::de::{Error, Expected, Unexpected};
 use toml::Value;
 
 use super::key::bare_or_quoted;
+use super::nearest::{hint, meant};
 use super::words::shortened;
 
 /// Beginning of the text about several kinds.
@@ -19,11 +20,15 @@ pub struct Wrong {
     /// The key within that value, if the key itself is wrong.
     key: Option<String>,
     why: String,
+    /// What was probably meant.
+    meant: Option<&'static str>,
+    /// The key that is missing.
+    missing: Option<&'static str>,
 }
 
 impl Wrong {
     fn because(why: impl Into<String>) -> Self {
-        Self { steps: Vec::new(), key: None, why: why.into() }
+        Self { steps: Vec::new(), key: None, why: why.into(), meant: None, missing: None }
     }
 
     /// Something else than a kind.
@@ -42,6 +47,13 @@ impl Wrong {
     /// A name where a kind needs a table.
     pub fn only_a_name() -> Self {
         Self::because("found only the name of a kind that needs values of its own: a table")
+    }
+
+    /// A name that is none of those known.
+    fn unknown(name: String, given: &str, known: &'static [&'static str], none: &str) -> Self {
+        let hint = hint(given, known).map_or_else(String::new, |hint| format!("; {hint}"));
+        let why = format!("{name}, {}{hint}", one_of(known, none));
+        Self { meant: meant(given, known), ..Self::because(why) }
     }
 
     /// The same, at the key itself, not at its value.
@@ -71,6 +83,16 @@ impl Wrong {
             path.push_str(step);
         }
         path
+    }
+
+    /// The key that is missing, if that is wrong.
+    pub fn missing(&self) -> Option<&'static str> {
+        self.missing
+    }
+
+    /// The name that was probably meant.
+    pub fn meant(&self) -> Option<&'static str> {
+        self.meant
     }
 
     /// The key in it that is wrong, if it is not the value.
@@ -113,23 +135,20 @@ impl Error for Wrong {
     }
 
     fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
-        Self::because(format!(
-            "`{}` is not known here, {}",
-            shortened(name),
-            one_of(known, "there are no kinds here")
-        ))
+        Self::unknown(
+            format!("`{}` is not known here", shortened(name)),
+            name,
+            known,
+            "there are no kinds here",
+        )
     }
 
     fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
-        Self::because(format!(
-            "unknown key `{}`, {}",
-            shortened(name),
-            one_of(known, "there are no keys here")
-        ))
+        Self::unknown(format!("unknown key `{}`", shortened(name)), name, known, "there are no keys here")
     }
 
     fn missing_field(name: &'static str) -> Self {
-        Self::because(format!("missing key `{name}`"))
+        Self { missing: Some(name), ..Self::because(format!("missing key `{name}`")) }
     }
 
     fn duplicate_field(name: &'static str) -> Self {

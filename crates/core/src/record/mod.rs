@@ -2,6 +2,7 @@
 
 mod bounds;
 mod columns;
+mod descriptor;
 pub mod foxglove;
 mod log;
 mod mcap;

@@ -3,8 +3,10 @@
 //! A schema comes from an untrusted file. Its fields are counted before there are columns, and messages are read
 //! straight into columns, so that nothing takes more memory than what is kept of it.
 
-use prost_reflect::{DescriptorPool, EnumDescriptor, FieldDescriptor, Kind, MessageDescriptor};
+use prost_types::field_descriptor_proto::Type;
+use prost_types::{DescriptorProto, EnumDescriptorProto, FieldDescriptorProto};
 
+use super::descriptor::{Kind, Pool, is_group, is_list};
 use super::table::{Budget, Schema};
 use super::topics::label_of;
 use super::wire::{Raw, Wire};
@@ -54,7 +56,7 @@ enum Scalar {
     /// The numbers of the labels.
     Label(Vec<i32>),
     /// An enumeration with too many labels for a column of them.
-    Word(EnumDescriptor),
+    Word(EnumDescriptorProto),
     Text,
     /// Bytes, of which the number is kept.
     Bytes,
@@ -75,11 +77,12 @@ impl Shape {
             let length = schema.data.len();
             return Err(format!("its schema has {length} bytes, and at most {LONGEST_SCHEMA} are read"));
         }
-        let pool = DescriptorPool::decode(&*schema.data).map_err(|error| format!("its schema: {error}"))?;
-        let message = pool.get_message_by_name(&schema.name);
+        let pool = Pool::decode(&schema.data).map_err(|error| format!("its schema: {error}"))?;
+        let message = pool.message(&schema.name);
         let message = message.ok_or_else(|| format!("no message `{}` in its schema", schema.name))?;
         let mut columns = Columns::default();
-        let shape = Maker::default().add(&mut columns, "", "", &message)?;
+        let maker = &mut Maker { pool: &pool, above: Vec::new(), fields: 0 };
+        let shape = maker.add(&mut columns, "", "", message)?;
         Ok((shape, columns))
     }
 
@@ -151,14 +154,14 @@ pub fn begin(columns: &mut Columns, budget: &mut Budget) -> Result<(), String> {
 }
 
 /// Makes the shape of a schema, within bounds.
-#[derive(Default)]
-struct Maker {
+struct Maker<'a> {
+    pool: &'a Pool,
     /// The messages that the one at work is within.
-    above: Vec<MessageDescriptor>,
+    above: Vec<&'a str>,
     fields: usize,
 }
 
-impl Maker {
+impl<'a> Maker<'a> {
     /// Adds a column for each field; those of a message within the message have its name before theirs: `rotation.x`.
     /// `path` is what errors call the message.
     fn add(
@@ -166,10 +169,10 @@ impl Maker {
         columns: &mut Columns,
         before: &str,
         path: &str,
-        message: &MessageDescriptor,
+        (name, message): (&'a str, &'a DescriptorProto),
     ) -> Result<Shape, String> {
-        if self.above.contains(message) {
-            let (field, name) = (path.trim_end_matches('.'), message.full_name());
+        if self.above.contains(&name) {
+            let field = path.trim_end_matches('.');
             return Err(format!("field `{field}` is a `{name}` within itself, which has no columns"));
         }
         if self.above.len() == DEEPEST {
@@ -178,19 +181,23 @@ impl Maker {
                 path.trim_end_matches('.')
             ));
         }
-        self.above.push(message.clone());
+        self.above.push(name);
         let mut fields = Vec::new();
-        for field in message.fields() {
+        for field in &message.field {
             self.fields += 1;
             if self.fields > MOST_FIELDS {
                 return Err(format!("its schema has more than {MOST_FIELDS} fields"));
             }
             let (name, path) = (format!("{before}{}", field.name()), format!("{path}{}", field.name()));
-            if field.is_group() {
+            if is_group(field) {
                 return Err(format!("field `{path}` is a group, which is not read"));
             }
-            let place = self.place(columns, name, &path, &field)?;
-            fields.push((field.number(), place));
+            let kind = self.pool.kind(self.above.last().unwrap_or(&""), field);
+            let kind = kind.ok_or_else(|| format!("no type `{}` in its schema", field.type_name()))?;
+            let place = self.place(columns, name, &path, (field, kind))?;
+            let number =
+                u32::try_from(field.number()).map_err(|_| format!("field `{path}` has a negative number"))?;
+            fields.push((number, place));
         }
         self.above.pop();
         fields.sort_by_key(|(number, _)| *number);
@@ -202,24 +209,24 @@ impl Maker {
         columns: &mut Columns,
         name: String,
         path: &str,
-        field: &FieldDescriptor,
+        (field, kind): (&FieldDescriptorProto, Kind<'a>),
     ) -> Result<Place, String> {
         let index = columns.columns.len();
-        let (scalar, column) = match field.kind() {
-            Kind::Message(of) if !is_time(&of) => {
+        let (scalar, column) = match kind {
+            Kind::Message(of, message) if !is_time(of) => {
                 let path = format!("{path}.");
-                if !field.is_list() && !field.is_map() {
-                    return Ok(Place::Inner(self.add(columns, &format!("{name}."), &path, &of)?));
+                if !is_list(field) {
+                    return Ok(Place::Inner(self.add(columns, &format!("{name}."), &path, (of, message))?));
                 }
                 let mut inner = Columns::default();
-                let shape = self.add(&mut inner, "", &path, &of)?;
+                let shape = self.add(&mut inner, "", &path, (of, message))?;
                 columns.columns.push((name, Column::Rows(Vec::new(), inner)));
                 return Ok(Place::Rows(index, shape));
             }
             kind => scalar(&kind),
         };
         let name = if matches!(scalar, Scalar::Bytes) { format!("{name}.length") } else { name };
-        if field.is_list() {
+        if is_list(field) {
             let inner = Columns { columns: vec![(String::new(), column)] };
             columns.columns.push((name, Column::Rows(Vec::new(), inner)));
             return Ok(Place::List(index, scalar));
@@ -230,37 +237,40 @@ impl Maker {
 }
 
 /// Whether a field is a date or a span of time.
-fn is_time(of: &MessageDescriptor) -> bool {
-    matches!(of.full_name(), "google.protobuf.Timestamp" | "google.protobuf.Duration")
+fn is_time(name: &str) -> bool {
+    matches!(name, "google.protobuf.Timestamp" | "google.protobuf.Duration")
 }
 
 /// What a field holds, and its empty column.
-fn scalar(kind: &Kind) -> (Scalar, Column) {
+fn scalar(kind: &Kind<'_>) -> (Scalar, Column) {
     let (numbers, counts) = (Column::Numbers(Vec::new()), Column::Counts(Vec::new()));
     let integers = Column::Integers(Vec::new());
     match kind {
-        Kind::Double => (Scalar::Double, numbers),
-        Kind::Float => (Scalar::Float, numbers),
-        Kind::Int32 => (Scalar::Int32, integers),
-        Kind::Int64 => (Scalar::Int64, integers),
-        Kind::Sint32 | Kind::Sint64 => (Scalar::Zigzag, integers),
-        Kind::Sfixed32 => (Scalar::SignedFixed32, integers),
-        Kind::Sfixed64 => (Scalar::SignedFixed64, integers),
-        Kind::Uint32 | Kind::Uint64 => (Scalar::Unsigned, counts),
-        Kind::Fixed32 => (Scalar::Fixed32, counts),
-        Kind::Fixed64 => (Scalar::Fixed64, counts),
-        Kind::Bool => (Scalar::Bool, counts),
-        Kind::String => (Scalar::Text, Column::Texts(Vec::new())),
-        Kind::Bytes => (Scalar::Bytes, counts),
-        Kind::Message(_) => (Scalar::Time, numbers),
-        Kind::Enum(of) if of.values().len() > MOST_LABELS => {
-            (Scalar::Word(of.clone()), Column::Texts(Vec::new()))
+        Kind::Message(..) => (Scalar::Time, numbers),
+        Kind::Enum(of) if of.value.len() > MOST_LABELS => {
+            (Scalar::Word((*of).clone()), Column::Texts(Vec::new()))
         }
         Kind::Enum(of) => {
-            let labels = of.values().map(|value| label_of(value.name())).collect();
-            let known = of.values().map(|value| value.number()).collect();
+            let labels = of.value.iter().map(|value| label_of(value.name())).collect();
+            let known = of.value.iter().map(|value| value.number()).collect();
             (Scalar::Label(known), Column::Labels(Vec::new(), labels))
         }
+        Kind::Scalar(of) => match of {
+            Type::Double => (Scalar::Double, numbers),
+            Type::Float => (Scalar::Float, numbers),
+            Type::Int32 => (Scalar::Int32, integers),
+            Type::Int64 => (Scalar::Int64, integers),
+            Type::Sint32 | Type::Sint64 => (Scalar::Zigzag, integers),
+            Type::Sfixed32 => (Scalar::SignedFixed32, integers),
+            Type::Sfixed64 => (Scalar::SignedFixed64, integers),
+            Type::Uint32 | Type::Uint64 => (Scalar::Unsigned, counts),
+            Type::Fixed32 => (Scalar::Fixed32, counts),
+            Type::Fixed64 => (Scalar::Fixed64, counts),
+            Type::Bool => (Scalar::Bool, counts),
+            Type::String => (Scalar::Text, Column::Texts(Vec::new())),
+            // Of the others, which are named types, none comes here.
+            Type::Bytes | Type::Message | Type::Group | Type::Enum => (Scalar::Bytes, counts),
+        },
     }
 }
 
@@ -306,8 +316,8 @@ impl Scalar {
                 put(values, index as u8)
             }
             (Column::Texts(values), Self::Word(of), Raw::Varint(n)) => {
-                let word =
-                    of.get_value(n as i32).map_or_else(|| n.to_string(), |value| value.name().to_owned());
+                let value = of.value.iter().find(|value| value.number() == n as i32);
+                let word = value.map_or_else(|| n.to_string(), |value| value.name().to_owned());
                 budget.spend(word.len())?;
                 put(values, word)
             }

@@ -56,6 +56,7 @@ impl Gradient {
             rigid: rigid.to_vec(),
             period,
             motion: rest(),
+            frequencies: parameters[..modes].iter().map(|parameter| libm::exp(parameter.value)).collect(),
             parameters,
             residual: Residual::default(),
         }
@@ -74,6 +75,8 @@ pub struct GradientObserver {
     rigid: Vec<f64>,
     period: f64,
     motion: Motion,
+    /// w of each mode (rad/s).
+    frequencies: Vec<f64>,
     /// ln w of each mode, then the influences of each input on the first mode, on the second, ...
     parameters: Vec<Parameter>,
     residual: Residual,
@@ -87,7 +90,7 @@ impl GradientObserver {
     }
 
     fn oscillator(&self, mode: usize) -> Oscillator {
-        Oscillator { frequency: libm::exp(self.parameters[mode].value), damping: self.damping }
+        Oscillator { frequency: self.frequencies[mode], damping: self.damping }
     }
 
     /// The index of the first influence on a mode.
@@ -157,6 +160,9 @@ impl Observer for GradientObserver {
             }
             parameter.slope.correct(self.gains, -sensitivity);
         }
+        for (frequency, parameter) in self.frequencies.iter_mut().zip(&self.parameters) {
+            *frequency = libm::exp(parameter.value);
+        }
         self.motion.correct(self.gains, innovation);
         self.stay_finite();
         self.residual.take(Some(innovation), self.motion.elastic());
@@ -195,7 +201,7 @@ impl Observer for GradientObserver {
             let influences = &self.parameters[first..first + self.rigid.len()];
             Estimate {
                 phase: *phase,
-                frequency: libm::exp(self.parameters[mode].value),
+                frequency: self.frequencies[mode],
                 influence: influences.iter().map(|parameter| parameter.value).collect(),
             }
         };

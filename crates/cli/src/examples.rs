@@ -1,0 +1,169 @@
+//! `flexsc examples` and `flexsc new`: the shipped scenarios, which the command has inside, listed and copied.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flexsc_core::Document;
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::{files, print, say};
+
+/// Lists scenarios by their names.
+macro_rules! shipped {
+    ($($name:literal),+ $(,)?) => {
+        &[$(($name, include_str!(concat!("../../../scenarios/", $name, ".toml")))),+]
+    };
+}
+
+/// Name and text of each.
+pub const EXAMPLES: &[(&str, &str)] = shipped![
+    "attitude-hold",
+    "detumble-and-point",
+    "earth-observer",
+    "four-clamped-modes",
+    "half-turn",
+    "iss-delay-limit",
+    "iss-identification",
+    "iss-manoeuvre",
+    "iss-manoeuvre-off",
+    "iss-mismatch",
+    "iss-ringdown",
+    "iss-ringdown-off",
+    "magnetic-unloading",
+    "momentum-unloading",
+    "relay-adaptive",
+    "relay-fixed",
+    "relay-no-freeze",
+    "relay-one-sided",
+    "relay-quiet",
+    "relay-sampled",
+    "relay-wheel",
+    "rotation-cosine",
+    "rotation-kinematic",
+    "rotation-nonlinear",
+    "rotation-robust",
+    "rotation-sine",
+    "rotation-spin-up",
+    "rotation-thrusters",
+    "slew-wheel-lqg",
+    "station-keeping",
+    "thruster-phase-plane",
+    "wheel-ekf",
+    "wheel-fast-mode",
+    "wheel-fixed-gain",
+    "wheel-friction",
+    "wheel-robust-gain",
+    "wheel-run-up",
+    "wheel-scheduled-gain",
+    "wheel-slow-mode",
+    "wheel-unstable-band",
+];
+
+/// What a new scenario is a copy of, if nothing else is said.
+const START: &str = "attitude-hold";
+
+/// Copies of examples.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Examples to copy; without a name, all are listed
+    #[arg(value_name = "NAME")]
+    names: Vec<String>,
+    /// Directory for the copies
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    output: PathBuf,
+    /// Replace files that are there
+    #[arg(long)]
+    force: bool,
+    /// Print the list as JSON on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// A new scenario.
+#[derive(clap::Args)]
+pub struct NewArgs {
+    /// Name of the scenario, or path of its file
+    name: PathBuf,
+    /// The example to begin with
+    #[arg(long, value_name = "EXAMPLE", default_value = START)]
+    like: String,
+    /// Replace a file that is there
+    #[arg(long)]
+    force: bool,
+}
+
+/// The text of an example.
+pub fn text(name: &str) -> Result<&'static str, Failure> {
+    let stem = name.strip_suffix(".toml").unwrap_or(name);
+    let stem = stem.strip_prefix("scenarios/").unwrap_or(stem);
+    let example = EXAMPLES.iter().find(|(example, _)| *example == stem);
+    example.map(|(_, text)| *text).ok_or_else(|| {
+        let names: Vec<&str> = EXAMPLES.iter().map(|(name, _)| *name).collect();
+        let hint = flexsc_core::nearest(name, &names).map_or_else(
+            || "`flexsc examples` lists them".to_owned(),
+            |nearest| format!("did you mean `{nearest}`?"),
+        );
+        Failure::Arguments(format!("there is no example `{name}`\n\nhint: {hint}"))
+    })
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if args.names.is_empty() {
+        return list(args.json);
+    }
+    let copies = args.names.iter().map(|name| {
+        let stem = name.strip_suffix(".toml").unwrap_or(name);
+        Ok((args.output.join(format!("{stem}.toml")), text(name)?.as_bytes().to_vec()))
+    });
+    let copies = copies.collect::<Result<Vec<_>, Failure>>()?;
+    for (path, _) in &copies {
+        refuse_existing(path, args.force)?;
+    }
+    files::make_directory(&args.output)?;
+    files::write_all(&copies)?;
+    for (path, _) in &copies {
+        say!("{}", path.display());
+    }
+    Ok(())
+}
+
+pub fn new(args: &NewArgs) -> Result<(), Failure> {
+    let text = text(&args.like)?;
+    let path = match args.name.extension() {
+        Some(extension) if extension == "toml" => args.name.clone(),
+        _ => {
+            let mut name = args.name.clone().into_os_string();
+            name.push(".toml");
+            PathBuf::from(name)
+        }
+    };
+    refuse_existing(&path, args.force)?;
+    files::write(&path, text.as_bytes())?;
+    say!("{}: like {}; now: flexsc simulate {}", path.display(), args.like, path.display());
+    Ok(())
+}
+
+fn refuse_existing(path: &Path, force: bool) -> Result<(), Failure> {
+    if force || !path.exists() {
+        return Ok(());
+    }
+    Err(Failure::Arguments(format!("{}: is there already\n\nhint: --force replaces it", path.display())))
+}
+
+/// Prints each name with what the example is about.
+fn list(as_json: bool) -> Result<(), Failure> {
+    let mut lines = String::new();
+    let widest = EXAMPLES.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let mut objects = Vec::new();
+    for (name, text) in EXAMPLES {
+        let document = Document::parse(name, (*text).to_owned())?;
+        let about = document.text_of("about").unwrap_or_default();
+        objects.push(json!({ "name": name, "about": about }));
+        lines += &format!("{name:widest$}  {about}\n");
+    }
+    if as_json {
+        return print(format!("{}\n", json!(objects)).as_bytes());
+    }
+    print(lines.as_bytes())
+}

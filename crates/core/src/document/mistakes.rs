@@ -1,0 +1,114 @@
+//! All that does not fit in a document, not only the first: what is wrong is replaced by what would fit, and the rest is read.
+
+use serde::de::DeserializeOwned;
+use toml::{Table, Value};
+
+use super::key::{get, set};
+use super::reader::read;
+use super::wrong::Wrong;
+
+/// No more are told at once.
+const MOST: usize = 20;
+/// A number that most keys accept.
+const FITS: f64 = 0.5;
+
+/// What is wrong with a table that is to be read as a part: the first mistake, which is known, and the others.
+pub fn all<T: DeserializeOwned>(table: &Table, first: Wrong) -> Vec<Wrong> {
+    let (mut table, mut found) = (table.clone(), Vec::new());
+    let mut replaced: Vec<String> = Vec::new();
+    let mut next = Some(first);
+    while let Some(wrong) = next.take() {
+        // What was put in the place of another mistake does not fit either: nobody wrote that.
+        let own = replaced.iter().any(|place| wrong.path().starts_with(place));
+        if own || found.len() == MOST {
+            break;
+        }
+        let place = replace(&mut table, &wrong);
+        found.push(wrong);
+        let Some(place) = place else { break };
+        replaced.push(place);
+        next = read::<T>(&table).err();
+    }
+    found
+}
+
+/// Puts something that may fit in the place of what is wrong, and tells its path.
+fn replace(table: &mut Table, wrong: &Wrong) -> Option<String> {
+    let path = wrong.path();
+    let within = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+    if let Some(key) = wrong.key() {
+        let mut inner = if path.is_empty() { table.clone() } else { get(table, &path)?.as_table()?.clone() };
+        let value = inner.remove(key)?;
+        match wrong.meant() {
+            Some(meant) if !inner.contains_key(meant) => {
+                inner.insert(meant.to_owned(), value);
+            }
+            // A kind without its name is none.
+            _ if inner.is_empty() => return None,
+            _ => {}
+        }
+        if path.is_empty() {
+            *table = inner;
+        } else {
+            set(table, &path, Value::Table(inner)).ok()?;
+        }
+        // What was under the key is still to be judged.
+        return Some(within("\n"));
+    }
+    let (place, value) = match (wrong.missing(), wrong.meant()) {
+        (Some(key), _) => (within(key), Value::Float(FITS)),
+        (None, Some(meant)) => (path, Value::String(meant.to_owned())),
+        (None, None) if path.is_empty() => return None,
+        (None, None) => (path, fitting(&wrong.to_string())?),
+    };
+    set(table, &place, value).ok()?;
+    Some(place)
+}
+
+/// A value of the type that a message asks for.
+fn fitting(why: &str) -> Option<Value> {
+    let expected = why.rsplit_once("expected ").map_or(why, |(_, expected)| expected);
+    let value = match expected {
+        "true or false" => Value::Boolean(true),
+        "a string" => Value::String("x".to_owned()),
+        _ if expected.starts_with("a whole number") => Value::Integer(1),
+        "a number" => Value::Float(FITS),
+        _ if expected.starts_with("must be") => Value::Float(FITS),
+        _ => return None,
+    };
+    Some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Law;
+
+    #[test]
+    fn all_mistakes_are_found_and_nothing_else() {
+        #[derive(serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[allow(dead_code)]
+        struct Whole {
+            duration: f64,
+            law: Law,
+        }
+        let text =
+            "durations = 'long'\nwings = 2\nlaw.rely = { deadzone = true, hysteresis = 1e-4, strong = -1 }";
+        let table = text.parse().expect("TOML");
+        let first = read::<Whole>(&table).map(|_| ()).expect_err("wrong");
+        let told: Vec<_> =
+            all::<Whole>(&table, first).iter().map(|wrong| format!("{}: {wrong}", wrong.path())).collect();
+        let holds = |path: &str, words: &str| told.iter().any(|t| t.starts_with(path) && t.contains(words));
+        assert!(holds(": ", "did you mean `duration`"), "{told:#?}");
+        assert!(holds("duration: ", "found string \"long\""), "{told:#?}");
+        assert!(holds(": ", "unknown key `wings`"), "{told:#?}");
+        assert!(holds("law: ", "did you mean `relay`"), "{told:#?}");
+        assert!(holds("law.relay: ", "did you mean `dead_zone`"), "{told:#?}");
+        assert!(holds("law.relay.dead_zone: ", "found boolean"), "{told:#?}");
+        assert!(holds("law.relay: ", "missing key `weak`"), "{told:#?}");
+        assert!(holds("law.relay: ", "missing key `k_t`"), "{told:#?}");
+        assert!(holds("law.relay.strong: ", "must be"), "{told:#?}");
+        assert_eq!(told.len(), 9, "{told:#?}");
+    }
+}

@@ -1,0 +1,145 @@
+//! Which of the names that are known a wrong one was probably meant to be, and the other spelling of English.
+
+use strsim::damerau_levenshtein;
+
+/// What others call what is called by one of the names on the right here; without underscores.
+const ALIASES: &[(&str, &[&str])] = &[
+    ("arw", &["angle_random_walk"]),
+    ("antiwindup", &["limit"]),
+    ("bangbang", &["relay", "bang_bang"]),
+    ("biasinstability", &["rate_random_walk"]),
+    ("cg", &["centre"]),
+    ("centerofmass", &["centre"]),
+    ("centreofmass", &["centre"]),
+    ("com", &["centre"]),
+    ("controller", &["law"]),
+    ("control", &["law"]),
+    ("controllaw", &["law"]),
+    ("deadband", &["dead_zone"]),
+    ("dampingratio", &["damping"]),
+    ("dt", &["period"]),
+    ("ekf", &["extended_kalman"]),
+    ("filter", &["estimator", "filters", "kalman"]),
+    ("flywheel", &["wheel"]),
+    ("freq", &["frequency"]),
+    ("hinfinity", &["state_space"]),
+    ("imu", &["gyro"]),
+    ("kd", &["k_d", "damping"]),
+    ("kf", &["kalman"]),
+    ("kp", &["k_p", "bandwidth"]),
+    ("lqg", &["state_space"]),
+    ("lqr", &["state_space"]),
+    ("mekf", &["attitude"]),
+    ("mtq", &["magnetorquers"]),
+    ("naturalfrequency", &["frequency"]),
+    ("observer", &["estimator"]),
+    ("omega", &["frequency", "rate"]),
+    ("pid", &["attitude", "pd"]),
+    ("quaternion", &["attitude"]),
+    ("rategyro", &["gyro"]),
+    ("reactionwheel", &["wheels", "wheel"]),
+    ("reactionwheels", &["wheels"]),
+    ("rrw", &["rate_random_walk"]),
+    ("rw", &["wheels"]),
+    ("samplerate", &["period"]),
+    ("sampletime", &["period"]),
+    ("sigma", &["sd", "noise"]),
+    ("ss", &["state_space"]),
+    ("starsensor", &["star_tracker"]),
+    ("std", &["sd"]),
+    ("stoptime", &["duration"]),
+    ("tend", &["duration"]),
+    ("thruster", &["thrusters", "jets"]),
+    ("time", &["duration"]),
+    ("tfinal", &["duration"]),
+    ("torquerods", &["magnetorquers"]),
+    ("tracker", &["star_tracker"]),
+    ("ts", &["period"]),
+    ("ukf", &["unscented_kalman"]),
+    ("w", &["frequency"]),
+    ("zeta", &["damping"]),
+];
+
+/// What there is not, and what there is instead.
+const ABSENT: &[(&str, &str)] = &[
+    ("cmg", "there are no control moment gyros; `wheels` is the nearest"),
+    ("cmgs", "there are no control moment gyros; `wheels` is the nearest"),
+    ("controlmomentgyros", "there are no control moment gyros; `wheels` is the nearest"),
+    ("mpc", "there is no predictive control; a linear one goes into `state_space`"),
+    ("slidingmode", "there is no sliding mode; `relay` and `phase_plane` switch"),
+    ("lidar", "there is no lidar"),
+    ("gps", "there is no GPS: the orbit is given"),
+    ("gnss", "there is no GNSS: the orbit is given"),
+    ("slosh", "a pendulum or a sprung mass is an `[[appendage]]` with a mode of its own"),
+];
+
+/// Keys that Americans spell otherwise.
+const SPELLINGS: &[(&str, &str)] = &[("maneuver", "manoeuvre"), ("center", "centre")];
+
+/// A hint for a name that is not among those that are known, if there is one.
+pub fn hint(name: &str, known: &[&str]) -> Option<String> {
+    let given = plain(name);
+    if let Some(nearest) = nearest(&given, known) {
+        return Some(format!("did you mean `{nearest}`?"));
+    }
+    ABSENT.iter().find(|(absent, _)| *absent == given).map(|(_, instead)| (*instead).to_owned())
+}
+
+/// The known name that a wrong one was probably meant to be.
+pub fn meant<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    nearest(&plain(name), known)
+}
+
+fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+    if given.is_empty() {
+        return None;
+    }
+    let aliases = ALIASES.iter().find(|(alias, _)| *alias == given).map_or(&[][..], |(_, names)| names);
+    if let Some(name) = aliases.iter().find_map(|name| known.iter().find(|known| *known == name)) {
+        return Some(name);
+    }
+    // A third of the letters may be wrong; the first of the nearest counts.
+    let most = given.chars().count().div_ceil(3);
+    let distance = |name: &&&str| damerau_levenshtein(given, &plain(name));
+    let near = known.iter().min_by_key(distance).filter(|name| distance(name) <= most && given.len() > 1);
+    let begins = |name: &&&str| {
+        given.len() >= 3 && (plain(name).starts_with(given) || given.starts_with(&plain(name)))
+    };
+    near.or_else(|| known.iter().find(begins)).copied()
+}
+
+/// A name without what is often written otherwise.
+fn plain(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+}
+
+/// A key as it is spelt here.
+pub fn spelt(key: &str) -> &str {
+    SPELLINGS.iter().find(|(american, _)| *american == key).map_or(key, |(_, british)| british)
+}
+
+/// A key as Americans spell it, if they spell it otherwise.
+pub fn american(key: &str) -> Option<&'static str> {
+    SPELLINGS.iter().find(|(_, british)| *british == key).map(|(american, _)| *american)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn typos_other_names_and_what_there_is_not() {
+        let laws = ["relay", "pd", "attitude", "state_space", "open", "phase_plane"];
+        assert_eq!(meant("rely", &laws), Some("relay"));
+        assert_eq!(meant("PhasePlane", &laws), Some("phase_plane"));
+        assert_eq!(meant("lqg", &laws), Some("state_space"));
+        assert_eq!(meant("zzz", &laws), None);
+        assert_eq!(meant("kt", &["dead_zone", "k_t"]), Some("k_t"));
+        assert_eq!(meant("deadzone", &["dead_zone", "k_t"]), Some("dead_zone"));
+        assert_eq!(meant("traker", &["gyro", "star_tracker"]), None);
+        assert_eq!(hint("mpc", &laws).as_deref(), Some(ABSENT[3].1));
+        for (alias, _) in ALIASES {
+            assert_eq!(plain(alias), *alias);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The messages and enumerations of a protobuf schema, by their full names.
+
+use std::collections::BTreeMap;
+
+use prost::Message;
+use prost_types::field_descriptor_proto::{Label, Type};
+use prost_types::{DescriptorProto, EnumDescriptorProto, FieldDescriptorProto, FileDescriptorSet};
+
+/// What a schema describes.
+#[derive(Default)]
+pub struct Pool {
+    messages: BTreeMap<String, DescriptorProto>,
+    enums: BTreeMap<String, EnumDescriptorProto>,
+}
+
+/// What a field holds.
+pub enum Kind<'a> {
+    /// A number, a text or bytes.
+    Scalar(Type),
+    /// A message of this full name.
+    Message(&'a str, &'a DescriptorProto),
+    /// One of several labels.
+    Enum(&'a EnumDescriptorProto),
+}
+
+impl Pool {
+    /// Reads a serialised set of file descriptors.
+    pub fn decode(data: &[u8]) -> Result<Self, String> {
+        let files = FileDescriptorSet::decode(data).map_err(|error| error.to_string())?;
+        let mut pool = Self::default();
+        for file in files.file {
+            let package = file.package.unwrap_or_default();
+            pool.add_enums(&package, file.enum_type);
+            pool.add(&package, file.message_type);
+        }
+        Ok(pool)
+    }
+
+    fn add(&mut self, scope: &str, messages: Vec<DescriptorProto>) {
+        for mut message in messages {
+            let name = within(scope, message.name());
+            self.add_enums(&name, std::mem::take(&mut message.enum_type));
+            self.add(&name, std::mem::take(&mut message.nested_type));
+            self.messages.insert(name, message);
+        }
+    }
+
+    fn add_enums(&mut self, scope: &str, enums: Vec<EnumDescriptorProto>) {
+        self.enums.extend(enums.into_iter().map(|of| (within(scope, of.name()), of)));
+    }
+
+    /// The message of a full name.
+    pub fn message(&self, name: &str) -> Option<(&str, &DescriptorProto)> {
+        self.messages.get_key_value(name).map(|(name, message)| (name.as_str(), message))
+    }
+
+    /// What a field of a message holds; nothing if its type is not in the schema.
+    pub fn kind(&self, message: &str, field: &FieldDescriptorProto) -> Option<Kind<'_>> {
+        match field.r#type.and_then(|kind| Type::try_from(kind).ok()) {
+            None | Some(Type::Message | Type::Group | Type::Enum) => self.named(message, field.type_name()),
+            Some(kind) => Some(Kind::Scalar(kind)),
+        }
+    }
+
+    /// The type of a name: a full one begins with a dot, others are looked for from within to without.
+    fn named(&self, scope: &str, name: &str) -> Option<Kind<'_>> {
+        let full = |name: &str| {
+            let message = self.message(name).map(|(name, message)| Kind::Message(name, message));
+            message.or_else(|| self.enums.get(name).map(Kind::Enum))
+        };
+        if let Some(name) = name.strip_prefix('.') {
+            return full(name);
+        }
+        let mut scope = Some(scope);
+        while let Some(around) = scope {
+            if let Some(kind) = full(&within(around, name)) {
+                return Some(kind);
+            }
+            scope = around.rsplit_once('.').map(|(outer, _)| outer).or((!around.is_empty()).then_some(""));
+        }
+        None
+    }
+}
+
+/// Whether a field has several values; the entries of a map are such too.
+pub fn is_list(field: &FieldDescriptorProto) -> bool {
+    field.label() == Label::Repeated
+}
+
+/// Whether a field is a group.
+pub fn is_group(field: &FieldDescriptorProto) -> bool {
+    field.r#type == Some(Type::Group as i32)
+}
+
+fn within(scope: &str, name: &str) -> String {
+    if scope.is_empty() { name.to_owned() } else { format!("{scope}.{name}") }
+}
