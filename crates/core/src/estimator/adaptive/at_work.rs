@@ -45,7 +45,7 @@ impl estimator::Estimate for Observers {
                 channel.update(rate);
                 belief.angle = angle;
             }
-            self.modes[axis] = channel.modes();
+            channel.put_modes(&mut self.modes[axis]);
             belief.rate = channel.rate();
             let rates = channel.predict(taken.ahead, &waiting).into_iter();
             let mode = |(rate, mode): (f64, &Estimate)| ElasticRate {

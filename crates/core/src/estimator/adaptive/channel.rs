@@ -83,9 +83,9 @@ impl Channel {
         self.observer.seen().rate()
     }
 
-    /// The modes.
-    pub fn modes(&self) -> Vec<Estimate> {
-        self.observer.seen().modes()
+    /// Writes down the modes, in the place of those of the sample before.
+    pub fn put_modes(&self, modes: &mut Vec<Estimate>) {
+        self.observer.seen().put_modes(modes);
     }
 
     /// The influence of the axis' own jets on a mode.

@@ -31,7 +31,7 @@ pub use residual::Residual;
 pub use tracker::{Merged, Tracker, bounds, merged};
 
 /// An observer's estimate of a mode.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Elastic rate g of the mode in the channel, and s, a quarter of a period behind it (rad/s).
     pub phase: Phase,
@@ -93,8 +93,15 @@ pub trait Observer {
     /// Rigid rate (rad/s).
     fn rate(&self) -> f64;
 
+    /// Writes down the modes, in the place of those of the sample before.
+    fn put_modes(&self, modes: &mut Vec<Estimate>);
+
     /// The modes.
-    fn modes(&self) -> Vec<Estimate>;
+    fn modes(&self) -> Vec<Estimate> {
+        let mut modes = Vec::new();
+        self.put_modes(&mut modes);
+        modes
+    }
 
     /// How well it follows.
     fn residual(&self) -> Residual;

@@ -163,8 +163,8 @@ impl Observer for GradientObserver {
         for (frequency, parameter) in self.frequencies.iter_mut().zip(&self.parameters) {
             *frequency = libm::exp(parameter.value);
         }
+        // With an innovation within bounds nothing leaves them at once: whether it does is asked after the cycle.
         self.motion.correct(self.gains, innovation);
-        self.stay_finite();
         self.residual.take(Some(innovation), self.motion.elastic());
     }
 
@@ -195,17 +195,15 @@ impl Observer for GradientObserver {
         self.motion.rate
     }
 
-    fn modes(&self) -> Vec<Estimate> {
-        let of_mode = |(mode, phase): (usize, &Phase)| {
-            let first = self.influences(mode);
+    fn put_modes(&self, modes: &mut Vec<Estimate>) {
+        modes.resize_with(self.motion.phases.len(), Estimate::default);
+        for (index, (mode, phase)) in modes.iter_mut().zip(&self.motion.phases).enumerate() {
+            let first = self.influences(index);
             let influences = &self.parameters[first..first + self.rigid.len()];
-            Estimate {
-                phase: *phase,
-                frequency: self.frequencies[mode],
-                influence: influences.iter().map(|parameter| parameter.value).collect(),
-            }
-        };
-        self.motion.phases.iter().enumerate().map(of_mode).collect()
+            (mode.phase, mode.frequency) = (*phase, self.frequencies[index]);
+            mode.influence.clear();
+            mode.influence.extend(influences.iter().map(|parameter| parameter.value));
+        }
     }
 
     fn residual(&self) -> Residual {

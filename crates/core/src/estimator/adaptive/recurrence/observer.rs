@@ -176,12 +176,13 @@ impl Observer for RecurrenceObserver {
         self.motion.rate
     }
 
-    fn modes(&self) -> Vec<Estimate> {
-        vec![Estimate {
+    fn put_modes(&self, modes: &mut Vec<Estimate>) {
+        modes.clear();
+        modes.push(Estimate {
             phase: self.phase(),
             frequency: self.oscillator().frequency,
             influence: vec![self.influence],
-        }]
+        });
     }
 
     fn residual(&self) -> Residual {
