@@ -256,3 +256,19 @@ def test_rigid_cycles(fixed: Scenario) -> None:
     assert told["cycles"][0]["sides"] == "two"
     assert told["cycles"][0]["period_s"] == pytest.approx(44.14235464, rel=1e-9)
     assert any(abs(r["k_t"] - 0.297777) < 1e-6 and r["harmonic"] == 3 for r in told["resonances"])
+
+
+def test_examples_are_shipped_inside() -> None:
+    assert set(flexsc.examples()) == set(ALL)
+    assert Scenario.example("relay-fixed") == shipped("relay-fixed")
+    assert flexsc.examples()["relay-fixed"] == shipped("relay-fixed").to_dict()["about"]
+    with pytest.raises(KeyError):
+        Scenario.example("relay-fixd")
+
+
+def test_all_mistakes_come_at_once() -> None:
+    text = shipped("relay-fixed").to_toml().replace("k_t =", "kt =").replace("duration =", "durations =")
+    with pytest.raises(ScenarioError) as told:
+        Scenario.parse(text)
+    assert "did you mean `k_t`?" in str(told.value)
+    assert "did you mean `duration`?" in str(told.value)

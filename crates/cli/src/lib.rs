@@ -45,6 +45,7 @@ use std::io::Write;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+pub use examples::EXAMPLES;
 use failure::Failure;
 
 /// Attitude control of flexible spacecraft, simulated exactly, fast and reproducibly.

@@ -51,8 +51,8 @@ mod _native {
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
     #[pymodule_export]
     use super::{
-        Log, Scenario, campaign, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,
-        schema_json, simulate, to_mcap, write,
+        Log, Scenario, campaign, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json,
+        rivals_json, schema_json, simulate, to_mcap, write,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -118,8 +118,7 @@ impl Scenario {
     #[staticmethod]
     fn from_values(text: &str, name: &str) -> PyResult<Self> {
         let document = Document::parse(name, text.to_owned()).map_err(scenario_error)?;
-        let table = document.read().map_err(scenario_error)?;
-        Self::read(&Document::from_table(name, table))
+        Self::read(&Document::from_table(name, document.table().clone()))
     }
 
     fn with_keys(&self, keys: Vec<(String, String)>) -> PyResult<Self> {
@@ -355,6 +354,12 @@ impl Log {
 #[pyfunction]
 fn write(path: PathBuf, text: &str) -> PyResult<()> {
     whole::write(&path, text.as_bytes()).map_err(no_file(&path))
+}
+
+/// Names and texts of the shipped scenarios.
+#[pyfunction]
+fn examples() -> Vec<(&'static str, &'static str)> {
+    flexsc_cli::EXAMPLES.to_vec()
 }
 
 #[pyfunction]

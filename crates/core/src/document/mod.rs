@@ -112,6 +112,11 @@ impl Document {
         &self.origin
     }
 
+    /// All its keys.
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
     /// Whether it has a key, such as `log.period`.
     pub fn has(&self, key: &str) -> bool {
         let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));

@@ -48,6 +48,7 @@ __all__ = [
     "Table",
     "__version__",
     "campaign",
+    "examples",
     "from_csv",
     "from_nastran",
     "from_state_space",
@@ -86,6 +87,15 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         LogError: The file cannot be read, or is torn or damaged.
     """
     return Log(engine.Log.open(path))
+
+
+def examples() -> dict[str, str]:
+    """The shipped scenarios: for each name what it is about. `Scenario.example(name)` reads one.
+
+    >>> "relay-fixed" in flexsc.examples()
+    True
+    """
+    return {name: str(Scenario.parse(text, name).to_dict()["about"]) for name, text in engine.examples()}
 
 
 def schema() -> dict[str, Any]:

@@ -64,6 +64,18 @@ class Scenario:
         """
         return cls._of(engine.Scenario.parse(text, name))
 
+    @classmethod
+    def example(cls, name: str) -> Scenario:
+        """Read a shipped scenario by its name, one of `flexsc.examples()`.
+
+        >>> flexsc.Scenario.example("relay-fixed").duration
+        20000.0
+
+        Raises:
+            KeyError: There is none of this name.
+        """
+        return cls.parse(dict(engine.examples())[name], name)
+
     @property
     def name(self) -> str:
         """Name of the study."""

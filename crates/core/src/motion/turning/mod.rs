@@ -16,6 +16,7 @@ mod bearing;
 #[cfg(test)]
 mod borne_tests;
 mod bounds;
+mod feel;
 mod flow;
 mod heated;
 mod model;

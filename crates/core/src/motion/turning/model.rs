@@ -96,10 +96,11 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    /// 1/2 w' J1 w, the force of the centrifugal acceleration (N/sqrt(kg)).
-    pub fn centrifugal(&self, rate: &Vector) -> f64 {
-        let ([xx, yy, zz, yz, zx, xy], [x, y, z]) = (self.moments, [rate.x, rate.y, rate.z]);
-        0.5 * (xx * x * x + yy * y * y + zz * z * z) + yz * y * z + zx * z * x + xy * x * y
+    /// The force of accelerations that grow outward, as [`outward`] gives them (N/sqrt(kg)).
+    pub fn moved(&self, outward: &[f64; 6]) -> f64 {
+        let [xx, yy, zz, yz, zx, xy] = self.moments;
+        let [a, b, c, d, e, f] = outward;
+        (xx * a + yy * b + zz * c) + (yz * d + zx * e + xy * f)
     }
 
     /// The force of a tide (N/sqrt(kg)).
@@ -108,6 +109,12 @@ impl Constants {
         let across = yz * tide.m23 + zx * tide.m31 + xy * tide.m12;
         xx * tide.m11 + yy * tide.m22 + zz * tide.m33 + 2.0 * across
     }
+}
+
+/// What a rate's centrifugal acceleration does by each number of a mode's moments: 1/2 w' J1 w is their product (rad²/s²).
+pub(super) fn outward(rate: &Vector) -> [f64; 6] {
+    let [x, y, z] = [rate.x, rate.y, rate.z];
+    [0.5 * x * x, 0.5 * y * y, 0.5 * z * z, y * z, z * x, x * y]
 }
 
 /// Rotations and moments below this part of what a mode can have are rounding.

@@ -6,7 +6,7 @@
 
 use super::bearing::{Borne, Slip, Spin};
 use super::flow::Turning;
-use super::model::{Surroundings, tensor};
+use super::model::{Surroundings, outward, tensor};
 use super::state::Seen;
 use crate::attitude::Vector;
 use nalgebra::Matrix3;
@@ -61,7 +61,7 @@ impl Turning {
         let mut pushed = Vector::zeros();
         for (index, mode) in model.modes.iter().enumerate() {
             let (q, rate) = (seen.displacements[index], seen.rates[index]);
-            let mut force = mode.centrifugal(&seen.rate) + borne.force(index, &spun.waves);
+            let mut force = mode.moved(&outward(&seen.rate)) + borne.force(index, &spun.waves);
             force += self.acting.forces.get(index).copied().unwrap_or(0.0);
             if let Some(tide) = &tide {
                 force += mode.pulled(tide);

@@ -51,14 +51,14 @@ pub(super) struct Work {
 }
 
 #[derive(Clone, Debug, Default)]
-struct Memory {
+pub(super) struct Memory {
     /// q and P/W at the nodes and the end, but for g and s.
-    known: [[f64; 2]; 4],
+    pub known: [[f64; 2]; 4],
     /// phi' Gt, and the varying force s, at the nodes.
-    g: [f64; 3],
-    s: [f64; 3],
+    pub g: [f64; 3],
+    pub s: [f64; 3],
     /// P of the stage at hand, then q'.
-    rate: f64,
+    pub rate: f64,
 }
 
 /// How the modes are at an instant: sum phi q, sum phi P, and the change of the inertia.
@@ -84,12 +84,12 @@ struct Stage {
 }
 
 /// Gt, the hub's rate and the surroundings' tide, which modes feel.
-struct Felt {
-    turning: Vector,
-    rate: Vector,
-    tide: Option<Matrix3<f64>>,
+pub(super) struct Felt {
+    pub turning: Vector,
+    pub rate: Vector,
+    pub tide: Option<Matrix3<f64>>,
     /// Since the start of the step (s).
-    t: f64,
+    pub t: f64,
 }
 
 impl Work {
@@ -147,15 +147,7 @@ impl Step<'_> {
         change
     }
 
-    /// Whether modes are forced by more than Gt and constants.
-    fn is_loud(&self) -> bool {
-        self.model.stretches
-            || self.model.beside.is_some()
-            || self.around.is_some_and(|(around, _)| !around.heated().is_empty())
-            || self.borne.is_some_and(|borne| borne.shakes())
-    }
-
-    /// What the state comes to by itself, and the first guess: all stages are like the start.
+    /// What the state comes to by itself, and the first guess: stages are like the start, and what turns grows.
     fn guess(&self, state: &State, modes: &mut [Memory], spun: &mut Spun) -> [Stage; 3] {
         let mut sums = Sums::default();
         for (index, (memory, response)) in modes.iter_mut().zip(self.responses).enumerate() {
@@ -181,10 +173,15 @@ impl Step<'_> {
             spun.rates.extend(spun.now.iter().map(|now| [*now; 3]));
         }
         self.feel(&felt, modes, &spun.waves, 0);
-        for mode in modes {
-            (mode.g, mode.s) = ([mode.g[0]; 3], [mode.s[0]; 3]);
+        // What turns the body grows as the torque and the rotors have it: most of what a first pass would find.
+        let grows = self.torque - self.rotors.1;
+        for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
+            let slope = of.rotation.dot(&grows) * self.h;
+            memory.g = NODES.map(|node| memory.g[0] + slope * node);
+            memory.s = [memory.s[0]; 3];
         }
-        [stage; 3]
+        let slope = self.model.inverse * grows * self.h;
+        NODES.map(|node| Stage { rigid: stage.rigid + slope * node, ..stage })
     }
 
     /// The stage at a node, and by how much the forces on modes changed.
@@ -270,44 +267,6 @@ impl Step<'_> {
         };
 
         (stage, Felt { turning, rate, tide, t })
-    }
-
-    /// The force of what is warmed on a mode (N/sqrt(kg)) so many seconds after the start of the step.
-    fn warmth(&self, mode: usize, t: f64) -> f64 {
-        let Some((around, since)) = self.around else { return 0.0 };
-        around.heated().iter().fold(0.0, |sum, heated| sum + heated.forces[mode] * heated.level(since + t))
-    }
-
-    /// Gives the modes what they feel at a node; tells by how much their forces changed.
-    fn feel(&self, felt: &Felt, modes: &mut [Memory], waves: &[[f64; 2]], node: usize) -> f64 {
-        for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
-            memory.g[node] = of.rotation.dot(&felt.turning);
-            memory.rate += memory.g[node];
-        }
-        let mut change = 0.0_f64;
-        if self.is_loud() {
-            for index in 0..modes.len() {
-                let mode = &self.model.modes[index];
-                let mut force = mode.centrifugal(&felt.rate);
-                if let Some(tide) = &felt.tide {
-                    force += mode.pulled(tide);
-                }
-                if let Some(borne) = self.borne.filter(|_| !waves.is_empty()) {
-                    force += borne.force(index, waves);
-                }
-                if let Some(beside) = &self.model.beside {
-                    force -= modes
-                        .iter()
-                        .enumerate()
-                        .map(|(other, of)| beside[(index, other)] * of.rate)
-                        .sum::<f64>();
-                }
-                force += self.warmth(index, felt.t);
-                change = change.max((force - modes[index].s[node]).abs());
-                modes[index].s[node] = force;
-            }
-        }
-        change
     }
 
     /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
