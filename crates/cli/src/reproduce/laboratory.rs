@@ -45,7 +45,7 @@ mod tests {
     #[test]
     fn what_is_not_known_is_an_error() {
         let wrong = [
-            ("simulate scenarios/other.toml", "no scenario of the papers"),
+            ("simulate scenarios/other.toml", "there is no example"),
             ("simulate scenarios/relay-quiet.toml --sets duration=100.0", "--sets"),
             ("simulate scenarios/relay-quiet.toml --set durations=100.0", "durations"),
         ];

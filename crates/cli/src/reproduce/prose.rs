@@ -222,7 +222,7 @@ fn a_wrong_number_is_a_fault() {
         ("2<!--{{ x[1] --}}-->", "`--`"),
         ("<!--below 2 {{ x[1] }}-->\n\n    a = 0.2 and 25.\n\nand 2.", "no 2 in what follows"),
         ("<!--made\n{{ x[1] }}\n-->\n1.0\n<!--end-->", "`1.0` should be `2.0`"),
-        ("2<!--{{ run('simulate scenarios/none.toml') }}-->", "no scenario of the papers"),
+        ("2<!--{{ run('simulate scenarios/none.toml') }}-->", "there is no example"),
     ];
     for (text, why) in wrong {
         let fault = of(&format!("{set}{text}"));
