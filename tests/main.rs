@@ -26,6 +26,7 @@ mod damping;
 mod damping_relay;
 mod determinism;
 mod documented;
+mod drives;
 mod drawing;
 mod earth_observer;
 mod environment;

@@ -70,6 +70,14 @@ impl Results for Spacecraft {
                 say!("  {index:>5}{roll:>14.5}{pitch:>12.5}{yaw:>12.5}  {place}");
             }
         }
+        if !parts.turned.is_empty() {
+            say!("  frequencies with all drives turned by an angle beyond that of the start");
+            say!("  {:>5}{:>14}  rad/s, increasing", "deg", "angle, rad");
+            for at in &parts.turned {
+                let each: String = at.frequencies_rad_s.iter().map(|w| format!("{w:>12.6}")).collect();
+                say!("  {:>5.0}{:>14.4}{each}", at.angle_rad.to_degrees(), at.angle_rad);
+            }
+        }
         Ok(())
     }
 }

@@ -1,11 +1,17 @@
 //! The parts of a spacecraft as tables: what the modes of each appendage carry, and what a torque on the hub does at each point.
 
+use std::f64::consts::TAU;
+
 use serde::Serialize;
 
 use super::influence::Influences;
 use crate::attitude::{Vector, vector};
 use crate::body::craft::Craft;
-use crate::scenario::Scenario;
+use crate::motion::turning::Angles;
+use crate::scenario::{Drives, Scenario};
+
+/// Frequencies are told at so many angles of the drives.
+const ANGLES: u32 = 12;
 
 /// A spacecraft's modes, clamped and free.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,6 +31,17 @@ pub struct Parts {
     pub clamped: Vec<Clamped>,
     /// What a torque on the hub does at each point.
     pub points: Vec<AtPoint>,
+    /// Where drives turn appendages, the frequencies of the free modes with all of them turned by an angle.
+    pub turned: Vec<AtAngle>,
+}
+
+/// The free modes with all drives turned by an angle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AtAngle {
+    /// The angle of each drive beyond that of the start (rad).
+    pub angle_rad: f64,
+    /// Natural frequencies (rad/s), increasing.
+    pub frequencies_rad_s: Vec<f64>,
 }
 
 /// A mode of an appendage with its root held.
@@ -102,8 +119,20 @@ impl Parts {
             damping_coupling: craft.damping_coupling,
             clamped: clamped.collect(),
             points: points.collect(),
+            turned: scenario.study.drives.as_ref().map(turned).unwrap_or_default(),
         }
     }
+}
+
+/// The frequencies at a dozen angles around a turn.
+fn turned(Drives { driven, courses }: &Drives) -> Vec<AtAngle> {
+    let at = |step: u32| {
+        let angle_rad = f64::from(step) * TAU / f64::from(ANGLES);
+        let angles: Vec<f64> =
+            (0..courses.count()).map(|drive| courses.at(drive, 0.0)[0] + angle_rad).collect();
+        AtAngle { angle_rad, frequencies_rad_s: driven.frequencies(&angles) }
+    };
+    (0..ANGLES).map(at).collect()
 }
 
 fn three(of: &Vector) -> [f64; 3] {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, Matrix3};
 
-use super::Scenario;
+use super::{Drives, Scenario};
 use crate::actuator::{Actuate, Actuator, Allocation, Group, Opposes, Pulsing, Setting, Torquers};
 use crate::attitude::{Vector, beyond, tensor};
 use crate::body::craft::{Moving, Rotor};
@@ -40,6 +40,8 @@ pub struct Study {
     pub moving: Option<Moving>,
     /// What is around a body with three axes.
     pub around: Option<Around>,
+    /// The drives of appendages.
+    pub drives: Option<Drives>,
     /// Attitudes to turn to, and the way to them.
     pub targets: Vec<Target>,
     /// See `targets`.
@@ -148,6 +150,7 @@ impl Study {
             }
         }
         self.around = surroundings(scenario, body)?;
+        self.drives = scenario.drives()?;
         for (index, disturbance) in scenario.disturbance.iter().enumerate() {
             named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
         }

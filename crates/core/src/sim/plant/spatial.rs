@@ -10,7 +10,7 @@ use crate::environment::{Around, Seen, into};
 use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
 use crate::motion::{Phase, State};
 use crate::record::{
-    Energy, Orbit, OrbitAxis, Pointing, Position, Record, RecordError, Vibration, Vibrations,
+    DriveMotion, DrivenMode, DrivesMotion, Energy, Orbit, OrbitAxis, Pointing, Position, Record, RecordError, Vibration, Vibrations,
 };
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
@@ -74,7 +74,9 @@ impl SpatialPlant {
         let around = study.around.clone();
         let two_way = flexible.map(|of| {
             let shapes = [&sensed[..], &hub];
-            Box::new(TwoWay::new(body, of, around.clone(), study.moving.clone(), shapes, &study.bearings))
+            let two_way =
+                TwoWay::new(body, of, around.clone(), study.moving.clone(), shapes, &study.bearings);
+            Box::new(two_way.driven(study.drives.as_ref()))
         });
         let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
         Self {
@@ -131,6 +133,9 @@ impl SpatialPlant {
                     met = Some(at);
                 }
                 two_way.show(&self.rigid, &mut self.state);
+                if let Some((_, rotations)) = two_way.modes() {
+                    self.sensed.copy_from_slice(rotations);
+                }
             } else {
                 let rotors = self.rotors(self.departed);
                 let turn = &mut self.state.turn;
@@ -312,9 +317,29 @@ impl SpatialPlant {
     /// Energy of the elastic modes at the instant seen last (J), and of those that the sensor sees: the slow ones that it
     /// hardly sees keep theirs whatever the law does.
     pub fn elastic_energies(&self) -> (f64, f64) {
-        let energies = self.elastic.energies(&self.state.modes).zip(&self.visible);
-        energies.fold((-0.0, -0.0), |(all, visible), (energy, seen)| {
+        let energies = self.energies();
+        energies.into_iter().zip(&self.visible).fold((-0.0, -0.0), |(all, visible), (energy, seen)| {
             (all + energy, if *seen { visible + energy } else { visible })
+        })
+    }
+
+    /// The energy of each mode at the instant seen last (J).
+    fn energies(&self) -> Vec<f64> {
+        match self.two_way.as_deref() {
+            Some(two_way) if two_way.modes().is_some() => two_way.modal_energies().collect(),
+            _ => self.elastic.energies(&self.state.modes).collect(),
+        }
+    }
+
+    /// The drives of appendages and the frequencies of the modes, which change with them, as logged; none without drives.
+    pub fn drives(&self) -> Option<DrivesMotion> {
+        let two_way = self.two_way.as_deref()?;
+        let (frequencies, _) = two_way.modes()?;
+        let drive = |[angle_rad, rate_rad_s]: [f64; 2]| DriveMotion { angle_rad, rate_rad_s };
+        let mode = |frequency_rad_s: &f64| DrivenMode { frequency_rad_s: *frequency_rad_s };
+        Some(DrivesMotion {
+            drives: two_way.drives(self.seen.seconds()).into_iter().map(drive).collect(),
+            modes: frequencies.iter().map(mode).collect(),
         })
     }
 
@@ -339,7 +364,7 @@ impl SpatialPlant {
     /// The modes, as logged.
     pub fn vibrations(&self) -> Vibrations {
         let modes = &self.state.modes;
-        let rates = self.elastic.rates(modes).zip(self.elastic.energies(modes));
+        let rates = self.elastic.rates(modes).zip(self.energies());
         let of = |(phase, (rate, energy_j)): (&Phase, (f64, f64))| Vibration {
             displacement: phase.displacement,
             rate,
