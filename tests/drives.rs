@@ -64,7 +64,6 @@ fn panels_of_point_masses_turn_as_the_oracle_says() {
         ];
         worst.iter_mut().zip(off).for_each(|(most, off)| *most = most.max(off));
     }
-    println!("{worst:?}");
     for (most, bound) in worst.into_iter().zip([1e-10, 1e-10, 1e-10, 1e-11, 1e-11, 1e-10, 1e-9]) {
         assert!(most < bound, "{worst:?}");
     }
@@ -87,7 +86,8 @@ fn a_drive_at_rest_changes_nothing() {
     for (topic, name) in [("/pointing", "q_x"), ("/energy", "elastic_j"), ("/position", "y_m")] {
         let [a, b] = [&driven, &plain].map(|trace| numbers(trace, topic, name));
         let off = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(off < 1e-11, "{topic} {name} {off:e}");
+        // Steps differ: those of a body with drives resolve all modes.
+        assert!(off < 5e-10, "{topic} {name} {off:e}");
     }
 }
 
@@ -124,11 +124,20 @@ fn what_does_not_go_with_drives_is_refused() {
     };
     for (change, words) in [
         (("rate = 0.05,", "rate = 0.4,"), "`appendage[0].drive.rate` must be slower than 0.18"),
-        (("torque = 0.1\n", "torque = 0.1\nfriction = { coulomb = 0.01 }\n"), "`actuator.wheels.friction` goes with"),
-        (("rate = 0.05, angle = 0.3", "track = \"sun\""), "`appendage[0].drive.track` follows `environment.sun`"),
+        (
+            ("torque = 0.1\n", "torque = 0.1\nfriction = { coulomb = 0.01 }\n"),
+            "`actuator.wheels.friction` goes with",
+        ),
+        (
+            ("rate = 0.05, angle = 0.3", "track = \"sun\""),
+            "`appendage[0].drive.track` follows `environment.sun`",
+        ),
         (("rate = 0.05, angle = 0.3", "angle = 0.3"), "`appendage[0].drive` says how it turns"),
         (
-            ("[law.open]", "[environment]\nsolar_pressure = { force = [1e-4, 0, 0], at = [0, 0, 1] }\n[law.open]"),
+            (
+                "[law.open]",
+                "[environment]\nsolar_pressure = { force = [1e-4, 0, 0], at = [0, 0, 1] }\n[law.open]",
+            ),
             "`environment.solar_pressure` acts at an arm",
         ),
     ] {
@@ -149,15 +158,19 @@ fn shipped(change: &[(&str, &str)]) -> Scenario {
 /// The comment of the scenario: how the mode drifts, that the wide notch keeps the goal and the narrow one does not.
 #[test]
 fn a_notch_has_to_cover_the_drift() {
-    let short = [("duration = 5700.0", "duration = 2000.0"), ("assess = [300.0, 5700.0]", "assess = [300.0, 2000.0]")];
-    let narrow = ("frequency = 2.2, depth = 0.1, damping = 0.9", "frequency = 2.386, depth = 0.05, damping = 0.1");
+    let short = [
+        ("duration = 5700.0", "duration = 2000.0"),
+        ("assess = [300.0, 5700.0]", "assess = [300.0, 2000.0]"),
+    ];
+    let narrow =
+        ("frequency = 2.6, depth = 0.1, damping = 0.9", "frequency = 2.386, depth = 0.05, damping = 0.1");
     let met = |metrics: &Metrics| metrics.get("goal") == Some(&Value::Word("met"));
     let (metrics, trace) = flown(&shipped(&[]), Detail::Full);
     assert!(met(&metrics), "{metrics:?}");
     let frequencies = within(&trace, "/drives", "modes", "frequency_rad_s");
     let second: Vec<f64> = frequencies.iter().skip(1).step_by(6).copied().collect();
     let (least, most) = second.iter().fold((f64::MAX, 0.0_f64), |(a, b), w| (a.min(*w), b.max(*w)));
-    assert!((1.79..1.81).contains(&least) && (2.82..2.84).contains(&most), "{least} {most}");
+    assert!((2.37..2.38).contains(&least) && (2.85..2.86).contains(&most), "{least} {most}");
     assert!((second[0] - 2.386).abs() < 1e-3, "{}", second[0]);
     assert!(!met(&flown(&shipped(&[short[0], short[1], narrow]), Detail::Events).0));
     // Keys of drives can be uncertain.

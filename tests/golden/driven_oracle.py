@@ -3,18 +3,20 @@
     pip install numpy scipy
     python3 tests/golden/driven_oracle.py tests/golden
 
-Two panels are lattices of point masses with two clamped modes each, shapes that are orthonormal by mass. The data of the
-scenario are sums over the points; their centres are beside the drives' axes, so that drives move the centre of mass. The
-oracle knows the points alone: with the place of each as a function of the drives' angles and the modes, the kinetic energy
-about the centre of mass is 1/2 z' M z with z = (w, alpha', eta'). M(alpha, eta) is kept to first order in eta in the blocks
-of w and alpha', to zeroth in those of eta', as the model has it; the first order is a difference quotient of a parabola, and
-so exact. Momenta are derivatives of T. H' = T - w x H, pi' = -O^2 eta - D eta' + dT/d eta + f, by DOP853 with a relative
-tolerance of 1e-13, from each change of what acts to the next. One drive turns at a constant rate from the start, the other
-begins and ends along a trapezium.
+Two panels are lattices of point masses with two clamped modes each, shapes that are orthonormal by mass.
+The data of the scenario are sums over the points; their centres are beside the drives' axes, so that drives
+move the centre of mass. The oracle knows the points alone: with the place of each as a function of the
+drives' angles and the modes, the kinetic energy about the centre of mass is 1/2 z' M z with z = (w, alpha',
+eta'). M(alpha, eta) is kept to first order in eta in the blocks of w and alpha', to zeroth in those of
+eta', as the model has it; the first order is a difference quotient of a parabola, and so exact. Momenta are
+derivatives of T. H' = T - w x H, pi' = -O^2 eta - D eta' + dT/d eta + f, by DOP853 with a relative
+tolerance of 1e-13, from each change of what acts to the next. One drive turns at a constant rate from the
+start, the other begins and ends along a trapezium.
 
-driven.csv has a line each half second: t, Q (4), w (3), |H| with the wheel, the free frequencies (4), the energy of the modes
-1/2 (eta' S eta' + eta O^2 eta) with S of the free hub, the energy of all but the wheel, and the place of the first point (3).
-The work of the drives is that of their torque Q = d/dt dT/d alpha' - dT/d alpha; the balance with it is asserted here.
+driven.csv has a line each half second: t, Q (4), w (3), |H| with the wheel, the free frequencies (4), the
+energy of the modes 1/2 (eta' S eta' + eta O^2 eta) with S of the free hub, the energy of all but the wheel,
+and the place of the first point (3). The work of the drives is that of their torque Q = d/dt dT/d alpha' -
+dT/d alpha; the balance with it is asserted here.
 """
 
 import sys
@@ -52,7 +54,9 @@ class Panel:
         self.r = np.stack([x.ravel(), y.ravel(), z.ravel()], 1)
         self.m = 1.0 + 0.3 * np.cos(np.arange(len(self.r)) + seed)
         flap = np.stack([0.1 * self.r[:, 1] ** 2, 0 * self.r[:, 0], self.r[:, 1] ** 2], 1)
-        twist = np.stack([0.3 * self.r[:, 1] * self.r[:, 2], 0.2 * self.r[:, 0], self.r[:, 0] * self.r[:, 1]], 1)
+        twist = np.stack(
+            [0.3 * self.r[:, 1] * self.r[:, 2], 0.2 * self.r[:, 0], self.r[:, 0] * self.r[:, 1]], 1
+        )
         shapes = []
         for shape in (flap, twist):
             for other in shapes:
@@ -64,12 +68,19 @@ class Panel:
         return np.sum(self.m[:, None] * a * b)
 
     def place(self, angle, eta):
-        bent = self.r + sum(e * s for e, s in zip(eta, self.shapes))
+        bent = self.r + sum(e * s for e, s in zip(eta, self.shapes, strict=False))
         turned = self.axes @ about(AXIS, angle)
-        return self.root + bent @ turned.T, np.cross(self.axes @ AXIS, bent @ turned.T), [s @ turned.T for s in self.shapes]
+        return (
+            self.root + bent @ turned.T,
+            np.cross(self.axes @ AXIS, bent @ turned.T),
+            [s @ turned.T for s in self.shapes],
+        )
 
 
-PANELS = [Panel([0.1, 0.6, 0.2], np.eye(3), 0.0), Panel([0, -0.6, 0.2], about(np.array([0.0, 0, 1]), np.pi), 1.0)]
+PANELS = [
+    Panel([0.1, 0.6, 0.2], np.eye(3), 0.0),
+    Panel([0, -0.6, 0.2], about(np.array([0.0, 0, 1]), np.pi), 1.0),
+]
 ALL = np.concatenate([p.m for p in PANELS])
 MASS = HUB_MASS + ALL.sum()
 O2 = np.array([w * w for w, _ in O2_DAMPING])
@@ -142,7 +153,7 @@ def split(t, y):
     angles, rate, _ = drives(t)
     m0, changes, c, dc = linear(angles)
     eta, pi, big_h = y[7:11], y[11:15], y[4:7]
-    m = m0 + sum(e * d for e, d in zip(eta, changes))
+    m = m0 + sum(e * d for e, d in zip(eta, changes, strict=False))
     free = [0, 1, 2, 5, 6, 7, 8]
     given = m[np.ix_(free, [3, 4])] @ rate
     z = np.linalg.solve(m[np.ix_(free, free)], np.concatenate([big_h - H_WHEEL, pi]) - given)
@@ -157,7 +168,7 @@ def slope(angles, eta, full, k, step=1e-3):
         a = angles.copy()
         a[k] += s * step
         m0, changes, _, _ = linear(a)
-        return 0.5 * full @ (m0 + sum(e * d for e, d in zip(eta, changes))) @ full
+        return 0.5 * full @ (m0 + sum(e * d for e, d in zip(eta, changes, strict=False))) @ full
 
     parts = [(1, 45 / 60), (2, -9 / 60), (3, 1 / 60)]
     return sum(w * (t_at(s) - t_at(-s)) for s, w in parts) / step
@@ -170,9 +181,7 @@ def rates(t, y, forced, work=False):
     arm = AT - c - dc @ eta
     torque = TORQUE + np.cross(arm, force)
     q = y[:4]
-    turn = 0.5 * np.array(
-        [-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))]
-    )
+    turn = 0.5 * np.array([-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))])
     h = torque - np.cross(w, y[4:7])
     pull = np.array([0.5 * full @ d @ full for d in changes])
     pi = -O2 * eta - D * speeds + pull - dc.T @ force
@@ -183,7 +192,7 @@ def rates(t, y, forced, work=False):
         p = m[3:5] @ full
         # Work of the drives, d(alpha' p) apart: -alpha'' p - alpha' dT/d alpha; of what acts; of damping.
         own = sum(-acc[k] * p[k] - rate[k] * slope(angles, eta, full, k) for k in range(2))
-        # A force on the hub works by what the hub moves, that of its place against the centre of mass included.
+        # A force on the hub works by how its place moves against the centre of mass.
         slid = centre_rate(angles, rate, eta)
         moved = np.cross(w, arm) - slid - dc @ speeds
         # Drives hold against a force that would turn them: they move the centre of mass under it.
@@ -215,7 +224,7 @@ def start():
     """The modes are displaced and at rest, and the body turns."""
     angles, rate, _ = drives(0.0)
     m0, changes, _, _ = linear(angles)
-    m = m0 + sum(e * d for e, d in zip(ETA, changes))
+    m = m0 + sum(e * d for e, d in zip(ETA, changes, strict=False))
     p = m @ np.concatenate([RATE, rate, np.zeros(4)])
     # The attitude of the scenario is that of the mean axes, which modes do not turn: phi q = -J^-1 delta eta.
     bent = -np.linalg.solve(m0[:3, :3], m0[:3, 5:] @ ETA)
@@ -249,8 +258,13 @@ def fly(work):
         marks = [s for s in np.arange(0.5, DURATION + 0.1, 0.5) if t < s <= end]
         # Just before the end, where rates would already change.
         known = solve_ivp(
-            lambda s, y: rates(min(s, end - 1e-13), y, forced, work),
-            (t, end), y, method="DOP853", rtol=1e-9 if work else 1e-13, atol=1e-11 if work else 1e-15, t_eval=marks,
+            lambda s, y, end=end, forced=forced: rates(min(s, end - 1e-13), y, forced, work),
+            (t, end),
+            y,
+            method="DOP853",
+            rtol=1e-9 if work else 1e-13,
+            atol=1e-11 if work else 1e-15,
+            t_eval=marks,
         )
         assert known.success
         rows += [row(s, known.y[:, i], first)[0] for i, s in enumerate(marks)]
@@ -265,7 +279,7 @@ def written(of, name):
 
 def scenario():
     lines = [
-        "# Two panels of point masses that drives turn about axes beside their centres: made by driven_oracle.py.",
+        "# Two panels of point masses that drives turn, beside their centres: made by driven_oracle.py.",
         f"duration = {DURATION}",
         "[spacecraft]",
         written(HUB_MASS, "mass"),
@@ -280,7 +294,7 @@ def scenario():
         mass = panel.m.sum()
         centre = panel.m @ panel.r / mass
         arm = panel.r - centre
-        inertia = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(panel.m, arm))
+        inertia = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(panel.m, arm, strict=False))
         lines += [
             "[[appendage]]",
             f'name = "panel {k + 1}"',
@@ -332,5 +346,8 @@ if __name__ == "__main__":
     # Once more with the work, for its balance.
     _, y, gained, kept = fly(True)
     gap = gained - (y[21] + kept + y[22])
-    print(f"energy gained {gained}, work of the drives {y[21] + kept}, of the rest {y[22]}, gap {gap:.1e}", file=sys.stderr)
+    print(
+        f"energy gained {gained}, work of the drives {y[21] + kept}, of the rest {y[22]}, gap {gap:.1e}",
+        file=sys.stderr,
+    )
     assert abs(gap) < 1e-8

@@ -71,11 +71,14 @@ impl Results for Spacecraft {
             }
         }
         if !parts.turned.is_empty() {
-            say!("  frequencies with all drives turned by an angle beyond that of the start");
-            say!("  {:>5}{:>14}  rad/s, increasing", "deg", "angle, rad");
+            let drives = parts.turned[0].angles_rad.len();
+            say!("  frequencies as drives turn, increasing, rad/s");
+            say!("  {:>10}{:>width$}", "s", "angles, rad", width = 12 * drives);
             for at in &parts.turned {
-                let each: String = at.frequencies_rad_s.iter().map(|w| format!("{w:>12.6}")).collect();
-                say!("  {:>5.0}{:>14.4}{each}", at.angle_rad.to_degrees(), at.angle_rad);
+                let row = |of: &[f64], digits: usize| -> String {
+                    of.iter().map(|value| format!("{value:>12.digits$}")).collect()
+                };
+                say!("  {:>10.1}{}{}", at.time_s, row(&at.angles_rad, 4), row(&at.frequencies_rad_s, 6));
             }
         }
         Ok(())

@@ -6,8 +6,8 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    AttitudeEstimate, Bearings, ChannelState, Cycle, DrivesMotion, Log, Magnetorquers, Orbit, Position, Record,
-    RecordError, Sample, SpatialMotion, TrackedMode, Tracking, Wheels,
+    AttitudeEstimate, Bearings, ChannelState, Cycle, DrivesMotion, Log, Magnetorquers, Orbit, Position,
+    Record, RecordError, Sample, SpatialMotion, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
@@ -77,7 +77,13 @@ impl Record for Cycles {
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
             Sample::SpatialMotion(SpatialMotion {
-                wheels, orbit, magnetorquers, position, bearings, drives, ..
+                wheels,
+                orbit,
+                magnetorquers,
+                position,
+                bearings,
+                drives,
+                ..
             }) => {
                 let t = now.seconds();
                 self.wheels.extend(wheels.clone().map(|wheels| (t, wheels)));

@@ -8,8 +8,8 @@ use super::motion::Motion;
 use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
-    angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra, frequency, gain,
-    magnetorquers, modes, orbit, outputs, phase_plane, torque, wheel, wheels,
+    angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra, frequency,
+    gain, magnetorquers, modes, orbit, outputs, phase_plane, torque, wheel, wheels,
 };
 
 /// A figure.

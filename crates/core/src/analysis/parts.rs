@@ -1,7 +1,5 @@
 //! The parts of a spacecraft as tables: what the modes of each appendage carry, and what a torque on the hub does at each point.
 
-use std::f64::consts::TAU;
-
 use serde::Serialize;
 
 use super::influence::Influences;
@@ -10,8 +8,8 @@ use crate::body::craft::Craft;
 use crate::motion::turning::Angles;
 use crate::scenario::{Drives, Scenario};
 
-/// Frequencies are told at so many angles of the drives.
-const ANGLES: u32 = 12;
+/// Frequencies are told at the ends of so many parts of a run.
+const PARTS: u32 = 12;
 
 /// A spacecraft's modes, clamped and free.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,15 +29,17 @@ pub struct Parts {
     pub clamped: Vec<Clamped>,
     /// What a torque on the hub does at each point.
     pub points: Vec<AtPoint>,
-    /// Where drives turn appendages, the frequencies of the free modes with all of them turned by an angle.
-    pub turned: Vec<AtAngle>,
+    /// Where drives turn appendages, the frequencies of the free modes in the course of the run.
+    pub turned: Vec<AtAngles>,
 }
 
-/// The free modes with all drives turned by an angle.
+/// The free modes where drives have turned so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AtAngle {
-    /// The angle of each drive beyond that of the start (rad).
-    pub angle_rad: f64,
+pub struct AtAngles {
+    /// When (s).
+    pub time_s: f64,
+    /// The angle of each drive (rad).
+    pub angles_rad: Vec<f64>,
     /// Natural frequencies (rad/s), increasing.
     pub frequencies_rad_s: Vec<f64>,
 }
@@ -119,20 +119,19 @@ impl Parts {
             damping_coupling: craft.damping_coupling,
             clamped: clamped.collect(),
             points: points.collect(),
-            turned: scenario.study.drives.as_ref().map(turned).unwrap_or_default(),
+            turned: scenario.study.drives.as_ref().map(|drives| turned(drives, scenario)).unwrap_or_default(),
         }
     }
 }
 
-/// The frequencies at a dozen angles around a turn.
-fn turned(Drives { driven, courses }: &Drives) -> Vec<AtAngle> {
+/// The frequencies at instants of the run.
+fn turned(Drives { driven, courses }: &Drives, scenario: &Scenario) -> Vec<AtAngles> {
     let at = |step: u32| {
-        let angle_rad = f64::from(step) * TAU / f64::from(ANGLES);
-        let angles: Vec<f64> =
-            (0..courses.count()).map(|drive| courses.at(drive, 0.0)[0] + angle_rad).collect();
-        AtAngle { angle_rad, frequencies_rad_s: driven.frequencies(&angles) }
+        let time_s = scenario.duration.seconds() * f64::from(step) / f64::from(PARTS);
+        let angles_rad: Vec<f64> = (0..courses.count()).map(|drive| courses.at(drive, time_s)[0]).collect();
+        AtAngles { time_s, frequencies_rad_s: driven.frequencies(&angles_rad), angles_rad }
     };
-    (0..ANGLES).map(at).collect()
+    (0..=PARTS).map(at).collect()
 }
 
 fn three(of: &Vector) -> [f64; 3] {

@@ -56,7 +56,8 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         motion.push(Panel::states("sliding", "Which way wheels turn", each("sliding")));
     }
     if let Some(drives) = &scenario.study.drives {
-        let of = |drive: usize| line(format!("/drives.drives[{drive}].angle_rad"), format!("drive {}", drive + 1));
+        let of =
+            |drive: usize| line(format!("/drives.drives[{drive}].angle_rad"), format!("drive {}", drive + 1));
         let angles = (0..drives.courses.count().min(MOST_LINES)).map(of).collect();
         motion.push(Panel::plot("drives", "Angles of the drives (rad)", angles));
     }

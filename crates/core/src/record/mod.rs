@@ -37,11 +37,12 @@ pub use spatial::{Cycle, SpatialMotion};
 pub use states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
 pub use topics::{
     Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
-    ChannelState, Command, DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Magnetorquer,
-    Magnetorquers, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes,
-    Orbit, OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual,
-    Sliding, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel,
-    WheelEvent, WheelMotion, Wheels, WindowMean,
+    ChannelState, Command, DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope, Estimate, Estimates,
+    GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine, MetricPage, Metrics,
+    ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion, OutputName, Outputs,
+    Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary, TOPICS, Torque, Torques,
+    TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelEvent, WheelMotion, Wheels,
+    WindowMean,
 };
 pub use trace::Trace;
 

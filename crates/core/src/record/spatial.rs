@@ -1,7 +1,8 @@
 //! What is reported of a body with three axes.
 
 use super::{
-    Bearings, DrivesMotion, Energy, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques, Vibrations, Wheels,
+    Bearings, DrivesMotion, Energy, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques,
+    Vibrations, Wheels,
 };
 
 /// A cycle of a spatial loop, after its law has decided.

@@ -219,7 +219,10 @@ impl Scenario {
         edges.sort();
         edges.dedup();
         if fastest * self.duration.seconds() / APART > MOST_CHANGES {
-            let why = format!("turns by {:.0} rad in this run: too much to follow", fastest * self.duration.seconds());
+            let why = format!(
+                "turns by {:.0} rad in this run: too much to follow",
+                fastest * self.duration.seconds()
+            );
             return Err(Fault::new("appendage", why));
         }
         let mut changes = Vec::new();
@@ -228,7 +231,11 @@ impl Scenario {
             let parts = libm::ceil(fastest * (to - from) / APART).max(1.0) as u32;
             for part in 0..parts {
                 let at = |part: f64| from + (to - from) * part / f64::from(parts);
-                let instant = if part == 0 { pair[0] } else { Instant::START + Span::from_seconds(at(f64::from(part))) };
+                let instant = if part == 0 {
+                    pair[0]
+                } else {
+                    Instant::START + Span::from_seconds(at(f64::from(part)))
+                };
                 changes.push((instant, at(f64::from(part) + 0.5)));
             }
         }

@@ -100,7 +100,9 @@ impl Study {
             study.adaptive = Some(Box::new(plan.map_err(|fault| fault.within("estimator.adaptive"))?));
         }
         if let Some(spec) = scenario.estimator.as_ref().and_then(Estimator::attitude) {
-            let setting = spec.setting(&scenario.sensor, cycle);
+            let jets = study.groups.is_some();
+            let mounted = body.map(|body| (body, &study.sensed_at[..], jets));
+            let setting = spec.setting(&scenario.sensor, cycle, mounted);
             study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
         }
         for axis in 0..study.axes.len() {

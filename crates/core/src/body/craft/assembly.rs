@@ -106,14 +106,9 @@ impl Craft {
 }
 
 /// The spacecraft as drives turn it, if it has any.
-fn driven(
-    spacecraft: &Spacecraft,
-    appendages: &[Appendage],
-    spinning: &Matrix3<f64>,
-) -> Option<Arc<Driven>> {
+fn driven(spacecraft: &Spacecraft, appendages: &[Appendage], spinning: &Matrix3<f64>) -> Option<Arc<Driven>> {
     let hub = spacecraft.mass_properties();
-    let mut driven =
-        Driven { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
+    let mut driven = Driven { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
     for appendage in appendages {
         let drives = driven.drives();
         driven.panels.push(appendage.panel(drives));

@@ -92,7 +92,8 @@ impl Drive {
             return Err(Fault::new("about", format!("must have a length of 1e-6 to 1e6, got {length}")));
         }
         if self.angle.get().abs() > MOST_ANGLE {
-            let why = format!("must be an angle of -{MOST_ANGLE} to {MOST_ANGLE} rad, got {}", self.angle.get());
+            let why =
+                format!("must be an angle of -{MOST_ANGLE} to {MOST_ANGLE} rad, got {}", self.angle.get());
             return Err(Fault::new("angle", why));
         }
         let ways = [self.rate.is_some(), !self.table.is_empty(), self.track.is_some()];
@@ -119,7 +120,10 @@ impl Drive {
             let normal = vector(normal);
             let across = normal.norm() > 1e-6 && normal.normalize().dot(&self.axis()).abs() < 1e-6;
             if !across {
-                return Err(Fault::new("normal", "must be across `about`: no turn of the drive moves its part along it"));
+                return Err(Fault::new(
+                    "normal",
+                    "must be across `about`: no turn of the drive moves its part along it",
+                ));
             }
         } else if self.track.is_some() && self.axis().z.abs() > 1e-6 {
             return Err(Fault::new("normal", "must be given where the drive's axis is not across z"));
@@ -165,7 +169,8 @@ impl Drive {
             std::iter::once([from, rate.get()]).chain(until).collect()
         } else {
             let slope = |pair: &[DrivePoint]| {
-                let [time, angle] = [pair[1].time.get() - pair[0].time.get(), pair[1].angle.get() - pair[0].angle.get()];
+                let [time, angle] =
+                    [pair[1].time.get() - pair[0].time.get(), pair[1].angle.get() - pair[0].angle.get()];
                 [pair[0].time.get(), angle / time]
             };
             let last = self.table.last().map(|last| [last.time.get(), 0.0]);
@@ -209,14 +214,19 @@ mod tests {
     fn rates_begin_and_end_along_a_trapezium() {
         let pieces = drive("rate = 0.02\nfrom = 10\nuntil = 40\nacceleration = 0.002\nangle = 0.1").pieces();
         let near = |a: &Piece, b: Piece| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15);
-        let expected: [Piece; 4] =
-            [[10.0, 0.1, 0.0, 0.002], [20.0, 0.2, 0.02, 0.0], [40.0, 0.6, 0.02, -0.002], [50.0, 0.7, 0.0, 0.0]];
+        let expected: [Piece; 4] = [
+            [10.0, 0.1, 0.0, 0.002],
+            [20.0, 0.2, 0.02, 0.0],
+            [40.0, 0.6, 0.02, -0.002],
+            [50.0, 0.7, 0.0, 0.0],
+        ];
         assert!(pieces.len() == 4 && pieces.iter().zip(expected).all(|(a, b)| near(a, b)), "{pieces:?}");
     }
 
     #[test]
     fn tables_are_met_and_their_corners_rounded() {
-        let table = "table = [{ time = 10, angle = 0 }, { time = 20, angle = 0.1 }, { time = 40, angle = 0 }]";
+        let table =
+            "table = [{ time = 10, angle = 0 }, { time = 20, angle = 0.1 }, { time = 40, angle = 0 }]";
         let sharp = drive(table).pieces();
         assert_eq!(sharp.iter().map(|piece| piece[0]).collect::<Vec<_>>(), [10.0, 20.0, 40.0]);
         assert!((sharp[2][1]).abs() < 1e-16 && sharp[2][2] == 0.0);
@@ -238,7 +248,10 @@ mod tests {
             ("rate = 0.02\nfrom = 6\nuntil = 5", "until"),
             ("table = [{ time = 1, angle = 0 }]", "table"),
             ("table = [{ time = 1, angle = 0 }, { time = 1, angle = 1 }]", "table[1].time"),
-            ("table = [{ time = 1, angle = 0 }, { time = 2, angle = 1 }]\nacceleration = 0.1", "acceleration"),
+            (
+                "table = [{ time = 1, angle = 0 }, { time = 2, angle = 1 }]\nacceleration = 0.1",
+                "acceleration",
+            ),
         ] {
             let fault = drive(text).check().unwrap_err();
             assert_eq!(fault.key, key, "{text}: {fault}");

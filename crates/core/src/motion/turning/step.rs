@@ -227,7 +227,8 @@ impl Step<'_> {
                 *at = spin.sums + rates[0] * a + rates[1] * b + rates[2] * c;
             }
         }
-        let (stage, felt) = self.turning((node + 1, NODES[node] * self.h), &sums.shape(), &momentum, &facing, beside);
+        let (stage, felt) =
+            self.turning((node + 1, NODES[node] * self.h), &sums.shape(), &momentum, &facing, beside);
         (stage, self.feel(&felt, modes, beside, node))
     }
 

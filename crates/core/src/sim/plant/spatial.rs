@@ -6,15 +6,15 @@ use super::two_way::TwoWay;
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
 use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
-use crate::environment::{Around, Seen, into};
+use crate::environment::{Around, Seen};
 use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
 use crate::motion::{Phase, State};
-use crate::record::{
-    DriveMotion, DrivenMode, DrivesMotion, Energy, Orbit, OrbitAxis, Pointing, Position, Record, RecordError, Vibration, Vibrations,
-};
+use crate::record::{Energy, Pointing, Position, Record, RecordError, Vibration, Vibrations};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
+
+mod logged;
 
 /// A mode is seen by a sensor that it turns by at least such a part of what the mode does that turns it most.
 const VISIBLE: f64 = 0.1;
@@ -331,18 +331,6 @@ impl SpatialPlant {
         }
     }
 
-    /// The drives of appendages and the frequencies of the modes, which change with them, as logged; none without drives.
-    pub fn drives(&self) -> Option<DrivesMotion> {
-        let two_way = self.two_way.as_deref()?;
-        let (frequencies, _) = two_way.modes()?;
-        let drive = |[angle_rad, rate_rad_s]: [f64; 2]| DriveMotion { angle_rad, rate_rad_s };
-        let mode = |frequency_rad_s: &f64| DrivenMode { frequency_rad_s: *frequency_rad_s };
-        Some(DrivesMotion {
-            drives: two_way.drives(self.seen.seconds()).into_iter().map(drive).collect(),
-            modes: frequencies.iter().map(mode).collect(),
-        })
-    }
-
     /// The energies, as logged.
     pub fn energy(&self) -> Energy {
         let one_way = || {
@@ -371,24 +359,6 @@ impl SpatialPlant {
             energy_j,
         };
         Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
-    }
-
-    /// Where it is on its orbit, as logged.
-    pub fn orbit(&self) -> Option<Orbit> {
-        let (sky, t) = (self.around.as_ref()?.sky(), self.seen.seconds());
-        let place = sky.place(t)?;
-        let here = |v: Vector| into(self.attitude(), &v);
-        let nowhere = Vector::repeat(f64::NAN);
-        let (nadir, field) = (here(place.local[2]), sky.seen(t).field.map_or(nowhere, here));
-        let sun = sky.sun().map_or(nowhere, |sun| here(*sun));
-        let axis = |axis: usize| OrbitAxis {
-            position_m: place.position[axis],
-            velocity_m_s: place.velocity[axis],
-            nadir: nadir[axis],
-            field_t: field[axis],
-            sun: sun[axis],
-        };
-        Some(Orbit { axes: [0, 1, 2].map(axis).into(), light: sky.is_lit(t).into() })
     }
 
     /// The attitude, as logged, with the angles by which it is beyond its target (rad).

@@ -10,7 +10,9 @@ use crate::body::craft::Moving;
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
 use crate::environment::{Around, Seen};
 use crate::motion::Phase;
-use crate::motion::turning::{Acting, Angles, Bearing, Driving, Flexible, Heated, Slip, Surroundings, Turned, Turning};
+use crate::motion::turning::{
+    Acting, Angles, Bearing, Driving, Flexible, Heated, Slip, Surroundings, Turned, Turning,
+};
 use crate::scenario::{Courses, Drives};
 use crate::sensor::{Orientation, Truth};
 

@@ -50,10 +50,15 @@ impl Basis {
     fn of(of: &Driven, posed: &Posed, free: Free, (first_centre, start): (Vector, DMatrix<f64>)) -> Self {
         let inverse = inverse(of, &free);
         let own: Vec<f64> = of.modes().map(|mode| 2.0 * mode.damping * mode.frequency).collect();
-        let damped = DMatrix::from_fn(own.len(), own.len(), |row, column| own[row] * free.shapes[(row, column)]);
+        let damped =
+            DMatrix::from_fn(own.len(), own.len(), |row, column| own[row] * free.shapes[(row, column)]);
         let moments = (0..own.len()).map(|column| {
             let shape = free.shapes.column(column);
-            posed.moments.iter().zip(shape.iter()).fold(Matrix3::zeros(), |sum: Matrix3<f64>, (moments, part)| sum + moments * *part)
+            posed
+                .moments
+                .iter()
+                .zip(shape.iter())
+                .fold(Matrix3::zeros(), |sum: Matrix3<f64>, (moments, part)| sum + moments * *part)
         });
         let damping = free.shapes.tr_mul(&damped);
         Self {

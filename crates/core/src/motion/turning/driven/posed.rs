@@ -112,9 +112,9 @@ impl Driven {
             }
         }
         let sum = translations.iter().fold(Matrix3::zeros(), |sum: Matrix3<f64>, t| sum + t * t.transpose());
-        posed.share =
-            (Matrix3::identity() * mass - sum).try_inverse().unwrap_or_else(Matrix3::zeros);
-        (posed.centre, posed.inertia, posed.momentum) = (centre, 0.5 * (inertia + inertia.transpose()), momentum);
+        posed.share = (Matrix3::identity() * mass - sum).try_inverse().unwrap_or_else(Matrix3::zeros);
+        (posed.centre, posed.inertia, posed.momentum) =
+            (centre, 0.5 * (inertia + inertia.transpose()), momentum);
         (posed.energy, posed.push, posed.mass) = (0.5 * double, push, mass);
         let (mut carried, mut across) = (Matrix3::zeros(), Matrix3::zeros());
         for (delta, t) in posed.rotations.iter().zip(&posed.translations) {
