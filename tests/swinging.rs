@@ -8,6 +8,7 @@ use flexsc_core::estimator::attitude::{
     Filter, Fix, GyroNoise, History, KnownMode, KnownModes, Measured, Swinging,
 };
 use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::record::{Detail, Trace};
 use flexsc_core::scenario::Scenario;
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
@@ -98,31 +99,47 @@ fn changed(change: &[(&str, &str)]) -> Result<Scenario, String> {
     Scenario::parse("boom.toml", &text).map_err(|error| error.to_string())
 }
 
-fn flown(scenario: &Scenario) -> Metrics {
-    let mut gather = Gather::new(scenario);
-    Simulation::new(scenario, 0).run(&mut gather).expect("a run");
-    gather.finish(scenario)
+fn flown(scenario: &Scenario) -> (Metrics, Trace) {
+    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(Detail::Full));
+    Simulation::new(scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
+    (gather.finish(scenario), trace)
 }
 
-const NONE: (&str, &str) = ("elastic = { modes = [0], noise = 1e-5, displacement = 1e-3 }\n", "");
+const NONE: (&str, &str) =
+    ("elastic = { modes = [0], noise = 1e-5, displacement = 1e-3, feeds = \"hub\" }\n", "");
+
+/// The largest angle beyond the reference about any axis while the body turns and settles (rad).
+fn worst(trace: &Trace) -> f64 {
+    let errors = ["roll", "pitch", "yaw"].map(|axis| {
+        let rows = trace.topic("/pointing").and_then(|rows| rows.numbers(&format!("{axis}_error_rad")));
+        rows.expect("errors").iter().skip(120).fold(0.0_f64, |most, error| most.max(error.abs()))
+    });
+    errors.into_iter().fold(0.0, f64::max)
+}
 
 /// The comment of the scenario: what the filter knows with the mode, and without.
 #[test]
 fn a_filter_that_knows_the_mode_is_consistent_and_points_better() {
-    let (with, without) = (flown(&changed(&[]).expect("it")), flown(&changed(&[NONE]).expect("it")));
-    let number = |metrics: &Metrics, name: &str| metrics.number(name).expect(name);
-    for metrics in [&with, &without] {
-        println!(
-            "{} {} {:?}",
-            number(metrics, "nis_mean"),
-            number(metrics, "nees_mean"),
-            metrics.get("goal")
-        );
-    }
-    assert!((0.85..1.15).contains(&number(&with, "nis_mean")));
-    assert!(number(&without, "nis_mean") > 5.0);
-    assert_eq!(with.get("goal"), Some(&Value::Word("met")));
-    assert_ne!(without.get("goal"), Some(&Value::Word("met")));
+    let [with, without] = [&[][..], &[NONE]].map(|change| flown(&changed(change).expect("it")));
+    let number = |(metrics, _): &(Metrics, Trace), name: &str| metrics.number(name).expect(name);
+    assert!((number(&with, "nis_mean") - 1.0).abs() < 0.1, "{}", number(&with, "nis_mean"));
+    assert!((0.5..1.5).contains(&number(&with, "nees_mean")), "{}", number(&with, "nees_mean"));
+    assert!((32.0..34.0).contains(&number(&without, "nis_mean")), "{}", number(&without, "nis_mean"));
+    let [known, unknown] = [&with, &without].map(|run| number(run, "attitude_estimate_error_rms_rad"));
+    assert!(
+        (2.4e-5..2.6e-5).contains(&known) && (1.4e-4..1.5e-4).contains(&unknown),
+        "{known:e} {unknown:e}"
+    );
+    let [held, shaken] = [&with, &without].map(|(_, trace)| worst(trace));
+    assert!(held < 8e-4 && (1.1e-3..1.3e-3).contains(&shaken), "{held:e} {shaken:e}");
+    assert_eq!(with.0.get("goal"), Some(&Value::Word("met")));
+    // A filter that takes the mode for a tenth slower shows it.
+    let wrong = ("modes = [0], noise", "modes = [0], factor = 0.9, noise");
+    assert!(number(&flown(&changed(&[wrong]).expect("it")), "nis_mean") > 2.0);
+    // What laws read without the mode does not answer to it.
+    let rigid = flown(&changed(&[("feeds = \"hub\"", "feeds = \"rigid\"")]).expect("it"));
+    let rings = |run| number(run, "elastic_energy_end_j");
+    assert!(rings(&rigid) > 3.0 * rings(&with), "{} {}", rings(&rigid), rings(&with));
 }
 
 #[test]

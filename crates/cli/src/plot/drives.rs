@@ -34,7 +34,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let frequencies = (0..modes)
         .map(|mode| {
             let most = highest(mode);
-            let name = format!("mode {mode}, of {most:.4} rad/s");
+            let name = format!("{most:.3} rad/s");
             (name, line(&|row| row.modes[mode].frequency_rad_s / most))
         })
         .collect();

@@ -43,7 +43,7 @@ impl Driving {
         let rate = posed.rates(&(momentum - rotors), &eta, &mut pi);
         let rates = pi;
         let Some(free) = posed.free(&self.of) else { return };
-        let free = self.basis.followed(&self.of, free);
+        let free = self.basis.followed(&free);
         let inverse = super::basis::inverse(&self.of, &free);
         let of = |held: &[f64]| -> Vec<f64> {
             let rows = inverse.row_iter();
