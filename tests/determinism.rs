@@ -15,7 +15,7 @@ fn fingerprint(text: &str) -> u64 {
 #[test]
 fn runs_repeat_to_the_last_bit() {
     // (scenario, topic, fingerprint): undamped with adaptation; coupled modes; damped with noise, quadrature and drawn numbers;
-    // wheels with friction, tachometers and an attitude filter; three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
+    // wheels with friction, tachometers and an attitude filter; a filter with modes; panels that turn; three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
     let runs = [
         ("relay-adaptive", "", "/command", 0xfed5_1b8d_2885_31dd),
         ("relay-adaptive", "", "/adaptation", 0x6fc9_7027_b350_262f),
@@ -26,6 +26,8 @@ fn runs_repeat_to_the_last_bit() {
         ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xe18f_c212_5f78_e08b),
         ("wheel-friction", " --runs 5:6", "/wheel_events", 0x3a71_9dcc_5160_ed41),
         ("wheel-friction", " --runs 5:6", "/metrics", 0x79e9_922b_d747_0bd4),
+        ("flexible-boom", " --runs 5:6", "/metrics", 0xe7ac_9f0b_a91d_a0d3),
+        ("sun-tracking", " --runs 5:6", "/metrics", 0xec81_1e08_f3cb_9013),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
     ];

@@ -70,6 +70,17 @@ impl Results for Spacecraft {
                 say!("  {index:>5}{roll:>14.5}{pitch:>12.5}{yaw:>12.5}  {place}");
             }
         }
+        if !parts.turned.is_empty() {
+            let drives = parts.turned[0].angles_rad.len();
+            say!("  frequencies as drives turn, increasing, rad/s");
+            say!("  {:>10}{:>width$}", "s", "angles, rad", width = 12 * drives);
+            for at in &parts.turned {
+                let row = |of: &[f64], digits: usize| -> String {
+                    of.iter().map(|value| format!("{value:>12.digits$}")).collect()
+                };
+                say!("  {:>10.1}{}{}", at.time_s, row(&at.angles_rad, 4), row(&at.frequencies_rad_s, 6));
+            }
+        }
         Ok(())
     }
 }

@@ -6,6 +6,7 @@ mod campaign;
 mod consistency;
 mod dead_zone;
 mod drive;
+mod drives;
 mod envelope;
 mod estimate;
 mod extra;

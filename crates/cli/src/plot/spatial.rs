@@ -6,8 +6,8 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    AttitudeEstimate, Bearings, ChannelState, Cycle, Log, Magnetorquers, Orbit, Position, Record,
-    RecordError, Sample, SpatialMotion, TrackedMode, Tracking, Wheels,
+    AttitudeEstimate, Bearings, ChannelState, Cycle, DrivesMotion, Log, Magnetorquers, Orbit, Position,
+    Record, RecordError, Sample, SpatialMotion, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
@@ -36,6 +36,8 @@ pub struct Cycles {
     position: Vec<(f64, Position)>,
     /// Their bearings, if they have any.
     pub bearings: Vec<(f64, Bearings)>,
+    /// The drives of appendages, if they have any.
+    pub drives: Vec<(f64, DrivesMotion)>,
 }
 
 impl Cycles {
@@ -75,13 +77,20 @@ impl Record for Cycles {
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
             Sample::SpatialMotion(SpatialMotion {
-                wheels, orbit, magnetorquers, position, bearings, ..
+                wheels,
+                orbit,
+                magnetorquers,
+                position,
+                bearings,
+                drives,
+                ..
             }) => {
                 let t = now.seconds();
                 self.wheels.extend(wheels.clone().map(|wheels| (t, wheels)));
                 self.orbit.extend(orbit.clone().map(|orbit| (t, orbit)));
                 self.magnetorquers.extend(magnetorquers.clone().map(|moments| (t, moments)));
                 self.position.extend(position.iter().map(|position| (t, position.clone())));
+                self.drives.extend(drives.iter().map(|drives| (t, drives.clone())));
                 self.bearings.extend(bearings.iter().map(|bearings| (t, bearings.clone())));
             }
             _ => {}

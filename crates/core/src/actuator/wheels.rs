@@ -162,6 +162,13 @@ impl Wheels {
         }
     }
 
+    /// The key of what makes wheels stick, or shakes the body, if there is any.
+    pub fn rubs_or_shakes(&self) -> Option<&'static str> {
+        let wheels = self.rotors().map_or(0, |rotors| rotors.len());
+        let grips = self.friction.as_ref().is_some_and(|of| (0..wheels).any(|wheel| of.holds(wheel) > 0.0));
+        if grips { Some("friction") } else { self.imbalance.as_ref().map(|_| "imbalance") }
+    }
+
     /// The largest speed at the start, or of the bias (rad/s).
     pub fn fastest(&self) -> f64 {
         let bias = self.speed_bias.map_or(0.0, |bias| bias.speed.get().abs());

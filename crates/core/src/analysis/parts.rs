@@ -5,7 +5,11 @@ use serde::Serialize;
 use super::influence::Influences;
 use crate::attitude::{Vector, vector};
 use crate::body::craft::Craft;
-use crate::scenario::Scenario;
+use crate::motion::turning::Angles;
+use crate::scenario::{Drives, Scenario};
+
+/// Frequencies are told at the ends of so many parts of a run.
+const PARTS: u32 = 12;
 
 /// A spacecraft's modes, clamped and free.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,6 +29,19 @@ pub struct Parts {
     pub clamped: Vec<Clamped>,
     /// What a torque on the hub does at each point.
     pub points: Vec<AtPoint>,
+    /// Where drives turn appendages, the frequencies of the free modes in the course of the run.
+    pub turned: Vec<AtAngles>,
+}
+
+/// The free modes where drives have turned so far.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AtAngles {
+    /// When (s).
+    pub time_s: f64,
+    /// The angle of each drive (rad).
+    pub angles_rad: Vec<f64>,
+    /// Natural frequencies (rad/s), increasing.
+    pub frequencies_rad_s: Vec<f64>,
 }
 
 /// A mode of an appendage with its root held.
@@ -102,8 +119,19 @@ impl Parts {
             damping_coupling: craft.damping_coupling,
             clamped: clamped.collect(),
             points: points.collect(),
+            turned: scenario.study.drives.as_ref().map(|drives| turned(drives, scenario)).unwrap_or_default(),
         }
     }
+}
+
+/// The frequencies at instants of the run.
+fn turned(Drives { driven, courses }: &Drives, scenario: &Scenario) -> Vec<AtAngles> {
+    let at = |step: u32| {
+        let time_s = scenario.duration.seconds() * f64::from(step) / f64::from(PARTS);
+        let angles_rad: Vec<f64> = (0..courses.count()).map(|drive| courses.at(drive, time_s)[0]).collect();
+        AtAngles { time_s, frequencies_rad_s: driven.frequencies(&angles_rad), angles_rad }
+    };
+    (0..=PARTS).map(at).collect()
 }
 
 fn three(of: &Vector) -> [f64; 3] {

@@ -119,6 +119,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(matches!(scenario.actuator, Actuator::Wheels(_)), "/wheels", Full);
         add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);
         add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);
+        add(scenario.study.drives.is_some(), "/drives", Full);
         add(!scenario.study.bearings.is_empty(), "/bearings", Full);
         add(scenario.study.bearings.iter().any(Bearing::grips), "/wheel_events", Events);
         for topic in ["/pointing", "/rates", "/vibrations", "/energy"] {

@@ -55,7 +55,18 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         motion.push(Panel::plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
         motion.push(Panel::states("sliding", "Which way wheels turn", each("sliding")));
     }
+    if let Some(drives) = &scenario.study.drives {
+        let of =
+            |drive: usize| line(format!("/drives.drives[{drive}].angle_rad"), format!("drive {}", drive + 1));
+        let angles = (0..drives.courses.count().min(MOST_LINES)).map(of).collect();
+        motion.push(Panel::plot("drives", "Angles of the drives (rad)", angles));
+    }
     let mut elastic = vec![Panel::plot("energy", "Elastic energy (J)", energies(scenario, body))];
+    if scenario.study.drives.is_some() {
+        let of = |mode: usize| line(format!("/drives.modes[{mode}].frequency_rad_s"), format!("mode {mode}"));
+        let each = (0..body.modes.len().min(MOST_LINES)).map(of).collect();
+        elastic.push(Panel::plot("drifting", "Natural frequencies (rad/s)", each));
+    }
     if let Some(plan) = &scenario.study.adaptive {
         let tracked: Vec<usize> = plan.axes.iter().map(|design| design.modes.len()).collect();
         elastic.push(Panel::plot(

@@ -38,11 +38,12 @@ pub use spatial::{Cycle, SpatialMotion};
 pub use states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
 pub use topics::{
     Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
-    ChannelState, Command, Energy, Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Magnetorquer,
-    Magnetorquers, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes,
-    Orbit, OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual,
-    Sliding, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel,
-    WheelEvent, WheelMotion, Wheels, WindowMean,
+    ChannelState, Command, DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope, Estimate, Estimates,
+    GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine, MetricPage, Metrics,
+    ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion, OutputName, Outputs,
+    Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary, TOPICS, Torque, Torques,
+    TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelEvent, WheelMotion, Wheels,
+    WindowMean,
 };
 pub use trace::Trace;
 
@@ -351,6 +352,7 @@ trait TakeRow {
                 if let Some(magnetorquers) = &motion.magnetorquers {
                     self.take(now, magnetorquers)?;
                 }
+                motion.drives.as_ref().map_or(Ok(()), |drives| self.take(now, drives))?;
                 motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take(now, bearings))?;
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
             }

@@ -1,7 +1,8 @@
 //! What is reported of a body with three axes.
 
 use super::{
-    Bearings, Energy, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques, Vibrations, Wheels,
+    Bearings, DrivesMotion, Energy, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques,
+    Vibrations, Wheels,
 };
 
 /// A cycle of a spatial loop, after its law has decided.
@@ -46,6 +47,8 @@ pub struct SpatialMotion {
     pub wheels: Option<Wheels>,
     /// Their bearings.
     pub bearings: Option<Bearings>,
+    /// The drives of its appendages.
+    pub drives: Option<DrivesMotion>,
     /// Where the body is on its orbit.
     pub orbit: Option<Orbit>,
     /// Magnetic moments of torquers.

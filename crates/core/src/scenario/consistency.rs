@@ -64,7 +64,8 @@ impl Scenario {
 
     fn spatial_inconsistency(&self) -> Option<Fault> {
         let estimator = self.estimator.as_ref();
-        self.schedule_inconsistency()
+        self.drive_fault()
+            .or_else(|| self.schedule_inconsistency())
             .or_else(|| self.timing_inconsistency())
             .or_else(|| self.rate_inconsistency())
             .or_else(|| self.filter_inconsistency(estimator?))

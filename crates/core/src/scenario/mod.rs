@@ -4,6 +4,7 @@ mod authority;
 mod consistency;
 mod cost;
 mod coupled;
+mod drives;
 mod epoch;
 mod known;
 mod learning;
@@ -41,6 +42,7 @@ use crate::uncertain::Distribution;
 use epoch::nanoseconds_since_1970;
 
 pub use cost::{Cost, MOST_RUNS};
+pub use drives::{Courses, Drives};
 pub use log::{Log, SceneSpec};
 pub use reference::{Pointing, Reference};
 pub use study::Study;

@@ -17,14 +17,14 @@ impl Scenario {
         directory: &Path,
     ) -> Result<(), ScenarioError> {
         let refused = |fault: Fault| document.inconsistent(&fault);
-        let Some(spacecraft) = &self.spacecraft else {
+        if self.spacecraft.is_none() {
             if !self.appendage.is_empty() {
                 let why = "is clamped to the hub of a `[spacecraft]`, and there is none";
                 return Err(refused(Fault::new("appendage", why)));
             }
             // Nothing that was read is a spacecraft.
             return if self.body.is_spacecraft() { Err(document.missing("body")) } else { Ok(()) };
-        };
+        }
         if !self.body.is_spacecraft() {
             let why = "is a body: leave out `body`, which is another";
             return Err(refused(Fault::new("spacecraft", why)));
@@ -34,6 +34,8 @@ impl Scenario {
             let read = appendage.read_modes(directory, others);
             read.map_err(|fault| refused(fault.within(&format!("appendage[{index}]"))))?;
         }
+        self.turn_drives().map_err(refused)?;
+        let Some(spacecraft) = &self.spacecraft else { return Ok(()) };
         // Wheels are locked in the hub as it is written, and turn freely.
         let rotors = match &self.actuator {
             Actuator::Wheels(wheels) => {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, Matrix3};
 
-use super::Scenario;
+use super::{Drives, Scenario};
 use crate::actuator::{Actuate, Actuator, Allocation, Group, Opposes, Pulsing, Setting, Torquers};
 use crate::attitude::{Vector, beyond, tensor};
 use crate::body::craft::{Moving, Rotor};
@@ -40,6 +40,8 @@ pub struct Study {
     pub moving: Option<Moving>,
     /// What is around a body with three axes.
     pub around: Option<Around>,
+    /// The drives of appendages.
+    pub drives: Option<Drives>,
     /// Attitudes to turn to, and the way to them.
     pub targets: Vec<Target>,
     /// See `targets`.
@@ -98,7 +100,9 @@ impl Study {
             study.adaptive = Some(Box::new(plan.map_err(|fault| fault.within("estimator.adaptive"))?));
         }
         if let Some(spec) = scenario.estimator.as_ref().and_then(Estimator::attitude) {
-            let setting = spec.setting(&scenario.sensor, cycle);
+            let jets = study.groups.is_some();
+            let mounted = body.map(|body| (body, &study.sensed_at[..], jets));
+            let setting = spec.setting(&scenario.sensor, cycle, mounted);
             study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
         }
         for axis in 0..study.axes.len() {
@@ -148,6 +152,7 @@ impl Study {
             }
         }
         self.around = surroundings(scenario, body)?;
+        self.drives = scenario.drives()?;
         for (index, disturbance) in scenario.disturbance.iter().enumerate() {
             named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
         }

@@ -14,6 +14,7 @@ use crate::actuator::Pair;
 use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
 use crate::motion::Phase;
+use crate::motion::turning::Panel;
 use crate::quantity::Positive;
 use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
 use crate::record::row::Stamp;
@@ -68,6 +69,8 @@ pub struct SpatialScene {
     groups: [[Vec<usize>; 2]; 3],
     plumes: Burning,
     frames: FrameTransforms,
+    /// The drive of each wing, and which way it turns the wing about y.
+    drives: [Option<(usize, f64)>; 2],
 }
 
 impl SpatialScene {
@@ -110,6 +113,7 @@ impl SpatialScene {
             }),
             plumes: Burning::new(nozzles.collect(), 0.3 * size),
             frames: FrameTransforms { transforms: Vec::new() },
+            drives: wings(scenario),
             points,
         };
         made.frames.transforms = made.at_rest();
@@ -188,8 +192,14 @@ impl SpatialScene {
         scene(entities)
     }
 
-    /// Where the frames are, at an attitude and with modes of these phases.
-    pub fn frames(&mut self, stamp: Stamp, q: &Quaternion<f64>, modes: &[Phase]) -> &FrameTransforms {
+    /// Where the frames are, at an attitude, with modes of these phases and drives at these angles (rad).
+    pub fn frames(
+        &mut self,
+        stamp: Stamp,
+        q: &Quaternion<f64>,
+        modes: &[Phase],
+        drives: &[f64],
+    ) -> &FrameTransforms {
         let moved: Vec<_> = self.points.iter().map(|point| self.drawn(point, modes)).collect();
         let still = (Vector::zeros(), Vector::zeros());
         let near = self.points.iter().zip(&moved).find(|(point, _)| !point.is_distant());
@@ -213,7 +223,12 @@ impl SpatialScene {
         let steps =
             (0..SECTIONS).map(|section| shape(section) - if section == 0 { 0.0 } else { shape(section - 1) });
         let steps: Vec<_> = steps.map(|step| about(tip * step)).collect();
-        let turned = steps.iter().chain(&steps);
+        let root = |wing: usize| {
+            let turned = self.drives[wing].and_then(|(drive, way)| Some(way * drives.get(drive)?));
+            about(Vector::y() * turned.unwrap_or(0.0)) * steps[0]
+        };
+        let roots = [root(0), root(1)];
+        let turned = roots.iter().flat_map(|root| std::iter::once(root).chain(&steps[1..]));
         let (free, chained) = self.frames.transforms.split_at_mut(placed.len());
         for (frame, (at, turned)) in free.iter_mut().zip(placed) {
             (frame.timestamp, frame.translation, frame.rotation) = (stamp, place(at), attitude(&turned));
@@ -238,6 +253,22 @@ impl SpatialScene {
         }
         self.plumes.change(stamp, parts)
     }
+}
+
+/// The drives that turn the wings: the first two, or the only one turns both.
+fn wings(scenario: &Scenario) -> [Option<(usize, f64)>; 2] {
+    let Some(drives) = &scenario.study.drives else { return [None; 2] };
+    let axis = |panel: &Panel| {
+        let (about, drive) = panel.drive?;
+        Some((drive, if (panel.axes * about).y < 0.0 { -1.0 } else { 1.0 }, panel.root.y))
+    };
+    let turned: Vec<_> = drives.driven.panels.iter().filter_map(axis).collect();
+    // The first wing is that to y.
+    let of = |side: f64| {
+        let own = turned.iter().find(|(.., root)| root * side > 0.0).or(turned.first());
+        own.map(|(drive, way, _)| (*drive, *way))
+    };
+    [of(1.0), of(-1.0)]
 }
 
 /// Translation and rotation of a straight boom to a point, at a part of its length, between those of its ends: a cubic

@@ -17,8 +17,8 @@ pub struct Drive {
     pub actuator: Box<dyn Actuate>,
     distribution: Distribution,
     disturbances: Vec<Disturbing>,
-    /// The instants, latest first, at which the waveform breaks, a disturbance or what is around changes, or the drift has a
-    /// kink.
+    /// The instants, latest first, at which the waveform breaks, a disturbance or what is around changes, the drift has a kink, or
+    /// drives have turned so far that other modes carry the motion on.
     edges: Vec<Instant>,
     /// The next instant at which anything changes by itself.
     pub due: Option<Instant>,
@@ -33,7 +33,10 @@ impl Drive {
         let kinks = scenario.drift.iter().flat_map(Drift::kinks).map(at);
         let disturbed = scenario.disturbance.iter().flat_map(Disturbance::edges);
         let around = scenario.study.around.iter().flat_map(Around::edges);
-        let mut edges: Vec<Instant> = breaks.chain(disturbed).chain(kinks).chain(around).collect();
+        let turned = scenario.study.drives.iter().flat_map(|drives| &drives.courses.changes);
+        let turned = turned.map(|(at, _)| *at).filter(|at| *at > Instant::START);
+        let mut edges: Vec<Instant> =
+            breaks.chain(disturbed).chain(kinks).chain(around).chain(turned).collect();
         edges.sort_by(|a, b| b.cmp(a));
         edges.dedup();
         let stream = |index: usize| seed.stream(&format!("disturbance {index}"));

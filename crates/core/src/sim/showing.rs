@@ -54,7 +54,11 @@ impl Simulation {
             (Scene::Spatial(scene), Plant::Spatial(plant)) => {
                 if frames {
                     let SpatialState { turn, modes } = plant.state();
-                    record.record(now, Sample::Frames(scene.frames(stamp, &turn.attitude, modes)))?;
+                    let drives: Vec<f64> = plant
+                        .drives()
+                        .map_or_else(Vec::new, |of| of.drives.iter().map(|drive| drive.angle_rad).collect());
+                    let frames = scene.frames(stamp, &turn.attitude, modes, &drives);
+                    record.record(now, Sample::Frames(frames))?;
                 }
                 let burning = self.drive.actuator.cycle().map_or([0.0; 3], |cycle| cycle.burning);
                 scene.plumes(stamp, burning)

@@ -372,6 +372,7 @@ impl Simulation {
             orbit: plant.orbit(),
             magnetorquers: actuator.magnetic(),
             bearings: self.bearings(plant),
+            drives: plant.drives(),
         }
     }
 }

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::clamped::{ClampedMode, rotation_of};
+use super::drive::Drive;
 use super::mass::MassProperties;
 use super::results::Units;
 use super::thermal::Thermal;
@@ -12,6 +13,7 @@ use super::turned::Turned;
 use crate::attitude::{Vector, tensor, vector};
 use crate::body::Damping;
 use crate::body::spatial::NamedPoint;
+use crate::motion::turning::{Panel, PanelMode};
 use crate::quantity::{Finite, Positive};
 use crate::structure::mode_table::ModeTable;
 
@@ -35,6 +37,12 @@ pub struct Appendage {
     /// How its axes are turned against those of the body.
     #[serde(default, skip_serializing_if = "Turned::is_none")]
     pub turned: Turned,
+    /// What turns it during a run about an axis through its root; left out, nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive: Option<Drive>,
+    /// The angle of the drive at the start (rad): see `drive`.
+    #[serde(skip)]
+    pub start_angle: f64,
     /// The axis along which a thin plate in the plane of its own x and y stretches: first moments then follow from rotations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plate: Option<Plate>,
@@ -75,9 +83,34 @@ impl Appendage {
         tensor(&self.inertia) == Matrix3::zeros()
     }
 
+    /// Turns vectors of its own axes, as they are at the start, into those of the body.
+    pub(super) fn axes(&self) -> Matrix3<f64> {
+        let turned = self.turned.matrix();
+        self.drive.as_ref().map_or(turned, |drive| turned * drive.turn(self.start_angle))
+    }
+
+    /// What it is to its drive, if it has one: the next of so many.
+    pub(super) fn panel(&self, drives: usize) -> Panel {
+        let mode = |mode: &ClampedMode| PanelMode {
+            frequency: mode.frequency.get(),
+            damping: mode.damping.get(),
+            translation: self.translation(mode),
+            moments: self.moments(mode),
+        };
+        Panel {
+            mass: self.mass.get(),
+            root: vector(&self.at),
+            axes: self.turned.matrix(),
+            centre: vector(&self.centre),
+            inertia: tensor(&self.inertia),
+            modes: self.modes.iter().map(mode).collect(),
+            drive: self.drive.as_ref().map(|drive| (drive.axis(), drives)),
+        }
+    }
+
     /// What it weighs and how it turns, not deformed, in the body's axes from O.
     pub(super) fn mass_properties(&self) -> MassProperties {
-        let axes = self.turned.matrix();
+        let axes = self.axes();
         MassProperties {
             mass: self.mass.get(),
             centre: vector(&self.at) + axes * vector(&self.centre),

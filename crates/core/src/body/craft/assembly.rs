@@ -1,6 +1,7 @@
 //! From the written parts to numbers: total mass, clamped modes as the hub sees them, free modes, points.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::{Matrix3, Matrix3xX};
 
@@ -8,7 +9,6 @@ use super::appendage::Appendage;
 use super::check;
 use super::clamped::rotation_of;
 use super::damping::FreeDamping;
-use super::free::{Free, Held};
 use super::mass::MassProperties;
 use super::spacecraft::Spacecraft;
 use super::thermal;
@@ -17,7 +17,7 @@ use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
 use crate::body::spatial::{NamedPoint, SpatialMode};
 use crate::document::Fault;
-use crate::motion::turning::{Flexible, FreeMode};
+use crate::motion::turning::{Driven, Flexible, Free, FreeMode, Held};
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
 
@@ -95,6 +95,7 @@ impl Craft {
                 modes: coupled(&parts, &free, &damping),
                 damping: damping.whole(spacecraft.whole_damping),
             },
+            driven: driven(spacecraft, appendages, &spinning),
             mass: whole.mass,
             centre: whole.centre,
             bendings: thermal::bendings(appendages, &held.frequencies, &free.shapes),
@@ -102,6 +103,17 @@ impl Craft {
             damping_coupling: damping.coupling,
         })
     }
+}
+
+/// The spacecraft as drives turn it, if it has any.
+fn driven(spacecraft: &Spacecraft, appendages: &[Appendage], spinning: &Matrix3<f64>) -> Option<Arc<Driven>> {
+    let hub = spacecraft.mass_properties();
+    let mut driven = Driven { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
+    for appendage in appendages {
+        let drives = driven.drives();
+        driven.panels.push(appendage.panel(drives));
+    }
+    driven.turns().then(|| Arc::new(driven))
 }
 
 impl Rotor {
@@ -122,7 +134,7 @@ impl Part {
 /// The clamped modes about the total centre of mass, at a distance b from each root: N becomes C N C' + b (C t)'.
 fn parts(appendages: &[Appendage], centre: &Vector) -> Vec<Part> {
     let of = |appendage: &Appendage| -> Vec<Part> {
-        let (axes, from_centre) = (appendage.turned.matrix(), vector(&appendage.at) - centre);
+        let (axes, from_centre) = (appendage.axes(), vector(&appendage.at) - centre);
         let mode = |mode| {
             let mode: &super::ClampedMode = mode;
             let translation = axes * appendage.translation(mode);
@@ -152,7 +164,7 @@ fn places<'a>(hub: &'a [NamedPoint], appendages: &'a [Appendage], modes: usize) 
         hub.iter().map(|point| Place { point, at: vector(&point.position), shapes: rigid() }).collect();
     let mut first = 0;
     for appendage in appendages {
-        let axes = appendage.turned.matrix();
+        let axes = appendage.axes();
         for point in &appendage.points {
             let mut shapes = rigid();
             for (index, mode) in appendage.modes.iter().enumerate() {

@@ -79,6 +79,9 @@ fn appendage_itself(appendage: &Appendage) -> Result<(), Fault> {
     in_metres("centre", vector(&appendage.centre).norm())?;
     extent(&inertia, appendage.mass.get())?;
     appendage.turned.check().map_err(|fault| fault.within("turned"))?;
+    if let Some(drive) = &appendage.drive {
+        drive.check().map_err(|fault| fault.within("drive"))?;
+    }
     for (index, point) in appendage.points.iter().enumerate() {
         in_metres(&format!("points[{index}].position"), vector(&point.position).norm())?;
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::free::Free;
+use crate::motion::turning::Free;
 
 /// Off-diagonal damping below this is no more than a small error of the response.
 const SMALL: f64 = 0.05;

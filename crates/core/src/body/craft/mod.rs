@@ -8,7 +8,7 @@ mod assembly;
 mod check;
 mod clamped;
 mod damping;
-mod free;
+mod drive;
 mod limit;
 mod mass;
 mod moving;
@@ -17,13 +17,16 @@ mod spacecraft;
 mod thermal;
 mod turned;
 
+use std::sync::Arc;
+
 use crate::attitude::Vector;
 use crate::body::Spatial;
-use crate::motion::turning::Flexible;
+use crate::motion::turning::{Driven, Flexible};
 
 pub use appendage::{Appendage, Plate};
 pub use assembly::Part;
 pub use clamped::ClampedMode;
+pub use drive::{Drive, DrivePoint, Piece, Track};
 pub use limit::Limit;
 pub use moving::Moving;
 pub use results::Units;
@@ -57,4 +60,6 @@ pub struct Craft {
     pub bendings: Vec<Bending>,
     /// Off-diagonal damping of the free modes, the largest |Dq_ij| W/|W_i² - W_j²|.
     pub damping_coupling: f64,
+    /// The same parts as drives turn them, if any does.
+    pub driven: Option<Arc<Driven>>,
 }

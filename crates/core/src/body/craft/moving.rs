@@ -36,8 +36,10 @@ impl Moving {
         let sum = |of: &[f64]| -> Vector {
             self.shifts.iter().zip(of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)
         };
-        let arm = self.at + sum(&seen.displacements);
-        let rate = seen.rate.cross(&arm) + sum(&seen.rates);
+        let bent = || [sum(&seen.displacements), sum(&seen.rates)];
+        let [moved, speed] = seen.shift.unwrap_or_else(bent);
+        let arm = self.at + moved;
+        let rate = seen.rate.cross(&arm) + speed;
         let q = seen.attitude;
         let inertial = |v: Vector| (q * Quaternion::from_imag(v) * q.conjugate()).vector().into_owned();
         let [position, velocity] = seen.moved;

@@ -3,6 +3,7 @@
 use nalgebra::Quaternion;
 
 use super::spec::{AttitudeFilter, Role, Setting};
+use super::swinging::Swinging;
 use super::{Correction, Filter, Fix, History, Measured};
 use crate::attitude::{Vector, rotation};
 use crate::belief::Belief;
@@ -24,6 +25,8 @@ pub struct Tracking {
     /// The last gyro reading (rad/s), and when the filter took a gyro reading last.
     rate: Vector,
     since: Instant,
+    /// The torque that the modes feel (N m).
+    torque: Vector,
     /// What the last sample told of the attitude, and whether it told any.
     told: Correction,
     used: bool,
@@ -39,6 +42,7 @@ impl Tracking {
             history: None,
             rate: Vector::zeros(),
             since: Instant::START,
+            torque: Vector::zeros(),
             told: Correction::default(),
             used: false,
         }
@@ -53,7 +57,10 @@ impl Tracking {
                 *off = Vector::from_fn(|_, _| deviation * self.draws.normal());
             }
         }
-        Filter::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations)
+        let mut filter = Filter::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations);
+        filter.swinging =
+            self.setting.modes.clone().map(|known| Box::new(Swinging::new(known, &filter.covariance)));
+        filter
     }
 
     /// Takes what each sensor measured now.
@@ -61,14 +68,16 @@ impl Tracking {
         let Some(history) = &mut self.history else { return };
         let mut corrections = Vec::new();
         // First the gyro: a measurement of now then finds the filter there.
-        for reading in self.setting.of(readings, &|role| *role == Role::Gyro) {
-            if let Some(rate) = reading.1.rate {
+        for (_, (_, reading)) in self.setting.of(readings, &|role| *role == Role::Gyro) {
+            if let Some(rate) = reading.rate {
                 self.rate = rate.into();
                 corrections.extend(history.read(now, self.rate));
                 self.since = now;
             }
         }
-        for (role, reading) in self.setting.of(readings, &|role| matches!(role, Role::Corrects { .. })) {
+        for (role, (sensor, reading)) in
+            self.setting.of(readings, &|role| matches!(role, Role::Corrects { .. }))
+        {
             let Role::Corrects { latency, noise, gain } = role else { continue };
             let measured = match (reading.sight, reading.at) {
                 (Some(sight), _) => Measured::Vector(sight),
@@ -82,6 +91,7 @@ impl Tracking {
                 measured,
                 noise: *noise,
                 gain: gain.as_deref().copied(),
+                sensor,
             }));
         }
         self.used = !corrections.is_empty();
@@ -91,8 +101,29 @@ impl Tracking {
     /// The attitude now, by the last gyro reading since.
     fn attitude(&self, now: Instant) -> Option<Quaternion<f64>> {
         let filter = self.history.as_ref()?.latest();
-        let turn = (self.rate - filter.bias) * now.since(self.since).seconds();
+        let mut turn = (self.rate - filter.bias) * now.since(self.since).seconds();
+        if let Some(swinging) = &filter.swinging {
+            turn -= swinging.rates()[1] * now.since(self.since).seconds();
+        }
         Some(filter.attitude * rotation(&turn))
+    }
+
+    /// What of the last gyro reading is elastic, as far as laws do not read it (rad/s).
+    fn elastic_rate(&self) -> Vector {
+        let swinging = self.history.as_ref().and_then(|history| history.latest().swinging.as_deref());
+        swinging.map_or_else(Vector::zeros, |swinging| {
+            let [hub, mount] = swinging.rates();
+            if swinging.known.rigid { hub + mount } else { mount }
+        })
+    }
+
+    /// The attitude that laws read, where this is that of the hub: without what modes that are known turn.
+    fn read_by_laws(&self, hub: Quaternion<f64>) -> Quaternion<f64> {
+        let swinging = self.history.as_ref().and_then(|history| history.latest().swinging.as_deref());
+        match swinging.filter(|swinging| swinging.known.rigid) {
+            Some(swinging) => hub * rotation(&-swinging.bent()),
+            None => hub,
+        }
     }
 }
 
@@ -102,13 +133,22 @@ impl Setting {
         &'a self,
         readings: &'a [Option<Reading>],
         wanted: &'a dyn Fn(&Role) -> bool,
-    ) -> impl Iterator<Item = (&'a Role, Reading)> {
-        let all = self.roles.iter().zip(readings);
-        all.filter(move |(role, _)| wanted(role)).filter_map(|(role, reading)| Some((role, (*reading)?)))
+    ) -> impl Iterator<Item = (&'a Role, (usize, Reading))> {
+        let all = self.roles.iter().zip(readings).enumerate();
+        let wanted = all.filter(move |(_, (role, _))| wanted(role));
+        wanted.filter_map(|(sensor, (role, reading))| Some((role, (sensor, (*reading)?))))
     }
 }
 
 impl Estimate for Tracking {
+    fn given(&mut self, now: Instant, moments: [f64; 3]) {
+        let Some(known) = &self.setting.modes else { return };
+        self.torque = Vector::from(moments).component_mul(&known.inertia);
+        if let Some(history) = &mut self.history {
+            history.push(now, self.torque);
+        }
+    }
+
     fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]) {
         let now = taken.now;
         if self.history.is_none() {
@@ -116,10 +156,13 @@ impl Estimate for Tracking {
             let beyond = Vector::from_fn(|axis, _| 0.5 * (taken.truth)(axis).rigid_angle);
             let real = libm::sqrt((1.0 - beyond.norm_squared()).max(0.0));
             let filter = self.prior(&(origin * Quaternion::from_parts(real, beyond)));
-            self.history = Some(History::new(now, filter, self.setting.noise, self.setting.reach));
+            let mut history = History::new(now, filter, self.setting.noise, self.setting.reach);
+            history.push(now, self.torque);
+            self.history = Some(history);
         }
         self.read(now, taken.readings);
         let (Some(history), Some(attitude)) = (&self.history, self.attitude(now)) else { return };
+        let (attitude, elastic) = (self.read_by_laws(attitude), self.elastic_rate());
         let angles = Orientation::Attitude(attitude).beyond(taken.origin);
         for (axis, belief) in beliefs.iter_mut().enumerate() {
             if self.spec.watch_only {
@@ -127,14 +170,15 @@ impl Estimate for Tracking {
                     [belief.angle, belief.rate] = measured[axis];
                 }
             } else {
-                (belief.angle, belief.rate) = (angles[axis], self.rate[axis] - history.latest().bias[axis]);
+                (belief.angle, belief.rate) =
+                    (angles[axis], self.rate[axis] - history.latest().bias[axis] - elastic[axis]);
             }
         }
     }
 
     fn carry(&self, now: Instant, origin: &Orientation, beliefs: &mut [Belief]) {
         let Some(attitude) = self.attitude(now).filter(|_| !self.spec.watch_only) else { return };
-        let angles = Orientation::Attitude(attitude).beyond(origin);
+        let angles = Orientation::Attitude(self.read_by_laws(attitude)).beyond(origin);
         beliefs.iter_mut().zip(angles).for_each(|(belief, angle)| belief.angle = angle);
     }
 

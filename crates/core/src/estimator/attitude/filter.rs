@@ -6,9 +6,12 @@
 //! form of Joseph. So does a vector y that is r in inertial axes: with b = Q^* r it is b + b x theta, of a direction the part across
 //! b alone. Errors stay on the right of Q^: nothing has to be reset but Q^ itself.
 
-use nalgebra::{Cholesky, Const, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum};
+use nalgebra::{
+    Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
+};
 
 use super::history::Measured;
+use super::swinging::{Swinging, Told};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::environment::into;
 use crate::numerics::stumpff::stumpff;
@@ -32,6 +35,8 @@ pub struct Filter {
     pub bias: Vector,
     /// Covariance of the errors of attitude (rad) and bias (rad/s).
     pub covariance: Matrix6<f64>,
+    /// Elastic modes that it knows too: the covariance of all is theirs, and the one above a part of it.
+    pub swinging: Option<Box<Swinging>>,
 }
 
 /// What a measured attitude or vector told a filter.
@@ -49,7 +54,7 @@ impl Filter {
         let variance = |row: usize, _| deviations[row / 3] * deviations[row / 3];
         let covariance =
             Matrix6::from_fn(|row, column| if row == column { variance(row, column) } else { 0.0 });
-        Self { attitude, bias, covariance }
+        Self { attitude, bias, covariance, swinging: None }
     }
 
     /// Goes on through an interval of so many seconds, of which the gyro tells the mean rate (rad/s).
@@ -59,6 +64,44 @@ impl Filter {
         let (transition, added) = interval(&turn, seconds, [white * white, walk * walk]);
         self.attitude = unit(self.attitude * rotation(&turn));
         self.covariance = symmetric(&(transition * self.covariance * transition.transpose() + added));
+    }
+
+    /// The same with modes, under torques (N m) each for so long (s).
+    pub fn predict_under(
+        &mut self,
+        reading: &Vector,
+        seconds: f64,
+        noise: &GyroNoise,
+        torques: &[(f64, Vector)],
+    ) {
+        let Some(mut swinging) = self.swinging.take() else { return self.predict(reading, seconds, noise) };
+        let mount = swinging.swing(seconds, torques);
+        let turn = (reading - self.bias) * seconds - mount;
+        swinging.spread(&turn, seconds, noise);
+        self.attitude = unit(self.attitude * rotation(&turn));
+        self.covariance = swinging.first();
+        self.swinging = Some(swinging);
+    }
+
+    /// Takes what a sensor measured whose mount the modes turn.
+    pub fn correct_at(
+        &mut self,
+        sensor: usize,
+        measured: &Measured,
+        noise: &Matrix3<f64>,
+    ) -> Option<Correction> {
+        let mut swinging = self.swinging.take()?;
+        let noise = DMatrix::from_fn(3, 3, |row, column| noise[(row, column)]);
+        let told = match measured {
+            Measured::Attitude(attitude) => swinging.correct(&self.attitude, attitude, &noise, sensor),
+            Measured::Vector(sight) => swinging.correct_by(&self.attitude, sight, &noise, sensor),
+        };
+        self.covariance = swinging.first();
+        self.swinging = Some(swinging);
+        let (innovation, Told { error: [angle, bias], nis }) = told?;
+        self.attitude = unit(self.attitude * rotation(&angle));
+        self.bias += bias;
+        Some(Correction { innovation, nis })
     }
 
     /// Takes a measured attitude whose error in the body's axes has this covariance (rad²). It tells nothing where the
@@ -196,7 +239,7 @@ fn interval(turn: &Vector, seconds: f64, [white, walk]: [f64; 2]) -> (Matrix6<f6
 }
 
 /// Two unit vectors across a vector and each other, as rows.
-fn across(v: &Vector) -> SMatrix<f64, 2, 3> {
+pub(super) fn across(v: &Vector) -> SMatrix<f64, 2, 3> {
     let first = v.cross(&Vector::ith(v.iamin(), 1.0)).normalize();
     let second = v.cross(&first).normalize();
     SMatrix::from_rows(&[first.transpose(), second.transpose()])

@@ -24,6 +24,8 @@ pub struct Fix {
     pub noise: Matrix3<f64>,
     /// The constant gain of a filter that has one.
     pub gain: Option<Matrix6x3<f64>>,
+    /// Which of the sensors measured it.
+    pub sensor: usize,
 }
 
 /// What corrects an attitude.
@@ -37,6 +39,9 @@ pub enum Measured {
 
 impl Fix {
     fn correct(&self, filter: &mut Filter) -> Option<Correction> {
+        if filter.swinging.is_some() {
+            return filter.correct_at(self.sensor, &self.measured, &self.noise);
+        }
         match (&self.measured, &self.gain) {
             (Measured::Attitude(attitude), None) => filter.correct(attitude, &self.noise),
             (Measured::Vector(sight), None) => filter.correct_by(sight, &self.noise),
@@ -54,6 +59,8 @@ pub struct History {
     entries: VecDeque<Entry>,
     /// Measurements of instants that no gyro reading covers yet.
     early: Vec<Fix>,
+    /// Torques that act on the modes (N m), each from an instant on.
+    torques: VecDeque<(Instant, Vector)>,
 }
 
 #[derive(Clone, Debug)]
@@ -69,7 +76,7 @@ impl History {
     /// The history of a filter that begins at an instant, to which nothing is later than `reach`.
     pub fn new(at: Instant, filter: Filter, noise: GyroNoise, reach: Span) -> Self {
         let entry = Entry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
-        Self { noise, reach, entries: VecDeque::from([entry]), early: Vec::new() }
+        Self { noise, reach, entries: VecDeque::from([entry]), early: Vec::new(), torques: VecDeque::new() }
     }
 
     /// The filter after all that it was told.
@@ -83,6 +90,47 @@ impl History {
         self.entries[self.entries.len() - 1].reading
     }
 
+    /// Takes over the torque that acts on the modes from now on (N m).
+    pub fn push(&mut self, now: Instant, torque: Vector) {
+        if self.torques.back().is_some_and(|(from, _)| *from == now) {
+            self.torques.pop_back();
+        }
+        self.torques.push_back((now, torque));
+        let oldest = self.entries[0].at;
+        while self.torques.get(1).is_some_and(|(from, _)| *from <= oldest) {
+            self.torques.pop_front();
+        }
+    }
+
+    /// The torques between two instants, each with how long it acts (s).
+    fn pushed(&self, from: Instant, to: Instant) -> Vec<(f64, Vector)> {
+        let mut pieces = Vec::new();
+        let mut now = from;
+        let mut torque = Vector::zeros();
+        for (begins, next) in &self.torques {
+            if *begins >= to {
+                break;
+            }
+            if *begins > now {
+                pieces.push((begins.since(now).seconds(), torque));
+                now = *begins;
+            }
+            torque = *next;
+        }
+        pieces.push((to.since(now).seconds(), torque));
+        pieces
+    }
+
+    /// Carries a filter on from one instant to another, with a reading of an interval that has both in it.
+    fn carry(&self, filter: &mut Filter, reading: &Vector, [from, to]: [Instant; 2]) {
+        let seconds = to.since(from).seconds();
+        if filter.swinging.is_some() {
+            filter.predict_under(reading, seconds, &self.noise, &self.pushed(from, to));
+        } else {
+            filter.predict(reading, seconds, &self.noise);
+        }
+    }
+
     /// Takes a gyro reading of the interval that ends now (rad/s); tells what measurements that waited for it made of it.
     pub fn read(&mut self, now: Instant, reading: Vector) -> Vec<Correction> {
         let last = &self.entries[self.entries.len() - 1];
@@ -90,7 +138,7 @@ impl History {
             return Vec::new();
         }
         let mut filter = last.filter.clone();
-        filter.predict(&reading, now.since(last.at).seconds(), &self.noise);
+        self.carry(&mut filter, &reading, [last.at, now]);
         self.entries.push_back(Entry { at: now, reading, fixes: Vec::new(), filter });
         let waiting = std::mem::take(&mut self.early);
         let told = waiting.into_iter().filter_map(|fix| self.fix(fix)).collect();
@@ -112,7 +160,7 @@ impl History {
             let before = index.checked_sub(1)?;
             let (reading, from) = (self.entries[index].reading, &self.entries[before]);
             let mut filter = from.filter.clone();
-            filter.predict(&reading, fix.exposed.since(from.at).seconds(), &self.noise);
+            self.carry(&mut filter, &reading, [from.at, fix.exposed]);
             self.entries.insert(index, Entry { at: fix.exposed, reading, fixes: Vec::new(), filter });
         }
         let entry = &mut self.entries[index];
@@ -126,8 +174,9 @@ impl History {
     fn again(&mut self, from: usize) {
         for index in from..self.entries.len() {
             let (mut filter, since) = (self.entries[index - 1].filter.clone(), self.entries[index - 1].at);
+            let (reading, at) = (self.entries[index].reading, self.entries[index].at);
+            self.carry(&mut filter, &reading, [since, at]);
             let entry = &mut self.entries[index];
-            filter.predict(&entry.reading, entry.at.since(since).seconds(), &self.noise);
             for fix in &entry.fixes {
                 fix.correct(&mut filter);
             }

@@ -1,17 +1,21 @@
 //! Attitude and gyro bias, by a multiplicative extended Kalman filter to which measurements may be late.
 
 mod at_work;
+mod elastic;
 mod filter;
 mod gains;
 mod history;
 #[cfg(test)]
 mod loop_tests;
 mod spec;
+mod swinging;
 #[cfg(test)]
 mod tests;
 
 pub use at_work::Tracking;
+pub use elastic::{ElasticStates, KnownMode, KnownModes};
 pub use filter::{Correction, Filter, GyroNoise};
 pub use gains::{Complementary, Form};
 pub use history::{Fix, History, Measured};
 pub use spec::{AttitudeFilter, Initial, Role, Setting};
+pub use swinging::Swinging;

@@ -1,11 +1,14 @@
 //! The attitude filter as a scenario describes it, and what it makes of the scenario's sensors.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Form, GyroNoise};
+use super::{ElasticStates, Form, GyroNoise, KnownModes};
 use crate::attitude::Vector;
+use crate::body::Spatial;
 use crate::document::Fault;
 use crate::estimator::kalman::Prior;
 use crate::quantity::{NonNegative, Positive};
@@ -40,6 +43,9 @@ pub struct AttitudeFilter {
     /// What the filter takes for attitude and bias at the start.
     #[serde(default)]
     pub prior: Prior,
+    /// Elastic modes that it knows too; left out, none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elastic: Option<ElasticStates>,
     /// When the metrics judge the filter, from one time to another (s); left out, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
@@ -95,14 +101,24 @@ pub struct Setting {
     pub bias: Vector,
     /// How late a measurement may be.
     pub reach: Span,
+    /// The modes that it knows.
+    pub modes: Option<Arc<KnownModes>>,
 }
 
+/// A body, the points at which its sensors are, and whether jets turn it.
+pub type Mounted<'a> = (&'a Spatial, &'a [String], bool);
+
 impl AttitudeFilter {
-    /// What these sensors are to the filter, under a law with this period or none.
+    /// What these sensors are to the filter, under a law with this period or none, on a body at these points.
     ///
     /// # Errors
     /// Why they do not do, and the key.
-    pub fn setting(&self, sensors: &[Sensor], cycle: Option<Span>) -> Result<Setting, Fault> {
+    pub fn setting(
+        &self,
+        sensors: &[Sensor],
+        cycle: Option<Span>,
+        mounted: Option<Mounted<'_>>,
+    ) -> Result<Setting, Fault> {
         let gyro = sensors.iter().enumerate().find_map(|(index, sensor)| match sensor {
             Sensor::Gyro(gyro) => Some((index, gyro)),
             _ => None,
@@ -140,7 +156,33 @@ impl AttitudeFilter {
             return Err(Fault::new("form", why));
         }
         let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
-        Ok(Setting { roles, noise: gyro_noise, bias, reach: latest + period })
+        let modes = self.modes(gyro, read, mounted)?.map(Arc::new);
+        Ok(Setting { roles, noise: gyro_noise, bias, reach: latest + period, modes })
+    }
+
+    /// The modes that it shall know of a body with sensors at these points.
+    fn modes(
+        &self,
+        gyro: &Gyro,
+        read: usize,
+        mounted: Option<Mounted<'_>>,
+    ) -> Result<Option<KnownModes>, Fault> {
+        let Some(elastic) = &self.elastic else { return Ok(None) };
+        let refused = |key: &str, why: &str| Err(Fault::new(key, why));
+        if self.form != Form::Extended {
+            return refused("elastic", "goes with `form = \"extended\"`: constant gains know no modes");
+        }
+        if !gyro.integrates() {
+            let why = "needs a gyro that integrates, one with `angle_random_walk`: of a rate at an instant it does not know \
+                       how far modes have turned its mount";
+            return refused("elastic", why);
+        }
+        let Some((body, at, jets)) = mounted else { return Ok(None) };
+        if jets {
+            let why = "is driven by torques about the axes: jets push modes by their forces too, which the filter does not know";
+            return refused("elastic", why);
+        }
+        elastic.known(body, at, read).map(Some).map_err(|fault| fault.within("elastic"))
     }
 
     /// How late a sensor measures the attitude or a vector, and the covariance of its errors; nothing of one that does not.

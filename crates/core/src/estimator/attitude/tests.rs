@@ -52,6 +52,7 @@ fn fix(read: &[Vec<f64>], k: usize) -> Fix {
         measured: Measured::Attitude(quaternion(&read[k][5..9])),
         noise: tracker(),
         gain: None,
+        sensor: 0,
     }
 }
 

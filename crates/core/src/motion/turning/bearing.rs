@@ -114,6 +114,21 @@ pub(super) struct Spun {
     pub waves: Vec<[f64; 2]>,
 }
 
+impl Spun {
+    /// Takes over the rates now as those at a node of a step of `h` seconds; tells by which part of the momenta they changed.
+    pub fn take_over(&mut self, node: usize, h: f64) -> f64 {
+        let mut change = 0.0_f64;
+        for ((rates, now), at) in self.rates.iter_mut().zip(&self.now).zip(&self.at) {
+            let size = at.x.abs() + h * now.x.abs();
+            if size > 0.0 {
+                change = change.max((now.x - rates[node].x).abs() * h / size);
+            }
+            rates[node] = *now;
+        }
+        change
+    }
+}
+
 impl Borne<'_> {
     /// Momentum of the rotors that slip (N m s).
     pub fn stored(&self, spins: impl Iterator<Item = f64>) -> Vector {

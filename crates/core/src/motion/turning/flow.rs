@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Quaternion};
 mod level;
 
 use super::bearing::{Bearing, Borne, Slip, Spin};
+use super::driven::Driving;
 use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
 use super::pace::{Pace, Pose};
 use super::response::Response;
@@ -24,7 +25,7 @@ const BESIDE: usize = 16;
 #[derive(Clone, Debug)]
 pub struct Turning {
     pub(super) model: Model,
-    pace: Pace,
+    pub(super) pace: Pace,
     /// The state at the departure, at the instant of the grid that was reached last, and at the instant seen last.
     pub(super) departed: State,
     pub(super) grid: State,
@@ -41,14 +42,16 @@ pub struct Turning {
     /// The step that follows, once it was looked at for rotors that come to rest.
     pub(super) ahead: Option<Ahead>,
     /// Responses over a step of the grid at each level, once they were needed.
-    regular: Vec<Option<Regular>>,
+    pub(super) regular: Vec<Option<Regular>>,
     /// Those over the last steps that were beside the grid, and the place of the next.
-    beside: Vec<Regular>,
-    next_beside: usize,
+    pub(super) beside: Vec<Regular>,
+    pub(super) next_beside: usize,
     /// The amplitude of each mode, at most, at the start of a step (m sqrt(kg)).
     amplitudes: Vec<f64>,
     work: Work,
     effort: Effort,
+    /// Drives that turn appendages.
+    pub(super) driving: Option<Box<Driving>>,
 }
 
 /// What acts from a departure on.
@@ -77,7 +80,7 @@ pub struct Effort {
 
 /// A step of the grid: its length (s) and the responses over it.
 #[derive(Clone, Debug)]
-struct Regular {
+pub(super) struct Regular {
     h: f64,
     responses: Vec<Response>,
 }
@@ -106,6 +109,7 @@ impl Acting {
         h: f64,
         t: f64,
         around: Option<(&'a dyn Surroundings, f64)>,
+        driving: Option<&'a Driving>,
     ) -> Step<'a> {
         let count = self.rotors.len().min(bearings.len());
         let borne = Borne { bearings: &bearings[..count], rotors: &self.rotors, slips: &slips[..count] };
@@ -116,11 +120,13 @@ impl Acting {
             h,
             torque: self.torque,
             push: (self.push != Vector::zeros()).then_some(self.push),
-            forces: &self.forces,
+            // Of a body with drives what acts follows from the force alone.
+            forces: if driving.is_some() { &[] } else { &self.forces },
             levers: &self.levers,
             rotors: if is_borne { (Vector::zeros(), Vector::zeros()) } else { self.rotors(t) },
             borne: is_borne.then_some(borne),
             around: around.map(|(around, since)| (around, since + t)),
+            driven: driving.map(|driving| (driving, t)),
         }
     }
 }
@@ -172,6 +178,7 @@ impl Turning {
             amplitudes: vec![0.0; state.modes.len()],
             work: Work::new(state.modes.len()),
             effort: Effort::default(),
+            driving: None,
             departed: state,
             model,
         };
@@ -273,7 +280,7 @@ impl Turning {
     ) -> Option<f64> {
         let Some(Some(Regular { h, responses })) = self.regular.get(level) else { return None };
         let borne = (&responses[..], &self.bearings[..], &self.slips[..]);
-        let step = self.acting.step(&self.model, borne, *h, self.reached, around);
+        let step = self.acting.step(&self.model, borne, *h, self.reached, around, self.driving.as_deref());
         self.effort.passes += u64::from(step.take(state, &mut self.work));
         self.effort.steps += 1;
         Some(*h)
@@ -286,7 +293,7 @@ impl Turning {
         if h > 0.0 {
             let place = self.prepare_beside(h);
             let borne = (&self.beside[place].responses[..], &self.bearings[..], &self.slips[..]);
-            let step = self.acting.step(&self.model, borne, h, self.reached, around);
+            let step = self.acting.step(&self.model, borne, h, self.reached, around, self.driving.as_deref());
             self.effort.passes += u64::from(step.take(&mut self.here, &mut self.work));
             self.effort.steps += 1;
         }
@@ -302,6 +309,9 @@ impl Turning {
 
     /// The inertia tensor of the body as it is bent at the instant seen last (kg m²).
     pub fn inertia(&self) -> Matrix3<f64> {
+        if let Some(inertia) = &self.seen.inertia {
+            return *inertia;
+        }
         let modes = self.model.modes.iter().zip(&self.seen.displacements);
         modes.fold(self.model.inertia, |sum, (of, q)| sum + tensor(of.moments) * *q)
     }
@@ -315,7 +325,10 @@ impl Turning {
             stored += borne.stored(self.here.spins.iter().map(|spin| spin.sums.x));
             locked += borne.locked();
         }
-        self.seen.look(&self.model, &self.here, &stored, &locked);
+        match &self.driving {
+            Some(driving) => driving.look(self.now, &self.here, &stored, &mut self.seen),
+            None => self.seen.look(&self.model, &self.here, &stored, &locked),
+        }
     }
 
     /// The body at the instant seen last.
@@ -326,8 +339,8 @@ impl Turning {
     /// Energy of motion and deformation of each mode at the instant seen last (J): (q'² + W² q²)/2.
     pub fn energies(&self) -> impl Iterator<Item = f64> + '_ {
         let seen = self.seen.displacements.iter().zip(&self.seen.rates);
-        seen.zip(&self.model.modes).map(|((q, rate), mode)| {
-            let stretched = mode.frequency * q;
+        seen.zip(self.model.modes.iter().enumerate()).map(|((q, rate), (index, mode))| {
+            let stretched = self.seen.frequencies.get(index).unwrap_or(&mode.frequency) * q;
             0.5 * (rate * rate + stretched * stretched)
         })
     }

@@ -16,13 +16,16 @@ mod bearing;
 #[cfg(test)]
 mod borne_tests;
 mod bounds;
+mod driven;
 mod feel;
 mod flow;
+mod free;
 mod heated;
 mod model;
 mod pace;
 mod response;
 mod rotation;
+mod shape;
 mod slipping;
 mod state;
 mod step;
@@ -31,7 +34,9 @@ mod tests;
 mod watch;
 
 pub use bearing::{Bearing, Line, Slip};
+pub use driven::{Angles, Driven, Driving, Panel, PanelMode};
 pub use flow::{Acting, Effort, Turning};
+pub use free::{Free, Held};
 pub use heated::Heated;
 pub use model::{Flexible, FreeMode, Rotor, Surroundings};
 pub use pace::SHAKE;

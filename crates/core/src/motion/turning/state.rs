@@ -60,6 +60,15 @@ pub struct Seen {
     pub displacements: Vec<f64>,
     /// Their rates q' (m sqrt(kg)/s).
     pub rates: Vec<f64>,
+    /// Of a body with drives, the frequencies of its modes (rad/s), which change.
+    pub frequencies: Vec<f64>,
+    /// Of such a body, by how much a unit of each turns the hub (rad/(m sqrt(kg))).
+    pub rotations: Vec<Vector>,
+    /// Of such a body by how much places of the hub are further from the centre of mass than at the start (m), and how fast that
+    /// changes (m/s).
+    pub shift: Option<[Vector; 2]>,
+    /// Of such a body, its inertia as it is bent (kg m²).
+    pub inertia: Option<Matrix3<f64>>,
 }
 
 impl Seen {
@@ -77,6 +86,10 @@ impl Seen {
             moved: [zero; 2],
             displacements: vec![0.0; modes],
             rates: vec![0.0; modes],
+            frequencies: Vec::new(),
+            rotations: Vec::new(),
+            shift: None,
+            inertia: None,
         }
     }
 

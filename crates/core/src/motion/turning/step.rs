@@ -7,9 +7,11 @@
 use nalgebra::{Matrix3, Quaternion, Vector2};
 
 use super::bearing::{Borne, Spun};
-use super::model::{Model, Surroundings, tensor};
+use super::driven::{Driving, Scratch};
+use super::model::{Model, Surroundings};
 use super::response::Response;
 use super::rotation::{Bend, inertial, spin};
+use super::shape::{Shape, Sums};
 use super::state::State;
 use crate::attitude::{Vector, rotation};
 use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
@@ -41,13 +43,22 @@ pub(super) struct Step<'a> {
     pub borne: Option<Borne<'a>>,
     /// The surroundings, and the time since the start of the run (s).
     pub around: Option<(&'a dyn Surroundings, f64)>,
+    /// Drives that turn appendages, and the time since the departure (s).
+    pub driven: Option<(&'a Driving, f64)>,
 }
 
 /// The memory of steps: what they keep of each mode, and of rotors in bearings.
 #[derive(Clone, Debug)]
 pub(super) struct Work {
     modes: Vec<Memory>,
-    spun: Spun,
+    beside: Beside,
+}
+
+/// What steps keep of rotors in bearings and of drives.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Beside {
+    pub spun: Spun,
+    pub driven: Scratch,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -59,15 +70,6 @@ pub(super) struct Memory {
     pub s: [f64; 3],
     /// P of the stage at hand, then q'.
     pub rate: f64,
-}
-
-/// How the modes are at an instant: sum phi q, sum phi P, and the change of the inertia.
-struct Shape {
-    bent: Vector,
-    elastic: Vector,
-    changed: Matrix3<f64>,
-    /// What the modes add to the torque on the hub (N m).
-    levered: Vector,
 }
 
 /// What a stage comes to.
@@ -90,20 +92,25 @@ pub(super) struct Felt {
     pub tide: Option<Matrix3<f64>>,
     /// Since the start of the step (s).
     pub t: f64,
+    /// The start of the step, and its nodes, from 0.
+    pub stage: usize,
 }
 
 impl Work {
     /// Memory for so many modes.
     pub fn new(modes: usize) -> Self {
-        Self { modes: vec![Memory::default(); modes], spun: Spun::default() }
+        Self { modes: vec![Memory::default(); modes], beside: Beside::default() }
     }
 }
 
 impl Step<'_> {
     /// Takes the step; tells the number of passes.
     pub fn take(&self, state: &mut State, work: &mut Work) -> u32 {
-        let (modes, spun) = (&mut work.modes[..], &mut work.spun);
-        let mut stages = self.guess(state, modes, spun);
+        let (modes, beside) = (&mut work.modes[..], &mut work.beside);
+        if let Some((driving, t)) = self.driven {
+            driving.prepare(t, self.h, &mut beside.driven);
+        }
+        let mut stages = self.guess(state, modes, beside);
         let speed =
             modes.iter().fold(0.0, |most, mode| mode.rate.abs().max(self.h * mode.s[0].abs()).max(most));
         let size = state.momentum.norm() + self.h * self.torque.norm();
@@ -112,8 +119,8 @@ impl Step<'_> {
             passes += 1;
             let mut change = 0.0_f64;
             for node in 0..3 {
-                let (found, forced) = self.stage(node, state, &stages, modes, spun);
-                change = change.max(self.slipped(node, spun));
+                let (found, forced) = self.stage(node, state, &stages, modes, beside);
+                change = change.max(beside.spun.take_over(node, self.h));
                 let last = &stages[node];
                 if size > 0.0 {
                     change = change.max((found.push - last.push).norm() * self.h / size);
@@ -130,25 +137,20 @@ impl Step<'_> {
             }
             before = change;
         }
-        self.end(state, &stages, modes, spun);
+        self.end(state, &stages, modes, &beside.spun);
         passes
     }
 
-    /// Takes over the rates of rotors in bearings at a node; tells by which part of their momenta that changed.
-    fn slipped(&self, node: usize, spun: &mut Spun) -> f64 {
-        let mut change = 0.0_f64;
-        for ((rates, now), at) in spun.rates.iter_mut().zip(&spun.now).zip(&spun.at) {
-            let size = at.x.abs() + self.h * now.x.abs();
-            if size > 0.0 {
-                change = change.max((now.x - rates[node].x).abs() * self.h / size);
-            }
-            rates[node] = *now;
+    /// Keeps q and P of a mode, where drives turn what the others make of them.
+    #[inline]
+    fn keep(&self, index: usize, q: f64, p: f64, beside: &mut Beside) {
+        if self.driven.is_some() {
+            (beside.driven.q[index], beside.driven.p[index]) = (q, p);
         }
-        change
     }
 
     /// What the state comes to by itself, and the first guess: stages are like the start, and what turns grows.
-    fn guess(&self, state: &State, modes: &mut [Memory], spun: &mut Spun) -> [Stage; 3] {
+    fn guess(&self, state: &State, modes: &mut [Memory], beside: &mut Beside) -> [Stage; 3] {
         let mut sums = Sums::default();
         for (index, (memory, response)) in modes.iter_mut().zip(self.responses).enumerate() {
             let [q, p, ..] = state.modes[index];
@@ -160,21 +162,24 @@ impl Step<'_> {
                 *known = [a * q + b * p + constant[0] * force, c * q + d * p + constant[1] * force];
             }
             memory.rate = self.model.modes[index].frequency * p;
+            self.keep(index, q, memory.rate, beside);
             sums.add(self, index, q, memory.rate);
         }
         if self.borne.is_some() {
-            spun.at.clear();
-            spun.at.extend(state.spins.iter().map(|spin| spin.sums));
-            spun.now.resize(spun.at.len(), Vector::zeros());
+            let Spun { at, now, .. } = &mut beside.spun;
+            at.clear();
+            at.extend(state.spins.iter().map(|spin| spin.sums));
+            now.resize(at.len(), Vector::zeros());
         }
-        let (stage, felt) = self.turning(0.0, &sums.shape(), &state.momentum, &state.attitude, spun);
+        let (stage, felt) = self.turning((0, 0.0), &sums.shape(), &state.momentum, &state.attitude, beside);
         if self.borne.is_some() {
-            spun.rates.clear();
-            spun.rates.extend(spun.now.iter().map(|now| [*now; 3]));
+            let Spun { rates, now, .. } = &mut beside.spun;
+            rates.clear();
+            rates.extend(now.iter().map(|now| [*now; 3]));
         }
-        self.feel(&felt, modes, &spun.waves, 0);
+        self.feel(&felt, modes, beside, 0);
         // What turns the body grows as the torque and the rotors have it: most of what a first pass would find.
-        let grows = self.torque - self.rotors.1;
+        let grows = if self.driven.is_some() { Vector::zeros() } else { self.torque - self.rotors.1 };
         for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
             let slope = of.rotation.dot(&grows) * self.h;
             memory.g = NODES.map(|node| memory.g[0] + slope * node);
@@ -191,7 +196,7 @@ impl Step<'_> {
         state: &State,
         stages: &[Stage; 3],
         modes: &mut [Memory],
-        spun: &mut Spun,
+        beside: &mut Beside,
     ) -> (Stage, f64) {
         let mut sums = Sums::default();
         let loud = self.is_loud();
@@ -206,28 +211,31 @@ impl Step<'_> {
                 p += dot(of_p, &memory.s);
             }
             memory.rate = self.model.modes[index].frequency * p;
+            self.keep(index, q, memory.rate, beside);
             sums.add(self, index, q, memory.rate);
         }
         let [a, b, c] = MATRIX[node].map(|weight| weight * self.h);
         let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
         let facing = state.attitude + stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
         if self.borne.is_some() {
-            for ((at, rates), spin) in spun.at.iter_mut().zip(&spun.rates).zip(&state.spins) {
+            let Spun { at, rates, .. } = &mut beside.spun;
+            for ((at, rates), spin) in at.iter_mut().zip(&*rates).zip(&state.spins) {
                 *at = spin.sums + rates[0] * a + rates[1] * b + rates[2] * c;
             }
         }
-        let (stage, felt) = self.turning(NODES[node] * self.h, &sums.shape(), &momentum, &facing, spun);
-        (stage, self.feel(&felt, modes, &spun.waves, node))
+        let (stage, felt) =
+            self.turning((node + 1, NODES[node] * self.h), &sums.shape(), &momentum, &facing, beside);
+        (stage, self.feel(&felt, modes, beside, node))
     }
 
     /// How the body turns `t` seconds after the start of the step.
     fn turning(
         &self,
-        t: f64,
+        (stage, t): (usize, f64),
         shape: &Shape,
         momentum: &Vector,
         facing: &Quaternion<f64>,
-        spun: &mut Spun,
+        beside: &mut Beside,
     ) -> (Stage, Felt) {
         let model = self.model;
         let bend = Bend::new(shape.bent);
@@ -235,10 +243,15 @@ impl Step<'_> {
         let mut free = bend.back(momentum) - (rotors + change * t);
         let mut locked = None;
         if let Some(borne) = &self.borne {
-            free -= borne.stored(spun.at.iter().map(|at| at.x));
+            free -= borne.stored(beside.spun.at.iter().map(|at| at.x));
             locked = borne.sticks().then(|| borne.locked());
         }
-        let (turning, rigid, rate) = if model.stretches || locked.is_some() {
+        let (mut levered, mut inertia) = (shape.levered, model.inertia + shape.changed);
+        let (turning, rigid, rate) = if let Some((driving, _)) = self.driven {
+            let turns = driving.turns(stage, &free, self.push, &mut beside.driven);
+            (levered, inertia) = (turns.levered, turns.inertia);
+            (free, turns.rate - turns.elastic, turns.rate)
+        } else if model.stretches || locked.is_some() {
             let changed = locked.map_or(shape.changed, |locked| shape.changed + locked);
             let (turning, rate) = model.rates(&free, &shape.elastic, &changed);
             (turning, model.inverse * turning, rate)
@@ -247,26 +260,25 @@ impl Step<'_> {
             (free, rigid, rigid + shape.elastic + model.bending * free)
         };
         let (mut torque, mut tide) = (self.torque, None);
-        if !self.levers.is_empty() {
-            torque += shape.levered;
+        if !self.levers.is_empty() || self.driven.is_some() {
+            torque += levered;
         }
         if let Some((around, since)) = self.around {
             let hub = facing * rotation(&shape.bent);
-            torque += around.torque(since + t, &hub, &(model.inertia + shape.changed));
-            tide = if model.stretches { around.tide(since + t, &hub) } else { None };
+            torque += around.torque(since + t, &hub, &inertia);
+            tide = if model.stretches || self.driven.is_some() { around.tide(since + t, &hub) } else { None };
         }
         if let Some(borne) = &self.borne {
-            torque += borne.feel(&rate, spun);
+            torque += borne.feel(&rate, &mut beside.spun);
         }
         let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
-        let stage = Stage {
+        let made = Stage {
             push: bend.forward(&torque) - mean.cross(momentum),
             turn: spin(facing, &mean),
             rigid,
             pushed: self.push.map_or_else(Vector::zeros, |push| inertial(facing, &bend.forward(&push))),
         };
-
-        (stage, Felt { turning, rate, tide, t })
+        (made, Felt { turning, rate, tide, t, stage })
     }
 
     /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
@@ -317,34 +329,6 @@ impl Step<'_> {
             let (end, left) = exact_sum(end, left - end * response.excess);
             *mode = [end.x, end.y, left.x, left.y];
         }
-    }
-}
-
-/// Sums over the modes.
-#[derive(Default)]
-struct Sums {
-    bent: Vector,
-    elastic: Vector,
-    changed: [f64; 6],
-    levered: Vector,
-}
-
-impl Sums {
-    #[inline]
-    fn add(&mut self, step: &Step<'_>, index: usize, q: f64, p: f64) {
-        let of = &step.model.modes[index];
-        self.bent += of.rotation * q;
-        self.elastic += of.rotation * p;
-        if let Some(lever) = step.levers.get(index) {
-            self.levered += lever * q;
-        }
-        if step.model.stretches {
-            self.changed.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
-        }
-    }
-
-    fn shape(&self) -> Shape {
-        Shape { bent: self.bent, elastic: self.elastic, changed: tensor(self.changed), levered: self.levered }
     }
 }
 

@@ -139,6 +139,25 @@ rows! {
         /// Whether the Sun shines on the body.
         light: Light,
     }
+    /// A drive that turns an appendage.
+    DriveMotion {
+        /// Angle (rad).
+        angle_rad: f64,
+        /// Rate (rad/s).
+        rate_rad_s: f64,
+    }
+    /// A free mode of a spacecraft whose appendages turn.
+    DrivenMode {
+        /// Natural frequency (rad/s).
+        frequency_rad_s: f64,
+    }
+    /// The drives of a spacecraft's appendages, and the natural frequencies that change with their angles.
+    DrivesMotion = "/drives" {
+        /// Each drive, in the order of the appendages.
+        drives: Vec<DriveMotion>,
+        /// Each mode, in the order of the start.
+        modes: Vec<DrivenMode>,
+    }
     /// The bearings of the wheels of a spatial body, with friction, imbalance or a tachometer.
     Bearings = "/bearings" {
         /// That of each wheel, in the order of the scenario.

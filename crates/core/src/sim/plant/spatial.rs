@@ -6,15 +6,15 @@ use super::two_way::TwoWay;
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
 use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
-use crate::environment::{Around, Seen, into};
+use crate::environment::{Around, Seen};
 use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
 use crate::motion::{Phase, State};
-use crate::record::{
-    Energy, Orbit, OrbitAxis, Pointing, Position, Record, RecordError, Vibration, Vibrations,
-};
+use crate::record::{Energy, Pointing, Position, Record, RecordError, Vibration, Vibrations};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
+
+mod logged;
 
 /// A mode is seen by a sensor that it turns by at least such a part of what the mode does that turns it most.
 const VISIBLE: f64 = 0.1;
@@ -74,7 +74,9 @@ impl SpatialPlant {
         let around = study.around.clone();
         let two_way = flexible.map(|of| {
             let shapes = [&sensed[..], &hub];
-            Box::new(TwoWay::new(body, of, around.clone(), study.moving.clone(), shapes, &study.bearings))
+            let two_way =
+                TwoWay::new(body, of, around.clone(), study.moving.clone(), shapes, &study.bearings);
+            Box::new(two_way.driven(study.drives.as_ref()))
         });
         let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
         Self {
@@ -131,6 +133,9 @@ impl SpatialPlant {
                     met = Some(at);
                 }
                 two_way.show(&self.rigid, &mut self.state);
+                if let Some((_, rotations)) = two_way.modes() {
+                    self.sensed.copy_from_slice(rotations);
+                }
             } else {
                 let rotors = self.rotors(self.departed);
                 let turn = &mut self.state.turn;
@@ -312,10 +317,18 @@ impl SpatialPlant {
     /// Energy of the elastic modes at the instant seen last (J), and of those that the sensor sees: the slow ones that it
     /// hardly sees keep theirs whatever the law does.
     pub fn elastic_energies(&self) -> (f64, f64) {
-        let energies = self.elastic.energies(&self.state.modes).zip(&self.visible);
-        energies.fold((-0.0, -0.0), |(all, visible), (energy, seen)| {
+        let energies = self.energies();
+        energies.into_iter().zip(&self.visible).fold((-0.0, -0.0), |(all, visible), (energy, seen)| {
             (all + energy, if *seen { visible + energy } else { visible })
         })
+    }
+
+    /// The energy of each mode at the instant seen last (J).
+    fn energies(&self) -> Vec<f64> {
+        match self.two_way.as_deref() {
+            Some(two_way) if two_way.modes().is_some() => two_way.modal_energies().collect(),
+            _ => self.elastic.energies(&self.state.modes).collect(),
+        }
     }
 
     /// The energies, as logged.
@@ -339,31 +352,13 @@ impl SpatialPlant {
     /// The modes, as logged.
     pub fn vibrations(&self) -> Vibrations {
         let modes = &self.state.modes;
-        let rates = self.elastic.rates(modes).zip(self.elastic.energies(modes));
+        let rates = self.elastic.rates(modes).zip(self.energies());
         let of = |(phase, (rate, energy_j)): (&Phase, (f64, f64))| Vibration {
             displacement: phase.displacement,
             rate,
             energy_j,
         };
         Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
-    }
-
-    /// Where it is on its orbit, as logged.
-    pub fn orbit(&self) -> Option<Orbit> {
-        let (sky, t) = (self.around.as_ref()?.sky(), self.seen.seconds());
-        let place = sky.place(t)?;
-        let here = |v: Vector| into(self.attitude(), &v);
-        let nowhere = Vector::repeat(f64::NAN);
-        let (nadir, field) = (here(place.local[2]), sky.seen(t).field.map_or(nowhere, here));
-        let sun = sky.sun().map_or(nowhere, |sun| here(*sun));
-        let axis = |axis: usize| OrbitAxis {
-            position_m: place.position[axis],
-            velocity_m_s: place.velocity[axis],
-            nadir: nadir[axis],
-            field_t: field[axis],
-            sun: sun[axis],
-        };
-        Some(Orbit { axes: [0, 1, 2].map(axis).into(), light: sky.is_lit(t).into() })
     }
 
     /// The attitude, as logged, with the angles by which it is beyond its target (rad).

@@ -1,5 +1,7 @@
 //! A body with three axes whose modes act back on its rotation, on its way.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::attitude::{Vector, vector};
@@ -8,7 +10,10 @@ use crate::body::craft::Moving;
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
 use crate::environment::{Around, Seen};
 use crate::motion::Phase;
-use crate::motion::turning::{Acting, Bearing, Flexible, Heated, Slip, Surroundings, Turned, Turning};
+use crate::motion::turning::{
+    Acting, Angles, Bearing, Driving, Flexible, Heated, Slip, Surroundings, Turned, Turning,
+};
+use crate::scenario::{Courses, Drives};
 use crate::sensor::{Orientation, Truth};
 
 /// The motion, and what the plant needs to turn what acts and what is seen into its terms.
@@ -24,6 +29,8 @@ pub struct TwoWay {
     acting: Acting,
     /// What moves it, and where its first point was at the start, from the centre of mass (m).
     moving: Option<(Moving, Vector)>,
+    /// How drives turn its appendages, if they do, and which of their changes is next.
+    courses: Option<(Arc<Courses>, usize)>,
 }
 
 /// The disturbance of the body, and what is around it.
@@ -99,6 +106,51 @@ impl TwoWay {
             acting: Acting::default(),
             frequencies,
             hub,
+            courses: None,
+        }
+    }
+
+    /// The same with drives that turn its appendages.
+    #[must_use]
+    pub fn driven(mut self, drives: Option<&Drives>) -> Self {
+        let Some(Drives { driven, courses }) = drives else { return self };
+        let Some(driving) = Driving::new(driven.clone(), courses.clone()) else { return self };
+        self.turning.drive(driving);
+        self.moving = self.moving.map(|(moving, _)| {
+            let [began, _] = moving.place(self.turning.seen());
+            (moving, began)
+        });
+        self.courses = Some((courses.clone(), 0));
+        self
+    }
+
+    /// Angle (rad) and rate (rad/s) of each drive so many seconds after the start.
+    pub fn drives(&self, t: f64) -> Vec<[f64; 2]> {
+        let each = |courses: &Courses| (0..courses.count()).map(|drive| courses.at(drive, t)).collect();
+        self.courses.as_ref().map_or_else(Vec::new, |(courses, _)| each(courses))
+    }
+
+    /// Of a body with drives the frequencies of its modes (rad/s) at the instant seen last, and how they turn the hub.
+    pub fn modes(&self) -> Option<(&[f64], &[Vector])> {
+        let seen = self.turning.seen();
+        self.courses.as_ref().map(|_| (&seen.frequencies[..], &seen.rotations[..]))
+    }
+
+    /// Energy of motion and deformation of each mode (J).
+    pub fn modal_energies(&self) -> impl Iterator<Item = f64> + '_ {
+        self.turning.energies()
+    }
+
+    /// Takes over the modes of another angle where that is due, so long after the start (s), before a departure.
+    fn recast(&mut self, began: f64) {
+        self.turning.begins(began);
+        let Some((courses, next)) = &mut self.courses else { return };
+        let mut to = None;
+        while let Some((_, middle)) = courses.changes.get(*next).filter(|(at, _)| at.seconds() <= began) {
+            (to, *next) = (Some(*middle), *next + 1);
+        }
+        if let Some(middle) = to {
+            self.turning.recast(middle);
         }
     }
 
@@ -155,6 +207,7 @@ impl TwoWay {
         let beyond = self.hub.iter().zip(&self.acts).zip(given);
         forces.clear();
         forces.extend(beyond.map(|((of_hub, acts), force)| force - of_hub.dot(&push) + acts.dot(&hub)));
+        self.recast(began);
         self.turning.depart(&self.acting);
         self.turning.settle(self.outside.since(began));
     }

@@ -10,12 +10,14 @@ impl Turning {
     /// The level of the next step.
     pub(super) fn level(&mut self, around: Option<(&dyn Surroundings, f64)>) -> usize {
         let (exerted, slow) = around.map_or((0.0, 0.0), |(around, _)| (around.bound(), around.frequency()));
+        let slow = slow + self.driving.as_ref().map_or(0.0, |driving| driving.angles.fastest());
         let (mut rotors, change) = self.acting.rotors(self.reached);
         if !self.bearings.is_empty() {
             rotors = self.borne_by(&self.slips).stored(self.grid.spins.iter().map(|spin| spin.sums.x));
         }
         // What wheels in bearings, warmth and forces do to modes and place is not estimated: steps resolve all modes.
         let known = self.bearings.is_empty()
+            && self.driving.is_none()
             && self.acting.levers.is_empty()
             && self.acting.push == Vector::zeros()
             && around.is_none_or(|(around, _)| around.heated().is_empty());

@@ -1,0 +1,48 @@
+//! Figure `drives` of a spacecraft whose appendages turn: angles of the drives, and natural frequencies over the highest of each.
+
+use flexsc_core::record::DrivesMotion;
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+use super::spatial::Cycles;
+use super::story::Story;
+use super::{time, title};
+
+/// Colours of drives and modes, again from the first after the last.
+const COLOURS: [plotters::style::RGBColor; 5] =
+    [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let line = |of: &dyn Fn(&DrivesMotion) -> f64| -> Vec<Point> {
+        cycles.drives.iter().map(|(time, row)| (*time, of(row))).collect()
+    };
+    let (drives, modes) =
+        cycles.drives.first().map_or((0, 0), |(_, row)| (row.drives.len(), row.modes.len()));
+    let panel = |x: Axis, name: &str, unit: &'static str, lines: Vec<(String, Vec<Point>)>| {
+        let values: Vec<f64> = lines.iter().flat_map(|(_, points)| points).map(|(_, value)| *value).collect();
+        let layers = lines.into_iter().enumerate().map(|(index, (name, points))| {
+            Layer::new(&name, COLOURS[index % COLOURS.len()], Shape::Line(1.2), points)
+        });
+        Panel::new(x, Axis::around(name, unit, values), layers.collect())
+    };
+    let x = time(0.0..story.end);
+    let angles = (0..drives)
+        .map(|drive| (format!("drive {}", drive + 1), line(&|row| row.drives[drive].angle_rad)))
+        .collect();
+    let highest = |mode: usize| {
+        cycles.drives.iter().map(|(_, row)| row.modes[mode].frequency_rad_s).fold(0.0, f64::max)
+    };
+    let frequencies = (0..modes)
+        .map(|mode| {
+            let most = highest(mode);
+            let name = format!("{most:.3} rad/s");
+            (name, line(&|row| row.modes[mode].frequency_rad_s / most))
+        })
+        .collect();
+    let mut panels = vec![panel(x.unnamed(), "angle", "rad", angles)];
+    if modes > 0 {
+        panels.push(panel(x, "frequency over its highest", "", frequencies));
+    } else if let Some(last) = panels.last_mut() {
+        last.x = x;
+    }
+    Figure { title: title(story, "drives and natural frequencies"), panels, panel_height: 240 }
+}

@@ -1,0 +1,261 @@
+//! The drive of an appendage: the axis about which it turns during a run, and its angle as a function of time.
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::attitude::{Vector, vector};
+use crate::document::Fault;
+use crate::quantity::{Finite, NonNegative, Positive};
+
+/// A drive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Drive {
+    /// The axis through the root, in the axes of the appendage, of any length but 0.
+    pub about: [Finite; 3],
+    /// Angle at the start (rad), 0 where the appendage is as it is `turned`.
+    #[serde(default)]
+    pub angle: Finite,
+    /// It turns at this rate (rad/s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate: Option<Finite>,
+    /// It begins to turn at this time (s); left out, it turns from the start on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<NonNegative>,
+    /// It begins to stop at this time (s); left out, it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<NonNegative>,
+    /// How fast its rate changes (rad/s²); left out, at once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration: Option<Positive>,
+    /// Angles at times, with constant rates between.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub table: Vec<DrivePoint>,
+    /// What it follows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub track: Option<Track>,
+    /// What faces the Sun, a direction in the axes of the appendage across the drive's; left out, z.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub normal: Option<[Finite; 3]>,
+}
+
+/// An angle at a time.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DrivePoint {
+    /// Time since the start (s).
+    pub time: NonNegative,
+    /// Angle (rad).
+    pub angle: Finite,
+}
+
+/// What a drive follows.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Track {
+    /// The Sun, from a spacecraft that points to its target.
+    Sun,
+}
+
+/// From a time on (s): angle (rad), rate (rad/s) and acceleration (rad/s²) there.
+pub type Piece = [f64; 4];
+
+/// No drive is further turned at the start (rad).
+const MOST_ANGLE: f64 = 100.0;
+
+impl Drive {
+    /// The unit vector along its axis, in the axes of the appendage.
+    pub fn axis(&self) -> Vector {
+        vector(&self.about).normalize()
+    }
+
+    /// What faces the Sun, a unit vector in the axes of the appendage.
+    pub fn facing(&self) -> Vector {
+        self.normal.as_ref().map_or_else(Vector::z, |normal| vector(normal).normalize())
+    }
+
+    /// The rotation by an angle (rad) about its axis.
+    pub fn turn(&self, angle: f64) -> Matrix3<f64> {
+        let axis = self.axis();
+        let (sin, cos) = libm::sincos(angle);
+        (1.0 - cos) * axis * axis.transpose() + cos * Matrix3::identity() + sin * axis.cross_matrix()
+    }
+
+    /// What single values cannot show to be wrong: a key within, and why.
+    ///
+    /// # Errors
+    /// See above.
+    pub fn check(&self) -> Result<(), Fault> {
+        let length = vector(&self.about).norm();
+        if !(1e-6..=1e6).contains(&length) {
+            return Err(Fault::new("about", format!("must have a length of 1e-6 to 1e6, got {length}")));
+        }
+        if self.angle.get().abs() > MOST_ANGLE {
+            let why =
+                format!("must be an angle of -{MOST_ANGLE} to {MOST_ANGLE} rad, got {}", self.angle.get());
+            return Err(Fault::new("angle", why));
+        }
+        let ways = [self.rate.is_some(), !self.table.is_empty(), self.track.is_some()];
+        if ways.iter().filter(|given| **given).count() != 1 {
+            let why = "says how it turns by one of `rate`, `table` and `track`";
+            return Err(Fault::new("", why));
+        }
+        let beside = [
+            ("angle", self.angle.get() != 0.0, self.rate.is_some()),
+            ("from", self.from.is_some(), self.rate.is_some()),
+            ("until", self.until.is_some(), self.rate.is_some()),
+            ("acceleration", self.acceleration.is_some(), self.track.is_none()),
+            ("normal", self.normal.is_some(), self.track.is_some()),
+        ];
+        if let Some((key, ..)) = beside.into_iter().find(|(_, given, fits)| *given && !fits) {
+            let with = match key {
+                "normal" => "`track`",
+                "acceleration" => "`rate` or `table`",
+                _ => "`rate`",
+            };
+            return Err(Fault::new(key, format!("goes with {with}")));
+        }
+        if let Some(normal) = &self.normal {
+            let normal = vector(normal);
+            let across = normal.norm() > 1e-6 && normal.normalize().dot(&self.axis()).abs() < 1e-6;
+            if !across {
+                return Err(Fault::new(
+                    "normal",
+                    "must be across `about`: no turn of the drive moves its part along it",
+                ));
+            }
+        } else if self.track.is_some() && self.axis().z.abs() > 1e-6 {
+            return Err(Fault::new("normal", "must be given where the drive's axis is not across z"));
+        }
+        self.fits_in_time()
+    }
+
+    /// Whether what follows begins when what comes before has ended.
+    fn fits_in_time(&self) -> Result<(), Fault> {
+        for (index, pair) in self.table.windows(2).enumerate() {
+            let [before, after] = [pair[0].time.get(), pair[1].time.get()];
+            if after <= before {
+                let why = format!("must be after the time before, {before}, got {after}");
+                return Err(Fault::new(format!("table[{}].time", index + 1), why));
+            }
+        }
+        if self.table.len() == 1 {
+            return Err(Fault::new("table", "must have two points at least"));
+        }
+        let pieces = self.pieces();
+        if let Some(pair) = pieces.windows(2).find(|pair| pair[1][0] < pair[0][0]) {
+            let why = format!(
+                "is too small: the change of the rate that begins at {:.3} s has not ended when the next begins, at {:.3} s",
+                pair[0][0].min(pair[1][0]),
+                pair[1][0].max(pair[0][0])
+            );
+            let key = if self.acceleration.is_some() { "acceleration" } else { "until" };
+            return Err(Fault::new(key, why));
+        }
+        if pieces.first().is_some_and(|first| first[0] < 0.0) {
+            let why = "is too small: the rate would have to change before the start";
+            return Err(Fault::new("acceleration", why));
+        }
+        Ok(())
+    }
+
+    /// What it does from which time on, if nothing has to be followed; before the first it is at rest, at the angle of that.
+    pub fn pieces(&self) -> Vec<Piece> {
+        // Each change of the rate: when it is, and to what.
+        let changes: Vec<[f64; 2]> = if let Some(rate) = self.rate {
+            let from = self.from.map_or(0.0, NonNegative::get);
+            let until = self.until.map(|until| [until.get(), 0.0]);
+            std::iter::once([from, rate.get()]).chain(until).collect()
+        } else {
+            let slope = |pair: &[DrivePoint]| {
+                let [time, angle] =
+                    [pair[1].time.get() - pair[0].time.get(), pair[1].angle.get() - pair[0].angle.get()];
+                [pair[0].time.get(), angle / time]
+            };
+            let last = self.table.last().map(|last| [last.time.get(), 0.0]);
+            self.table.windows(2).map(slope).chain(last).collect()
+        };
+        let start = self.table.first().map_or(self.angle.get(), |first| first.angle.get());
+        // A drive that turns from the start on has done so before.
+        let mut now: Piece = [0.0, start, 0.0, 0.0];
+        let mut pieces = Vec::new();
+        for (index, [time, rate]) in changes.into_iter().enumerate() {
+            let change = rate - now[2];
+            let lasts = match self.acceleration {
+                Some(acceleration) if index > 0 || time > 0.0 => change.abs() / acceleration.get(),
+                _ => 0.0,
+            };
+            // Between points of a table half of the change is before the point.
+            let begins = if self.rate.is_some() { time } else { time - 0.5 * lasts };
+            if index == 0 {
+                now[0] = begins;
+            }
+            let angle = now[1] + now[2] * (begins - now[0]);
+            if lasts > 0.0 {
+                pieces.push([begins, angle, now[2], change / lasts]);
+            }
+            now = [begins + lasts, angle + (now[2] + 0.5 * change) * lasts, rate, 0.0];
+            pieces.push(now);
+        }
+        pieces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drive(text: &str) -> Drive {
+        toml::from_str(&format!("about = [0, 2, 0]\n{text}")).unwrap()
+    }
+
+    #[test]
+    fn rates_begin_and_end_along_a_trapezium() {
+        let pieces = drive("rate = 0.02\nfrom = 10\nuntil = 40\nacceleration = 0.002\nangle = 0.1").pieces();
+        let near = |a: &Piece, b: Piece| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15);
+        let expected: [Piece; 4] = [
+            [10.0, 0.1, 0.0, 0.002],
+            [20.0, 0.2, 0.02, 0.0],
+            [40.0, 0.6, 0.02, -0.002],
+            [50.0, 0.7, 0.0, 0.0],
+        ];
+        assert!(pieces.len() == 4 && pieces.iter().zip(expected).all(|(a, b)| near(a, b)), "{pieces:?}");
+    }
+
+    #[test]
+    fn tables_are_met_and_their_corners_rounded() {
+        let table =
+            "table = [{ time = 10, angle = 0 }, { time = 20, angle = 0.1 }, { time = 40, angle = 0 }]";
+        let sharp = drive(table).pieces();
+        assert_eq!(sharp.iter().map(|piece| piece[0]).collect::<Vec<_>>(), [10.0, 20.0, 40.0]);
+        assert!((sharp[2][1]).abs() < 1e-16 && sharp[2][2] == 0.0);
+        let round = drive(&format!("{table}\nacceleration = 0.005")).pieces();
+        // Half of the change of 0.01 rad/s is before 10 s, and after the last corner the angle is that of the table.
+        assert_eq!(round[0], [9.0, 0.0, 0.0, 0.005]);
+        let last = round.last().unwrap();
+        assert!((last[0] - 40.5).abs() < 1e-12 && last[1].abs() < 1e-15 && last[2] == 0.0, "{last:?}");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        for (text, key) in [
+            ("", ""),
+            ("rate = 1.0\ntrack = \"sun\"", ""),
+            ("track = \"sun\"\nfrom = 3", "from"),
+            ("track = \"sun\"\nnormal = [0, 1, 1]", "normal"),
+            ("rate = 0.02\nuntil = 5\nacceleration = 0.002", "acceleration"),
+            ("rate = 0.02\nfrom = 6\nuntil = 5", "until"),
+            ("table = [{ time = 1, angle = 0 }]", "table"),
+            ("table = [{ time = 1, angle = 0 }, { time = 1, angle = 1 }]", "table[1].time"),
+            (
+                "table = [{ time = 1, angle = 0 }, { time = 2, angle = 1 }]\nacceleration = 0.1",
+                "acceleration",
+            ),
+        ] {
+            let fault = drive(text).check().unwrap_err();
+            assert_eq!(fault.key, key, "{text}: {fault}");
+        }
+        assert_eq!(drive("track = \"sun\"").check(), Ok(()));
+    }
+}

@@ -1,0 +1,138 @@
+//! Elastic modes in an attitude filter, as a scenario describes them and as the filter knows them.
+//!
+//! The attitude that the filter knows is that of the hub. A gyro where modes turn its mount by g beyond the hub reads w + g q' + b,
+//! a tracker sees the attitude of the hub turned by s q, and q'' + 2 zeta W q' + W² q = phi (T + n) with the torque T that is
+//! commanded and white noise n of a modal force. What the law reads may be the hub's, or what is left without phi q and phi q'.
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::attitude::Vector;
+use crate::body::Spatial;
+use crate::document::Fault;
+use crate::estimator::Feeds;
+use crate::quantity::Positive;
+
+/// Elastic modes as states of the filter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElasticStates {
+    /// Which free modes, by their index.
+    pub modes: Vec<usize>,
+    /// Their natural frequencies as the filter knows them (rad/s); left out, the body's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequencies: Option<Vec<Positive>>,
+    /// What these are multiplied by: the filter's error.
+    #[serde(default = "one")]
+    pub factor: Positive,
+    /// By how much random forces let the rate of each mode walk (m sqrt(kg)/s^1.5).
+    pub noise: Positive,
+    /// Standard deviation of each displacement at the start (m sqrt(kg)).
+    #[serde(default = "displacement")]
+    pub displacement: Positive,
+    /// Standard deviation of each rate at the start (m sqrt(kg)/s); left out, that of the displacement times the frequency.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate: Option<Positive>,
+    /// What the law reads: angle and rate as if the body were rigid, or those of the hub; left out, rigid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub feeds: Option<Feeds>,
+}
+
+fn one() -> Positive {
+    Positive::ONE
+}
+
+fn displacement() -> Positive {
+    Positive::new(1e-3).unwrap_or(Positive::ONE)
+}
+
+/// A mode as the filter knows it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KnownMode {
+    /// Natural frequency (rad/s).
+    pub frequency: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Rotation of the hub for a unit of it (rad/(m sqrt(kg))).
+    pub hub: Vector,
+    /// Rotation of the gyro's mount beyond that of the hub.
+    pub gyro: Vector,
+    /// The same of the mount of each sensor, in the order of the scenario.
+    pub mounts: Vec<Vector>,
+    /// Standard deviations at the start, of displacement (m sqrt(kg)) and rate over the frequency (m sqrt(kg)).
+    pub initial: [f64; 2],
+}
+
+/// The modes that a filter knows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KnownModes {
+    /// Each.
+    pub each: Vec<KnownMode>,
+    /// By how much random forces let a rate walk (m sqrt(kg)/s^1.5).
+    pub noise: f64,
+    /// What turns a moment that is told (rad/s²) into a torque about each axis (kg m²).
+    pub inertia: Vector,
+    /// Whether the law reads angle and rate without the modes.
+    pub rigid: bool,
+}
+
+impl ElasticStates {
+    /// The modes of a body whose sensors are at these points, of which one is the gyro's; torques act on the hub, its first point.
+    ///
+    /// # Errors
+    /// The key, and why.
+    pub fn known(&self, body: &Spatial, at: &[String], gyro: usize) -> Result<KnownModes, Fault> {
+        if self.modes.is_empty() {
+            return Err(Fault::new("modes", "must name a mode at least"));
+        }
+        for (index, mode) in self.modes.iter().enumerate() {
+            if *mode >= body.modes.len() {
+                let why = format!("must be below the body's {} modes, got {mode}", body.modes.len());
+                return Err(Fault::new(format!("modes[{index}]"), why));
+            }
+            if self.modes[..index].contains(mode) {
+                return Err(Fault::new(format!("modes[{index}]"), format!("names mode {mode} again")));
+            }
+        }
+        let given = self.frequencies.as_ref().map_or(self.modes.len(), Vec::len);
+        if given != self.modes.len() {
+            let why = format!("must be one for each of {} modes, got {given}", self.modes.len());
+            return Err(Fault::new("frequencies", why));
+        }
+        if self.feeds == Some(Feeds::Modes) {
+            return Err(Fault::new("feeds", "must be `rigid` or `hub`: the attitude is never as measured"));
+        }
+        let hub = body.shapes(body.points.first().map_or("", |point| &point.name));
+        let mounts: Vec<_> = at.iter().map(|point| body.shapes(point)).collect();
+        let known = |(index, mode): (usize, &usize)| {
+            let own = &body.modes[*mode];
+            let beyond = |mount: &Vec<(Vector, Vector)>| mount[*mode].1 - hub[*mode].1;
+            let frequency = self.frequencies.as_ref().map_or(own.frequency.get(), |given| given[index].get());
+            let frequency = frequency * self.factor.get();
+            let displacement = self.displacement.get();
+            KnownMode {
+                frequency,
+                damping: own.damping.get(),
+                hub: hub[*mode].1,
+                gyro: beyond(&mounts[gyro]),
+                mounts: mounts.iter().map(beyond).collect(),
+                initial: [displacement, self.rate.map_or(displacement, |rate| rate.get() / frequency)],
+            }
+        };
+        let tensor: Matrix3<f64> = body.tensor();
+        Ok(KnownModes {
+            each: self.modes.iter().enumerate().map(known).collect(),
+            noise: self.noise.get(),
+            inertia: tensor.diagonal(),
+            rigid: self.feeds != Some(Feeds::Hub),
+        })
+    }
+}
+
+impl KnownModes {
+    /// By how much displacements (m sqrt(kg)), or their rates, turn a place.
+    pub fn turned(&self, of: impl Fn(&KnownMode) -> Vector, by: impl Iterator<Item = f64>) -> Vector {
+        self.each.iter().zip(by).fold(Vector::zeros(), |sum, (mode, by)| sum + of(mode) * by)
+    }
+}

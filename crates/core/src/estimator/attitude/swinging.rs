@@ -1,0 +1,210 @@
+//! The states of an attitude filter's modes, with the covariance of all that it knows.
+//!
+//! Errors are theta, beta, and of each mode those of q and q'/W. Through an interval theta' = -w^ x theta - beta - g dq' - n_v,
+//! beta' = n_u, and the modes swing; transition and added covariance are those of Van Loan for constant w^, exact.
+
+use std::sync::Arc;
+
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Quaternion};
+
+use super::elastic::KnownModes;
+use super::filter::GyroNoise;
+use crate::attitude::{Vector, beyond, rotation};
+use crate::environment::into;
+use crate::numerics::exponential::exponential;
+use crate::sensor::Sight;
+
+/// The modes of a filter at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Swinging {
+    /// What it knows of them.
+    pub known: Arc<KnownModes>,
+    /// q and q'/W of each (m sqrt(kg)).
+    pub state: Vec<[f64; 2]>,
+    /// Mean rate of each over the last interval (m sqrt(kg)/s).
+    pub mean: Vec<f64>,
+    /// Covariance of the errors of attitude, bias and modes.
+    pub covariance: DMatrix<f64>,
+}
+
+/// What a measurement told beyond what was expected.
+pub struct Told {
+    /// The error that it finds in attitude and bias (rad, rad/s).
+    pub error: [Vector; 2],
+    /// Normalised square of the innovation.
+    pub nis: f64,
+}
+
+impl Swinging {
+    /// The modes at rest, beside attitude and bias of this covariance.
+    pub fn new(known: Arc<KnownModes>, covariance: &Matrix6<f64>) -> Self {
+        let count = known.each.len();
+        let mut whole = DMatrix::zeros(6 + 2 * count, 6 + 2 * count);
+        whole.view_mut((0, 0), (6, 6)).copy_from(covariance);
+        for (index, mode) in known.each.iter().enumerate() {
+            for (part, deviation) in mode.initial.iter().enumerate() {
+                let at = 6 + 2 * index + part;
+                whole[(at, at)] = deviation * deviation;
+            }
+        }
+        Self { state: vec![[0.0; 2]; count], mean: vec![0.0; count], covariance: whole, known }
+    }
+
+    /// The covariance of attitude and bias.
+    pub fn first(&self) -> Matrix6<f64> {
+        self.covariance.fixed_view::<6, 6>(0, 0).into_owned()
+    }
+
+    /// By how much the modes turn the mount of a sensor beyond the hub (rad).
+    pub fn mounted(&self, sensor: usize) -> Vector {
+        self.known.turned(|mode| mode.mounts[sensor], self.state.iter().map(|[q, _]| *q))
+    }
+
+    /// By how much they turn the hub (rad).
+    pub fn bent(&self) -> Vector {
+        self.known.turned(|mode| mode.hub, self.state.iter().map(|[q, _]| *q))
+    }
+
+    /// What of the gyro's last reading they make, that of the hub and of its mount beyond it (rad/s).
+    pub fn rates(&self) -> [Vector; 2] {
+        [
+            self.known.turned(|mode| mode.hub, self.mean.iter().copied()),
+            self.known.turned(|mode| mode.gyro, self.mean.iter().copied()),
+        ]
+    }
+
+    /// Swings through an interval of so many seconds, under torques (N m) each for so long (s); tells by how much the mount of the
+    /// gyro turns beyond the hub (rad).
+    pub fn swing(&mut self, seconds: f64, torques: &[(f64, Vector)]) -> Vector {
+        let known = self.known.clone();
+        let mut turned = Vector::zeros();
+        for ((state, mean), mode) in self.state.iter_mut().zip(&mut self.mean).zip(&known.each) {
+            let before = state[0];
+            for (lasts, torque) in torques {
+                let rest = mode.hub.dot(torque) / (mode.frequency * mode.frequency);
+                let [a, b, c, d] = transition(mode.frequency, mode.damping, *lasts);
+                let (x, y) = (state[0] - rest, state[1]);
+                *state = [rest + a * x + b * y, c * x + d * y];
+            }
+            *mean = if seconds > 0.0 { (state[0] - before) / seconds } else { 0.0 };
+            turned += mode.gyro * (state[0] - before);
+        }
+        turned
+    }
+
+    /// Carries the covariance through an interval in which the body turns so far (rad).
+    pub fn spread(&mut self, turn: &Vector, seconds: f64, noise: &GyroNoise) {
+        let order = self.covariance.nrows();
+        let mut flow = DMatrix::zeros(order, order);
+        flow.view_mut((0, 0), (3, 3)).copy_from(&(-turn.cross_matrix()));
+        let (white, walk) = (noise.angle_random_walk, noise.rate_random_walk);
+        let mut added = DMatrix::zeros(order, order);
+        for axis in 0..3 {
+            flow[(axis, axis + 3)] = -seconds;
+            added[(axis, axis)] = white * white * seconds;
+            added[(axis + 3, axis + 3)] = walk * walk * seconds;
+        }
+        for (index, mode) in self.known.each.iter().enumerate() {
+            let (at, angle) = (6 + 2 * index, mode.frequency * seconds);
+            flow[(at, at + 1)] = angle;
+            flow[(at + 1, at)] = -angle;
+            flow[(at + 1, at + 1)] = -2.0 * mode.damping * angle;
+            for axis in 0..3 {
+                flow[(axis, at + 1)] = -mode.gyro[axis] * angle;
+            }
+            let force = self.known.noise / mode.frequency;
+            added[(at + 1, at + 1)] = force * force * seconds;
+        }
+        // [VanLoan78]: exp [[-F, Q], [0, F']] = [[.., Phi^-1 Qd], [0, Phi']].
+        let mut both = DMatrix::zeros(2 * order, 2 * order);
+        both.view_mut((0, 0), (order, order)).copy_from(&(-&flow));
+        both.view_mut((0, order), (order, order)).copy_from(&added);
+        both.view_mut((order, order), (order, order)).copy_from(&flow.transpose());
+        let both = exponential(&both);
+        let transition = both.view((order, order), (order, order)).transpose();
+        let added = &transition * both.view((0, order), (order, order));
+        let carried = &transition * &self.covariance * transition.transpose() + added;
+        self.covariance = 0.5 * (&carried + carried.transpose());
+    }
+
+    /// Takes what a sensor sees of the hub at this attitude: an attitude whose error has this covariance.
+    pub fn correct(
+        &mut self,
+        attitude: &Quaternion<f64>,
+        measured: &Quaternion<f64>,
+        noise: &DMatrix<f64>,
+        sensor: usize,
+    ) -> Option<(Vector, Told)> {
+        let off = beyond(&(attitude * rotation(&self.mounted(sensor))), measured);
+        let told =
+            self.take(&DMatrix::identity(3, 3), &DVector::from_column_slice(off.as_slice()), noise, sensor)?;
+        Some((off, told))
+    }
+
+    /// The same of a vector, of which `rows` pick what is told.
+    pub fn correct_by(
+        &mut self,
+        attitude: &Quaternion<f64>,
+        sight: &Sight,
+        noise: &DMatrix<f64>,
+        sensor: usize,
+    ) -> Option<(Vector, Told)> {
+        let expected: Vector = into(&(attitude * rotation(&self.mounted(sensor))), &sight.inertial);
+        let off = sight.vector - expected;
+        let moved = expected.cross_matrix();
+        let whole = |of: &nalgebra::Matrix3<f64>| DMatrix::from_fn(3, 3, |row, column| of[(row, column)]);
+        let told = if sight.is_direction {
+            let across = super::filter::across(&expected);
+            let rows = DMatrix::from_fn(2, 3, |row, column| across[(row, column)]);
+            let off = &rows * DVector::from_column_slice(off.as_slice());
+            let told =
+                self.take(&(&rows * whole(&moved)), &off, &(&rows * noise * rows.transpose()), sensor)?;
+            Told { nis: told.nis * 1.5, ..told }
+        } else {
+            self.take(&whole(&moved), &DVector::from_column_slice(off.as_slice()), noise, sensor)?
+        };
+        Some((off.cross(&expected) / expected.norm_squared(), told))
+    }
+
+    /// Takes numbers that are beyond what is expected by so much, where a turn of the sensor's mount moves them so, and errors have
+    /// this covariance.
+    fn take(
+        &mut self,
+        moved: &DMatrix<f64>,
+        off: &DVector<f64>,
+        noise: &DMatrix<f64>,
+        sensor: usize,
+    ) -> Option<Told> {
+        let order = self.covariance.nrows();
+        let mut seen = DMatrix::zeros(3, order);
+        for axis in 0..3 {
+            seen[(axis, axis)] = 1.0;
+            for (index, mode) in self.known.each.iter().enumerate() {
+                seen[(axis, 6 + 2 * index)] = mode.mounts[sensor][axis];
+            }
+        }
+        let seen = moved * seen;
+        let to_measured = &self.covariance * seen.transpose();
+        let inverse = Cholesky::new(&seen * &to_measured + noise)?.inverse();
+        let gain = &to_measured * &inverse;
+        let error = &gain * off;
+        let kept = DMatrix::identity(order, order) - &gain * &seen;
+        let left = &kept * &self.covariance * kept.transpose() + &gain * noise * gain.transpose();
+        self.covariance = 0.5 * (&left + left.transpose());
+        for (index, state) in self.state.iter_mut().enumerate() {
+            state[0] += error[6 + 2 * index];
+            state[1] += error[7 + 2 * index];
+        }
+        let part = |from: usize| Vector::new(error[from], error[from + 1], error[from + 2]);
+        Some(Told { error: [part(0), part(3)], nis: off.dot(&(inverse * off)) })
+    }
+}
+
+/// The transition of q and q'/W of a free mode, row by row.
+fn transition(frequency: f64, damping: f64, seconds: f64) -> [f64; 4] {
+    let root = libm::sqrt((1.0 - damping) * (1.0 + damping));
+    let (sin, cos) = libm::sincos(root * frequency * seconds);
+    let decay = libm::exp(-damping * frequency * seconds);
+    let (part, lag) = (sin / root, damping * sin / root);
+    [decay * (cos + lag), decay * part, -decay * part, decay * (cos - lag)]
+}

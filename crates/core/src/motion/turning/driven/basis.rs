@@ -1,0 +1,161 @@
+//! The free modes of one angle, in which the state is carried for a while.
+
+use nalgebra::{DMatrix, DVector, Matrix3};
+
+use super::{Angles, Driven, Posed};
+use crate::attitude::Vector;
+use crate::motion::turning::free::Free;
+use crate::motion::turning::model::{Flexible, FreeMode};
+
+/// The free modes of one angle.
+#[derive(Clone, Debug)]
+pub struct Basis {
+    /// Inertia with the drives at this angle (kg m²), and where its centre of mass was at the start (m).
+    pub inertia: Matrix3<f64>,
+    pub first_centre: Vector,
+    /// W (rad/s), Y and Y⁻¹ = W⁻² Y' O².
+    pub frequencies: Vec<f64>,
+    pub shapes: DMatrix<f64>,
+    pub inverse: DMatrix<f64>,
+    /// phi.
+    pub rotations: Vec<Vector>,
+    /// J1 of the modes.
+    moments: Vec<Matrix3<f64>>,
+    /// Y' D Y.
+    damping: DMatrix<f64>,
+    /// Forces on the free modes of the start become forces on these.
+    pub from_start: DMatrix<f64>,
+    /// Y' of the start, inverted.
+    start: DMatrix<f64>,
+}
+
+impl Basis {
+    /// That of the start, as the body is written.
+    pub fn first(of: &Driven, angles: &dyn Angles) -> Option<Self> {
+        let mut posed = Posed::default();
+        of.pose(|drive| angles.at(drive, 0.0), &mut posed);
+        let free = posed.free(of)?;
+        let start = inverse(of, &free).transpose();
+        Some(Self::of(of, &posed, free, (posed.centre, start)))
+    }
+
+    /// That of another time since the start (s), each mode the one that is most like it here.
+    pub fn at(&self, of: &Driven, angles: &dyn Angles, t: f64) -> Option<Self> {
+        let mut posed = Posed::default();
+        of.pose(|drive| angles.at(drive, t), &mut posed);
+        let free = self.followed(&posed.free(of)?);
+        Some(Self::of(of, &posed, free, (self.first_centre, self.start.clone())))
+    }
+
+    fn of(of: &Driven, posed: &Posed, free: Free, (first_centre, start): (Vector, DMatrix<f64>)) -> Self {
+        let inverse = inverse(of, &free);
+        let own: Vec<f64> = of.modes().map(|mode| 2.0 * mode.damping * mode.frequency).collect();
+        let damped =
+            DMatrix::from_fn(own.len(), own.len(), |row, column| own[row] * free.shapes[(row, column)]);
+        let moments = (0..own.len()).map(|column| {
+            let shape = free.shapes.column(column);
+            posed
+                .moments
+                .iter()
+                .zip(shape.iter())
+                .fold(Matrix3::zeros(), |sum: Matrix3<f64>, (moments, part)| sum + moments * *part)
+        });
+        let damping = free.shapes.tr_mul(&damped);
+        Self {
+            inertia: posed.inertia,
+            first_centre,
+            moments: moments.collect(),
+            damping: 0.5 * (&damping + damping.transpose()),
+            rotations: (0..own.len()).map(|mode| free.rotation(mode)).collect(),
+            from_start: free.shapes.tr_mul(&start),
+            inverse,
+            frequencies: free.frequencies,
+            shapes: free.shapes,
+            start,
+        }
+    }
+
+    /// Modes in the order and with the signs of those here that they are most like.
+    pub fn followed(&self, free: &Free) -> Free {
+        let order = free.frequencies.len();
+        // Of modes of one body W⁻¹ Y' O² Y W⁻¹ = 1.
+        let likeness = &self.inverse * &free.shapes;
+        let alike = |here: usize, there: usize| {
+            likeness[(here, there)] * self.frequencies[here] / free.frequencies[there]
+        };
+        let mut pairs: Vec<(usize, usize)> =
+            (0..order).flat_map(|here| (0..order).map(move |there| (here, there))).collect();
+        pairs.sort_by(|a, b| alike(b.0, b.1).abs().total_cmp(&alike(a.0, a.1).abs()));
+        let (mut taken, mut chosen) = (vec![false; order], vec![None; order]);
+        for (here, there) in pairs {
+            if chosen[here].is_none() && !taken[there] {
+                (chosen[here], taken[there]) = (Some(there), true);
+            }
+        }
+        let chosen: Vec<(usize, f64)> = chosen
+            .into_iter()
+            .enumerate()
+            .map(|(here, there)| {
+                let there = there.unwrap_or(here);
+                (there, if alike(here, there) < 0.0 { -1.0 } else { 1.0 })
+            })
+            .collect();
+        let mut sorted = free.clone();
+        for (here, (there, sign)) in chosen.into_iter().enumerate() {
+            sorted.frequencies[here] = free.frequencies[there];
+            sorted.shapes.set_column(here, &(free.shapes.column(there) * sign));
+            sorted.rotations.set_column(here, &(free.rotations.column(there) * sign));
+            sorted.translations.set_column(here, &(free.translations.column(there) * sign));
+        }
+        sorted
+    }
+
+    /// The body with its drives at this angle.
+    pub fn flexible(&self) -> Flexible {
+        let mode = |(index, frequency): (usize, &f64)| FreeMode {
+            frequency: *frequency,
+            damping: self.damping[(index, index)] / (2.0 * frequency),
+            rotation: self.rotations[index],
+            moments: self.moments[index],
+        };
+        Flexible {
+            inertia: self.inertia,
+            modes: self.frequencies.iter().enumerate().map(mode).collect(),
+            damping: Some(self.damping.clone()),
+        }
+    }
+
+    /// eta of q.
+    pub fn held(&self, q: &[f64]) -> Vec<f64> {
+        (&self.shapes * DVector::from_column_slice(q)).as_slice().to_vec()
+    }
+
+    /// pi of P.
+    pub fn held_rates(&self, p: &[f64]) -> Vec<f64> {
+        self.inverse.tr_mul(&DVector::from_column_slice(p)).as_slice().to_vec()
+    }
+
+    /// q of eta.
+    pub fn free(&self, eta: &[f64]) -> Vec<f64> {
+        (&self.inverse * DVector::from_column_slice(eta)).as_slice().to_vec()
+    }
+
+    /// P of pi, and modal forces of those on clamped modes.
+    pub fn forced(&self, pi: &[f64]) -> Vec<f64> {
+        self.shapes.tr_mul(&DVector::from_column_slice(pi)).as_slice().to_vec()
+    }
+
+    /// By how much displacements turn the hub from the mean axes (rad).
+    pub fn bent(&self, q: &[f64]) -> Vector {
+        self.rotations.iter().zip(q).fold(Vector::zeros(), |sum, (rotation, q)| sum + rotation * *q)
+    }
+}
+
+/// Y⁻¹ = W⁻² Y' O².
+pub fn inverse(of: &Driven, free: &Free) -> DMatrix<f64> {
+    let held: Vec<f64> = of.modes().map(|mode| mode.frequency).collect();
+    DMatrix::from_fn(held.len(), held.len(), |row, column| {
+        let ratio = held[column] / free.frequencies[row];
+        free.shapes[(column, row)] * ratio * ratio
+    })
+}

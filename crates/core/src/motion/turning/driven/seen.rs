@@ -1,0 +1,143 @@
+//! A driven body as it looks at an instant, and its state in the modes of another angle.
+
+use nalgebra::Quaternion;
+
+use super::{Driving, Posed};
+use crate::attitude::{Vector, rotation};
+use crate::motion::turning::flow::Turning;
+use crate::motion::turning::model::Model;
+use crate::motion::turning::pace::Pace;
+use crate::motion::turning::rotation::Bend;
+use crate::motion::turning::state::{Seen, State};
+
+/// What a state is without its mean axes.
+struct Bare {
+    /// Attitude of the hub, and the total momentum in its axes (N m s).
+    attitude: Quaternion<f64>,
+    momentum: Vector,
+    eta: Vec<f64>,
+    pi: Vec<f64>,
+    bent: Vector,
+}
+
+impl Driving {
+    fn bare(&self, state: &State) -> Bare {
+        let q: Vec<f64> = state.modes.iter().map(|[q, _, lost, _]| q + lost).collect();
+        let p = state.modes.iter().zip(&self.basis.frequencies).map(|([_, p, _, lost], w)| w * (p + lost));
+        let p: Vec<f64> = p.collect();
+        let bent = self.basis.bent(&q);
+        Bare {
+            attitude: state.attitude * rotation(&bent),
+            momentum: Bend::new(bent).back(&(state.momentum + state.lost.1)),
+            eta: self.basis.held(&q),
+            pi: self.basis.held_rates(&p),
+            bent,
+        }
+    }
+
+    /// Looks at a state `now` seconds after the departure, in which rotors have this momentum (N m s): in the modes of that instant.
+    pub(in crate::motion::turning) fn look(&self, now: f64, state: &State, rotors: &Vector, seen: &mut Seen) {
+        let mut posed = Posed::default();
+        self.posed(self.began + now, &mut posed);
+        let Bare { attitude, momentum, eta, mut pi, .. } = self.bare(state);
+        let rate = posed.rates(&(momentum - rotors), &eta, &mut pi);
+        let rates = pi;
+        let Some(free) = posed.free(&self.of) else { return };
+        let free = self.basis.followed(&free);
+        let inverse = super::basis::inverse(&self.of, &free);
+        let of = |held: &[f64]| -> Vec<f64> {
+            let rows = inverse.row_iter();
+            rows.map(|row| row.iter().zip(held).map(|(part, held)| part * held).sum()).collect()
+        };
+        (seen.displacements, seen.rates) = (of(&eta), of(&rates));
+        seen.rotations = (0..free.frequencies.len()).map(|mode| free.rotation(mode)).collect();
+        let sum = |of: &[Vector], by: &[f64]| -> Vector {
+            of.iter().zip(by).fold(Vector::zeros(), |sum, (of, by)| sum + of * *by)
+        };
+        let (bent, elastic) = (sum(&seen.rotations, &seen.displacements), sum(&seen.rotations, &seen.rates));
+        let slid = posed.push + sum(&posed.pushes, &eta) + sum(&posed.translations, &rates);
+        seen.attitude = attitude;
+        seen.mean = attitude * rotation(&-bent);
+        (seen.rate, seen.rigid, seen.momentum) = (rate, rate - elastic, momentum);
+        let modal: f64 = seen.rates.iter().map(|rate| rate * rate).sum();
+        seen.rotational = posed.kinetic(&rate, &eta, &rates) - 0.5 * modal;
+        seen.turned = state.turned + self.bare_turn(state) - bent;
+        seen.moved = state.moved;
+        seen.frequencies = free.frequencies;
+        seen.shift = Some([self.moved(&posed, &eta), -slid / posed.mass]);
+        seen.inertia = Some(posed.inertia + posed.changed(&eta));
+    }
+
+    /// By how much modes turn the hub from the axes in which the state is carried (rad).
+    fn bare_turn(&self, state: &State) -> Vector {
+        let q: Vec<f64> = state.modes.iter().map(|[q, ..]| *q).collect();
+        self.basis.bent(&q)
+    }
+
+    /// The state of a body whose hub and clamped modes are so.
+    fn carried(&self, bare: &Bare, state: &mut State) {
+        let (q, p) = (self.basis.free(&bare.eta), self.basis.forced(&bare.pi));
+        let bent = self.basis.bent(&q);
+        state.attitude = bare.attitude * rotation(&-bent);
+        state.momentum = Bend::new(bent).forward(&bare.momentum);
+        state.lost.0 = Quaternion::default();
+        state.lost.1 = Vector::zeros();
+        state.turned += bare.bent - bent;
+        for ((mode, (q, p)), w) in state.modes.iter_mut().zip(q.iter().zip(&p)).zip(&self.basis.frequencies) {
+            *mode = [*q, p / w, 0.0, 0.0];
+        }
+    }
+}
+
+impl Turning {
+    /// Lets drives turn the appendages from the start on, before anything else.
+    pub fn drive(&mut self, driving: Driving) {
+        let mut posed = Posed::default();
+        driving.posed(0.0, &mut posed);
+        let (eta, rates) =
+            (driving.basis.held(&self.seen.displacements), driving.basis.held(&self.seen.rates));
+        let (momentum, pi) = posed.momenta(&self.seen.rate, &eta, &rates);
+        let bare = Bare {
+            attitude: self.seen.attitude,
+            momentum,
+            bent: driving.basis.bent(&self.seen.displacements),
+            eta,
+            pi,
+        };
+        driving.carried(&bare, &mut self.here);
+        self.driving = Some(Box::new(driving));
+        self.remodel();
+        self.departed.copy_from(&self.here);
+        self.grid.copy_from(&self.here);
+        self.look();
+    }
+
+    /// Tells when the next departure is (s since the start).
+    pub fn begins(&mut self, at: f64) {
+        if let Some(driving) = &mut self.driving {
+            driving.began = at;
+        }
+    }
+
+    /// Carries the state on in the modes of another time since the start (s); a departure has to follow.
+    pub fn recast(&mut self, t: f64) {
+        let Some(driving) = &mut self.driving else { return };
+        let Some(basis) = driving.basis.at(&driving.of, &*driving.angles, t) else { return };
+        let bare = driving.bare(&self.here);
+        driving.basis = basis;
+        driving.carried(&bare, &mut self.here);
+        self.remodel();
+    }
+
+    /// Takes over the modes in which the state is carried now.
+    fn remodel(&mut self) {
+        let Some(driving) = &self.driving else { return };
+        let model = Model::new(&driving.flexible());
+        self.pace = Pace::new(&model);
+        self.model = model;
+        self.regular.clear();
+        self.beside.clear();
+        self.next_beside = 0;
+        self.ahead = None;
+    }
+}

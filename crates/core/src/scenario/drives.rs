@@ -1,0 +1,314 @@
+//! The drives of a scenario's appendages: their angles at every instant of the run, known before it begins.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Quaternion};
+
+use super::Scenario;
+use crate::actuator::Actuator;
+use crate::attitude::Vector;
+use crate::body::craft::{Appendage, Drive, Piece, Track};
+use crate::document::Fault;
+use crate::environment::{Sky, into};
+use crate::law::Frame;
+use crate::motion::turning::{Angles, Driven};
+use crate::time::{Instant, Span};
+
+/// Panels turn by so much at most until modes of another angle carry the motion on (rad).
+const APART: f64 = 1.0 / 32.0;
+
+/// A run has so many such changes at most.
+const MOST_CHANGES: f64 = 1e6;
+
+/// The Sun must be so far from the axis of a drive that follows it (sine of the angle).
+const ACROSS: f64 = 0.1;
+
+/// At so many instants of a run rates of drives that follow the Sun are looked at.
+const LOOKS: u32 = 4096;
+
+/// The drives of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drives {
+    /// What they turn.
+    pub driven: Arc<Driven>,
+    /// How.
+    pub courses: Arc<Courses>,
+}
+
+/// How drives turn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Courses {
+    each: Vec<Course>,
+    fastest: f64,
+    /// The instants at which other modes carry the motion on, or a rate changes, and the time between which and the next is that of
+    /// these modes (s).
+    pub changes: Vec<(Instant, f64)>,
+}
+
+/// How a drive turns.
+#[derive(Clone, Debug, PartialEq)]
+enum Course {
+    /// By accelerations that are constant from time to time.
+    Pieces(Vec<Piece>),
+    /// After the Sun.
+    Sun(Box<Following>),
+}
+
+/// A drive that follows the Sun.
+#[derive(Clone, Debug, PartialEq)]
+struct Following {
+    sky: Sky,
+    sun: Vector,
+    /// Where the spacecraft points to.
+    frame: Frame,
+    attitude: Quaternion<f64>,
+    /// The axes of the appendage with its drive at 0, the drive's axis and what faces the Sun in them.
+    axes: Matrix3<f64>,
+    about: Vector,
+    facing: Vector,
+}
+
+impl Following {
+    /// Parts of the direction to the Sun along what faces it at an angle of 0 and at a quarter of a turn, and their rates (1/s).
+    fn seen(&self, t: f64) -> [[f64; 2]; 2] {
+        let pose = self.frame.at(&self.sky, t);
+        let rate: Vector = into(&self.attitude, &pose.rate);
+        let sun: Vector = into(&(pose.attitude * self.attitude), &self.sun);
+        let (own, change) = (self.axes.tr_mul(&sun), self.axes.tr_mul(&sun.cross(&rate)));
+        let across = self.about.cross(&self.facing);
+        [[self.facing.dot(&own), across.dot(&own)], [self.facing.dot(&change), across.dot(&change)]]
+    }
+
+    fn at(&self, t: f64) -> [f64; 2] {
+        let [[x, y], [dx, dy]] = self.seen(t);
+        [libm::atan2(y, x), (x * dy - y * dx) / (x * x + y * y)]
+    }
+
+    /// The sine of the angle between the Sun and the axis.
+    fn across(&self, t: f64) -> f64 {
+        let [[x, y], _] = self.seen(t);
+        libm::hypot(x, y)
+    }
+}
+
+impl Course {
+    fn at(&self, t: f64) -> [f64; 2] {
+        match self {
+            Self::Sun(following) => following.at(t),
+            Self::Pieces(pieces) => {
+                let past = pieces.partition_point(|[from, ..]| *from <= t);
+                let Some(last) = past.checked_sub(1) else {
+                    return [pieces.first().map_or(0.0, |piece| piece[1]), 0.0];
+                };
+                let [from, angle, rate, acceleration] = pieces[last];
+                let t = t - from;
+                [angle + (rate + 0.5 * acceleration * t) * t, rate + acceleration * t]
+            }
+        }
+    }
+}
+
+impl Angles for Courses {
+    fn at(&self, drive: usize, t: f64) -> [f64; 2] {
+        self.each[drive].at(t)
+    }
+
+    fn fastest(&self) -> f64 {
+        self.fastest
+    }
+}
+
+impl Courses {
+    /// How many drives there are.
+    pub fn count(&self) -> usize {
+        self.each.len()
+    }
+}
+
+impl Scenario {
+    /// The angles of the drives at the start, to which appendages are put together.
+    pub(super) fn turn_drives(&mut self) -> Result<(), Fault> {
+        let courses: Vec<Option<Course>> =
+            (0..self.appendage.len()).map(|index| self.course(index)).collect::<Result<_, _>>()?;
+        for (appendage, course) in self.appendage.iter_mut().zip(courses) {
+            appendage.start_angle = course.map_or(0.0, |course| course.at(0.0)[0]);
+        }
+        Ok(())
+    }
+
+    /// How the drive of an appendage turns, if it has one.
+    fn course(&self, index: usize) -> Result<Option<Course>, Fault> {
+        let appendage = &self.appendage[index];
+        let Some(drive) = &appendage.drive else { return Ok(None) };
+        let within = |fault: Fault| fault.within(&format!("appendage[{index}].drive"));
+        drive.check().map_err(within)?;
+        if drive.track == Some(Track::Sun) {
+            return self.following(appendage, drive).map(Some).map_err(within);
+        }
+        // Times are instants of the run.
+        let rounded = |[from, angle, rate, acceleration]: Piece| {
+            [Span::from_seconds(from).seconds(), angle, rate, acceleration]
+        };
+        Ok(Some(Course::Pieces(drive.pieces().into_iter().map(rounded).collect())))
+    }
+
+    fn following(&self, appendage: &Appendage, drive: &Drive) -> Result<Course, Fault> {
+        let sky = self.sky();
+        let Some(sun) = sky.sun().copied() else {
+            return Err(Fault::new("track", "follows `environment.sun`, and there is none"));
+        };
+        let targets = self.targets();
+        let known = match targets {
+            [] => true,
+            [only] => only.begins() == Instant::START && only.table.is_empty() && only.acceleration.is_none(),
+            _ => false,
+        };
+        if !known {
+            let why = "follows the Sun from one `[[target]]` that holds from the start on: the angle has to be known before the \
+                       run; write it as a `table`";
+            return Err(Fault::new("track", why));
+        }
+        let target = targets.first();
+        let frame = target.map_or(Frame::Inertial, |target| target.frame);
+        if frame.fault(&sky).is_some() {
+            return Err(Fault::new("track", "needs the axes that the target is from"));
+        }
+        let following = Following {
+            sky,
+            sun,
+            frame,
+            attitude: target.map_or_else(Quaternion::identity, crate::law::Target::attitude),
+            axes: appendage.turned.matrix(),
+            about: drive.axis(),
+            facing: drive.facing(),
+        };
+        let least = looks(self.duration).map(|t| following.across(t)).fold(1.0, f64::min);
+        if least < ACROSS {
+            let why = format!(
+                "cannot follow a Sun along the drive's axis: the sine of the angle between them comes down to {least:.3}, and must \
+                 stay above {ACROSS}"
+            );
+            return Err(Fault::new("track", why));
+        }
+        Ok(Course::Sun(Box::new(following)))
+    }
+
+    /// All drives of the run.
+    pub(super) fn drives(&self) -> Result<Option<Drives>, Fault> {
+        let Some(driven) = self.body.craft().and_then(|craft| craft.driven.clone()) else { return Ok(None) };
+        let (mut each, mut fastest, mut edges) = (Vec::new(), 0.0_f64, vec![Instant::START]);
+        let end = Instant::START + self.duration;
+        for index in 0..self.appendage.len() {
+            let Some(course) = self.course(index)? else { continue };
+            let most = match &course {
+                Course::Pieces(pieces) => {
+                    edges.extend(pieces.iter().map(|piece| Instant::START + Span::from_seconds(piece[0])));
+                    pieces.iter().map(|piece| piece[2].abs()).fold(0.0, f64::max)
+                }
+                // A little more than at the instants that are looked at.
+                Course::Sun(following) => {
+                    1.1 * looks(self.duration).map(|t| following.at(t)[1].abs()).fold(0.0, f64::max)
+                }
+            };
+            self.too_fast(index, most)?;
+            fastest = fastest.max(most);
+            each.push(course);
+        }
+        edges.push(end);
+        edges.retain(|edge| *edge <= end);
+        edges.sort();
+        edges.dedup();
+        if fastest * self.duration.seconds() / APART > MOST_CHANGES {
+            let why = format!(
+                "turns by {:.0} rad in this run: too much to follow",
+                fastest * self.duration.seconds()
+            );
+            return Err(Fault::new("appendage", why));
+        }
+        let mut changes = Vec::new();
+        for pair in edges.windows(2) {
+            let [from, to] = [pair[0].seconds(), pair[1].seconds()];
+            let parts = libm::ceil(fastest * (to - from) / APART).max(1.0) as u32;
+            for part in 0..parts {
+                let at = |part: f64| from + (to - from) * part / f64::from(parts);
+                let instant = if part == 0 {
+                    pair[0]
+                } else {
+                    Instant::START + Span::from_seconds(at(f64::from(part)))
+                };
+                changes.push((instant, at(f64::from(part) + 0.5)));
+            }
+        }
+        Ok(Some(Drives { driven, courses: Arc::new(Courses { each, fastest, changes }) }))
+    }
+
+    /// Refuses a drive that is too fast for the modes of its appendage.
+    fn too_fast(&self, index: usize, most: f64) -> Result<(), Fault> {
+        let own = self.appendage[index].modes.iter().map(|mode| mode.frequency.get());
+        let limit = 0.2 * own.fold(f64::INFINITY, f64::min);
+        if most <= limit {
+            return Ok(());
+        }
+        let why = format!(
+            "must be slower than {limit:.4} rad/s, a fifth of the lowest frequency with the root held, got {most:.4}: beyond, the \
+             model leaves too much out"
+        );
+        Err(Fault::new(format!("appendage[{index}].drive.rate"), why))
+    }
+
+    /// What does not go with drives.
+    pub(super) fn drive_fault(&self) -> Option<Fault> {
+        let driven = self.body.craft()?.driven.as_ref()?;
+        let spacecraft = self.spacecraft.as_ref()?;
+        let on_hub = |point: Option<&str>| {
+            let Some(point) = point else { return true };
+            !spacecraft.points.is_empty() && spacecraft.points.iter().any(|own| own.name == point)
+                || spacecraft.points.is_empty() && point == "hub"
+        };
+        let place = |key: String| {
+            let why = "must be a point of the hub: beside drives what is on an appendage is not known";
+            Some(Fault::new(key, why))
+        };
+        for (index, sensor) in self.sensor.iter().enumerate() {
+            if !on_hub(sensor.point()) {
+                return place(format!("{}.point", self.sensor_key(index)));
+            }
+        }
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            if !on_hub(disturbance.point.as_deref()) {
+                return place(format!("disturbance[{index}].point"));
+            }
+        }
+        if let Some((jets, key)) = self.actuator.jets()
+            && let Some(index) = jets.thrusters.iter().position(|thruster| !on_hub(Some(&thruster.point)))
+        {
+            return place(format!("{key}.thrusters[{index}].point"));
+        }
+        if let Actuator::Wheels(wheels) = &self.actuator
+            && let Some(key) = wheels.rubs_or_shakes()
+        {
+            let why = "goes with appendages that do not turn: the instants at which wheels stick, and what shakes the modes, are \
+                       searched for with modes that stay";
+            return Some(Fault::new(format!("actuator.wheels.{key}"), why));
+        }
+        let pressed = self.environment.as_ref().and_then(|around| {
+            let pressure = around.solar_pressure.is_some().then_some("solar_pressure");
+            pressure.or(around.drag.is_some().then_some("drag"))
+        });
+        if let Some(key) = pressed.filter(|_| driven.moves_centre()) {
+            let why = "acts at an arm that is known where drives do not move the centre of mass: put the axis of the drive through \
+                       that of the appendage";
+            return Some(Fault::new(format!("environment.{key}"), why));
+        }
+        None
+    }
+}
+
+/// Instants of a run (s).
+fn looks(duration: Span) -> impl Iterator<Item = f64> {
+    let end = duration.seconds();
+    (0..=LOOKS).map(move |look| end * f64::from(look) / f64::from(LOOKS))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,38 @@
+//! Drives and orbit of a body with three axes, as logged.
+
+use super::SpatialPlant;
+use crate::attitude::Vector;
+use crate::environment::into;
+use crate::record::{DriveMotion, DrivenMode, DrivesMotion, Orbit, OrbitAxis};
+
+impl SpatialPlant {
+    /// The drives of appendages and the frequencies of the modes, which change with them, as logged; none without drives.
+    pub fn drives(&self) -> Option<DrivesMotion> {
+        let two_way = self.two_way.as_deref()?;
+        let (frequencies, _) = two_way.modes()?;
+        let drive = |[angle_rad, rate_rad_s]: [f64; 2]| DriveMotion { angle_rad, rate_rad_s };
+        let mode = |frequency_rad_s: &f64| DrivenMode { frequency_rad_s: *frequency_rad_s };
+        Some(DrivesMotion {
+            drives: two_way.drives(self.seen.seconds()).into_iter().map(drive).collect(),
+            modes: frequencies.iter().map(mode).collect(),
+        })
+    }
+
+    /// Where it is on its orbit, as logged.
+    pub fn orbit(&self) -> Option<Orbit> {
+        let (sky, t) = (self.around.as_ref()?.sky(), self.seen.seconds());
+        let place = sky.place(t)?;
+        let here = |v: Vector| into(self.attitude(), &v);
+        let nowhere = Vector::repeat(f64::NAN);
+        let (nadir, field) = (here(place.local[2]), sky.seen(t).field.map_or(nowhere, here));
+        let sun = sky.sun().map_or(nowhere, |sun| here(*sun));
+        let axis = |axis: usize| OrbitAxis {
+            position_m: place.position[axis],
+            velocity_m_s: place.velocity[axis],
+            nadir: nadir[axis],
+            field_t: field[axis],
+            sun: sun[axis],
+        };
+        Some(Orbit { axes: [0, 1, 2].map(axis).into(), light: sky.is_lit(t).into() })
+    }
+}

@@ -1,0 +1,179 @@
+//! Appendages that turn: against an oracle of point masses, balances, what is refused, and the scenario that ships.
+
+use flexsc_core::Simulation;
+use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::scenario::Scenario;
+
+use crate::util::SCENARIOS;
+
+const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
+
+fn flown(scenario: &Scenario, detail: Detail) -> (Metrics, Trace) {
+    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(detail));
+    Simulation::new(scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
+    (gather.finish(scenario), trace)
+}
+
+fn numbers(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
+    let rows = trace.topic(topic).and_then(|rows: &Columns| rows.numbers(name));
+    rows.unwrap_or_else(|| panic!("{topic} {name}")).to_vec()
+}
+
+/// A number of each row within the rows.
+fn within(trace: &Trace, topic: &str, rows: &str, name: &str) -> Vec<f64> {
+    let of = trace.topic(topic).unwrap_or_else(|| panic!("no {topic}"));
+    let Some(Column::Rows(_, inner)) = of.get(rows) else { panic!("{rows}") };
+    inner.numbers(name).unwrap_or_else(|| panic!("{name}")).to_vec()
+}
+
+fn golden() -> String {
+    std::fs::read_to_string(format!("{GOLDEN}/driven.toml")).expect("a file")
+}
+
+fn parsed(text: &str) -> Scenario {
+    Scenario::parse("driven.toml", text).expect("a scenario")
+}
+
+/// The kinetic energy of point masses, derived by nobody, moves the same way: `golden/driven_oracle.py`.
+#[test]
+fn panels_of_point_masses_turn_as_the_oracle_says() {
+    let (_, trace) = flown(&parsed(&golden()), Detail::Full);
+    let text = std::fs::read_to_string(format!("{GOLDEN}/driven.csv")).expect("a file");
+    let rows: Vec<Vec<f64>> =
+        text.lines().map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| numbers(&trace, "/pointing", name));
+    let rates = within(&trace, "/rates", "axes", "rate_rad_s");
+    let [momentum, elastic, rotational] =
+        ["momentum_nm_s", "elastic_j", "rotational_j"].map(|name| numbers(&trace, "/energy", name));
+    let frequencies = within(&trace, "/drives", "modes", "frequency_rad_s");
+    let position = ["x_m", "y_m", "z_m"].map(|name| numbers(&trace, "/position", name));
+    assert_eq!(attitude[0].len(), rows.len());
+    let mut worst = [0.0_f64; 7];
+    for (at, row) in rows.iter().enumerate() {
+        let mut modes = frequencies[4 * at..4 * at + 4].to_vec();
+        modes.sort_by(f64::total_cmp);
+        let off = [
+            (0..4).map(|k| (attitude[k][at] - row[1 + k]).abs()).fold(0.0, f64::max),
+            (0..3).map(|k| (rates[3 * at + k] - row[5 + k]).abs()).fold(0.0, f64::max),
+            (momentum[at] - row[8]).abs(),
+            (0..4).map(|k| (modes[k] - row[9 + k]).abs()).fold(0.0, f64::max),
+            (elastic[at] - row[13]).abs(),
+            (elastic[at] + rotational[at] - row[14]).abs(),
+            (0..3).map(|k| (position[k][at] - row[15 + k]).abs()).fold(0.0, f64::max),
+        ];
+        worst.iter_mut().zip(off).for_each(|(most, off)| *most = most.max(off));
+    }
+    for (most, bound) in worst.into_iter().zip([1e-10, 1e-10, 1e-10, 1e-11, 1e-11, 1e-10, 1e-9]) {
+        assert!(most < bound, "{worst:?}");
+    }
+}
+
+/// A drive that rests is a body without one, but for rounding.
+#[test]
+fn a_drive_at_rest_changes_nothing() {
+    let text = golden();
+    let drives: Vec<&str> = text.lines().filter(|line| line.starts_with("drive = ")).collect();
+    let still = "drive = { about = [0, 1, 0], rate = 0.0, angle = 0.3 }";
+    let turned = "turned = [{ about = [0, 0, 1], by = 3.141592653589793 }, { about = [0, 1, 0], by = 0.3 }]";
+    let first = "turned = { about = [0, 1, 0], by = 0.3 }";
+    let driven = text.replace(drives[0], still).replace(drives[1], still);
+    let plain = text
+        .replace(drives[0], first)
+        .replace("turned = { about = [0, 0, 1], by = 3.141592653589793 }", turned)
+        .replace(drives[1], "");
+    let [driven, plain] = [driven, plain].map(|text| flown(&parsed(&text), Detail::Full).1);
+    for (topic, name) in [("/pointing", "q_x"), ("/energy", "elastic_j"), ("/position", "y_m")] {
+        let [a, b] = [&driven, &plain].map(|trace| numbers(trace, topic, name));
+        let off = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // Steps differ: those of a body with drives resolve all modes.
+        assert!(off < 5e-10, "{topic} {name} {off:e}");
+    }
+}
+
+/// Nothing acts from outside: the momentum stays whatever drives and wheels do, and looking changes nothing.
+#[test]
+fn momentum_stays_while_drives_turn() {
+    let text = golden();
+    let alone = text[..text.find("[[disturbance]]").expect("one")].to_owned()
+        + &text[text.find("[law.open]").expect("one")..];
+    let (metrics, trace) = flown(&parsed(&alone), Detail::Full);
+    let momentum = numbers(&trace, "/energy", "momentum_nm_s");
+    let off = momentum.iter().map(|of| (of / momentum[0] - 1.0).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-13, "{off:e}");
+    let (unseen, _) = flown(&parsed(&alone), Detail::Events);
+    let end = |metrics: &Metrics| metrics.number("pointing_error_end_rad");
+    assert_eq!(end(&metrics), end(&unseen));
+    // A rate that jumps, and drives by a table: the same momentum.
+    let table = "table = [{ time = 3, angle = 0.0 }, { time = 13, angle = 0.9 }, { time = 20, angle = 0.2 }]";
+    let jumping = alone.replace("rate = 0.08, from = 5, until = 20, acceleration = 0.04", table);
+    let momentum = numbers(&flown(&parsed(&jumping), Detail::Full).1, "/energy", "momentum_nm_s");
+    let off = momentum.iter().map(|of| (of / momentum[0] - 1.0).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-13, "{off:e}");
+}
+
+#[test]
+fn what_does_not_go_with_drives_is_refused() {
+    let refused = |change: &[(&str, &str)]| {
+        let mut text = golden();
+        for (from, to) in change {
+            assert!(text.contains(from), "{from}");
+            text = text.replacen(from, to, 1);
+        }
+        Scenario::parse("driven.toml", &text).expect_err("refused").to_string()
+    };
+    for (change, words) in [
+        (("rate = 0.05,", "rate = 0.4,"), "`appendage[0].drive.rate` must be slower than 0.18"),
+        (
+            ("torque = 0.1\n", "torque = 0.1\nfriction = { coulomb = 0.01 }\n"),
+            "`actuator.wheels.friction` goes with",
+        ),
+        (
+            ("rate = 0.05, angle = 0.3", "track = \"sun\""),
+            "`appendage[0].drive.track` follows `environment.sun`",
+        ),
+        (("rate = 0.05, angle = 0.3", "angle = 0.3"), "`appendage[0].drive` says how it turns"),
+        (
+            (
+                "[law.open]",
+                "[environment]\nsolar_pressure = { force = [1e-4, 0, 0], at = [0, 0, 1] }\n[law.open]",
+            ),
+            "`environment.solar_pressure` acts at an arm",
+        ),
+    ] {
+        let error = refused(&[change]);
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+fn shipped(change: &[(&str, &str)]) -> Scenario {
+    let mut text = std::fs::read_to_string(format!("{SCENARIOS}/sun-tracking.toml")).expect("a file");
+    for (from, to) in change {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    parsed(&text)
+}
+
+/// The comment of the scenario: how the mode drifts, that the wide notch keeps the goal and the narrow one does not.
+#[test]
+fn a_notch_has_to_cover_the_drift() {
+    let short = [
+        ("duration = 5700.0", "duration = 2000.0"),
+        ("assess = [300.0, 5700.0]", "assess = [300.0, 2000.0]"),
+    ];
+    let narrow =
+        ("frequency = 2.6, depth = 0.1, damping = 0.9", "frequency = 2.386, depth = 0.05, damping = 0.1");
+    let met = |metrics: &Metrics| metrics.get("goal") == Some(&Value::Word("met"));
+    let (metrics, trace) = flown(&shipped(&[]), Detail::Full);
+    assert!(met(&metrics), "{metrics:?}");
+    let frequencies = within(&trace, "/drives", "modes", "frequency_rad_s");
+    let second: Vec<f64> = frequencies.iter().skip(1).step_by(6).copied().collect();
+    let (least, most) = second.iter().fold((f64::MAX, 0.0_f64), |(a, b), w| (a.min(*w), b.max(*w)));
+    assert!((2.37..2.38).contains(&least) && (2.85..2.86).contains(&most), "{least} {most}");
+    assert!((second[0] - 2.386).abs() < 1e-3, "{}", second[0]);
+    assert!(!met(&flown(&shipped(&[short[0], short[1], narrow]), Detail::Events).0));
+    // Keys of drives can be uncertain.
+    let drawn = golden() + "[uncertain]\n\"appendage[0].drive.rate\" = { relative_uniform = 0.1 }\n";
+    assert!(Scenario::parse("drawn.toml", &drawn).is_ok());
+}

@@ -1,0 +1,353 @@
+"""A spacecraft whose panels are turned by drives: driven.toml and driven.csv.
+
+    pip install numpy scipy
+    python3 tests/golden/driven_oracle.py tests/golden
+
+Two panels are lattices of point masses with two clamped modes each, shapes that are orthonormal by mass.
+The data of the scenario are sums over the points; their centres are beside the drives' axes, so that drives
+move the centre of mass. The oracle knows the points alone: with the place of each as a function of the
+drives' angles and the modes, the kinetic energy about the centre of mass is 1/2 z' M z with z = (w, alpha',
+eta'). M(alpha, eta) is kept to first order in eta in the blocks of w and alpha', to zeroth in those of
+eta', as the model has it; the first order is a difference quotient of a parabola, and so exact. Momenta are
+derivatives of T. H' = T - w x H, pi' = -O^2 eta - D eta' + dT/d eta + f, by DOP853 with a relative
+tolerance of 1e-13, from each change of what acts to the next. One drive turns at a constant rate from the
+start, the other begins and ends along a trapezium.
+
+driven.csv has a line each half second: t, Q (4), w (3), |H| with the wheel, the free frequencies (4), the
+energy of the modes 1/2 (eta' S eta' + eta O^2 eta) with S of the free hub, the energy of all but the wheel,
+and the place of the first point (3). The work of the drives is that of their torque Q = d/dt dT/d alpha' -
+dT/d alpha; the balance with it is asserted here.
+"""
+
+import sys
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh
+
+HUB_MASS, HUB_CENTRE = 200.0, np.array([0.05, -0.02, 0.1])
+HUB_INERTIA = np.array([[90.0, 6, -4], [6, 100, 5], [-4, 5, 80]])
+O2_DAMPING = [(0.9, 0.01), (3.1, 0.02), (1.0, 0.01), (2.7, 0.02)]
+WHEEL_AXIS, WHEEL_INERTIA, WHEEL_SPEED = np.array([0.0, 0, 1]), 0.05, 60.0
+RATE = np.array([0.01, -0.02, 0.015])
+ETA = np.array([0.02, -0.01, 0.015, 0.01])
+TORQUE, FORCE, AT = np.array([0.0, 0.02, 0]), np.array([0.3, 0.1, -0.2]), np.array([0.4, 0.3, 0.2])
+FORCED = (6.0, 9.0)
+AXIS = np.array([0.0, 1, 0])
+DURATION = 40.0
+
+
+def cross(v):
+    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+
+def about(axis, angle):
+    a = cross(axis)
+    return np.eye(3) + np.sin(angle) * a + (1 - np.cos(angle)) * a @ a
+
+
+class Panel:
+    def __init__(self, root, axes, seed):
+        self.root, self.axes = np.array(root), axes
+        x, y = np.meshgrid(np.linspace(-0.4, 0.6, 3), np.linspace(0.4, 3.4, 6))
+        z = 0.1 + 0.05 * np.sin(3 * x + y + seed)
+        self.r = np.stack([x.ravel(), y.ravel(), z.ravel()], 1)
+        self.m = 1.0 + 0.3 * np.cos(np.arange(len(self.r)) + seed)
+        flap = np.stack([0.1 * self.r[:, 1] ** 2, 0 * self.r[:, 0], self.r[:, 1] ** 2], 1)
+        twist = np.stack(
+            [0.3 * self.r[:, 1] * self.r[:, 2], 0.2 * self.r[:, 0], self.r[:, 0] * self.r[:, 1]], 1
+        )
+        shapes = []
+        for shape in (flap, twist):
+            for other in shapes:
+                shape = shape - other * self.dot(shape, other)
+            shapes.append(shape / np.sqrt(self.dot(shape, shape)))
+        self.shapes = shapes
+
+    def dot(self, a, b):
+        return np.sum(self.m[:, None] * a * b)
+
+    def place(self, angle, eta):
+        bent = self.r + sum(e * s for e, s in zip(eta, self.shapes, strict=False))
+        turned = self.axes @ about(AXIS, angle)
+        return (
+            self.root + bent @ turned.T,
+            np.cross(self.axes @ AXIS, bent @ turned.T),
+            [s @ turned.T for s in self.shapes],
+        )
+
+
+PANELS = [
+    Panel([0.1, 0.6, 0.2], np.eye(3), 0.0),
+    Panel([0, -0.6, 0.2], about(np.array([0.0, 0, 1]), np.pi), 1.0),
+]
+ALL = np.concatenate([p.m for p in PANELS])
+MASS = HUB_MASS + ALL.sum()
+O2 = np.array([w * w for w, _ in O2_DAMPING])
+D = np.array([2 * z * w for w, z in O2_DAMPING])
+
+
+def mass_matrix(angles, eta):
+    """M of z = (w, alpha', eta'), all about the centre of mass, the centre and the matrix of dc/dz."""
+    places, columns = [], []
+    for k, panel in enumerate(PANELS):
+        p, turn, shapes = panel.place(angles[k], eta[2 * k : 2 * k + 2])
+        column = np.zeros((len(p), 3, 6), dtype=p.dtype)
+        column[:, :, k] = turn
+        for j, shape in enumerate(shapes):
+            column[:, :, 2 + 2 * k + j] = shape
+        places.append(p)
+        columns.append(column)
+    p, inner = np.concatenate(places), np.concatenate(columns)
+    centre = (HUB_MASS * HUB_CENTRE + ALL @ p) / MASS
+    column = np.zeros((len(p), 3, 9), dtype=p.dtype)
+    # w x p
+    column[:, 0, 1], column[:, 0, 2] = p[:, 2], -p[:, 1]
+    column[:, 1, 0], column[:, 1, 2] = -p[:, 2], p[:, 0]
+    column[:, 2, 0], column[:, 2, 1] = p[:, 1], -p[:, 0]
+    column[:, :, 3:] = inner
+    hub = np.zeros((3, 9), dtype=p.dtype)
+    hub[:, :3] = -cross(HUB_CENTRE)
+    mean = (HUB_MASS * hub + np.einsum("i,ijk->jk", ALL, column)) / MASS
+    m = np.einsum("i,ija,ijb->ab", ALL, column, column) + HUB_MASS * hub.T @ hub - MASS * mean.T @ mean
+    m[:3, :3] += HUB_INERTIA - WHEEL_INERTIA * np.eye(3)
+    return m, centre, mean[:, 3:] + 0, p
+
+
+def linear(angles):
+    """M at eta = 0, its derivatives in the blocks of w and alpha', c and dc/d eta."""
+    m0, c, mean, _ = mass_matrix(angles, np.zeros(4))
+    changes = []
+    for i in range(4):
+        e = np.zeros(4)
+        e[i] = 1.0
+        d = 0.5 * (mass_matrix(angles, e)[0] - mass_matrix(angles, -e)[0])
+        d[5:, :] = 0
+        d[:, 5:] = 0
+        changes.append(d)
+    return m0, changes, c, mean[:, 2:]
+
+
+def drives(t):
+    a = [0.3 + 0.05 * t, 0.0]
+    rate, acc = [0.05, 0.0], [0.0, 0.0]
+    if t >= 5:  # rate 0.08, from 5 s, until 20 s, acceleration 0.04: ramps of 2 s
+        s = min(t, 7) - 5
+        a[1] += 0.02 * s * s
+        rate[1], acc[1] = 0.04 * s, 0.04 if t < 7 else 0.0
+    if t >= 7:
+        a[1] += 0.08 * (min(t, 20) - 7)
+    if t >= 20:
+        s = min(t, 22) - 20
+        a[1] += 0.08 * s - 0.02 * s * s
+        rate[1], acc[1] = 0.08 - 0.04 * s, -0.04 if t < 22 else 0.0
+    return np.array(a), np.array(rate), np.array(acc)
+
+
+# Three wheels across each other, of which one spins.
+H_WHEEL = WHEEL_INERTIA * (WHEEL_SPEED * WHEEL_AXIS + RATE)
+
+
+def split(t, y):
+    """w, eta' and what else is of use, from momenta."""
+    angles, rate, _ = drives(t)
+    m0, changes, c, dc = linear(angles)
+    eta, pi, big_h = y[7:11], y[11:15], y[4:7]
+    m = m0 + sum(e * d for e, d in zip(eta, changes, strict=False))
+    free = [0, 1, 2, 5, 6, 7, 8]
+    given = m[np.ix_(free, [3, 4])] @ rate
+    z = np.linalg.solve(m[np.ix_(free, free)], np.concatenate([big_h - H_WHEEL, pi]) - given)
+    full = np.concatenate([z[:3], rate, z[3:]])
+    return full, m, changes, c, dc, angles
+
+
+def slope(angles, eta, full, k, step=1e-3):
+    """dT/d alpha of a drive, at fixed z, by a difference of order 6."""
+
+    def t_at(s):
+        a = angles.copy()
+        a[k] += s * step
+        m0, changes, _, _ = linear(a)
+        return 0.5 * full @ (m0 + sum(e * d for e, d in zip(eta, changes, strict=False))) @ full
+
+    parts = [(1, 45 / 60), (2, -9 / 60), (3, 1 / 60)]
+    return sum(w * (t_at(s) - t_at(-s)) for s, w in parts) / step
+
+
+def rates(t, y, forced, work=False):
+    full, m, changes, c, dc, angles = split(t, y)
+    w, eta, speeds = full[:3], y[7:11], full[5:]
+    force = FORCE if forced else np.zeros(3)
+    arm = AT - c - dc @ eta
+    torque = TORQUE + np.cross(arm, force)
+    q = y[:4]
+    turn = 0.5 * np.array([-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))])
+    h = torque - np.cross(w, y[4:7])
+    pull = np.array([0.5 * full @ d @ full for d in changes])
+    pi = -O2 * eta - D * speeds + pull - dc.T @ force
+    inertial = rotated(q, force / MASS)
+    out = [turn, h, speeds, pi, y[18:21], inertial]
+    if work:
+        _, rate, acc = drives(t)
+        p = m[3:5] @ full
+        # Work of the drives, d(alpha' p) apart: -alpha'' p - alpha' dT/d alpha; of what acts; of damping.
+        own = sum(-acc[k] * p[k] - rate[k] * slope(angles, eta, full, k) for k in range(2))
+        # A force on the hub works by how its place moves against the centre of mass.
+        slid = centre_rate(angles, rate, eta)
+        moved = np.cross(w, arm) - slid - dc @ speeds
+        # Drives hold against a force that would turn them: they move the centre of mass under it.
+        own += force @ slid
+        acts = TORQUE @ w + force @ moved
+        out.append([own, acts - speeds @ (D * speeds)])
+    else:
+        out.append([0.0, 0.0])
+    return np.concatenate(out)
+
+
+def centre_rate(angles, rate, eta, step=1e-3):
+    """How fast drives move the centre of mass in the hub."""
+
+    def centre(s):
+        _, _, c, d = linear(angles + s * step * rate)
+        return c + d @ eta
+
+    parts = [(1, 45 / 60), (2, -9 / 60), (3, 1 / 60)]
+    return sum(w * (centre(s) - centre(-s)) for s, w in parts) / step
+
+
+def rotated(q, v):
+    u = q[1:]
+    return v + 2 * np.cross(u, np.cross(u, v) + q[0] * v)
+
+
+def start():
+    """The modes are displaced and at rest, and the body turns."""
+    angles, rate, _ = drives(0.0)
+    m0, changes, _, _ = linear(angles)
+    m = m0 + sum(e * d for e, d in zip(ETA, changes, strict=False))
+    p = m @ np.concatenate([RATE, rate, np.zeros(4)])
+    # The attitude of the scenario is that of the mean axes, which modes do not turn: phi q = -J^-1 delta eta.
+    bent = -np.linalg.solve(m0[:3, :3], m0[:3, 5:] @ ETA)
+    angle = np.linalg.norm(bent)
+    turned = [np.cos(0.5 * angle), *(np.sin(0.5 * angle) / angle * bent)]
+    return np.concatenate([turned, p[:3] + H_WHEEL, ETA, p[5:], np.zeros(3), np.zeros(3), [0, 0]])
+
+
+def row(t, y, first):
+    full, m, _, c, dc, angles = split(t, y)
+    m0 = linear(angles)[0]
+    body = m0[:3, :3]
+    delta, e = m0[:3, 5:], m0[5:, 5:]
+    s = e - delta.T @ np.linalg.solve(body, delta)
+    modal = 0.5 * (full[5:] @ s @ full[5:] + y[7:11] @ (O2 * y[7:11]))
+    energy = 0.5 * full @ m @ full + 0.5 * y[7:11] @ (O2 * y[7:11])
+    frequencies = np.sqrt(eigh(np.diag(O2), s, eigvals_only=True))
+    place = y[15:18] + rotated(y[:4], AT - c - dc @ y[7:11]) - first
+    values = [t, *y[:4], *full[:3], np.linalg.norm(y[4:7]), *frequencies, modal, energy, *place]
+    return values, energy, (m[3:5] @ full) @ full[3:5]
+
+
+def fly(work):
+    y, t, rows = start(), 0.0, []
+    _, _, c, dc = linear(drives(0.0)[0])
+    first = rotated(y[:4], AT - c - dc @ ETA)
+    values, e0, p0 = row(0.0, y, first)
+    rows.append(values)
+    for end in (5.0, 6.0, 7.0, 9.0, 20.0, 22.0, DURATION):
+        forced = FORCED[0] <= t < FORCED[1]
+        marks = [s for s in np.arange(0.5, DURATION + 0.1, 0.5) if t < s <= end]
+        # Just before the end, where rates would already change.
+        known = solve_ivp(
+            lambda s, y, end=end, forced=forced: rates(min(s, end - 1e-13), y, forced, work),
+            (t, end),
+            y,
+            method="DOP853",
+            rtol=1e-9 if work else 1e-13,
+            atol=1e-11 if work else 1e-15,
+            t_eval=marks,
+        )
+        assert known.success
+        rows += [row(s, known.y[:, i], first)[0] for i, s in enumerate(marks)]
+        y, t = known.y[:, -1], end
+    _, e1, p1 = row(t, y, first)
+    return rows, y, e1 - e0, p1 - p0
+
+
+def written(of, name):
+    return f"{name} = " + repr(of.tolist() if hasattr(of, "tolist") else of)
+
+
+def scenario():
+    lines = [
+        "# Two panels of point masses that drives turn, beside their centres: made by driven_oracle.py.",
+        f"duration = {DURATION}",
+        "[spacecraft]",
+        written(HUB_MASS, "mass"),
+        written(HUB_CENTRE, "centre"),
+        written(HUB_INERTIA, "inertia"),
+        written(RATE, "rate"),
+        "whole_damping = true",
+        f'points = [{{ name = "bus", position = {AT.tolist()} }}]',
+    ]
+    turns = ["rate = 0.05, angle = 0.3", "rate = 0.08, from = 5, until = 20, acceleration = 0.04"]
+    for k, panel in enumerate(PANELS):
+        mass = panel.m.sum()
+        centre = panel.m @ panel.r / mass
+        arm = panel.r - centre
+        inertia = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(panel.m, arm, strict=False))
+        lines += [
+            "[[appendage]]",
+            f'name = "panel {k + 1}"',
+            written(float(mass), "mass"),
+            written(centre, "centre"),
+            written(0.5 * (inertia + inertia.T), "inertia"),
+            written(panel.root, "at"),
+        ]
+        if k == 1:
+            lines.append("turned = { about = [0, 0, 1], by = 3.141592653589793 }")
+        lines += [f"drive = {{ about = [0, 1, 0], {turns[k]} }}", "modes = ["]
+        for j, shape in enumerate(panel.shapes):
+            w, z = O2_DAMPING[2 * k + j]
+            t = panel.m @ shape
+            n = (panel.m[:, None] * panel.r).T @ shape
+            lines.append(
+                f"    {{ frequency = {w}, damping = {z}, translation = {t.tolist()}, moments = {n.tolist()}, "
+                f"displacement = {ETA[2 * k + j]} }},"
+            )
+        lines.append("]")
+    lines += [
+        "[[disturbance]]",
+        'about = "pitch"',
+        f"torque = {TORQUE[1]}",
+        "[[disturbance]]",
+        f"force = {FORCE.tolist()}",
+        f"from = {FORCED[0]}",
+        f"to = {FORCED[1]}",
+        "[law.open]",
+        "[actuator.wheels]",
+        f"axes = [{WHEEL_AXIS.tolist()}, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]",
+        f"inertia = {WHEEL_INERTIA}",
+        f"speeds = [{WHEEL_SPEED}, 0.0, 0.0]",
+        "torque = 0.1",
+        "[log]",
+        "period = 0.5",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    folder = sys.argv[1]
+    with open(f"{folder}/driven.toml", "w") as file:
+        file.write(scenario())
+    rows, *_ = fly(False)
+    with open(f"{folder}/driven.csv", "w") as file:
+        for values in rows:
+            file.write(",".join(f"{value:.16e}" for value in values) + "\n")
+    # Once more with the work, for its balance.
+    _, y, gained, kept = fly(True)
+    gap = gained - (y[21] + kept + y[22])
+    print(
+        f"energy gained {gained}, work of the drives {y[21] + kept}, of the rest {y[22]}, gap {gap:.1e}",
+        file=sys.stderr,
+    )
+    assert abs(gap) < 1e-8

@@ -1,0 +1,164 @@
+//! Elastic modes in an attitude filter: against an oracle with the same readings, what is refused, and the scenario that ships.
+
+use std::sync::Arc;
+
+use flexsc_core::Simulation;
+use flexsc_core::attitude::{Vector, rotation};
+use flexsc_core::estimator::attitude::{
+    Filter, Fix, GyroNoise, History, KnownMode, KnownModes, Measured, Swinging,
+};
+use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::record::{Detail, Trace};
+use flexsc_core::scenario::Scenario;
+use flexsc_core::time::{Instant, Span};
+use nalgebra::{Matrix3, Quaternion};
+
+use crate::util::SCENARIOS;
+
+/// Readings of a made-up run, and what a filter that shares nothing with this one makes of them: `golden/swinging_oracle.py`.
+const READ: &str = include_str!("golden/swinging-in.csv");
+const GIVEN: &str = include_str!("golden/swinging-out.csv");
+
+fn rows(text: &str) -> Vec<Vec<f64>> {
+    text.lines().map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}
+
+fn known() -> KnownModes {
+    let mode = |frequency: f64, damping: f64, [hub, gyro, mount]: [[f64; 3]; 3], rate: f64| KnownMode {
+        frequency,
+        damping,
+        hub: hub.into(),
+        gyro: gyro.into(),
+        mounts: vec![gyro.into(), mount.into()],
+        initial: [2e-3, rate],
+    };
+    let first = [[0.03, -0.01, 0.004], [0.01, 0.02, -0.005], [-0.04, 0.01, 0.02]];
+    let second = [[0.002, 0.05, -0.02], [0.0, 0.015, 0.01], [0.03, -0.02, 0.05]];
+    KnownModes {
+        each: vec![mode(1.7, 0.005, first, 1e-3), mode(5.1, 0.01, second, 1e-3)],
+        noise: 2e-4,
+        ..KnownModes::default()
+    }
+}
+
+#[test]
+fn modes_in_the_filter_are_those_of_the_oracle() {
+    let (read, noise) = (rows(READ), GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 });
+    let off = Vector::new(1e-3, -5e-4, 8e-4);
+    let prior = Quaternion::new(0.8, 0.36, -0.48, 0.0) * rotation(&off);
+    let mut filter = Filter::new(prior, Vector::zeros(), [1e-3, 1e-5]);
+    filter.swinging = Some(Box::new(Swinging::new(Arc::new(known()), &filter.covariance)));
+    let mut history = History::new(Instant::START, filter, noise, Span::from_seconds(0.5));
+    let at = |k: usize, more: f64| Instant::START + Span::from_seconds(0.25 * k as f64 + more);
+    let three = |of: &[f64]| Vector::new(of[0], of[1], of[2]);
+    let tracker = Matrix3::from_diagonal(&Vector::new(2.4e-5, 2.4e-5, 1.5e-4).map(|noise| noise * noise));
+    let (mut given, mut nis) = (rows(GIVEN).into_iter().peekable(), 0.0);
+    for k in 1..read.len() {
+        history.push(at(k - 1, 0.1), three(&read[k - 1][1..4]));
+        history.read(at(k, 0.0), three(&read[k][4..7]));
+        if k % 4 == 2 && k > 2 {
+            let z = &read[k - 2][7..11];
+            let fix = Fix {
+                exposed: at(k - 2, 0.0),
+                measured: Measured::Attitude(Quaternion::new(z[0], z[1], z[2], z[3])),
+                noise: tracker,
+                gain: None,
+                sensor: 1,
+            };
+            nis = history.fix(fix).expect("a correction").nis;
+        }
+        let Some(row) = given.next_if(|row| row[0] as usize == k) else { continue };
+        let filter = history.latest();
+        let swinging = filter.swinging.as_ref().expect("modes");
+        let q = Quaternion::new(row[1], row[2], row[3], row[4]);
+        assert!((filter.attitude - q).norm() < 1e-12, "{k} {:e}", (filter.attitude - q).norm());
+        assert!((filter.bias - three(&row[5..8])).norm() < 1e-13, "{k} {}", filter.bias);
+        for (mode, [x, y]) in swinging.state.iter().enumerate() {
+            let gap = (x - row[8 + 2 * mode]).abs().max((y - row[9 + 2 * mode]).abs());
+            assert!(gap < 1e-12, "{k} {mode} {gap:e}");
+        }
+        for state in 0..10 {
+            let deviation = swinging.covariance[(state, state)].sqrt();
+            assert!((deviation / row[12 + state] - 1.0).abs() < 1e-9, "{k} {state} {deviation}");
+        }
+        assert!((nis - row[22]).abs() < 1e-8 * (1.0 + nis), "{k} {nis}");
+    }
+    assert!(given.peek().is_none());
+}
+
+fn text() -> String {
+    std::fs::read_to_string(format!("{SCENARIOS}/flexible-boom.toml")).expect("a file")
+}
+
+fn changed(change: &[(&str, &str)]) -> Result<Scenario, String> {
+    let mut text = text();
+    for (from, to) in change {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    Scenario::parse("boom.toml", &text).map_err(|error| error.to_string())
+}
+
+fn flown(scenario: &Scenario) -> (Metrics, Trace) {
+    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(Detail::Full));
+    Simulation::new(scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
+    (gather.finish(scenario), trace)
+}
+
+const NONE: (&str, &str) =
+    ("elastic = { modes = [0], noise = 1e-5, displacement = 1e-3, feeds = \"hub\" }\n", "");
+
+/// The largest angle beyond the reference about any axis while the body turns and settles (rad).
+fn worst(trace: &Trace) -> f64 {
+    let errors = ["roll", "pitch", "yaw"].map(|axis| {
+        let rows = trace.topic("/pointing").and_then(|rows| rows.numbers(&format!("{axis}_error_rad")));
+        rows.expect("errors").iter().skip(120).fold(0.0_f64, |most, error| most.max(error.abs()))
+    });
+    errors.into_iter().fold(0.0, f64::max)
+}
+
+/// The comment of the scenario: what the filter knows with the mode, and without.
+#[test]
+fn a_filter_that_knows_the_mode_is_consistent_and_points_better() {
+    let [with, without] = [&[][..], &[NONE]].map(|change| flown(&changed(change).expect("it")));
+    let number = |(metrics, _): &(Metrics, Trace), name: &str| metrics.number(name).expect(name);
+    assert!((number(&with, "nis_mean") - 1.0).abs() < 0.1, "{}", number(&with, "nis_mean"));
+    assert!((0.5..1.5).contains(&number(&with, "nees_mean")), "{}", number(&with, "nees_mean"));
+    assert!((32.0..34.0).contains(&number(&without, "nis_mean")), "{}", number(&without, "nis_mean"));
+    let [known, unknown] = [&with, &without].map(|run| number(run, "attitude_estimate_error_rms_rad"));
+    assert!(
+        (2.4e-5..2.6e-5).contains(&known) && (1.4e-4..1.5e-4).contains(&unknown),
+        "{known:e} {unknown:e}"
+    );
+    let [held, shaken] = [&with, &without].map(|(_, trace)| worst(trace));
+    assert!(held < 8e-4 && (1.1e-3..1.3e-3).contains(&shaken), "{held:e} {shaken:e}");
+    assert_eq!(with.0.get("goal"), Some(&Value::Word("met")));
+    // A filter that takes the mode for a tenth slower shows it.
+    let wrong = ("modes = [0], noise", "modes = [0], factor = 0.9, noise");
+    assert!(number(&flown(&changed(&[wrong]).expect("it")), "nis_mean") > 2.0);
+    // What laws read without the mode does not answer to it.
+    let rigid = flown(&changed(&[("feeds = \"hub\"", "feeds = \"rigid\"")]).expect("it"));
+    let rings = |run| number(run, "elastic_energy_end_j");
+    assert!(rings(&rigid) > 3.0 * rings(&with), "{} {}", rings(&rigid), rings(&with));
+}
+
+#[test]
+fn what_no_filter_with_modes_can_be_is_refused() {
+    for (change, words) in [
+        (("modes = [0], noise", "modes = [7], noise"), "`estimator.attitude.elastic.modes[0]` must be below"),
+        (("modes = [0], noise", "modes = [0, 0], noise"), "names mode 0 again"),
+        (("modes = [0], noise", "modes = [], noise"), "must name a mode at least"),
+        (("modes = [0], noise", "modes = [0], feeds = \"modes\", noise"), "must be `rigid` or `hub`"),
+        (
+            ("modes = [0], noise", "modes = [0], frequencies = [1, 2], noise"),
+            "must be one for each of 1 modes, got 2",
+        ),
+        (
+            ("[estimator.attitude]\n", "[estimator.attitude]\nform = \"steady\"\n"),
+            "constant gains know no modes",
+        ),
+    ] {
+        let error = changed(&[change]).expect_err("refused");
+        assert!(error.contains(words), "{error}");
+    }
+}
