@@ -143,7 +143,7 @@ fn what_is_wrong_is_told_with_its_line_and_field() {
             in_deck("*MASS, ELSET=TIP\n0.5", "*MASS, ELSET=TIP\nhalf"),
             "the deck: line 228: `mass` must be a finite number, got `half`",
         ),
-        (in_deck("*MASS, ELSET=TIP", "*MASS, ELSET=TAP"), "the deck: line 227: must have a set TAP"),
+        (in_deck("*MASS, ELSET=TIP", "*MASS, ELSET=TAP"), "the deck: line 228: must have a set TAP"),
         (
             in_deck("*MATERIAL", "*INCLUDE, INPUT=more.inp\n*MATERIAL"),
             "the deck: line 231: must have no *INCLUDE",
