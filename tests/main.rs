@@ -66,6 +66,7 @@ mod rooms;
 mod rotation;
 mod scene;
 mod several_sensors;
+mod shaped;
 mod spacecraft;
 mod spatial;
 mod state_space;

@@ -210,3 +210,53 @@ fn pulses_of_the_period_of_the_slosh_drive_it() {
     let swing = (2.0 * peak(&metrics) / 180.0).sqrt() / 0.2;
     assert!((0.2..0.25).contains(&swing), "{swing}");
 }
+
+/// Two masses and a spring, a force on the first and the place of the second measured: Wie and Bernstein's benchmark of 1990.
+#[test]
+fn two_masses_and_a_spring_settle_as_their_compensator_was_published() {
+    let scenario = scenario("two-masses");
+    let trace = flown(&scenario);
+    let (mut settled, mut largest, mut torque) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for row in 0..=8000 {
+        let modes = each(&trace, "/vibrations", "modes", "displacement", row);
+        let hub = 2.0 * number(&trace, "/pointing", "q_x", row);
+        let second = 1e4 * (hub + against_hub(&scenario, "second", &modes)[3]);
+        largest = largest.max(second.abs());
+        if second.abs() > 0.1 {
+            settled = number(&trace, "/pointing", "time_s", row);
+        }
+        torque = torque.max(1e4 * each(&trace, "/torques", "axes", "applied_nm", row)[0].abs());
+    }
+    // Published: 14.09 s, at most 0.886. Sampled by Tustin's rule at 200 Hz, by SciPy's matrix exponentials: 14.08 s, 0.8865033, and
+    // the second is at most 1.624 away.
+    assert!((settled - 14.09).abs() < 0.02, "{settled}");
+    near(torque, 0.886_503_297_573_470_8, 1e-6);
+    near(largest, 1.624, 1e-3);
+}
+
+/// The same with another spring: published stable for 0.46 to 2.28.
+#[test]
+fn two_masses_are_stable_for_the_springs_that_were_published() {
+    for (spring, stable) in [(0.44_f64, false), (0.47, true), (2.2, true), (2.35, false)] {
+        let mut document = flexsc_core::Document::parse(
+            "two-masses.toml",
+            &std::fs::read_to_string(format!("{GOLDEN}/outside/two-masses.toml")).expect("there"),
+        )
+        .expect("a document");
+        for (key, value) in [
+            ("duration", "120.0".to_owned()),
+            ("law.state_space.period", "0.01".to_owned()),
+            ("sensor.sampled.period", "0.01".to_owned()),
+            ("log.period", "0.5".to_owned()),
+            ("appendage[0].modes[0].frequency", format!("{}", spring.sqrt())),
+        ] {
+            document.set_text(key, &value).expect("a key");
+        }
+        let trace = flown(&Scenario::from_document(&document).expect("a scenario"));
+        let energy = |from: usize, to: usize| {
+            let rows = from..to;
+            rows.map(|row| each(&trace, "/vibrations", "modes", "energy_j", row)[0]).fold(0.0, f64::max)
+        };
+        assert_eq!(energy(200, 240) < energy(100, 140), stable, "{spring}");
+    }
+}

@@ -11,6 +11,7 @@ Kutta's method of order 4. flexsc takes them as clamped modes with their first m
   is left grows as the fourth power of that part, for modes are linear and hinges are not.
 - `slew`: the motors' torques of a turn of 60 degrees, as flexsc's law has commanded them, are given to
   Basilisk 4 times a second.
+- `pointing`: so are those of 600 s of fine pointing, from small rates.
 
 It ends with 1 if they are further apart than the limits below.
 """
@@ -44,7 +45,8 @@ SPIN = STUDY["actuator"]["wheels"]["inertia"]
 # Rates (rad/s) and absolute momenta of the wheels (N m s) of a tumble, for a scale of 1.
 RATE, MOMENTA = np.array([0.04, 0.05, -0.03]), np.array([2.0, -1.0, 0.5, 1.5])
 # Largest angles between the attitudes (rad): 0.4 (|w|/W)^4 in 200 s of a tumble, by experience.
-LIMITS = {"tumble 0.1": 1e-9, "tumble 0.3": 1e-7, "tumble 1": 1e-5, "slew": 2e-8}
+LIMITS = {"tumble 0.1": 1e-9, "tumble 0.3": 1e-7, "tumble 1": 1e-5, "slew": 2e-8, "pointing": 1e-10}
+POINTING = {"duration": 600.0, "target": "[]", "spacecraft.rate": [2e-5, -1e-5, 3e-5]}
 
 
 def rotation(about, by):
@@ -193,9 +195,10 @@ def main():
     )
     program = options.parse_args()
     failed = []
-    cases = [(f"tumble {scale:g}", scale) for scale in (0.1, 0.3, 1.0)] + [("slew", 0.0)]
+    cases = [(f"tumble {scale:g}", scale) for scale in (0.1, 0.3, 1.0)] + [("slew", 0.0), ("pointing", 0.0)]
     for name, scale in cases:
         rate, torques = scale * RATE, None
+        points = name == "pointing"
         if scale > 0:
             speeds = scale * MOMENTA / SPIN - axes() @ rate
             changes = {
@@ -205,7 +208,9 @@ def main():
                 "target": "[]",
             }
         else:
-            speeds, changes = np.array(STUDY["actuator"]["wheels"]["speeds"], dtype=float), {}
+            speeds = np.array(STUDY["actuator"]["wheels"]["speeds"], dtype=float)
+            changes = POINTING if points else {}
+            rate = np.array(POINTING["spacecraft.rate"]) if points else rate
         pointing, wheels, own = flexsc(program.flexsc, name, changes)
         if scale == 0:
             torques = [

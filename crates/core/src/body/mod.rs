@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::Fault;
 use crate::motion::turning::Flexible;
+use crate::quantity::Finite;
 
 pub use chain::{Chain, Flight, Flown};
 pub use coupled::Coupled;
@@ -124,6 +125,12 @@ impl Body {
             Self::Spacecraft(craft) => Some(&craft.spatial),
             Self::Planar(_) | Self::Matrices(_) | Self::Panels(_) => None,
         }
+    }
+
+    /// The modes of a body with three axes as a command is planned for them: frequencies and damping ratios.
+    pub fn free_modes(&self) -> Vec<Mode> {
+        let modes = self.spatial().map_or(&[][..], |spatial| &spatial.modes[..]);
+        modes.iter().map(|mode| Mode::at_rest(mode.frequency, Finite::default(), mode.damping)).collect()
     }
 
     /// The spacecraft, if it is put together from parts.

@@ -3,9 +3,10 @@
 use nalgebra::Quaternion;
 
 use super::{Frame, Target};
+use crate::body::Mode;
 use crate::document::Fault;
 use crate::environment::Sky;
-use crate::manoeuvre::{AttitudeTable, Pose, Profile, Slew};
+use crate::manoeuvre::{AttitudeTable, Pose, Profile, Slew, Turn};
 use crate::quantity::Positive;
 use crate::time::Instant;
 
@@ -29,6 +30,7 @@ struct Leg {
 #[derive(Clone, Debug, PartialEq)]
 enum Path {
     Turn(Slew),
+    Shaped(Turn),
     Table(AttitudeTable),
 }
 
@@ -36,6 +38,7 @@ impl Path {
     fn at(&self, t: f64) -> Pose {
         match self {
             Self::Turn(slew) => slew.at(t),
+            Self::Shaped(turn) => turn.at(t),
             Self::Table(table) => table.at(t),
         }
     }
@@ -43,6 +46,7 @@ impl Path {
     fn duration(&self) -> f64 {
         match self {
             Self::Turn(slew) => slew.duration(),
+            Self::Shaped(turn) => turn.duration(),
             Self::Table(table) => table.duration(),
         }
     }
@@ -50,19 +54,30 @@ impl Path {
     fn to(&self) -> Quaternion<f64> {
         match self {
             Self::Turn(slew) => slew.to(),
+            Self::Shaped(turn) => turn.to(),
             Self::Table(table) => table.to(),
         }
     }
 }
 
 impl Itinerary {
-    /// The way to these targets under a sky. Before the first the attitude is the inertial one; a turn begins where the body
+    /// The way to these targets under a sky, of a body with these modes. Before the first the attitude is the inertial one; a turn begins where the body
     /// should be then.
-    pub fn new(targets: &[Target], sky: &Sky) -> Self {
+    pub fn new(targets: &[Target], sky: &Sky, modes: &[Mode]) -> Self {
+        // What has no turn for its modes is refused before.
+        Self::of(targets, sky, modes).unwrap_or_default()
+    }
+
+    /// The same, or the key of a target that does not fit the modes.
+    fn of(targets: &[Target], sky: &Sky, modes: &[Mode]) -> Result<Self, Fault> {
         let mut way = Self { legs: Vec::new(), sky: sky.clone() };
-        for target in targets {
+        for (index, target) in targets.iter().enumerate() {
             let (begins, frame) = (target.begins(), target.frame);
-            let path = if target.table.is_empty() {
+            let path = if target.is_shaped() {
+                let ways = [way.seen_from(frame, begins), target.attitude()];
+                let turn = target.turn(ways, modes).map_err(|fault| fault.within(&format!("[{index}]")))?;
+                Path::Shaped(turn)
+            } else if target.table.is_empty() {
                 let to = target.attitude();
                 let rate_limit = target.rate_limit.map_or(f64::INFINITY, Positive::get);
                 Path::Turn(target.acceleration.map_or_else(
@@ -77,7 +92,15 @@ impl Itinerary {
             };
             way.legs.push(Leg { begins, frame, path });
         }
-        way
+        Ok(way)
+    }
+
+    /// The largest rate of the turn to a target (rad/s), if it is made for modes.
+    pub fn fastest(&self, target: usize) -> Option<f64> {
+        match &self.legs.get(target)?.path {
+            Path::Shaped(turn) => Some(turn.fastest()),
+            _ => None,
+        }
     }
 
     /// Where the way so far is at an instant, from a frame.
@@ -134,13 +157,16 @@ impl Itinerary {
 
     /// The first target without the axes that it is from, whose keys do not fit, or that begins before the way to the one before
     /// has ended: its key, and why.
-    pub fn fault(targets: &[Target], sky: &Sky) -> Option<Fault> {
+    pub fn fault(targets: &[Target], sky: &Sky, modes: &[Mode]) -> Option<Fault> {
         for (index, target) in targets.iter().enumerate() {
             if let Some(fault) = target.fault(sky) {
                 return Some(fault.within(&format!("[{index}]")));
             }
         }
-        let way = Self::new(targets, sky);
+        let way = match Self::of(targets, sky, modes) {
+            Ok(way) => way,
+            Err(fault) => return Some(fault),
+        };
         for (index, pair) in way.legs.windows(2).enumerate() {
             let ends = pair[0].begins.seconds() + pair[0].path.duration();
             if pair[1].begins.seconds() < ends {
@@ -170,6 +196,9 @@ impl Target {
                 ("acceleration", self.acceleration.is_some()),
                 ("rate_limit", self.rate_limit.is_some()),
                 ("profile", shaped),
+                ("command", self.command.is_some()),
+                ("duration", self.duration.is_some()),
+                ("shaper", self.shaper.is_some()),
             ];
             if let Some((key, _)) = beside.into_iter().find(|(_, given)| *given) {
                 return Some(Fault::new(
@@ -178,6 +207,9 @@ impl Target {
                 ));
             }
             return AttitudeTable::fault(&self.table);
+        }
+        if let Some(fault) = self.shape_fault() {
+            return Some(fault);
         }
         if self.rate_limit.is_some() && self.acceleration.is_none() {
             return Some(Fault::new("rate_limit", "needs the `acceleration` at which the rate rises"));
@@ -219,8 +251,8 @@ mod tests {
             "target = [{ from = 10.0, yaw = 0.5 }, { from = 20.0, yaw = 0.9, acceleration = 2e-3, rate_limit = 0.02 }]",
         );
         let sky = Sky::default();
-        assert_eq!(Itinerary::fault(&two, &sky), None);
-        let way = Itinerary::new(&two, &sky);
+        assert_eq!(Itinerary::fault(&two, &sky, &[]), None);
+        let way = Itinerary::new(&two, &sky, &[]);
         let yaw = |seconds: f64| crate::attitude::angles(&way.at(at(seconds)).attitude)[2];
         // 0.02 rad/s after 10 s; 0.4 rad take 30 s.
         for (seconds, exact) in
@@ -236,7 +268,7 @@ mod tests {
 
     #[test]
     fn targets_that_do_not_fit_are_refused() {
-        let fault = |text: &str| Itinerary::fault(&targets(text), &Sky::default()).unwrap().to_string();
+        let fault = |text: &str| Itinerary::fault(&targets(text), &Sky::default(), &[]).unwrap().to_string();
         let soon = fault(
             "target = [{ from = 0, yaw = 0.4, acceleration = 2e-3, rate_limit = 0.02 }, { from = 29.0 }]",
         );
@@ -261,8 +293,8 @@ mod tests {
             "target = [{ from = 0, frame = \"sun\", yaw = 0.3 }, { from = 50, frame = \"nadir\", roll = 0.2, acceleration = 2e-3 }, \
              { from = 400, frame = \"nadir\", table = [{ time = 0, roll = 0.2 }, { time = 20, pitch = 0.4 }, { time = 60, yaw = -0.3 }] }]",
         );
-        assert_eq!(Itinerary::fault(&way, &sky), None);
-        let way = Itinerary::new(&way, &sky);
+        assert_eq!(Itinerary::fault(&way, &sky, &[]), None);
+        let way = Itinerary::new(&way, &sky, &[]);
         let there = |seconds: f64, axis: Vector| -> Vector {
             let q = way.at(at(seconds)).attitude;
             (q * Quaternion::from_imag(axis) * q.conjugate()).vector().into_owned()
@@ -289,7 +321,7 @@ mod tests {
 
     #[test]
     fn a_frame_that_is_not_there_is_refused() {
-        let fault = |text: &str| Itinerary::fault(&targets(text), &Sky::default()).unwrap().to_string();
+        let fault = |text: &str| Itinerary::fault(&targets(text), &Sky::default(), &[]).unwrap().to_string();
         assert!(
             fault("target = [{ from = 0, frame = \"nadir\" }]")
                 .starts_with("`[0].frame` points to the planet")

@@ -14,6 +14,7 @@ mod pd;
 mod per_axis;
 mod phase_plane;
 mod relay;
+mod shaped;
 #[cfg(test)]
 mod slew_tests;
 mod stages;

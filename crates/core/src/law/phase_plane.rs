@@ -15,7 +15,7 @@ use super::{
 use crate::attitude::turned;
 use crate::belief::{Belief, Damped};
 use crate::document::Fault;
-use crate::manoeuvre::{AttitudeAt, Profile};
+use crate::manoeuvre::{AttitudeAt, Command as Planned, Profile, Shaper};
 use crate::quantity::{Finite, Fraction, Positive, Time};
 use crate::time::{Instant, Span};
 
@@ -83,6 +83,15 @@ pub struct Target {
     /// How the rate of that turn rises and falls.
     #[serde(default, skip_serializing_if = "is_trapezoid")]
     pub profile: Profile,
+    /// In place of `acceleration`, a command planned for the turn, which may leave modes at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command: Option<Planned>,
+    /// How long the turn by that command takes (s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration: Option<Positive>,
+    /// What takes modes out of the turn: its acceleration is convolved with impulses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shaper: Option<Shaper>,
     /// In place of one attitude, a table in time: splines of roll, pitch and yaw, at rest at both ends.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub table: Vec<AttitudeAt>,
@@ -109,6 +118,9 @@ impl Target {
         acceleration: None,
         rate_limit: None,
         profile: Profile::Trapezoid,
+        command: None,
+        duration: None,
+        shaper: None,
         table: Vec::new(),
     };
 

@@ -21,6 +21,7 @@ mod slew;
 mod suppression;
 mod task;
 mod timing;
+mod turn;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -39,9 +40,11 @@ pub use plan::Plan;
 pub use report::{Report, Tuned};
 pub use residual::Residual;
 pub use series::Coefficients;
-pub use shaper::{ExtraInsensitive, Impulse, Shaped, Shaper};
+pub use shaper::{ExtraInsensitive, Impulse, Shaped, Shaper, shaped};
 pub use slew::{Pose, Profile, Slew};
 pub use suppression::{Suppression, Target};
+pub use task::Task;
+pub use turn::Turn;
 
 use planner::Planner;
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::{Vector, rotation};
 use crate::environment::into;
+use crate::waveform::{Shape, Term, Waveform};
 
 /// How the rate of a turn rises to its limit, and falls.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -75,6 +76,15 @@ pub struct Slew {
     coast: f64,
 }
 
+/// The axis of the turn on the shorter way between two attitudes, the same in both, and the angle about it, at most pi (rad).
+pub(super) fn eigenaxis(from: &Quaternion<f64>, to: &Quaternion<f64>) -> (Vector, f64) {
+    let turn = from.conjugate() * to;
+    let sine = turn.vector().norm();
+    let angle = 2.0 * libm::atan2(sine, turn.w.abs());
+    let axis = if sine > 0.0 { turn.vector() * (libm::copysign(1.0, turn.w) / sine) } else { Vector::x() };
+    (axis, angle)
+}
+
 impl Slew {
     /// The turn on the shorter way within these limits (rad/s², rad/s); the rate may be endless.
     pub fn new(
@@ -83,11 +93,7 @@ impl Slew {
         rate_limit: f64,
         profile: Profile,
     ) -> Self {
-        let turn = from.conjugate() * to;
-        let sine = turn.vector().norm();
-        let angle = 2.0 * libm::atan2(sine, turn.w.abs());
-        let axis =
-            if sine > 0.0 { turn.vector() * (libm::copysign(1.0, turn.w) / sine) } else { Vector::x() };
+        let (axis, angle) = eigenaxis(&from, &to);
         // The mean of the acceleration while the rate rises.
         let mean = if profile == Profile::Versine { 0.5 * acceleration } else { acceleration };
         let rate = rate_limit.min(libm::sqrt(angle * mean));
@@ -109,6 +115,26 @@ impl Slew {
             rise: 0.0,
             coast: 0.0,
         }
+    }
+
+    /// Its acceleration (rad/s²).
+    pub fn command(&self) -> Waveform {
+        let one = |from: f64, sign: f64| {
+            let (to, most) = (from + self.rise, sign * self.acceleration);
+            let term = |shape| Term { from, to, shape };
+            match self.profile {
+                Profile::Trapezoid => vec![term(Shape::Polynomial(vec![most]))],
+                Profile::Versine => {
+                    let frequency = 2.0 * std::f64::consts::PI / self.rise;
+                    let falling = Shape::Harmonic { frequency, cosine: -0.5 * most, sine: 0.0 };
+                    vec![term(Shape::Polynomial(vec![0.5 * most])), term(falling)]
+                }
+            }
+        };
+        if self.rise == 0.0 {
+            return Waveform::default();
+        }
+        Waveform { terms: [one(0.0, 1.0), one(self.rise + self.coast, -1.0)].concat() }
     }
 
     /// The attitude at its end.

@@ -10,7 +10,7 @@ use crate::disturbance::{Disturbance, Pulses};
 use crate::document::Fault;
 use crate::document::key;
 use crate::estimator::Estimator;
-use crate::law::{Extra, Law, Target};
+use crate::law::{Extra, Itinerary, Law, Target};
 use crate::quantity::Time;
 use crate::sensor::Outage;
 
@@ -83,8 +83,10 @@ impl Scenario {
         }
         let own = matches!(&self.law, Law::PhasePlane(law) if !law.targets.is_empty());
         let key = if own { "law.phase_plane.targets" } else { "target" };
+        let way = Itinerary::new(self.targets(), &self.sky(), &self.body.free_modes());
         let fast = |(index, target): (usize, &Target)| {
-            let (of, rate) = target.fastest().filter(|(_, rate)| *rate > limit)?;
+            let planned = || Some(("duration", way.fastest(index).filter(|_| target.command.is_some())?));
+            let (of, rate) = target.fastest().or_else(planned).filter(|(_, rate)| *rate > limit)?;
             let why = format!("must be below {limit:.3e} rad/s, {why}, got {rate}");
             Some(Fault::new(format!("{key}[{index}].{of}"), why))
         };

@@ -143,13 +143,14 @@ impl Scenario {
             if Target::disorder(&law.targets).is_some() {
                 return None;
             }
-            let fault = Itinerary::fault(&law.targets, &self.sky())?;
+            let fault = Itinerary::fault(&law.targets, &self.sky(), &self.body.free_modes())?;
             return Some(fault.within("law.phase_plane.targets"));
         }
         if let Some((late, why)) = Target::disorder(&self.target) {
             return Some(Fault::new(format!("target[{late}].from"), why));
         }
-        Itinerary::fault(&self.target, &self.sky()).map(|fault| fault.within("target"))
+        Itinerary::fault(&self.target, &self.sky(), &self.body.free_modes())
+            .map(|fault| fault.within("target"))
     }
 
     fn law_fault(&self) -> Option<Fault> {

@@ -78,7 +78,7 @@ impl Study {
             // A continuous sensor is read in the cycles of the law, where an estimator acts at samples.
             sampling: scenario.sensor.period(cycle).or(cycle.filter(|_| samples)),
             targets: scenario.targets().to_vec(),
-            way: Itinerary::new(scenario.targets(), &scenario.sky()),
+            way: Itinerary::new(scenario.targets(), &scenario.sky(), &scenario.body.free_modes()),
             back_emf: match &scenario.actuator {
                 Actuator::Wheel(wheel) => (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate),
                 _ => (0.0, true),

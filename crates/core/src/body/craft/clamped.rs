@@ -67,7 +67,7 @@ pub fn rotation_of(moments: &Matrix3<f64>) -> Vector {
 
 impl Row for ClampedMode {
     const LIST: &'static str = "ClampedModes";
-    const FILES: &'static str = ".csv, .f06, .dat or .flex";
+    const FILES: &'static str = ".csv, .f06, .frd, .dat or .flex";
     const OWN: &'static [&'static str] =
         &["tx", "ty", "tz", "rx", "ry", "rz", "nxx", "nxy", "nxz", "nyx", "nyy", "nyz", "nzx", "nzy", "nzz"];
 

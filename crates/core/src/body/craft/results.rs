@@ -9,9 +9,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Appendage, ClampedMode};
+use crate::body::spatial::NamedPoint;
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::structure::fe::{Format, Mode};
+use crate::structure::Shape;
+use crate::structure::fe::{Format, Mode, Place};
 use crate::structure::mode_table::{MOST_MODES, Row};
 
 /// The structure of a file weighs what the appendage weighs, but for this part: its clamped nodes, or what is no structure.
@@ -59,7 +61,7 @@ impl Appendage {
             self.no_keys_of_results()?;
             return self.modes.read(others.map(|other| &other.modes)).map_err(|why| Fault::new("modes", why));
         };
-        let keys = |of: &Self| (of.mass, of.keep, of.units, of.damping.clone());
+        let keys = |of: &Self| (of.mass, of.keep, of.units, of.damping.clone(), of.points.clone());
         if let Some(others) =
             others.filter(|others| others.modes.file() == Some(file) && keys(others) == keys(self))
         {
@@ -78,7 +80,8 @@ impl Appendage {
             return Err(Fault::new("keep", format!("must be 1 to {MOST_MODES} modes, got {keep}")));
         }
         let told = |why| Fault::new("modes", format!("cannot be used: {}: {why}", file.display()));
-        let results = format.read(file, self.keep).map_err(told)?;
+        let places = if format.has_shapes() { self.places() } else { Vec::new() };
+        let results = format.read(file, self.keep, &places).map_err(told)?;
         if let Some(mass) = results.mass {
             self.weighs(mass * self.units.unwrap_or_default().mass())?;
         }
@@ -107,9 +110,19 @@ impl Appendage {
             ("units", self.units.is_some()),
         ];
         keys.iter().find(|(_, there)| *there).map_or(Ok(()), |(key, _)| {
-            let why = "must be left out: it is for `modes` from a .f06, .dat or .flex file, and a table says it itself";
+            let why = "must be left out: it is for `modes` from a .f06, .frd, .dat or .flex file, and a table says it itself";
             Err(Fault::new(*key, why))
         })
+    }
+
+    /// Its points in the units of the file.
+    fn places(&self) -> Vec<Place> {
+        let unit = self.units.unwrap_or_default().length();
+        let place = |point: &NamedPoint| Place {
+            name: point.name.clone(),
+            at: point.position.map(|part| part.get() / unit),
+        };
+        self.points.iter().map(place).collect()
     }
 
     /// Whether the structure of the file can be this appendage.
@@ -162,6 +175,13 @@ impl Appendage {
         if let Some([x, y, z]) = mode.moments {
             let unit = root * units.length();
             clamped.moments = Some([three(x, unit)?, three(y, unit)?, three(z, unit)?]);
+        }
+        for (point, [moved, turned]) in self.points.iter().zip(&mode.shapes) {
+            let shape = Shape {
+                translation: three(*moved, 1.0 / root)?,
+                rotation: three(*turned, 1.0 / (root * units.length()))?,
+            };
+            clamped.shapes.insert(point.name.clone(), shape);
         }
         Ok(clamped)
     }

@@ -220,6 +220,7 @@ impl Reader {
                 rotation: three(3),
                 moments: knows_moments.then(|| [three(6), three(9), three(12)]),
                 damping: modal.then(|| damping[(index, index)] / (2.0 * frequency)),
+                shapes: Vec::new(),
             }
         };
         Ok(Results { modes: (0..count).map(mode).collect(), mass: None })

@@ -3,9 +3,15 @@
 //! Modes are about the point that the file's participations are about, in its axes, normalised by mass.
 
 mod calculix;
+mod deck;
+mod element;
 mod f06;
 mod flex;
+mod frd;
+mod integrals;
 mod mystran;
+#[cfg(test)]
+mod shape_tests;
 mod tables;
 #[cfg(test)]
 mod tests;
@@ -31,6 +37,8 @@ pub enum Format {
     F06,
     /// The tables of CalculiX.
     CalculiX,
+    /// The shapes of CalculiX, beside its deck.
+    Frd,
     /// A flexible body of 42.
     Flex,
 }
@@ -48,6 +56,18 @@ pub struct Mode {
     pub moments: Option<[[f64; 3]; 3]>,
     /// Damping ratio, where the file has it.
     pub damping: Option<f64>,
+    /// Its displacement (1/sqrt(mass)) and rotation (1/(sqrt(mass) length)) at each of the points that were asked for, where
+    /// the file has shapes.
+    pub shapes: Vec<[[f64; 3]; 2]>,
+}
+
+/// A point of a structure, in the file's axes and units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// What errors call it.
+    pub name: String,
+    /// Where it is.
+    pub at: [f64; 3],
 }
 
 /// What a file has.
@@ -65,21 +85,34 @@ impl Format {
         match path.extension()?.to_ascii_lowercase().to_str()? {
             "f06" => Some(Self::F06),
             "dat" => Some(Self::CalculiX),
+            "frd" => Some(Self::Frd),
             "flex" | "txt" => Some(Self::Flex),
             _ => None,
         }
     }
 
-    /// Reads the lowest modes of a file, all of them without a number.
+    /// Whether it has shapes, of which points are taken.
+    pub const fn has_shapes(self) -> bool {
+        matches!(self, Self::Frd)
+    }
+
+    /// Reads the lowest modes of a file, all of them without a number, with their shapes at some points.
     ///
     /// # Errors
     /// What is wrong with it, with its line.
-    pub fn read(self, path: &Path, keep: Option<usize>) -> Result<Results, String> {
+    pub fn read(self, path: &Path, keep: Option<usize>, points: &[Place]) -> Result<Results, String> {
         let text = open_text_up_to(path, LONGEST)?;
         match self {
             Self::F06 => f06::read(text, keep),
             Self::CalculiX => calculix::read(text, keep),
             Self::Flex => flex::read(text, keep),
+            Self::Frd => {
+                // A run names its results as its deck.
+                let beside = path.with_extension("inp");
+                let told = |why: String| format!("the deck {}: {why}", beside.display());
+                let deck = deck::read(open_text_up_to(&beside, LONGEST).map_err(told)?).map_err(told)?;
+                integrals::modes(frd::read(text)?, &deck, keep, points)
+            }
         }
     }
 }
@@ -98,7 +131,14 @@ impl Natural {
     /// The mode with its participations.
     fn with(&self, [a, b, c, d, e, f]: [f64; 6]) -> Mode {
         let (translation, rotation) = ([a, b, c], [d, e, f]);
-        Mode { frequency: self.frequency, translation, rotation, moments: None, damping: None }
+        Mode {
+            frequency: self.frequency,
+            translation,
+            rotation,
+            moments: None,
+            damping: None,
+            shapes: Vec::new(),
+        }
     }
 
     /// The numbers of its row, printed as eigenvalue, rad/s and Hz, which have to say the same.

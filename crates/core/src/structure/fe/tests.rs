@@ -18,12 +18,16 @@ fn parse(format: Format, text: &[u8], keep: Option<usize>) -> Result<Results, St
         Format::F06 => f06::read(text, keep),
         Format::CalculiX => calculix::read(text, keep),
         Format::Flex => flex::read(text, keep),
+        Format::Frd => {
+            let deck = deck::read(&bytes("boom.inp")[..])?;
+            integrals::modes(frd::read(text)?, &deck, keep, &[])
+        }
     }
 }
 
 fn file(name: &str) -> Results {
     let path = golden(name);
-    Format::of(&path).expect("a format").read(&path, None).expect("modes")
+    Format::of(&path).expect("a format").read(&path, None, &[]).expect("modes")
 }
 
 /// The modes of a structure by another computation: frequency, t, r, r phi'.
@@ -270,7 +274,8 @@ impl Draws {
 #[test]
 fn damaged_files_are_refused_or_read_and_never_crash() {
     let mut draws = Draws(7);
-    for name in ["bars.F06", "feet.F06", "bars-msc.f06", "pages-nx.f06", "panel.dat", "bars.flex"] {
+    for name in ["bars.F06", "feet.F06", "bars-msc.f06", "pages-nx.f06", "panel.dat", "bars.flex", "boom.frd"]
+    {
         let format = Format::of(Path::new(name)).expect("a format");
         let whole = bytes(name);
         let sound = parse(format, &whole, None).ok();

@@ -1,6 +1,7 @@
 //! Lines of a text file with their numbers, and the numbers on them as Fortran prints them.
 
 use std::io::{BufRead, Read};
+use std::ops::Range;
 
 /// No line of a result is longer (bytes): what has longer ones is no text.
 const LONGEST: usize = 4096;
@@ -77,6 +78,49 @@ impl Line {
             format!("line {number}: must have {N} fields ({}), got {}", names.join(", "), words.len())
         })?;
         Ok(Fields { number, names, words })
+    }
+}
+
+/// What stands in columns of a line.
+pub struct Column<'a> {
+    number: usize,
+    name: &'static str,
+    word: &'a str,
+}
+
+impl Line {
+    /// What stands between two columns, without blanks around it; columns count from 0.
+    ///
+    /// # Errors
+    /// A line that ends before.
+    pub fn column(&self, columns: Range<usize>, name: &'static str) -> Result<Column<'_>, String> {
+        let number = self.number;
+        let word = self.text.get(columns.clone()).filter(|_| self.ended).ok_or_else(|| {
+            format!("line {number}: must have `{name}` in columns {} to {}", columns.start + 1, columns.end)
+        })?;
+        Ok(Column { number, name, word: word.trim() })
+    }
+}
+
+impl Column<'_> {
+    /// As a number.
+    ///
+    /// # Errors
+    /// What else it is.
+    pub fn real(&self) -> Result<f64, String> {
+        real(self.word).ok_or_else(|| self.wrong("a finite number"))
+    }
+
+    /// As a whole number of 0 or more.
+    ///
+    /// # Errors
+    /// What else it is.
+    pub fn whole(&self) -> Result<usize, String> {
+        self.word.parse().map_err(|_| self.wrong("a whole number"))
+    }
+
+    fn wrong(&self, what: &str) -> String {
+        format!("line {}: `{}` must be {what}, got `{}`", self.number, self.name, self.word)
     }
 }
 

@@ -109,7 +109,7 @@ fn keys_that_do_not_fit_results_are_refused() {
         ("modes = \"feet.F06\"\ndamping = 0", "feet.F06: must have one clamped grid"),
         ("modes = \"none.f06\"\ndamping = 0", "none.f06: "),
         ("modes = \"bars.op2\"\ndamping = 0", "must be left out"),
-        ("modes = \"bars.op2\"", "the path of a .csv, .f06, .dat or .flex file, got"),
+        ("modes = \"bars.op2\"", "the path of a .csv, .f06, .frd, .dat or .flex file, got"),
         (
             "modes = \"pages-nx.f06\"\ndamping = 0\nkeep = 2",
             "`appendage[0].modes[0]` must leave the appendage mass",

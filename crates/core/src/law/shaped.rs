@@ -1,0 +1,180 @@
+//! The turn to a target that leaves modes at rest: a command planned for them, or a turn with limits through a shaper.
+
+use nalgebra::Quaternion;
+
+use super::Target;
+use crate::body::Mode;
+use crate::document::Fault;
+use crate::manoeuvre::{Profile, Slew, Task, Turn, shaped};
+use crate::quantity::Positive;
+
+impl Target {
+    /// Whether the turn to it is made for modes.
+    pub(super) fn is_shaped(&self) -> bool {
+        self.command.is_some() || self.shaper.is_some()
+    }
+
+    /// The turn to it, of a body with these modes.
+    ///
+    /// # Errors
+    /// The key that does not fit the modes, and why.
+    pub(super) fn turn(&self, ways: [Quaternion<f64>; 2], modes: &[Mode]) -> Result<Turn, Fault> {
+        Turn::new(ways, |angle| {
+            let plan = match (&self.command, self.duration) {
+                (Some(command), Some(duration)) => {
+                    let task = Task { time: duration.get(), impulse: 0.0, travel: angle };
+                    command
+                        .waveform(&task, &command.zeros(modes)?)
+                        .map_err(|fault| fault.within("command"))?
+                        .0
+                }
+                _ => {
+                    let acceleration = self.acceleration.map_or(0.0, Positive::get);
+                    let rate_limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
+                    Slew::new(ways, acceleration, rate_limit, self.profile).command()
+                }
+            };
+            let Some(shaper) = &self.shaper else { return Ok(plan) };
+            Ok(shaped(&plan, &shaper.impulses(modes)?))
+        })
+    }
+
+    /// Keys of a shaped turn that do not fit each other.
+    pub(super) fn shape_fault(&self) -> Option<Fault> {
+        let limits = [
+            ("acceleration", self.acceleration.is_some()),
+            ("rate_limit", self.rate_limit.is_some()),
+            ("profile", self.profile != Profile::default()),
+        ];
+        match (&self.command, self.duration) {
+            (Some(_), None) => Some(Fault::new("duration", "must say how long the turn by `command` takes")),
+            (None, Some(_)) => Some(Fault::new("duration", "needs the `command` that takes so long")),
+            (Some(_), Some(_)) => limits.iter().find(|(_, given)| *given).map(|(key, _)| {
+                Fault::new(*key, "must be left out with a `command`, which is planned for its `duration`")
+            }),
+            (None, None) => (self.shaper.is_some() && self.acceleration.is_none()).then(|| {
+                Fault::new("shaper", "needs the `acceleration` or the `command` of the turn that it shapes")
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::attitude::Vector;
+    use crate::attitude::rotation;
+    use crate::quantity::{Finite, Frequency, NonNegative};
+
+    fn modes() -> Vec<Mode> {
+        let mode = |frequency: f64, damping: f64| {
+            let damping = NonNegative::new(damping).expect("a ratio");
+            Mode::at_rest(Frequency::new(frequency).expect("a frequency"), Finite::default(), damping)
+        };
+        vec![mode(0.9, 0.005), mode(1.7, 0.01), mode(4.0, 0.0)]
+    }
+
+    fn target(keys: &str) -> Target {
+        toml::from_str(&format!("from = 0\n{keys}")).unwrap_or_else(|error| panic!("{keys}: {error}"))
+    }
+
+    /// What is left of a mode after a turn, in parts of what one push with its largest acceleration leaves: by steps of Simpson's
+    /// rule over the poses of the turn, which know nothing of waveforms.
+    fn left(turn: &Turn, mode: &Mode, axis: Vector) -> f64 {
+        let (w, zeta) = (mode.frequency.get(), mode.damping.get());
+        let damped = w * libm::sqrt(1.0 - zeta * zeta);
+        let end = turn.duration();
+        let (mut cosine, mut sine, mut most) = (0.0, 0.0, 0.0_f64);
+        let count = 200_000;
+        let h = end / f64::from(count);
+        // Rates are continuous: in parts, of the acceleration's integral.
+        for k in 0..=count {
+            let t = h * f64::from(k);
+            let weight = if k == 0 || k == count {
+                1.0
+            } else if k % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            };
+            let pose = turn.at(t.min(end * (1.0 - 1e-15)));
+            let rate = pose.rate.dot(&axis);
+            let grown = weight * h / 3.0 * libm::exp(zeta * w * (t - end)) * rate;
+            cosine += grown * libm::cos(damped * t);
+            sine += grown * libm::sin(damped * t);
+            most = most.max(rate.abs());
+        }
+        libm::hypot(cosine, sine) * w / most
+    }
+
+    #[test]
+    fn chosen_modes_rest_after_the_turn() {
+        let axis = Vector::new(1.0, 2.0, 2.0) / 3.0;
+        let from = rotation(&Vector::new(0.3, -0.2, 0.5));
+        let to = from * rotation(&(axis * 0.8));
+        // By Simpson's rule, of turns whose rate has kinks.
+        let cases = [
+            ("acceleration = 2e-3\nrate_limit = 0.02\nshaper = { zv = { modes = [0] } }", vec![0], 1e-7),
+            (
+                "acceleration = 2e-3\nrate_limit = 0.02\nprofile = \"versine\"\nshaper = { zvd = { modes = [0, 1] } }",
+                vec![0, 1],
+                1e-9,
+            ),
+            ("duration = 60\ncommand = { minimum_peak = { suppress = 2 } }", vec![0, 1], 1e-6),
+            ("duration = 60\ncommand = { cosine = { suppress = 3 } }", vec![0, 1, 2], 1e-8),
+            (
+                "duration = 60\ncommand = { minimum_energy = { suppress = 1 } }\nshaper = { zv = { modes = [2] } }",
+                vec![0, 2],
+                1e-7,
+            ),
+        ];
+        for (keys, rest, bound) in cases {
+            let turn =
+                target(keys).turn([from, to], &modes()).unwrap_or_else(|fault| panic!("{keys}: {fault}"));
+            for mode in rest {
+                let left = left(&turn, &modes()[mode], axis);
+                assert!(left < bound, "{keys}: mode {mode} keeps {left:e}");
+            }
+            // It ends at its target, at rest, and goes there about one axis.
+            let near_end = turn.at(turn.duration() * (1.0 - 1e-12));
+            assert!((near_end.attitude - to).norm() < 1e-12 && near_end.rate.norm() < 1e-11, "{keys}");
+            assert!((turn.at(0.4 * turn.duration()).rate.cross(&axis)).norm() < 1e-15);
+            assert!(turn.fastest() < 0.05);
+        }
+        let plain = target("acceleration = 2e-3\nrate_limit = 0.02");
+        let plain = plain.turn([from, to], &modes()).expect("a turn");
+        assert!(left(&plain, &modes()[0], axis) > 1e-2);
+        // Without a shaper it is the turn in closed form.
+        let slew = Slew::new([from, to], 2e-3, 0.02, Profile::Trapezoid);
+        for k in 0..60 {
+            let (a, b) = (plain.at(f64::from(k)), slew.at(f64::from(k)));
+            assert!((a.attitude - b.attitude).norm() < 1e-14 && (a.rate - b.rate).norm() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn keys_that_do_not_fit_are_refused() {
+        let ways = [rotation(&Vector::zeros()), rotation(&Vector::new(0.0, 0.0, 0.5))];
+        let fault = |keys: &str| {
+            let target = target(keys);
+            let found = target.shape_fault().or_else(|| target.turn(ways, &modes()).err());
+            found.unwrap_or_else(|| panic!("{keys}")).to_string()
+        };
+        let cases = [
+            ("duration = 10", "`duration` needs the `command`"),
+            ("command = { bang_bang = {} }", "`duration` must say how long"),
+            (
+                "duration = 10\nacceleration = 1\ncommand = { bang_bang = {} }",
+                "`acceleration` must be left out with a `command`",
+            ),
+            ("shaper = { zv = {} }", "`shaper` needs the `acceleration`"),
+            ("acceleration = 1\nshaper = { zv = { modes = [3] } }", "`shaper.zv.modes[0]`"),
+            ("duration = 10\ncommand = { cosine = { suppress = 4 } }", "`command.cosine.suppress`"),
+            ("duration = 1\ncommand = { minimum_peak = { suppress = 3 } }", "`"),
+        ];
+        for (keys, why) in cases {
+            let found = fault(keys);
+            assert!(found.starts_with(why), "{keys}: {found}");
+        }
+    }
+}

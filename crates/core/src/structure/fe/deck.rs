@@ -1,0 +1,286 @@
+//! The deck (.inp) of a run of CalculiX: what its results leave out of its masses.
+
+use std::collections::BTreeMap;
+use std::io::BufRead;
+
+use nalgebra::Vector3;
+
+use super::element::Rule;
+use super::text::{Line, Lines, real};
+
+/// Element types: their name, how many nodes a line of the deck gives them, and how their mass is integrated; none of a
+/// point mass. Those with incompatible modes (C3D8I, S4, B31) move in ways that results do not show.
+const TYPES: [(&str, usize, Option<Rule>); 17] = [
+    ("C3D20", 20, Some(Rule::Full)),
+    ("C3D20R", 20, Some(Rule::Reduced)),
+    ("C3D8", 8, Some(Rule::Full)),
+    ("C3D8R", 8, Some(Rule::Reduced)),
+    ("C3D10", 10, Some(Rule::Full)),
+    ("C3D4", 4, Some(Rule::Full)),
+    ("C3D15", 15, Some(Rule::Full)),
+    ("C3D6", 6, Some(Rule::Full)),
+    ("S8", 8, Some(Rule::Full)),
+    ("S8R", 8, Some(Rule::Reduced)),
+    ("S6", 6, Some(Rule::Full)),
+    ("S4R", 4, Some(Rule::Reduced)),
+    ("S3", 3, Some(Rule::Full)),
+    ("B32", 3, Some(Rule::Full)),
+    ("B32R", 3, Some(Rule::Reduced)),
+    ("B31R", 2, Some(Rule::Reduced)),
+    ("MASS", 1, None),
+];
+
+/// A mass at a node.
+#[derive(Debug)]
+pub struct PointMass {
+    /// Its node.
+    pub node: usize,
+    /// Its mass, in the deck's units.
+    pub mass: f64,
+    /// Where its element stands in the deck.
+    pub line: usize,
+}
+
+/// What a deck tells.
+#[derive(Debug, Default)]
+pub struct Deck {
+    /// Densities of materials, by their names in capitals.
+    pub densities: BTreeMap<String, f64>,
+    /// How the mass of each element is integrated.
+    pub rules: BTreeMap<usize, Rule>,
+    /// Masses at nodes.
+    pub masses: Vec<PointMass>,
+    /// Positions of the nodes.
+    pub positions: BTreeMap<usize, Vector3<f64>>,
+}
+
+/// The keyword that the lines belong to.
+enum At {
+    Elsewhere,
+    Nodes,
+    /// Elements: their nodes that are still to come on further lines, their type, and their set.
+    Elements {
+        missing: usize,
+        kind: usize,
+        set: Option<String>,
+    },
+    Set {
+        name: String,
+        generate: bool,
+    },
+    Density,
+    Mass {
+        set: String,
+    },
+}
+
+#[derive(Default)]
+struct Reader {
+    deck: Deck,
+    material: Option<String>,
+    /// Elements of each set: those of type MASS with their node and line, and names of sets within.
+    members: BTreeMap<String, Vec<Member>>,
+    points: BTreeMap<usize, (usize, usize)>,
+    /// Masses of sets, and the line of each.
+    given: Vec<(String, f64, usize)>,
+}
+
+#[derive(Clone)]
+enum Member {
+    Element(usize),
+    Set(String),
+}
+
+/// Reads a deck.
+///
+/// # Errors
+/// What is wrong with it, with its line.
+pub fn read(text: impl BufRead) -> Result<Deck, String> {
+    let (mut reader, mut at) = (Reader::default(), At::Elsewhere);
+    let mut lines = Lines::of(text);
+    let mut keyword = String::new();
+    while let Some(line) = lines.next()? {
+        let text = line.text.trim();
+        if text.is_empty() || text.starts_with("**") {
+            continue;
+        }
+        // A keyword goes on behind a comma at its end.
+        if text.starts_with('*') || keyword.ends_with(',') {
+            keyword.extend(line.squeezed().to_ascii_uppercase().chars());
+            if !keyword.ends_with(',') {
+                at = reader.open(&keyword, &line)?;
+                keyword.clear();
+            }
+            continue;
+        }
+        reader.take(&line, &mut at)?;
+    }
+    reader.finish()
+}
+
+/// The value of a parameter of a keyword.
+fn parameter(keyword: &str, name: &str) -> Option<String> {
+    let value = |word: &str| Some(word.strip_prefix(name)?.strip_prefix('=')?.to_owned());
+    keyword.split(',').find_map(value)
+}
+
+impl Reader {
+    fn open(&mut self, keyword: &str, line: &Line) -> Result<At, String> {
+        let number = line.number;
+        let needed = |name: &str| {
+            parameter(keyword, name).ok_or_else(|| format!("line {number}: must have a parameter {name}"))
+        };
+        Ok(match keyword.split(',').next().unwrap_or_default() {
+            "*INCLUDE" => {
+                return Err(format!(
+                    "line {number}: must have no *INCLUDE: put what it includes in its place"
+                ));
+            }
+            "*NODE" => At::Nodes,
+            "*ELEMENT" => {
+                let name = needed("TYPE")?;
+                let kind = TYPES.iter().position(|(known, ..)| *known == name).ok_or_else(|| {
+                    let known = TYPES.map(|(name, ..)| name).join(", ");
+                    format!("line {number}: `TYPE` must be one of {known}, got {name}")
+                })?;
+                At::Elements { missing: 0, kind, set: parameter(keyword, "ELSET") }
+            }
+            "*ELSET" => At::Set {
+                name: needed("ELSET")?,
+                generate: keyword.split(',').any(|word| word == "GENERATE"),
+            },
+            "*MATERIAL" => {
+                self.material = Some(needed("NAME")?);
+                At::Elsewhere
+            }
+            "*DENSITY" => At::Density,
+            "*MASS" => At::Mass { set: needed("ELSET")? },
+            "*SHELLSECTION" if keyword.split(',').any(|word| word == "COMPOSITE") => {
+                return Err(format!(
+                    "line {number}: must have no COMPOSITE section, whose layers the results do not tell"
+                ));
+            }
+            _ => At::Elsewhere,
+        })
+    }
+
+    fn take(&mut self, line: &Line, at: &mut At) -> Result<(), String> {
+        let number = line.number;
+        let words: Vec<&str> = line.text.split(',').map(str::trim).filter(|word| !word.is_empty()).collect();
+        let whole = |index: usize, name: &str| -> Result<usize, String> {
+            let word = words.get(index).copied().unwrap_or_default();
+            word.parse().map_err(|_| format!("line {number}: `{name}` must be a whole number, got `{word}`"))
+        };
+        let number_at = |index: usize, name: &str| -> Result<f64, String> {
+            let word = words.get(index).copied().unwrap_or_default();
+            real(word).ok_or_else(|| format!("line {number}: `{name}` must be a finite number, got `{word}`"))
+        };
+        match at {
+            At::Elsewhere => {}
+            At::Nodes => {
+                let mut position = Vector3::zeros();
+                for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+                    // What is left out is 0.
+                    position[axis] = if words.len() > axis + 1 { number_at(axis + 1, name)? } else { 0.0 };
+                }
+                self.deck.positions.insert(whole(0, "node")?, position);
+            }
+            At::Elements { missing, kind, set } => {
+                let (name, nodes, rule) = TYPES[*kind];
+                if *missing > 0 {
+                    if words.len() > *missing {
+                        return Err(format!(
+                            "line {number}: must have the last {missing} of {nodes} nodes of a {name}"
+                        ));
+                    }
+                    *missing -= words.len();
+                    return Ok(());
+                }
+                let element = whole(0, "element")?;
+                if words.len() > nodes + 1 {
+                    return Err(format!(
+                        "line {number}: must have {nodes} nodes of a {name}, got {}",
+                        words.len() - 1
+                    ));
+                }
+                *missing = nodes + 1 - words.len();
+                match rule {
+                    Some(rule) => {
+                        self.deck.rules.insert(element, rule);
+                    }
+                    None => {
+                        self.points.insert(element, (whole(1, "node")?, number));
+                        if let Some(set) = set {
+                            self.members.entry(set.clone()).or_default().push(Member::Element(element));
+                        }
+                    }
+                }
+            }
+            At::Set { name, generate: true } => {
+                let (first, last) = (whole(0, "first")?, whole(1, "last")?);
+                let step = if words.len() > 2 { whole(2, "step")?.max(1) } else { 1 };
+                let own = self.points.range(first..=last.max(first)).map(|(element, _)| *element);
+                let own = own.filter(|element| (element - first) % step == 0).map(Member::Element);
+                self.members.entry(name.clone()).or_default().extend(own);
+            }
+            At::Set { name, .. } => {
+                let member = |word: &&str| {
+                    word.parse().map_or_else(|_| Member::Set(word.to_ascii_uppercase()), Member::Element)
+                };
+                self.members.entry(name.clone()).or_default().extend(words.iter().map(member));
+            }
+            At::Density => {
+                let density = number_at(0, "density")?;
+                if density <= 0.0 {
+                    return Err(format!("line {number}: `density` must be positive, got {density}"));
+                }
+                let Some(name) = &self.material else {
+                    return Err(format!("line {number}: must belong to a *MATERIAL"));
+                };
+                self.deck.densities.insert(name.clone(), density);
+                *at = At::Elsewhere;
+            }
+            At::Mass { set } => {
+                let mass = number_at(0, "mass")?;
+                if mass <= 0.0 {
+                    return Err(format!("line {number}: `mass` must be positive, got {mass}"));
+                }
+                self.given.push((set.clone(), mass, number));
+                *at = At::Elsewhere;
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts masses to the nodes of their elements.
+    fn finish(mut self) -> Result<Deck, String> {
+        let mut weighed: BTreeMap<usize, f64> = BTreeMap::new();
+        for (set, mass, line) in &self.given {
+            let mut open = vec![set.clone()];
+            let mut seen: Vec<String> = Vec::new();
+            while let Some(name) = open.pop() {
+                if seen.contains(&name) {
+                    continue;
+                }
+                let members = self
+                    .members
+                    .get(&name)
+                    .ok_or_else(|| format!("line {line}: must have a set {name} of elements of type MASS"))?;
+                for member in members {
+                    match member {
+                        Member::Element(element) => drop(weighed.insert(*element, *mass)),
+                        Member::Set(name) => open.push(name.clone()),
+                    }
+                }
+                seen.push(name);
+            }
+        }
+        for (element, (node, line)) in &self.points {
+            let mass = *weighed.get(element).ok_or_else(|| {
+                format!("line {line}: must have a *MASS of its set, which element {element} has not")
+            })?;
+            self.deck.masses.push(PointMass { node: *node, mass, line: *line });
+        }
+        Ok(self.deck)
+    }
+}

@@ -1,0 +1,227 @@
+//! Solid elements: their shape functions in natural coordinates, and the points at which their mass is integrated.
+//!
+//! Shape functions are the polynomials of a kind that are 1 at one node and 0 at the others, so nodes and monomials tell all.
+
+use nalgebra::{DMatrix, Matrix3, Vector3};
+
+/// The kinds of elements, with the order of nodes that `CalculiX` writes.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A brick with nodes at its corners.
+    Brick8,
+    /// A brick with nodes at its corners and edges.
+    Brick20,
+    /// A wedge with nodes at its corners.
+    Wedge6,
+    /// A wedge with nodes at its corners and edges.
+    Wedge15,
+    /// A tetrahedron with nodes at its corners.
+    Tetrahedron4,
+    /// A tetrahedron with nodes at its corners and edges.
+    Tetrahedron10,
+}
+
+/// How densely mass is integrated.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rule {
+    /// As few points as a program that integrates such an element by a reduced rule takes.
+    Reduced,
+    /// All.
+    Full,
+}
+
+/// A point of an element: natural coordinates, and its weight in them.
+type Point = ([f64; 3], f64);
+
+/// The shape functions of a kind: each a sum of monomials.
+pub struct Functions {
+    kind: Kind,
+    monomials: Vec<[i32; 3]>,
+    /// A column a function.
+    coefficients: DMatrix<f64>,
+}
+
+/// The shape functions at a point, and their derivatives by natural coordinates.
+pub struct Values {
+    /// Their values.
+    pub functions: Vec<f64>,
+    /// Their derivatives.
+    pub derivatives: Vec<Vector3<f64>>,
+}
+
+impl Kind {
+    /// The kind with a number of the format.
+    pub const fn of(number: usize) -> Option<Self> {
+        Some(match number {
+            1 => Self::Brick8,
+            2 => Self::Wedge6,
+            3 => Self::Tetrahedron4,
+            4 => Self::Brick20,
+            5 => Self::Wedge15,
+            6 => Self::Tetrahedron10,
+            _ => return None,
+        })
+    }
+
+    /// How many nodes it has.
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Brick8 => 8,
+            Self::Brick20 => 20,
+            Self::Wedge6 => 6,
+            Self::Wedge15 => 15,
+            Self::Tetrahedron4 => 4,
+            Self::Tetrahedron10 => 10,
+        }
+    }
+
+    /// Its nodes: corners, and edges as the format orders them, those of a brick or wedge bottom, upright, top.
+    fn nodes(self) -> Vec<[f64; 3]> {
+        let (ring, prism): (&[[f64; 2]], bool) = match self {
+            Self::Brick8 | Self::Brick20 => (&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]], true),
+            Self::Wedge6 | Self::Wedge15 => (&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], true),
+            Self::Tetrahedron4 | Self::Tetrahedron10 => (&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], false),
+        };
+        let layer = |z: f64| ring.iter().map(move |[x, y]| [*x, *y, z]);
+        let edges = |z: f64| {
+            let after = ring.iter().cycle().skip(1);
+            ring.iter().zip(after).map(move |(a, b)| [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0, z])
+        };
+        let mut nodes: Vec<[f64; 3]> = if prism {
+            let upright = layer(-1.0).map(|[x, y, _]| [x, y, 0.0]);
+            layer(-1.0).chain(layer(1.0)).chain(edges(-1.0)).chain(upright).chain(edges(1.0)).collect()
+        } else {
+            let upright = ring.iter().map(|[x, y]| [x / 2.0, y / 2.0, 0.5]);
+            layer(0.0).chain([[0.0, 0.0, 1.0]]).chain(edges(0.0)).chain(upright).collect()
+        };
+        nodes.truncate(self.count());
+        nodes
+    }
+
+    /// The monomials that its shape functions consist of.
+    fn monomials(self) -> Vec<[i32; 3]> {
+        let all = (0..27).map(|index| [index % 3, index / 3 % 3, index / 9]);
+        let squares = |of: &[i32; 3]| of.iter().filter(|power| **power == 2).count();
+        let fits = |of: &[i32; 3]| {
+            let [x, y, z] = *of;
+            match self {
+                Self::Brick8 => squares(of) == 0,
+                // One square beside what the corners have.
+                Self::Brick20 => squares(of) <= 1,
+                Self::Wedge6 => x + y <= 1 && z <= 1,
+                Self::Wedge15 => x + y <= 2 && z <= 1 || x + y <= 1,
+                Self::Tetrahedron4 => x + y + z <= 1,
+                Self::Tetrahedron10 => x + y + z <= 2,
+            }
+        };
+        all.filter(fits).collect()
+    }
+
+    /// The points at which mass is integrated, and their weights.
+    pub fn points(self, rule: Rule) -> Vec<Point> {
+        let line = |count: usize| -> &[(f64, f64)] {
+            match count {
+                1 => &[(0.0, 2.0)],
+                2 => &[(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)],
+                _ => &[
+                    (-0.774_596_669_241_483_4, 5.0 / 9.0),
+                    (0.0, 8.0 / 9.0),
+                    (0.774_596_669_241_483_4, 5.0 / 9.0),
+                ],
+            }
+        };
+        let full = rule == Rule::Full;
+        match self {
+            Self::Brick8 | Self::Brick20 => {
+                let along = line(match (self, full) {
+                    (Self::Brick8, false) => 1,
+                    (Self::Brick20, true) => 3,
+                    _ => 2,
+                });
+                let places = along.iter().flat_map(|x| along.iter().map(move |y| (x, y)));
+                places
+                    .flat_map(|(x, y)| along.iter().map(move |z| ([x.0, y.0, z.0], x.1 * y.1 * z.1)))
+                    .collect()
+            }
+            Self::Wedge6 => line(2).iter().map(|z| ([1.0 / 3.0, 1.0 / 3.0, z.0], 0.5 * z.1)).collect(),
+            Self::Wedge15 => {
+                let across = [[1.0 / 6.0; 2], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0]];
+                let places = across.iter().flat_map(|at| line(3).iter().map(move |z| (at, z)));
+                places.map(|([x, y], z)| ([*x, *y, z.0], z.1 / 6.0)).collect()
+            }
+            Self::Tetrahedron4 => vec![([0.25; 3], 1.0 / 6.0)],
+            // Four points, as the program takes them.
+            Self::Tetrahedron10 => {
+                let (near, far) = (0.138_196_601_125_010_5, 0.585_410_196_624_968_5);
+                [[near; 3], [far, near, near], [near, far, near], [near, near, far]]
+                    .map(|at| (at, 1.0 / 24.0))
+                    .to_vec()
+            }
+        }
+    }
+
+    /// How far natural coordinates are outside of it: 0 within.
+    pub fn outside(self, at: &Vector3<f64>) -> f64 {
+        let beyond = |excess: f64| excess.max(0.0);
+        match self {
+            Self::Brick8 | Self::Brick20 => beyond(at.amax() - 1.0),
+            Self::Wedge6 | Self::Wedge15 => {
+                beyond(-at.x).max(-at.y).max(at.x + at.y - 1.0).max(at.z.abs() - 1.0)
+            }
+            Self::Tetrahedron4 | Self::Tetrahedron10 => beyond(-at.min()).max(at.sum() - 1.0),
+        }
+    }
+}
+
+impl Functions {
+    /// Those of a kind.
+    pub fn of(kind: Kind) -> Self {
+        let (nodes, monomials) = (kind.nodes(), kind.monomials());
+        let count = kind.count();
+        let at_nodes = DMatrix::from_fn(count, count, |node, power| monomial(monomials[power], nodes[node]));
+        // Nodes of these elements determine their polynomials.
+        let coefficients = at_nodes.try_inverse().unwrap_or_else(|| DMatrix::zeros(count, count));
+        Self { kind, monomials, coefficients }
+    }
+
+    /// Their kind.
+    pub const fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Their values at a point.
+    pub fn at(&self, point: [f64; 3]) -> Values {
+        let count = self.monomials.len();
+        let mut values = Values { functions: vec![0.0; count], derivatives: vec![Vector3::zeros(); count] };
+        for (row, powers) in self.monomials.iter().enumerate() {
+            let value = monomial(*powers, point);
+            let slopes: [f64; 3] = std::array::from_fn(|axis| {
+                let mut lower = *powers;
+                lower[axis] -= 1;
+                if powers[axis] == 0 { 0.0 } else { f64::from(powers[axis]) * monomial(lower, point) }
+            });
+            for node in 0..count {
+                let coefficient = self.coefficients[(row, node)];
+                values.functions[node] += coefficient * value;
+                values.derivatives[node] += Vector3::from(slopes) * coefficient;
+            }
+        }
+        values
+    }
+}
+
+fn monomial(powers: [i32; 3], at: [f64; 3]) -> f64 {
+    powers.iter().zip(at).map(|(power, x)| x.powi(*power)).product()
+}
+
+impl Values {
+    /// What is interpolated of numbers at the nodes.
+    pub fn of(&self, nodes: impl Iterator<Item = Vector3<f64>>) -> Vector3<f64> {
+        self.functions.iter().zip(nodes).map(|(function, at)| at * *function).sum()
+    }
+
+    /// Derivatives of what is interpolated: a column for each natural coordinate.
+    pub fn slopes(&self, nodes: impl Iterator<Item = Vector3<f64>>) -> Matrix3<f64> {
+        self.derivatives.iter().zip(nodes).map(|(slope, at)| at * slope.transpose()).sum()
+    }
+}

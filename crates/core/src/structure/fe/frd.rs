@@ -1,0 +1,276 @@
+//! The shapes (.frd) of a frequency step of CalculiX, as text: nodes, elements, displacements of each mode.
+//!
+//! Numbers stand in fixed columns and may touch. Of sections that are not needed, as forces and stresses, nothing is read.
+
+use std::collections::BTreeMap;
+use std::io::BufRead;
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::Natural;
+use super::element::Kind;
+use super::text::{Line, Lines};
+
+/// A node's number and displacement each have so many columns.
+const NODE: Range<usize> = 3..13;
+const WIDE: usize = 12;
+
+/// An element.
+#[derive(Debug)]
+pub struct Element {
+    /// Where it stands in the file.
+    pub line: usize,
+    /// Its number.
+    pub number: usize,
+    /// What it is.
+    pub kind: Kind,
+    /// The number of its material.
+    pub material: usize,
+    /// The places of its nodes.
+    pub nodes: Vec<usize>,
+}
+
+/// A mode: its frequency, and the displacement of each node.
+#[derive(Debug)]
+pub struct Shape {
+    /// Its frequency.
+    pub natural: Natural,
+    /// Displacements, in the order of positions.
+    pub displacements: Vec<Vector3<f64>>,
+}
+
+/// What a file holds.
+#[derive(Debug, Default)]
+pub struct Frd {
+    /// Materials by their numbers, in capitals.
+    pub materials: BTreeMap<usize, String>,
+    /// The places of nodes, by their numbers.
+    pub places: BTreeMap<usize, usize>,
+    /// Positions of the nodes.
+    pub positions: Vec<Vector3<f64>>,
+    /// The elements.
+    pub elements: Vec<Element>,
+    /// The modes.
+    pub shapes: Vec<Shape>,
+}
+
+/// The block that the lines are of.
+#[derive(PartialEq)]
+enum At {
+    Elsewhere,
+    Nodes,
+    Elements,
+    Displacements,
+}
+
+/// What stands before the displacements of a mode.
+#[derive(Default)]
+struct Head {
+    generalised_mass: Option<f64>,
+    eigenvalue: Option<f64>,
+    mode: Option<usize>,
+    cycles: Option<(usize, f64)>,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// What is wrong with it, with its line.
+pub fn read(text: impl BufRead) -> Result<Frd, String> {
+    let (mut frd, mut at, mut head, mut ended) = (Frd::default(), At::Elsewhere, Head::default(), false);
+    let mut lines = Lines::of(text);
+    while let Some(line) = lines.next()? {
+        let start = line.text.get(..line.text.len().min(6)).unwrap_or_default();
+        match start.trim_end() {
+            " -3" => {
+                frd.close(&at, &line)?;
+                at = At::Elsewhere;
+            }
+            " 9999" => {
+                ended = true;
+                break;
+            }
+            _ if start.starts_with(" -1") || start.starts_with(" -2") => frd.take(&line, &at)?,
+            _ if start.starts_with(" -4") => {
+                let name = line.text.get(5..13).or_else(|| line.text.get(5..)).unwrap_or_default().trim();
+                at = if name == "DISP" { frd.open(&line, &mut head)? } else { At::Elsewhere };
+            }
+            "    2C" | "    3C" => {
+                let form = line.text.split_whitespace().next_back().unwrap_or_default();
+                if form != "1" {
+                    let number = line.number;
+                    return Err(format!(
+                        "line {number}: must be text with wide columns (1), got form {form}"
+                    ));
+                }
+                at = if start == "    2C" { At::Nodes } else { At::Elements };
+            }
+            "    1U" if line.text.starts_with("    1UMAT") => {
+                let name = line.text.get(14..).unwrap_or_default().trim().to_ascii_uppercase();
+                frd.materials.insert(line.column(9..14, "material")?.whole()?, name);
+            }
+            "    1P" => head.take(&line)?,
+            "  100C" => head.cycles = Some((line.number, line.column(12..24, "frequency")?.real()?)),
+            _ => {}
+        }
+    }
+    if !ended {
+        return Err("must end with a line 9999: is the file cut?".to_owned());
+    }
+    if frd.shapes.is_empty() {
+        return Err(
+            "must have displacements of modes: a step `*FREQUENCY` with `*NODE FILE` and `U` writes them"
+                .to_owned(),
+        );
+    }
+    Ok(frd)
+}
+
+impl Head {
+    fn take(&mut self, line: &Line) -> Result<(), String> {
+        let words: Vec<&str> = line.text.split_whitespace().collect();
+        let [name, value] = words[..] else { return Ok(()) };
+        let number = line.number;
+        let wrong = || format!("line {number}: `{name}` must be a finite number, got `{value}`");
+        match name {
+            "1PGM" => self.generalised_mass = Some(super::text::real(value).ok_or_else(wrong)?),
+            "1PGK" => self.eigenvalue = Some(super::text::real(value).ok_or_else(wrong)?),
+            "1PMODE" => self.mode = Some(value.parse().map_err(|_| wrong())?),
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+impl Frd {
+    /// Begins the displacements of a mode.
+    fn open(&mut self, line: &Line, head: &mut Head) -> Result<At, String> {
+        let Head { generalised_mass, eigenvalue, mode, cycles } = std::mem::take(head);
+        // Displacements of another kind of step have no mode.
+        let (Some(mode), Some((number, cycles))) = (mode, cycles) else { return Ok(At::Elsewhere) };
+        if self.shapes.last().is_some_and(|last| last.natural.mode >= mode) {
+            return Err(format!("line {number}: must have one step `*FREQUENCY`, got mode {mode} again"));
+        }
+        let (Some(generalised_mass), Some(eigenvalue)) = (generalised_mass, eigenvalue) else {
+            return Err(format!("line {number}: must follow lines `1PGM` and `1PGK` of mode {mode}"));
+        };
+        if self.positions.is_empty() || self.elements.is_empty() {
+            return Err(format!("line {}: must follow nodes and elements", line.number));
+        }
+        let natural =
+            Natural { line: number, mode, frequency: libm::sqrt(eigenvalue.max(0.0)), generalised_mass };
+        let natural = natural.checked(eigenvalue, cycles)?;
+        self.shapes.push(Shape { natural, displacements: Vec::with_capacity(self.positions.len()) });
+        Ok(At::Displacements)
+    }
+
+    /// Takes a row of a block.
+    fn take(&mut self, line: &Line, at: &At) -> Result<(), String> {
+        let second = line.text.starts_with(" -2");
+        let number = line.number;
+        match at {
+            At::Elsewhere => {}
+            At::Nodes => {
+                let node = line.column(NODE, "node")?.whole()?;
+                if self.places.insert(node, self.positions.len()).is_some() {
+                    return Err(format!("line {number}: must have each node once, got node {node} again"));
+                }
+                self.positions.push(three(line)?);
+            }
+            At::Elements if second => {
+                let Some(element) = self.elements.last_mut() else {
+                    return Err(format!("line {number}: must follow the line of an element"));
+                };
+                let mut from = 3;
+                while from < line.text.len() {
+                    let node = line.column(from..from + 10, "node")?.whole()?;
+                    let place = self.places.get(&node).ok_or_else(|| {
+                        format!(
+                            "line {number}: element {} must have nodes of the file, got {node}",
+                            element.number
+                        )
+                    })?;
+                    element.nodes.push(*place);
+                    from += 10;
+                }
+                let (most, found) = (element.kind.count(), element.nodes.len());
+                if found > most {
+                    return Err(format!(
+                        "line {number}: element {} must have {most} nodes, got {found}",
+                        element.number
+                    ));
+                }
+            }
+            At::Elements => {
+                let code = line.column(13..18, "type")?.whole()?;
+                let kind = Kind::of(code).ok_or_else(|| {
+                    let why = match code {
+                        7..=12 => ": write `*NODE FILE, OUTPUT=3D`, which has the solids that shells and beams become",
+                        _ => "",
+                    };
+                    format!("line {number}: `type` must be that of a solid, 1 to 6, got {code}{why}")
+                })?;
+                self.is_whole()?;
+                let element = line.column(NODE, "element")?.whole()?;
+                let material = line.column(23..28, "material")?.whole()?;
+                self.elements.push(Element {
+                    line: number,
+                    number: element,
+                    kind,
+                    material,
+                    nodes: Vec::new(),
+                });
+            }
+            At::Displacements => {
+                let Some(shape) = self.shapes.last_mut() else { return Ok(()) };
+                let node = line.column(NODE, "node")?.whole()?;
+                // Nodes come in the order of their positions.
+                if self.places.get(&node) != Some(&shape.displacements.len()) {
+                    return Err(format!(
+                        "line {number}: must have the nodes in the order of their positions, got {node}"
+                    ));
+                }
+                shape.displacements.push(three(line)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends a block.
+    fn close(&self, at: &At, line: &Line) -> Result<(), String> {
+        if *at == At::Elements {
+            self.is_whole()?;
+        }
+        let (needed, number) = (self.positions.len(), line.number);
+        match self.shapes.last() {
+            Some(shape) if *at == At::Displacements && shape.displacements.len() != needed => Err(format!(
+                "line {number}: must have displacements of all {needed} nodes, got {}: ask for `U` of all, not of a set",
+                shape.displacements.len()
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the last element has all its nodes.
+    fn is_whole(&self) -> Result<(), String> {
+        match self.elements.last() {
+            Some(Element { line, number, kind, nodes, .. }) if nodes.len() != kind.count() => Err(format!(
+                "line {line}: element {number} must have {} nodes, got {}",
+                kind.count(),
+                nodes.len()
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The three numbers of a node.
+fn three(line: &Line) -> Result<Vector3<f64>, String> {
+    let mut three = Vector3::zeros();
+    for (axis, name) in ["D1", "D2", "D3"].into_iter().enumerate() {
+        let from = NODE.end + axis * WIDE;
+        three[axis] = line.column(from..from + WIDE, name)?.real()?;
+    }
+    Ok(three)
+}

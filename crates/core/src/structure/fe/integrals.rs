@@ -1,0 +1,319 @@
+//! What a mode moves: its integrals over the solids of a structure, with the masses that the run had.
+//!
+//! Four numbers a node are enough, m = the integral of w dm and s = that of r w dm, with w the node's shape function.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, Matrix3, Vector3};
+
+use super::deck::{Deck, PointMass};
+use super::element::{Functions, Kind, Rule, Values};
+use super::frd::{Element, Frd};
+use super::{Mode, Place, Results, lowest, tables::Table};
+
+/// Shapes are normalised by the mass of the structure, and orthogonal in it, to this part.
+const NORMALISED: f64 = 1e-3;
+/// A point is in an element that it is outside of by less than this part of the element.
+const INSIDE: f64 = 1e-3;
+/// And in its middle in a direction, to this part of it: positions have six digits.
+const MIDDLE: f64 = 1e-3;
+
+/// The modes of a file of shapes, with the masses of its deck.
+///
+/// # Errors
+/// What does not fit, with its line.
+pub fn modes(mut frd: Frd, deck: &Deck, keep: Option<usize>, points: &[Place]) -> Result<Results, String> {
+    let natural: Vec<_> = frd.shapes.iter().map(|shape| shape.natural.clone()).collect();
+    if let Some(first) = natural.first().filter(|first| first.mode != 1) {
+        return Err(format!("line {}: must begin with mode 1, got mode {}", first.line, first.mode));
+    }
+    let natural = lowest(natural, [&Table::new("factors"), &Table::new("masses")], keep)?;
+    let mut shapes = Vec::with_capacity(natural.len());
+    for natural in &natural {
+        if let Some(at) = frd.shapes.iter().position(|shape| shape.natural.mode == natural.mode) {
+            shapes.push(frd.shapes.swap_remove(at).displacements);
+        }
+    }
+    let mut sums = Sums::new(frd.positions.len(), shapes.len());
+    let mut rules = Rules::default();
+    for element in &frd.elements {
+        sums.add(element, &frd, deck, &mut rules, &shapes)?;
+    }
+    for mass in &deck.masses {
+        sums.add_point(mass, &frd, deck, &mut rules, &shapes)?;
+    }
+    sums.are_normalised()?;
+    let places =
+        points.iter().map(|point| Found::of(point, &frd, &mut rules)).collect::<Result<Vec<_>, _>>()?;
+    let modes = natural.iter().zip(&shapes).map(|(natural, shape)| {
+        let scale = 1.0 / libm::sqrt(natural.generalised_mass);
+        let (mut translation, mut moments) = (Vector3::zeros(), Matrix3::zeros());
+        for ((mass, moment), phi) in sums.masses.iter().zip(&sums.moments).zip(shape) {
+            translation += phi * (scale * mass);
+            moments += moment * phi.transpose() * scale;
+        }
+        let n = moments;
+        let rotation = [n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)]];
+        Mode {
+            frequency: natural.frequency,
+            translation: translation.into(),
+            rotation,
+            moments: Some(std::array::from_fn(|row| std::array::from_fn(|column| n[(row, column)]))),
+            damping: None,
+            shapes: places.iter().map(|place| place.shape(&frd, shape, scale)).collect(),
+        }
+    });
+    Ok(Results { modes: modes.collect(), mass: Some(sums.masses.iter().sum()) })
+}
+
+/// Shape functions, each made once.
+#[derive(Default)]
+struct Rules {
+    functions: BTreeMap<Kind, Functions>,
+    points: BTreeMap<(Kind, Rule), Vec<(Values, f64)>>,
+}
+
+impl Rules {
+    fn functions(&mut self, kind: Kind) -> &Functions {
+        self.functions.entry(kind).or_insert_with(|| Functions::of(kind))
+    }
+
+    fn points(&mut self, kind: Kind, rule: Rule) -> &[(Values, f64)] {
+        let functions = self.functions.entry(kind).or_insert_with(|| Functions::of(kind));
+        self.points.entry((kind, rule)).or_insert_with(|| {
+            kind.points(rule).into_iter().map(|(at, weight)| (functions.at(at), weight)).collect()
+        })
+    }
+}
+
+/// What is summed over elements and masses.
+struct Sums {
+    /// Of each node the integral of its function.
+    masses: Vec<f64>,
+    /// And of that times the position.
+    moments: Vec<Vector3<f64>>,
+    /// The integrals of phi_i . phi_j.
+    products: DMatrix<f64>,
+}
+
+impl Sums {
+    fn new(nodes: usize, modes: usize) -> Self {
+        Self {
+            masses: vec![0.0; nodes],
+            moments: vec![Vector3::zeros(); nodes],
+            products: DMatrix::zeros(modes, modes),
+        }
+    }
+
+    fn add(
+        &mut self,
+        element: &Element,
+        frd: &Frd,
+        deck: &Deck,
+        rules: &mut Rules,
+        shapes: &[Vec<Vector3<f64>>],
+    ) -> Result<(), String> {
+        let Element { line, number, kind, .. } = element;
+        let material = frd.materials.get(&element.material).ok_or_else(|| {
+            format!(
+                "line {line}: element {number} must have a material of the file, got {}",
+                element.material
+            )
+        })?;
+        let density = *deck.densities.get(material).ok_or_else(|| {
+            format!("line {line}: element {number} must have a *DENSITY of {material} in the deck")
+        })?;
+        let rule = *deck
+            .rules
+            .get(number)
+            .ok_or_else(|| format!("line {line}: element {number} must be one of the deck"))?;
+        let positions = || element.nodes.iter().map(|node| frd.positions[*node]);
+        for (values, weight) in rules.points(*kind, rule) {
+            let volume = weight * values.slopes(positions()).determinant();
+            if volume <= 0.0 {
+                return Err(format!(
+                    "line {line}: element {number} must not be turned inside out: are its nodes in order?"
+                ));
+            }
+            self.add_mass(density * volume, &values.of(positions()), values, &element.nodes, shapes);
+        }
+        Ok(())
+    }
+
+    /// Adds a mass somewhere in an element.
+    fn add_mass(
+        &mut self,
+        mass: f64,
+        position: &Vector3<f64>,
+        values: &Values,
+        nodes: &[usize],
+        shapes: &[Vec<Vector3<f64>>],
+    ) {
+        for (function, node) in values.functions.iter().zip(nodes) {
+            self.masses[*node] += mass * function;
+            self.moments[*node] += position * (mass * function);
+        }
+        let moved: Vec<_> =
+            shapes.iter().map(|shape| values.of(nodes.iter().map(|node| shape[*node]))).collect();
+        for (i, one) in moved.iter().enumerate() {
+            for (j, other) in moved.iter().enumerate().take(i + 1) {
+                self.products[(i, j)] += mass * one.dot(other);
+            }
+        }
+    }
+
+    /// Adds a mass at a node: of a solid, or of a shell or beam that became one, in which it moves as its place does.
+    fn add_point(
+        &mut self,
+        point: &PointMass,
+        frd: &Frd,
+        deck: &Deck,
+        rules: &mut Rules,
+        shapes: &[Vec<Vector3<f64>>],
+    ) -> Result<(), String> {
+        if let Some(place) = frd.places.get(&point.node) {
+            let alone = Values { functions: vec![1.0], derivatives: Vec::new() };
+            self.add_mass(point.mass, &frd.positions[*place], &alone, &[*place], shapes);
+            return Ok(());
+        }
+        let (line, node) = (point.line, point.node);
+        let position = *deck
+            .positions
+            .get(&node)
+            .ok_or_else(|| format!("line {line} of the deck: must have a node of the deck, got {node}"))?;
+        let wrong = |why| format!("line {line} of the deck: {why}");
+        let place = Place { name: format!("node {node}"), at: position.into() };
+        let found = Found::of(&place, frd, rules).map_err(wrong)?;
+        let part = point.mass / found.within.len() as f64;
+        for within in &found.within {
+            let Element { kind, nodes, .. } = &frd.elements[within.element];
+            let functions = rules.functions(*kind);
+            let across = within.across();
+            for at in &across {
+                let mass = part / across.len() as f64;
+                self.add_mass(mass, &position, &functions.at(*at), nodes, shapes);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether shapes are normalised by these masses.
+    fn are_normalised(&self) -> Result<(), String> {
+        for i in 0..self.products.nrows() {
+            for j in 0..=i {
+                let (found, exact) = (self.products[(i, j)], f64::from(u8::from(i == j)));
+                if (found - exact).abs() > NORMALISED {
+                    return Err(format!(
+                        "must have shapes normalised by the mass of the deck, and the integral of mode {} times mode {} of \
+                         the lowest is {found}, not {exact}: is it the deck of this run, with its densities and masses?",
+                        i + 1,
+                        j + 1
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A point, and the elements that it is in.
+struct Found {
+    within: Vec<Within>,
+}
+
+/// A point in an element.
+struct Within {
+    element: usize,
+    /// Its natural coordinates.
+    natural: Vector3<f64>,
+    /// The functions there.
+    values: Values,
+    /// Derivatives of the position by natural coordinates, a column each.
+    directions: Matrix3<f64>,
+}
+
+impl Within {
+    /// The points whose mean is that over the section of a beam, or the thickness of a shell, which this point is the middle of.
+    fn across(&self) -> Vec<[f64; 3]> {
+        let longest = (0..3).map(|axis| self.directions.column(axis).norm()).fold(0.0, f64::max);
+        let mut points = vec![self.natural];
+        for axis in 0..3 {
+            if self.natural[axis].abs() < MIDDLE && self.directions.column(axis).norm() < 0.5 * longest {
+                let gauss = Vector3::ith(axis, libm::sqrt(1.0 / 3.0));
+                points = points.iter().flat_map(|point| [point - gauss, point + gauss]).collect();
+            }
+        }
+        points.into_iter().map(Into::into).collect()
+    }
+}
+
+impl Found {
+    fn of(point: &Place, frd: &Frd, rules: &mut Rules) -> Result<Self, String> {
+        let at = Vector3::from(point.at);
+        let mut within = Vec::new();
+        for (index, element) in frd.elements.iter().enumerate() {
+            let (mut low, mut high) = (frd.positions[element.nodes[0]], frd.positions[element.nodes[0]]);
+            for node in &element.nodes {
+                low = low.inf(&frd.positions[*node]);
+                high = high.sup(&frd.positions[*node]);
+            }
+            let margin = INSIDE * (high - low).norm();
+            if (0..3).all(|axis| (low[axis] - margin..=high[axis] + margin).contains(&at[axis]))
+                && let Some(found) = locate(rules.functions(element.kind), (index, element), frd, &at)
+            {
+                within.push(found);
+            }
+        }
+        if within.is_empty() {
+            let Place { name, at: [x, y, z] } = point;
+            return Err(format!("must have an element at point `{name}`, and has none at [{x}, {y}, {z}]"));
+        }
+        Ok(Self { within })
+    }
+
+    /// The displacement and rotation of a shape at the point. Of the directions of an element the short ones tell the rotation: a
+    /// thin one's sections turn as its nodes move, and along it shapes bend more than its functions can.
+    fn shape(&self, frd: &Frd, shape: &[Vector3<f64>], scale: f64) -> [[f64; 3]; 2] {
+        let (mut moved, mut turned) = (Vector3::zeros(), Vector3::zeros());
+        let part = scale / self.within.len() as f64;
+        for Within { element, values, directions, .. } in &self.within {
+            let nodes = || frd.elements[*element].nodes.iter().map(|node| shape[*node]);
+            moved += values.of(nodes()) * part;
+            let slopes = values.slopes(nodes());
+            let (mut matrix, mut side) = (Matrix3::zeros(), Vector3::zeros());
+            for axis in 0..3 {
+                let along = directions.column(axis).into_owned();
+                let weight = 1.0 / (along.norm_squared() * along.norm_squared());
+                matrix += (Matrix3::identity() * along.norm_squared() - along * along.transpose()) * weight;
+                side += along.cross(&slopes.column(axis)) * weight;
+            }
+            turned += matrix.try_inverse().unwrap_or_else(Matrix3::zeros) * side * part;
+        }
+        [moved.into(), turned.into()]
+    }
+}
+
+/// A place in an element, by Newton's method, if it is there.
+fn locate(
+    functions: &Functions,
+    (index, element): (usize, &Element),
+    frd: &Frd,
+    at: &Vector3<f64>,
+) -> Option<Within> {
+    let positions = || element.nodes.iter().map(|node| frd.positions[*node]);
+    let mut natural = Vector3::zeros();
+    for _ in 0..20 {
+        let values = functions.at(natural.into());
+        let directions = values.slopes(positions());
+        let step = directions.try_inverse()? * (at - values.of(positions()));
+        if step.amax() < 1e-12 {
+            let inside = functions.kind().outside(&natural) < INSIDE;
+            return inside.then_some(Within { element: index, natural, values, directions });
+        }
+        natural += step;
+        if natural.amax() > 10.0 {
+            break;
+        }
+    }
+    None
+}
