@@ -32,6 +32,7 @@ mod environment;
 mod events;
 mod exact;
 mod extending;
+mod failures;
 mod filters;
 mod forces;
 mod foreign;

@@ -33,6 +33,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/adaptation", scenario.adaptation.is_some()),
         ("/arrival", scenario.plan.is_some()),
         ("/jets", scenario.study.fires()),
+        ("/faults", !scenario.failing().is_empty()),
         ("/wheel_events", scenario.study.bearings.iter().any(Bearing::grips)),
         ("/summary", true),
         ("/metrics", true),

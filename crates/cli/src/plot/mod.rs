@@ -9,6 +9,7 @@ mod drive;
 mod envelope;
 mod estimate;
 mod extra;
+mod failing;
 mod frequency;
 mod gain;
 mod lock;
@@ -126,7 +127,10 @@ fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, 
     } else {
         Motion::default()
     };
-    let drawn = chosen.into_iter().filter_map(|what| Some((what, what.figure(&story, &motion, &cycles)?)));
+    let drawn = chosen.into_iter().filter_map(|what| {
+        let figure = what.figure(&story, &motion, &cycles)?;
+        Some((what, failing::shaded(figure, &story)))
+    });
     Ok(drawn.collect())
 }
 

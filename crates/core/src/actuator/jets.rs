@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::PulseWidth;
+use super::{Failure, PulseWidth};
 use crate::attitude::{AXES, vector};
 use crate::body::Push;
 use crate::body::spatial::Spatial;
@@ -36,6 +36,9 @@ pub struct Jets {
     pub thrusters: Vec<Thruster>,
     /// Which of them act together.
     pub groups: Groups,
+    /// Times at which they fail.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
 }
 
 /// One thruster.
@@ -88,7 +91,45 @@ pub struct Group {
     pub acceleration: f64,
 }
 
+/// What a thruster does while it is open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nozzle {
+    /// Its force.
+    pub push: Push,
+    /// Propellant in a second (kg/s).
+    pub flow: f64,
+    /// Thrust (N).
+    pub thrust: f64,
+}
+
 impl Jets {
+    /// What each thruster does to a body that has their points.
+    pub fn nozzles_on(&self, body: &Spatial) -> Vec<Nozzle> {
+        let nozzle = |thruster: &Thruster| {
+            let thrust = thruster.thrust.get();
+            let mut push = Push { forces: vec![0.0; body.modes.len()], ..Push::default() };
+            let force = vector(&thruster.direction).normalize() * thrust;
+            push.add(body, &thruster.point, &vector(&thruster.offset), &force);
+            Nozzle { push, flow: thrust / (self.specific_impulse.get() * G_0), thrust }
+        };
+        self.thrusters.iter().map(nozzle).collect()
+    }
+
+    /// The groups in which each thruster is: axis, and 0 for plus or 1 for minus.
+    pub(super) fn memberships(&self) -> Vec<Vec<[usize; 2]>> {
+        let Groups { roll, pitch, yaw } = &self.groups;
+        let of = |thruster: &Thruster| {
+            let mut own = Vec::new();
+            for (axis, pair) in [roll, pitch, yaw].into_iter().enumerate() {
+                for (side, names) in [&pair.plus, &pair.minus].into_iter().enumerate() {
+                    own.extend(names.iter().filter(|name| **name == thruster.name).map(|_| [axis, side]));
+                }
+            }
+            own
+        };
+        self.thrusters.iter().map(of).collect()
+    }
+
     /// The groups on a body: for each axis, plus and minus.
     ///
     /// # Errors
@@ -153,6 +194,11 @@ impl Jets {
         let acceleration = torque[axis].abs() / body.tensor()[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
         Ok(Group { push, flow, acceleration })
+    }
+
+    /// The names of the thrusters.
+    pub fn names(&self) -> Vec<String> {
+        self.thrusters.iter().map(|thruster| thruster.name.clone()).collect()
     }
 
     /// What becomes of a wanted pulse.

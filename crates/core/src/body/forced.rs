@@ -8,6 +8,7 @@ use crate::attitude::Vector;
 use crate::motion::turning::Rotor;
 use crate::numerics::phasor::Phasor;
 use crate::numerics::polynomial::Series;
+use crate::sine::Sine;
 use crate::waveform::Waveform;
 
 /// What drives a body from an instant on.
@@ -44,6 +45,8 @@ pub struct Wrench {
     pub rotors: Vec<Rotor>,
     /// Magnetic moment of torquers, in the body's axes (A m²).
     pub moment: Vector,
+    /// Sines of the time in the torque at the hub of a spacecraft, each with its axis.
+    pub sines: Vec<(Vector, Sine)>,
     /// A waveform about the first axis, and the time on it at that instant.
     pub waveform: Option<Forced>,
 }
@@ -125,6 +128,14 @@ impl Forced {
     /// A waveform from this time on it (s).
     pub fn new(waveform: Shared<Waveform>, since: f64) -> Self {
         Self { waveform, since }
+    }
+
+    /// So many times the command, and another waveform beside it.
+    #[must_use]
+    pub fn changed(&self, factor: f64, beside: &Waveform) -> Self {
+        let mut waveform = self.waveform.shifted(0.0, factor);
+        waveform.terms.extend_from_slice(&beside.terms);
+        Self { waveform: Shared::new(waveform), since: self.since }
     }
 
     /// The command `h` seconds later.

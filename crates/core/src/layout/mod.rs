@@ -111,6 +111,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         }
     };
     let estimator = scenario.estimator.as_ref();
+    add(!scenario.failing().is_empty(), "/faults", Events);
     if scenario.axis_count() == 3 {
         add(scenario.study.fires(), "/jets", Events);
         add(scenario.study.groups.is_none() || scenario.environment.is_some(), "/torques", Full);

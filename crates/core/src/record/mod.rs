@@ -34,14 +34,14 @@ pub use message::{Attachment, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;
 pub use spatial::{Cycle, SpatialMotion};
-pub use states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
+pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use topics::{
     Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
-    ChannelState, Command, Energy, Envelope, Estimate, Estimates, GoalMotion, Jets, Law, Magnetorquer,
-    Magnetorquers, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes,
-    Orbit, OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual,
-    Sliding, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel,
-    WheelEvent, WheelMotion, Wheels, WindowMean,
+    ChannelState, Command, Energy, Envelope, Estimate, Estimates, FaultEvent, GoalMotion, Jets, Law,
+    Magnetorquer, Magnetorquers, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate,
+    ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate,
+    Rates, Residual, Sliding, Summary, TOPICS, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration,
+    Vibrations, Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -70,6 +70,8 @@ pub enum Sample<'a> {
     AttitudeEstimate(&'a AttitudeEstimate),
     /// A wheel passed through zero speed, stuck, or slipped again.
     WheelEvent(&'a WheelEvent),
+    /// A failure of a sensor or an actuator began or ended.
+    Fault(&'a FaultEvent),
     /// A cycle of a body with three axes began.
     Cycle(&'a Cycle),
     /// What adaptive observers know after a cycle's sample.
@@ -327,6 +329,7 @@ trait TakeRow {
             Sample::AttitudeEstimate(estimate) => self.take(now, estimate),
             Sample::Tracking(tracking) => self.take(now, tracking),
             Sample::WheelEvent(event) => self.take(now, event),
+            Sample::Fault(event) => self.take(now, event),
             Sample::Log(line) => self.take(now, line),
             Sample::Scene(scene) => self.take(now, scene),
             Sample::Frames(frames) => self.take(now, frames),

@@ -224,7 +224,7 @@ impl Scenario {
             Actuator::Thrusters(thrusters) => {
                 each("actuator.thrusters.period".to_owned(), duration, thrusters.period);
             }
-            Actuator::Ideal
+            Actuator::Ideal(_)
             | Actuator::Wheel(_)
             | Actuator::Wheels(_)
             | Actuator::Magnetorquers(_)

@@ -5,6 +5,7 @@ mod consistency;
 mod cost;
 mod coupled;
 mod epoch;
+mod failing;
 mod known;
 mod learning;
 mod log;
@@ -41,6 +42,7 @@ use crate::uncertain::Distribution;
 use epoch::nanoseconds_since_1970;
 
 pub use cost::{Cost, MOST_RUNS};
+pub use failing::Failing;
 pub use log::{Log, SceneSpec};
 pub use reference::{Pointing, Reference};
 pub use study::Study;
@@ -349,6 +351,6 @@ impl Scenario {
 
     /// Whether the torque is more than the switchings of a law.
     pub fn tells_torque(&self) -> bool {
-        !self.law.switches() || !self.disturbance.is_empty() || self.actuator != Actuator::Ideal
+        !self.law.switches() || !self.disturbance.is_empty() || !self.actuator.is_ideal()
     }
 }

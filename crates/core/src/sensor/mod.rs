@@ -26,7 +26,7 @@ use crate::time::{Instant, Span};
 
 pub use gyro::{AtCycles, Gyro};
 pub use magnetometer::Magnetometer;
-pub use sampled::{AtSamples, Fault, Outage, Sampled};
+pub use sampled::{AtSamples, Fault, Sampled};
 pub use star_tracker::StarTracker;
 pub use sun_sensor::SunSensor;
 pub use tachometer::{Counting, Tachometer};
@@ -316,7 +316,8 @@ impl Sensor {
             Self::Magnetometer(magnetometer) => &magnetometer.faults,
             Self::SunSensor(sensor) => &sensor.faults,
             Self::Tachometer(tachometer) => &tachometer.faults,
-            Self::Continuous | Self::Gyro(_) | Self::Own(_) => &[],
+            Self::Gyro(gyro) => &gyro.faults,
+            Self::Continuous | Self::Own(_) => &[],
         }
     }
 }

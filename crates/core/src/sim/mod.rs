@@ -7,6 +7,7 @@
 mod arrival;
 mod drive;
 mod events;
+mod failing;
 mod journal;
 mod plant;
 mod reference;
@@ -243,6 +244,7 @@ impl Simulation {
             self.depart(record)?;
         }
         self.tell_slips(record)?;
+        self.tell_failures(record)?;
         self.tell(record)?;
         self.show(record)
     }

@@ -2,6 +2,7 @@
 
 use super::arrival::Arrival;
 use super::events::Events;
+use super::failing::Failures;
 use super::plant::{Plant, SpatialPlant};
 use super::reference::Reference;
 use super::{Simulation, SimulationError};
@@ -38,6 +39,8 @@ pub struct Telling {
     next_cycle: Option<Instant>,
     /// The end of the manoeuvre that lies ahead, if any.
     arrival: Option<Arrival>,
+    /// What fails.
+    pub failures: Failures,
     /// Whether the torque has more to it than switchings.
     tells_torque: bool,
     stage: Stage,
@@ -66,6 +69,7 @@ impl Telling {
             pulses: 0,
             next_cycle: None,
             arrival: Arrival::new(scenario, &reference.goal),
+            failures: Failures::new(scenario),
             tells_torque: scenario.tells_torque(),
             stage: Stage::Before,
         }
@@ -99,7 +103,8 @@ impl Telling {
     /// When anything is due.
     pub fn due(&self) -> Option<Instant> {
         let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
-        [arrives, self.next_dense, self.next_frames, self.next_cycle].into_iter().flatten().min()
+        let due = [arrives, self.next_dense, self.next_frames, self.next_cycle, self.failures.due()];
+        due.into_iter().flatten().min()
     }
 
     /// A window that ended, and what the adaptation made of it.

@@ -10,6 +10,7 @@ use crate::environment::{Around, Seen};
 use crate::motion::Phase;
 use crate::motion::turning::{Acting, Bearing, Flexible, Heated, Slip, Surroundings, Turned, Turning};
 use crate::sensor::{Orientation, Truth};
+use crate::sine::Sine;
 
 /// The motion, and what the plant needs to turn what acts and what is seen into its terms.
 #[derive(Clone, Debug)]
@@ -31,20 +32,30 @@ pub struct TwoWay {
 struct Outside {
     own: Option<Periodic>,
     around: Option<Around>,
+    /// Sines in the torque of actuators and disturbances, each with its axis.
+    sines: Vec<(Vector, Sine)>,
 }
 
 impl Outside {
     /// What acts after a departure so long after the start (s), if there is anything.
     fn since(&self, began: f64) -> Option<(&dyn Surroundings, f64)> {
-        let acts = self.own.is_some() || self.around.is_some();
+        let acts = self.own.is_some() || self.around.is_some() || !self.sines.is_empty();
         acts.then_some((self as &dyn Surroundings, began))
+    }
+}
+
+impl Outside {
+    /// The torque of the surroundings alone.
+    fn surrounding(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
+        let own = self.own.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
+        self.around.as_ref().map_or(own, |around| own + around.torque(t, attitude, inertia))
     }
 }
 
 impl Surroundings for Outside {
     fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let own = self.own.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
-        self.around.as_ref().map_or(own, |around| own + around.torque(t, attitude, inertia))
+        let all = self.surrounding(t, attitude, inertia);
+        self.sines.iter().fold(all, |sum, (axis, sine)| sum + axis * sine.at(t))
     }
 
     fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
@@ -57,12 +68,14 @@ impl Surroundings for Outside {
 
     fn bound(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, Periodic::bound);
-        own + self.around.as_ref().map_or(0.0, Surroundings::bound)
+        let sines: f64 = self.sines.iter().map(|(_, sine)| sine.amplitude.get().abs()).sum();
+        own + self.around.as_ref().map_or(0.0, Surroundings::bound) + sines
     }
 
     fn frequency(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, Periodic::frequency);
-        own + self.around.as_ref().map_or(0.0, Surroundings::frequency)
+        let fastest = self.sines.iter().map(|(_, sine)| sine.frequency.get()).fold(0.0, f64::max);
+        own + self.around.as_ref().map_or(0.0, Surroundings::frequency) + fastest
     }
 }
 
@@ -95,7 +108,7 @@ impl TwoWay {
             turning,
             sensed: beyond(sensed),
             acts: beyond(acts),
-            outside: Outside { own: body.disturbance.clone(), around },
+            outside: Outside { own: body.disturbance.clone(), around, sines: Vec::new() },
             acting: Acting::default(),
             frequencies,
             hub,
@@ -135,7 +148,7 @@ impl TwoWay {
 
     /// The torque of the surroundings at the instant seen last, which is so long after the start (s), in the hub's axes (N m).
     pub fn exerted(&self, t: f64) -> Vector {
-        self.outside.torque(t, self.attitude(), &self.turning.inertia())
+        self.outside.surrounding(t, self.attitude(), &self.turning.inertia())
     }
 
     /// Begins a new motion at the instant seen last, so long after the start (s), under what acts from now on.
@@ -144,6 +157,7 @@ impl TwoWay {
         if let Some(around) = &mut self.outside.around {
             around.hold(wrench.moment);
         }
+        self.outside.sines.clone_from(&wrench.sines);
         let Acting { torque, forces, levers, rotors, push: accelerated } = &mut self.acting;
         levers.clone_from(&wrench.levers);
         let moving = self.moving.as_ref();
