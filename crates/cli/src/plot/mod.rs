@@ -1,5 +1,6 @@
 //! `flexsc plot`: the figures of a log or of a campaign, as SVG and PNG.
 
+mod accelerations;
 mod angle;
 mod attitude_filter;
 mod campaign;

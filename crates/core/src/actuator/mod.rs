@@ -1,5 +1,6 @@
 //! Actuators: how commands are executed, as they are, through a hold, by a wheel, or by pulses of thrusters.
 
+mod allocated;
 mod allocation;
 mod failure;
 mod friction;
@@ -36,6 +37,7 @@ use crate::own::Own;
 use crate::record::{self, WheelMotion};
 use crate::time::{Instant, Span};
 
+pub use allocated::Allocated;
 pub use allocation::{Allocation, Choice};
 use failure::Parts;
 pub use failure::{Failure, Lasting};
@@ -43,7 +45,7 @@ pub use friction::Friction;
 pub use hold::ZeroOrderHold;
 pub use ideal::Ideal;
 pub use imbalance::{Harmonic, Imbalance};
-pub use jets::{Group, Groups, Jets, Nozzle, Pair, Thruster};
+pub use jets::{Firing, Group, Groups, Jets, Nozzle, Pair, Thruster};
 pub use magnetic_unloading::Magnetic;
 pub use magnetorquers::{Magnetorquers, Torquing};
 pub use per_wheel::PerWheel;
@@ -183,6 +185,11 @@ pub trait Actuate: fmt::Debug + Send + Sync {
         None
     }
 
+    /// Of jets, what the pulses of this cycle turn the body by, all together (N m s).
+    fn impulse(&self) -> Vector {
+        Vector::zeros()
+    }
+
     /// Changes of the rigid rates by commands that are not yet executed (rad/s).
     fn queued(&self) -> [f64; 3] {
         [0.0; 3]
@@ -212,8 +219,12 @@ pub struct Cycle {
     pub fuel: f64,
     /// Pulses so far, of all axes together.
     pub pulses: u64,
-    /// The signs of those that burn now, 0 for none.
+    /// Of groups, the signs of those that burn now, 0 for none.
     pub burning: [f64; 3],
+    /// Of thrusters that act by themselves, the on-time of each (s).
+    pub each: Vec<f64>,
+    /// Of thrusters that act by themselves or may fail, the part of its thrust that each gives now.
+    pub open: Vec<f64>,
 }
 
 impl Default for Actuator {

@@ -125,13 +125,6 @@ impl Pulsing {
         valves.fuel(|index| members[index].iter().map(remaining).fold(0.0, f64::max))
     }
 
-    /// What the pulses of this cycle turn the body by, all together (N m s).
-    pub fn impulse(&self) -> Vector {
-        let pulse =
-            |axis: usize| self.group(axis, self.executed[axis]).push.torque * self.executed[axis].abs();
-        pulse(0) + pulse(1) + pulse(2)
-    }
-
     fn pulses(&self, on: [f64; 3]) -> Vec<Pulse> {
         let pulse = |axis: usize| Pulse {
             input: axis,
@@ -205,6 +198,12 @@ impl Actuate for Pulsing {
         if self.ends[axis].is_some() { on.signum() * self.group(axis, on).acceleration } else { 0.0 }
     }
 
+    fn impulse(&self) -> Vector {
+        let pulse =
+            |axis: usize| self.group(axis, self.executed[axis]).push.torque * self.executed[axis].abs();
+        pulse(0) + pulse(1) + pulse(2)
+    }
+
     fn cycle(&self) -> Option<Cycle> {
         let sign = |axis: usize| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 };
         Some(Cycle {
@@ -212,6 +211,8 @@ impl Actuate for Pulsing {
             fuel: self.fuel(),
             pulses: self.pulses,
             burning: [0, 1, 2].map(sign),
+            each: Vec::new(),
+            open: self.valves.as_ref().map_or_else(Vec::new, |(valves, _)| valves.open()),
         })
     }
 

@@ -3,9 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    Actuate, Cycle, Demand, Group, Jets, Magnetic, Magnetorquers, Nozzle, Pulsing, Setting, Spinning,
-};
+use super::{Actuate, Cycle, Demand, Group, Jets, Magnetic, Magnetorquers, Nozzle, Setting, Spinning};
 use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::document::Fault;
@@ -78,7 +76,7 @@ impl Unloading {
         let period = jets.period.unwrap_or(Span::TICK);
         Some(Unloaded {
             wheels,
-            jets: Pulsing::new(jets, fitted, period),
+            jets: jets.start(fitted, period),
             limits: [self.above.get(), self.below.get()],
             torque: self.torque.map_or(f64::INFINITY, Positive::get),
             period,
@@ -125,7 +123,7 @@ fn jets_fault(jets: &Jets) -> Option<Fault> {
 #[derive(Clone, Debug)]
 pub struct Unloaded {
     wheels: Spinning,
-    jets: Pulsing,
+    jets: Box<dyn Actuate>,
     /// Momenta at which it begins and ends (N m s).
     limits: [f64; 2],
     /// Largest mean torque of the jets (N m).

@@ -87,6 +87,11 @@ impl Valves {
         self.fuel + until.sum::<f64>()
     }
 
+    /// The part of its thrust that each gives now.
+    pub fn open(&self) -> Vec<f64> {
+        self.parts().map(|(_, part)| part).collect()
+    }
+
     /// The torque about an axis (N m).
     pub fn torque(&self, axis: usize) -> f64 {
         self.parts().map(|(nozzle, part)| nozzle.push.torque[axis] * part).sum()

@@ -1,5 +1,6 @@
 //! What a waveform adds to the motion of the planar body, in closed form.
 
+use std::ops::AddAssign;
 use std::sync::Arc as Shared;
 
 use super::mode::Flow;
@@ -82,6 +83,17 @@ pub struct Push {
     pub force: Vector,
     /// What a unit of each mode adds to the torque (N/sqrt(kg)).
     pub levers: Vec<Vector>,
+}
+
+impl AddAssign<&Self> for Push {
+    fn add_assign(&mut self, other: &Self) {
+        self.torque += other.torque;
+        self.force += other.force;
+        self.forces.resize(other.forces.len(), 0.0);
+        self.forces.iter_mut().zip(&other.forces).for_each(|(sum, force)| *sum += force);
+        self.levers.resize(other.levers.len(), Vector::zeros());
+        self.levers.iter_mut().zip(&other.levers).for_each(|(sum, lever)| *sum += lever);
+    }
 }
 
 impl Push {

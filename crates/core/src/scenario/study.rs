@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, Matrix3};
 
 use super::Scenario;
-use crate::actuator::{Actuate, Actuator, Allocation, Group, Nozzle, Opposes, Pulsing, Setting, Torquers};
+use crate::actuator::{Actuate, Actuator, Allocation, Firing, Group, Nozzle, Opposes, Setting, Torquers};
 use crate::attitude::{Vector, beyond, tensor};
 use crate::body::craft::{Moving, Rotor};
 use crate::body::{Drive, Mode, Planar, Spatial};
@@ -91,6 +91,13 @@ impl Study {
             Some(body) => study.place(scenario, body)?,
         }
         study.authorities = (0..study.axes.len()).map(|axis| study.authority(scenario, axis)).collect();
+        if let (Some(Estimator::Adaptive(_)), Some((jets, _))) =
+            (&scenario.estimator, scenario.actuator.jets())
+            && jets.allocation == Firing::LeastPropellant
+        {
+            let why = "predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`";
+            return Err(Fault::new("estimator.adaptive", why));
+        }
         if let Some(Estimator::Adaptive(spec)) = &scenario.estimator {
             let Some(period) = study.sampling else {
                 return Err(Fault::new("estimator.adaptive", Estimator::AT_SAMPLES));
@@ -239,9 +246,7 @@ impl Study {
         };
         let settings: Vec<Setting> = self.axes.iter().enumerate().map(setting).collect();
         match (&scenario.actuator, &self.groups, &self.wheels) {
-            (Actuator::Jets(jets), Some(groups), _) => {
-                Box::new(Pulsing::new(jets, (groups, &self.nozzles), self.tick))
-            }
+            (Actuator::Jets(jets), Some(groups), _) => jets.start((groups, &self.nozzles), self.tick),
             (Actuator::Wheels(wheels), _, Some(allocation)) => {
                 let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
                 let spinning = wheels.start(allocation, &settings).read_by(tachometer);

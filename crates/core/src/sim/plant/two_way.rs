@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use crate::attitude::{Vector, vector};
+use crate::attitude::{Vector, rotation, vector};
 use crate::body::Wrench;
 use crate::body::craft::Moving;
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
@@ -25,6 +25,32 @@ pub struct TwoWay {
     acting: Acting,
     /// What moves it, and where its first point was at the start, from the centre of mass (m).
     moving: Option<(Moving, Vector)>,
+}
+
+/// Where an accelerometer is.
+#[derive(Clone, Debug)]
+pub struct Mount {
+    /// While nothing is bent, from the centre of mass (m).
+    at: Vector,
+    /// By how much it moves from there for a unit of each mode, in the hub's axes, and turns against the hub.
+    shifts: Vec<Vector>,
+    turns: Vec<Vector>,
+    /// Mass of the whole (kg).
+    mass: f64,
+}
+
+impl Mount {
+    /// A point of a body of this mass (kg).
+    pub fn new(body: &Spatial, mass: f64, point: &str) -> Self {
+        let first = body.points.first().map_or("", |point| &point.name);
+        let (here, hub) = (body.shapes(point), body.shapes(first));
+        Self {
+            mass,
+            at: body.point(point).unwrap_or_default(),
+            shifts: body.shifts(point, &Vector::zeros()),
+            turns: here.iter().zip(&hub).map(|((_, here), (_, hub))| here - hub).collect(),
+        }
+    }
 }
 
 /// The disturbance of the body, and what is around it.
@@ -208,6 +234,27 @@ impl TwoWay {
             let [position, velocity] = moving.place(self.turning.seen());
             [position - began, velocity]
         })
+    }
+
+    /// The specific force at a place (m/s²), along axes that its mount turns, at the instant seen last of a motion that departed so long
+    /// after the start (s): what accelerates it beside free fall.
+    pub fn specific_force(&self, place: &Mount, began: f64) -> Vector {
+        let seen = self.turning.seen();
+        let found = self.turning.accelerations(self.outside.since(began));
+        let sum = |shapes: &[Vector], of: &[f64]| -> Vector {
+            shapes.iter().zip(of).fold(Vector::zeros(), |sum, (shape, q)| sum + shape * *q)
+        };
+        let arm = place.at + sum(&place.shifts, &seen.displacements);
+        let moves = sum(&place.shifts, &seen.rates);
+        let rate = &seen.rate;
+        let force = found.centre
+            + found.shaking / place.mass
+            + sum(&place.shifts, &found.modes)
+            + 2.0 * rate.cross(&moves)
+            + found.hub.cross(&arm)
+            + rate.cross(&rate.cross(&arm));
+        let turned = rotation(&sum(&place.turns, &seen.displacements));
+        (turned.conjugate() * Quaternion::from_imag(force) * turned).vector().into_owned()
     }
 
     /// The attitude of the hub.
