@@ -1,5 +1,6 @@
 //! All integration tests of flexsc, one binary.
 
+mod accelerometers;
 mod active_damping;
 mod adaptation;
 mod adaptive;
@@ -33,12 +34,14 @@ mod environment;
 mod events;
 mod exact;
 mod extending;
+mod failures;
 mod filters;
 mod forces;
 mod foreign;
 mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
+mod jets;
 mod layout;
 #[cfg(not(feature = "full"))]
 mod light;

@@ -9,7 +9,8 @@ use crate::util::SCENARIOS;
 fn left(changes: &[(&str, &str)], mode: usize) -> Result<f64, String> {
     let text = std::fs::read_to_string(format!("{SCENARIOS}/shaped-slew.toml")).expect("there");
     let text = changes.iter().filter(|(key, _)| key.is_empty()).fold(text, |text, (_, lines)| {
-        let kept = text.lines().filter(|line| !line.starts_with("shaper") && !line.starts_with("acceleration"));
+        let kept =
+            text.lines().filter(|line| !line.starts_with("shaper") && !line.starts_with("acceleration"));
         let kept = kept.map(|line| if line.starts_with("rate_limit") { *lines } else { line });
         kept.collect::<Vec<_>>().join("\n")
     });
@@ -20,7 +21,8 @@ fn left(changes: &[(&str, &str)], mode: usize) -> Result<f64, String> {
     let scenario = Scenario::from_document(&document).map_err(|error| error.to_string())?;
     let mut trace = Trace::new(Detail::Full);
     Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
-    let Some(Column::Rows(counts, columns)) = trace.topic("/vibrations").and_then(|topic| topic.get("modes")) else {
+    let Some(Column::Rows(counts, columns)) = trace.topic("/vibrations").and_then(|topic| topic.get("modes"))
+    else {
         panic!("no modes")
     };
     let energies = columns.numbers("energy_j").expect("numbers");
@@ -38,7 +40,10 @@ fn a_shaped_turn_leaves_its_mode_at_rest() {
     let planned = left(&[("", planned)], 1).expect("a run");
     // The torque is held over each sample, the reference is not.
     assert!(plain > 1e-8, "{plain:e}");
-    assert!(shaped < 1e-3 * plain && robust < 1e-3 * plain && planned < 1e-3 * plain, "{plain:e} {shaped:e} {robust:e} {planned:e}");
+    assert!(
+        shaped < 1e-3 * plain && robust < 1e-3 * plain && planned < 1e-3 * plain,
+        "{plain:e} {shaped:e} {robust:e} {planned:e}"
+    );
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::body::{Push, Spatial, Wrench};
 use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Stream;
+use crate::sine::Sine;
 use crate::time::{Instant, Span};
 
 /// A disturbance: a torque about an axis, or a force at a point.
@@ -21,6 +22,9 @@ pub struct Disturbance {
     /// Torque (N m).
     #[serde(default)]
     pub torque: Finite,
+    /// Sines of the time in the torque beside it, of a `[spacecraft]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sines: Vec<Sine>,
     /// In place of a torque, on a body with three axes a force in its axes (N): a leak, a jet that is stuck, a push.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<[Finite; 3]>,
@@ -82,6 +86,9 @@ impl Disturbance {
                 refused("point", "is where a `force` acts: a torque acts at the body's first point")
             }
             (Some(_), Some(_)) => refused("about", "is of a torque: a `force` has a direction of its own"),
+            (Some(_), None) if !self.sines.is_empty() => {
+                refused("sines", "are of a torque: give it `about` an axis, without a `force`")
+            }
             (Some(_), None) if self.torque.get() != 0.0 || noisy => refused(
                 "force",
                 "stands alone: give a `torque`, or `noise`, as a `[[disturbance]]` of its own",
@@ -163,16 +170,28 @@ impl Disturbing {
         if acts { self.what.torque.get() + self.drawn } else { 0.0 }
     }
 
+    /// Its sines about an axis at an instant (N m).
+    fn swinging(&self, now: Instant, axis: usize) -> f64 {
+        let own = self.what.about.map_or(0, Axis::index) == axis && self.acts(now);
+        let sines = self.what.sines.iter().filter(|_| own);
+        sines.map(|sine| sine.at(now.seconds())).sum()
+    }
+
     /// The torque about an axis at an instant (N m), of a force that about the centre of mass.
     pub fn torque(&self, now: Instant, axis: usize) -> f64 {
         match &self.push {
             Some(push) if self.acts(now) => push.torque[axis],
-            _ => self.on_hub(now, axis),
+            _ => self.on_hub(now, axis) + self.swinging(now, axis),
         }
     }
 
-    /// Adds what a force does from now on.
+    /// Adds what a force does from now on, or sines in a torque.
     pub fn push(&self, now: Instant, onto: &mut Wrench) {
+        if !self.what.sines.is_empty() && self.acts(now) {
+            let axis = self.what.about.map_or(0, Axis::index);
+            let about = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+            onto.sines.extend(self.what.sines.iter().map(|sine| (about, *sine)));
+        }
         if let Some(push) = self.push.as_ref().filter(|_| self.acts(now)) {
             onto.push(push);
         }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use flexsc_core::actuator::Firing;
 use flexsc_core::campaign::Run;
 use flexsc_core::estimator::Estimator;
 use flexsc_core::law::Law;
@@ -33,6 +34,11 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/adaptation", scenario.adaptation.is_some()),
         ("/arrival", scenario.plan.is_some()),
         ("/jets", scenario.study.fires()),
+        ("/faults", !scenario.failing().is_empty()),
+        (
+            "/thrusters",
+            scenario.actuator.jets().is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant),
+        ),
         ("/wheel_events", scenario.study.bearings.iter().any(Bearing::grips)),
         ("/summary", true),
         ("/metrics", true),

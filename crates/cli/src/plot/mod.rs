@@ -1,5 +1,6 @@
 //! `flexsc plot`: the figures of a log or of a campaign, as SVG and PNG.
 
+mod accelerations;
 mod angle;
 mod attitude_filter;
 mod campaign;
@@ -10,6 +11,7 @@ mod drives;
 mod envelope;
 mod estimate;
 mod extra;
+mod failing;
 mod frequency;
 mod gain;
 mod lock;
@@ -127,7 +129,10 @@ fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, 
     } else {
         Motion::default()
     };
-    let drawn = chosen.into_iter().filter_map(|what| Some((what, what.figure(&story, &motion, &cycles)?)));
+    let drawn = chosen.into_iter().filter_map(|what| {
+        let figure = what.figure(&story, &motion, &cycles)?;
+        Some((what, failing::shaded(figure, &story)))
+    });
     Ok(drawn.collect())
 }
 

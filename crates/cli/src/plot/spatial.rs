@@ -6,8 +6,8 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    AttitudeEstimate, Bearings, ChannelState, Cycle, DrivesMotion, Log, Magnetorquers, Orbit, Position,
-    Record, RecordError, Sample, SpatialMotion, TrackedMode, Tracking, Wheels,
+    Accelerations, AttitudeEstimate, Bearings, ChannelState, Cycle, DrivesMotion, Log, Magnetorquers, Orbit,
+    Position, Record, RecordError, Sample, SpatialMotion, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
@@ -34,6 +34,8 @@ pub struct Cycles {
     pub magnetorquers: Vec<(f64, Magnetorquers)>,
     /// Where it is, at the same times.
     position: Vec<(f64, Position)>,
+    /// What accelerometers tell.
+    pub accelerations: Vec<(f64, Accelerations)>,
     /// Their bearings, if they have any.
     pub bearings: Vec<(f64, Bearings)>,
     /// The drives of appendages, if they have any.
@@ -75,6 +77,7 @@ impl Record for Cycles {
         match sample {
             Sample::Cycle(cycle) => self.all.push((now.seconds(), cycle.clone())),
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
+            Sample::Accelerations(row) => self.accelerations.push((now.seconds(), row.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
             Sample::SpatialMotion(SpatialMotion {
                 wheels,

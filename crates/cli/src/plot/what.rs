@@ -8,8 +8,8 @@ use super::motion::Motion;
 use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
-    angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra, frequency,
-    gain, magnetorquers, modes, orbit, outputs, phase_plane, torque, wheel, wheels,
+    accelerations, angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra,
+    frequency, gain, magnetorquers, modes, orbit, outputs, phase_plane, torque, wheel, wheels,
 };
 
 /// A figure.
@@ -47,6 +47,8 @@ pub enum What {
     Wheel,
     /// Of a spatial body: magnetic moments of its torquers, and the momentum of its wheels or its rate
     Magnetorquers,
+    /// Of a spacecraft: what accelerometers tell
+    Accelerations,
     /// Of a spatial body on an orbit: magnetic field, planet and Sun in its axes, and the shadow
     Orbit,
     /// Of a spacecraft whose appendages turn: angles of the drives, and natural frequencies
@@ -100,6 +102,7 @@ impl What {
             Self::Orbit => spatial && orbit::of(story),
             Self::Magnetorquers => magnetorquers::of(story),
             Self::Drives => story.scenario.study.drives.is_some(),
+            Self::Accelerations => accelerations::of(story),
             Self::Consistency if spatial => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())
             }
@@ -135,6 +138,7 @@ impl What {
             Self::Orbit => orbit::figure(story, cycles),
             Self::Magnetorquers => magnetorquers::figure(story, cycles),
             Self::Drives => drives::figure(story, cycles),
+            Self::Accelerations => accelerations::figure(story, cycles),
             Self::Frequency => frequency::figure(story, motion),
             Self::Estimate => estimate::figure(story, motion),
             Self::Consistency if !cycles.attitude.is_empty() => attitude_filter::figure(story, cycles),

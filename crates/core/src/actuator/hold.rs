@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, Setting};
+use super::{AxisActuate, Failure, Setting};
 use crate::time::{Instant, Span};
 
 /// A zero-order hold.
@@ -12,6 +12,9 @@ use crate::time::{Instant, Span};
 pub struct ZeroOrderHold {
     /// Period (s).
     pub period: Span,
+    /// Times at which it fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
 }
 
 /// The hold at work.

@@ -2,26 +2,38 @@
 
 use std::sync::Arc;
 
-use super::{AxisActuate, Setting};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{AxisActuate, Failure, Setting};
 use crate::body::Forced;
 use crate::time::Instant;
 use crate::waveform::Waveform;
 
+/// The ideal actuator.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ideal {
+    /// Times at which it fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
+}
+
 /// The actuator at work.
 #[derive(Clone, Debug)]
-pub struct Ideal {
+pub struct Executing {
     torque: f64,
     waveform: Option<Arc<Waveform>>,
 }
 
-impl Ideal {
+impl Executing {
     /// The actuator before its first command.
     pub fn new(setting: &Setting) -> Self {
         Self { torque: 0.0, waveform: setting.waveform.clone() }
     }
 }
 
-impl AxisActuate for Ideal {
+impl AxisActuate for Executing {
     fn command(&mut self, _: Instant, command: f64, _: f64) {
         self.torque = command;
     }
@@ -32,6 +44,10 @@ impl AxisActuate for Ideal {
 
     fn asked(&self) -> f64 {
         self.torque
+    }
+
+    fn follows(&self) -> bool {
+        self.waveform.is_some()
     }
 
     fn forced(&self, now: Instant) -> Option<Forced> {

@@ -110,7 +110,7 @@ impl Imbalance {
                 };
                 modes.map(of).collect()
             };
-            Line { order, torque, forces: [beyond(0), beyond(1)] }
+            Line { order, torque, force, forces: [beyond(0), beyond(1)] }
         };
         let (first, second) = across(&rotor.axis);
         // Along e1 cos(x + phase) + e2 sin(x + phase), of cos x and of sin x.

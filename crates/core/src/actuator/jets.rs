@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::PulseWidth;
+use super::{Actuate, Allocated, Failure, PulseWidth, Pulsing, allocated};
 use crate::attitude::{AXES, vector};
 use crate::body::Push;
 use crate::body::spatial::Spatial;
@@ -34,8 +34,35 @@ pub struct Jets {
     pub delay: u32,
     /// The thrusters.
     pub thrusters: Vec<Thruster>,
-    /// Which of them act together.
-    pub groups: Groups,
+    /// How what is demanded becomes pulses.
+    #[serde(default, skip_serializing_if = "Firing::by_groups")]
+    pub allocation: Firing,
+    /// Of `least_propellant`, whether the forces of the pulses shall cancel.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub force_free: bool,
+    /// Of `groups`, which of them act together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub groups: Option<Groups>,
+    /// Times at which they fail.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
+}
+
+/// How what is demanded of jets becomes pulses.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Firing {
+    /// A pulse of one group for each axis.
+    #[default]
+    Groups,
+    /// A pulse of each thruster, as long as gives what is demanded with the least propellant.
+    LeastPropellant,
+}
+
+impl Firing {
+    fn by_groups(&self) -> bool {
+        *self == Self::Groups
+    }
 }
 
 /// One thruster.
@@ -88,7 +115,45 @@ pub struct Group {
     pub acceleration: f64,
 }
 
+/// What a thruster does while it is open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nozzle {
+    /// Its force.
+    pub push: Push,
+    /// Propellant in a second (kg/s).
+    pub flow: f64,
+    /// Thrust (N).
+    pub thrust: f64,
+}
+
 impl Jets {
+    /// What each thruster does to a body that has their points.
+    pub fn nozzles_on(&self, body: &Spatial) -> Vec<Nozzle> {
+        let nozzle = |thruster: &Thruster| {
+            let thrust = thruster.thrust.get();
+            let mut push = Push { forces: vec![0.0; body.modes.len()], ..Push::default() };
+            let force = vector(&thruster.direction).normalize() * thrust;
+            push.add(body, &thruster.point, &vector(&thruster.offset), &force);
+            Nozzle { push, flow: thrust / (self.specific_impulse.get() * G_0), thrust }
+        };
+        self.thrusters.iter().map(nozzle).collect()
+    }
+
+    /// The groups in which each thruster is: axis, and 0 for plus or 1 for minus.
+    pub(super) fn memberships(&self) -> Vec<Vec<[usize; 2]>> {
+        let Some(Groups { roll, pitch, yaw }) = &self.groups else { return Vec::new() };
+        let of = |thruster: &Thruster| {
+            let mut own = Vec::new();
+            for (axis, pair) in [roll, pitch, yaw].into_iter().enumerate() {
+                for (side, names) in [&pair.plus, &pair.minus].into_iter().enumerate() {
+                    own.extend(names.iter().filter(|name| **name == thruster.name).map(|_| [axis, side]));
+                }
+            }
+            own
+        };
+        self.thrusters.iter().map(of).collect()
+    }
+
     /// The groups on a body: for each axis, plus and minus.
     ///
     /// # Errors
@@ -112,7 +177,22 @@ impl Jets {
                 );
             }
         }
-        let Groups { roll, pitch, yaw } = &self.groups;
+        if self.allocation == Firing::LeastPropellant {
+            if self.groups.is_some() {
+                let why = "are those of `allocation = \"groups\"`: leave them out";
+                return Err(Fault::new("groups", why));
+            }
+            let tensor = body.tensor();
+            let inertia = [0, 1, 2].map(|axis| tensor[(axis, axis)]);
+            return allocated::largest(self, &self.nozzles_on(body), inertia);
+        }
+        if self.force_free {
+            return Err(Fault::new("force_free", "is that of `allocation = \"least_propellant\"`"));
+        }
+        let Some(Groups { roll, pitch, yaw }) = &self.groups else {
+            let why = "must be given, or `allocation = \"least_propellant\"`";
+            return Err(Fault::new("groups", why));
+        };
         let mut groups = Vec::with_capacity(3);
         for (axis, pair) in [roll, pitch, yaw].into_iter().enumerate() {
             groups.push([
@@ -153,6 +233,20 @@ impl Jets {
         let acceleration = torque[axis].abs() / body.tensor()[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
         Ok(Group { push, flow, acceleration })
+    }
+
+    /// The names of the thrusters.
+    pub fn names(&self) -> Vec<String> {
+        self.thrusters.iter().map(|thruster| thruster.name.clone()).collect()
+    }
+
+    /// The jets before the first command, with what their groups and their thrusters do; `period` is that of the law, for jets without
+    /// one of their own.
+    pub fn start(&self, fitted: (&[[Group; 2]; 3], &[Nozzle]), period: Span) -> Box<dyn Actuate> {
+        match self.allocation {
+            Firing::Groups => Box::new(Pulsing::new(self, fitted, period)),
+            Firing::LeastPropellant => Box::new(Allocated::new(self, fitted, period)),
+        }
     }
 
     /// What becomes of a wanted pulse.

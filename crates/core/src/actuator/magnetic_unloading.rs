@@ -60,7 +60,7 @@ impl Actuate for Magnetic {
     }
 
     fn due(&self) -> Option<Instant> {
-        self.wheels.due().into_iter().chain([self.next]).min()
+        self.wheels.due().into_iter().chain(self.torquers.due()).chain([self.next]).min()
     }
 
     fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
@@ -70,6 +70,7 @@ impl Actuate for Magnetic {
                 self.begin(now, rigid);
             }
         }
+        self.torquers.serve(now, rigid);
         self.wheels.serve(now, rigid);
     }
 

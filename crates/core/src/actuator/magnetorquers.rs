@@ -5,7 +5,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuate, Demand, Setting};
+use super::failure::{Failing, Lasting};
+use super::{Actuate, Demand, Failure, Setting};
 use crate::attitude::Vector;
 use crate::axes::Each;
 use crate::body::Wrench;
@@ -14,11 +15,14 @@ use crate::record;
 use crate::time::{Instant, Span};
 
 /// Magnetorquers along the body's axes.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Magnetorquers {
     /// Largest magnetic moment along each axis (A m²): one number for all, or three.
     pub moment: Each<Positive>,
+    /// Times at which they fail.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
 }
 
 impl Magnetorquers {
@@ -30,6 +34,10 @@ impl Magnetorquers {
             field: None,
             wanted: Vector::zeros(),
             moment: Vector::zeros(),
+            failing: [0, 1, 2].map(|axis| {
+                let own = |of: &Lasting<'_>| of.about.is_none_or(|about| about.index() == axis);
+                Failing::new(&self.faults, own)
+            }),
         }
     }
 
@@ -50,9 +58,20 @@ pub struct Torquing {
     wanted: Vector,
     /// What is held, in the body's axes (A m²).
     moment: Vector,
+    /// The failures of each.
+    failing: [Option<Failing>; 3],
 }
 
 impl Torquing {
+    /// The moments that there are (A m²), of torquers that may fail.
+    fn held(&self) -> Vector {
+        let of = |axis: usize| {
+            let wanted = self.moment[axis];
+            self.failing[axis].as_ref().map_or(wanted, |failing| failing.of(wanted))
+        };
+        Vector::from_fn(|axis, _| of(axis))
+    }
+
     /// Holds the moment whose torque is the part of this one across the field (N m), made smaller as a whole where it is too
     /// large.
     pub fn give(&mut self, torque: Vector) {
@@ -100,8 +119,20 @@ impl Actuate for Torquing {
         self.give(wanted);
     }
 
+    fn due(&self) -> Option<Instant> {
+        self.failing.iter().flatten().filter_map(Failing::due).min()
+    }
+
+    fn serve(&mut self, now: Instant, _: [f64; 3]) {
+        for (failing, moment) in self.failing.iter_mut().zip(&self.moment) {
+            if let Some(failing) = failing {
+                failing.serve(now, *moment);
+            }
+        }
+    }
+
     fn exert(&self, _: Instant, onto: &mut Wrench) {
-        onto.moment += self.moment;
+        onto.moment += self.held();
     }
 
     fn asked(&self, axis: usize) -> f64 {
@@ -122,7 +153,8 @@ impl Actuate for Torquing {
     }
 
     fn magnetic(&self) -> Option<record::Magnetorquers> {
-        let axis = |axis: usize| record::Magnetorquer { moment_am2: self.moment[axis] };
+        let held = self.held();
+        let axis = |axis: usize| record::Magnetorquer { moment_am2: held[axis] };
         Some(record::Magnetorquers { axes: [0, 1, 2].map(axis).into() })
     }
 

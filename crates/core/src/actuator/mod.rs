@@ -1,10 +1,13 @@
 //! Actuators: how commands are executed, as they are, through a hold, by a wheel, or by pulses of thrusters.
 
+mod allocated;
 mod allocation;
+mod failure;
 mod friction;
 mod hold;
 mod ideal;
 mod imbalance;
+mod impaired;
 mod jets;
 mod magnetic_unloading;
 mod magnetorquers;
@@ -16,8 +19,10 @@ mod spinning;
 mod thrusters;
 mod torquers;
 mod unloading;
+mod valves;
 mod wheel;
 mod wheels;
+mod written;
 
 use std::fmt;
 
@@ -26,16 +31,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
 use crate::body::Wrench;
+use crate::document::Fault;
 use crate::motion::turning::Turned;
 use crate::own::Own;
 use crate::record::{self, WheelMotion};
 use crate::time::{Instant, Span};
 
+pub use allocated::Allocated;
 pub use allocation::{Allocation, Choice};
+use failure::Parts;
+pub use failure::{Failure, Lasting};
 pub use friction::Friction;
 pub use hold::ZeroOrderHold;
+pub use ideal::Ideal;
 pub use imbalance::{Harmonic, Imbalance};
-pub use jets::{Group, Groups, Jets, Pair, Thruster};
+pub use jets::{Firing, Group, Groups, Jets, Nozzle, Pair, Thruster};
 pub use magnetic_unloading::Magnetic;
 pub use magnetorquers::{Magnetorquers, Torquing};
 pub use per_wheel::PerWheel;
@@ -50,12 +60,12 @@ pub use wheel::{Opposes, Rotor, Wheel};
 pub use wheels::{Arrangement, Compensation, SpeedBias, Wheels};
 
 /// The kinds of actuator. Those of one angle act on a body with three axes about each.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", remote = "Self")]
+#[schemars(transform = written::or_a_word)]
 pub enum Actuator {
     /// The command itself, at every instant.
-    #[default]
-    Ideal,
+    Ideal(Ideal),
     /// In each period the mean of what the manoeuvre commands over it, and the feedback at its start.
     Hold(ZeroOrderHold),
     /// In each period one pulse of full torque, centred in it, with the impulse that a hold would have.
@@ -175,6 +185,11 @@ pub trait Actuate: fmt::Debug + Send + Sync {
         None
     }
 
+    /// Of jets, what the pulses of this cycle turn the body by, all together (N m s).
+    fn impulse(&self) -> Vector {
+        Vector::zeros()
+    }
+
     /// Changes of the rigid rates by commands that are not yet executed (rad/s).
     fn queued(&self) -> [f64; 3] {
         [0.0; 3]
@@ -204,15 +219,25 @@ pub struct Cycle {
     pub fuel: f64,
     /// Pulses so far, of all axes together.
     pub pulses: u64,
-    /// The signs of those that burn now, 0 for none.
+    /// Of groups, the signs of those that burn now, 0 for none.
     pub burning: [f64; 3],
+    /// Of thrusters that act by themselves, the on-time of each (s).
+    pub each: Vec<f64>,
+    /// Of thrusters that act by themselves or may fail, the part of its thrust that each gives now.
+    pub open: Vec<f64>,
+}
+
+impl Default for Actuator {
+    fn default() -> Self {
+        Self::Ideal(Ideal::default())
+    }
 }
 
 impl Actuator {
     /// The kind, as a scenario names it.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Ideal => "ideal",
+            Self::Ideal(_) => "ideal",
             Self::Hold(_) => "hold",
             Self::Thrusters(_) => "thrusters",
             Self::Wheel(_) => "wheel",
@@ -245,10 +270,58 @@ impl Actuator {
         }
     }
 
+    /// Whether it executes commands as they are: no failure changes that.
+    pub fn is_ideal(&self) -> bool {
+        matches!(self, Self::Ideal(_)) && self.failures().is_empty()
+    }
+
+    /// Its own failures, without those of what unloads its wheels.
+    pub fn failures(&self) -> &[Failure] {
+        match self {
+            Self::Ideal(ideal) => &ideal.faults,
+            Self::Hold(hold) => &hold.faults,
+            Self::Thrusters(thrusters) => &thrusters.faults,
+            Self::Wheel(wheel) => &wheel.faults,
+            Self::Wheels(wheels) => &wheels.faults,
+            Self::Jets(jets) => &jets.faults,
+            Self::Magnetorquers(torquers) => &torquers.faults,
+            Self::Own(_) => &[],
+        }
+    }
+
+    /// All failures, each with its key and those beside it.
+    pub fn all_failures(&self) -> Vec<(String, &[Failure])> {
+        let mut all = vec![(format!("actuator.{}", self.kind()), self.failures())];
+        if let Self::Wheels(_) = self {
+            all.extend(self.jets().map(|(jets, key)| (key.to_owned(), &jets.faults[..])));
+            all.extend(self.magnetorquers().map(|(torquers, key)| (key.to_owned(), &torquers.faults[..])));
+        }
+        all
+    }
+
+    /// What of its failures does not fit, of one about so many axes: a key, and why.
+    pub fn failure_fault(&self, axes: usize) -> Option<Fault> {
+        let names = self.jets().map_or(Vec::new(), |(jets, _)| jets.names());
+        for (key, failures) in self.all_failures() {
+            let parts = match self {
+                _ if key.ends_with("jets") => Parts::Thrusters(&names),
+                Self::Wheels(wheels) if key == "actuator.wheels" => Parts::Wheels(wheels.count()),
+                _ => Parts::Axes(axes),
+            };
+            let sines = !key.ends_with("magnetorquers");
+            for (index, failure) in failures.iter().enumerate() {
+                if let Some(fault) = failure.fault(parts, sines) {
+                    return Some(fault.within(&format!("{key}.faults[{index}]")));
+                }
+            }
+        }
+        None
+    }
+
     /// The period in which the command is executed; none for one that executes it at once.
     pub fn period(&self) -> Option<Span> {
         match self {
-            Self::Ideal | Self::Wheel(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => None,
+            Self::Ideal(_) | Self::Wheel(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => None,
             Self::Hold(hold) => Some(hold.period),
             Self::Thrusters(thrusters) => Some(thrusters.period),
             Self::Jets(jets) => jets.period,
@@ -259,8 +332,8 @@ impl Actuator {
     /// and are not asked.
     pub fn about_an_axis(&self, setting: &Setting) -> Box<dyn AxisActuate> {
         match self {
-            Self::Ideal | Self::Jets(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => {
-                Box::new(ideal::Ideal::new(setting))
+            Self::Ideal(_) | Self::Jets(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => {
+                Box::new(ideal::Executing::new(setting))
             }
             Self::Hold(hold) => Box::new(hold.start(setting)),
             Self::Thrusters(thrusters) => Box::new(thrusters.start(setting)),

@@ -1,6 +1,7 @@
 //! Jets at work: what is commanded, what waits, what burns, and the propellant.
 
-use super::{Actuate, Cycle, Demand, Group, Jets, PulseWidth};
+use super::valves::Valves;
+use super::{Actuate, Cycle, Demand, Group, Jets, Nozzle, PulseWidth};
 use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::time::{Instant, Span};
@@ -48,12 +49,16 @@ pub struct Pulsing {
     fuel: f64,
     /// Pulses so far.
     pulses: u64,
+    /// The valves, and the groups of each thruster, where thrusters fail.
+    valves: Option<(Valves, Vec<Vec<[usize; 2]>>)>,
 }
 
 impl Pulsing {
     /// The jets before the first command, of these groups; `period` is that of the law, for jets without one of their own.
-    pub fn new(jets: &Jets, groups: &[[Group; 2]; 3], period: Span) -> Self {
+    pub fn new(jets: &Jets, (groups, nozzles): (&[[Group; 2]; 3], &[Nozzle]), period: Span) -> Self {
+        let valves = Valves::new(jets, nozzles);
         Self {
+            valves: valves.fail().then(|| (valves, jets.memberships())),
             groups: groups.clone(),
             width: jets.width(),
             delayed: jets.delay > 0,
@@ -98,13 +103,26 @@ impl Pulsing {
             self.fuel += on.abs() * self.group(axis, on).flow;
             self.pulses += u64::from(on != 0.0);
         }
+        self.open(now);
     }
 
-    /// What the pulses of this cycle turn the body by, all together (N m s).
-    pub fn impulse(&self) -> Vector {
-        let pulse =
-            |axis: usize| self.group(axis, self.executed[axis]).push.torque * self.executed[axis].abs();
-        pulse(0) + pulse(1) + pulse(2)
+    /// Lets the valves know which groups burn from now on.
+    fn open(&mut self, now: Instant) {
+        let Self { valves: Some((valves, members)), ends, executed, .. } = self else { return };
+        let burns = |[axis, side]: &&[usize; 2]| {
+            ends[*axis].is_some_and(|end| end > now) && usize::from(executed[*axis] < 0.0) == *side
+        };
+        valves.set(now, |index| members[index].iter().filter(burns).count() as f64);
+    }
+
+    /// Propellant until the end of the pulses (kg).
+    fn fuel(&self) -> f64 {
+        let Some((valves, members)) = &self.valves else { return self.fuel };
+        let remaining = |[axis, side]: &[usize; 2]| {
+            let own = usize::from(self.executed[*axis] < 0.0) == *side;
+            self.ends[*axis].filter(|_| own).map_or(0.0, |end| end.since(valves.since()).seconds())
+        };
+        valves.fuel(|index| members[index].iter().map(remaining).fold(0.0, f64::max))
     }
 
     fn pulses(&self, on: [f64; 3]) -> Vec<Pulse> {
@@ -129,7 +147,8 @@ impl Actuate for Pulsing {
     }
 
     fn due(&self) -> Option<Instant> {
-        self.ends.into_iter().flatten().chain(self.next).min()
+        let failing = self.valves.as_ref().and_then(|(valves, _)| valves.due());
+        self.ends.into_iter().flatten().chain(self.next).chain(failing).min()
     }
 
     fn serve(&mut self, now: Instant, _: [f64; 3]) {
@@ -138,9 +157,13 @@ impl Actuate for Pulsing {
             self.begin(now);
             self.next = Some(now + self.period);
         }
+        self.open(now);
     }
 
     fn exert(&self, _: Instant, onto: &mut Wrench) {
+        if let Some((valves, _)) = &self.valves {
+            return valves.exert(onto);
+        }
         for axis in (0..3).filter(|axis| self.ends[*axis].is_some()) {
             let group = self.group(axis, self.executed[axis]);
             onto.push(&group.push);
@@ -159,6 +182,9 @@ impl Actuate for Pulsing {
     }
 
     fn torque(&self, axis: usize) -> f64 {
+        if let Some((valves, _)) = &self.valves {
+            return valves.torque(axis);
+        }
         let burning = (0..3).filter(|axis| self.ends[*axis].is_some());
         burning.map(|burning| self.group(burning, self.executed[burning]).push.torque[axis]).sum()
     }
@@ -172,9 +198,22 @@ impl Actuate for Pulsing {
         if self.ends[axis].is_some() { on.signum() * self.group(axis, on).acceleration } else { 0.0 }
     }
 
+    fn impulse(&self) -> Vector {
+        let pulse =
+            |axis: usize| self.group(axis, self.executed[axis]).push.torque * self.executed[axis].abs();
+        pulse(0) + pulse(1) + pulse(2)
+    }
+
     fn cycle(&self) -> Option<Cycle> {
         let sign = |axis: usize| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 };
-        Some(Cycle { on: self.executed, fuel: self.fuel, pulses: self.pulses, burning: [0, 1, 2].map(sign) })
+        Some(Cycle {
+            on: self.executed,
+            fuel: self.fuel(),
+            pulses: self.pulses,
+            burning: [0, 1, 2].map(sign),
+            each: Vec::new(),
+            open: self.valves.as_ref().map_or_else(Vec::new, |(valves, _)| valves.open()),
+        })
     }
 
     fn executed(&self) -> Option<Vec<Pulse>> {

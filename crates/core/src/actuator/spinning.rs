@@ -5,6 +5,7 @@
 //! it the instant at which it reaches its limit. The speed Omega also depends on the body's rate.
 
 use super::allocation::Allocation;
+use super::failure::Failing;
 use super::wheels::{Compensation, SpeedBias, Wheels};
 use super::{Actuate, Demand, Setting};
 use crate::attitude::Vector;
@@ -47,6 +48,9 @@ pub struct Spinning {
     /// The momentum that they store by its last reading (N m s).
     known: Option<Vector>,
     compensation: Option<Box<Compensation>>,
+    /// What each drive is to exert (N m), and its failures.
+    commanded: Vec<f64>,
+    failing: Vec<Option<Failing>>,
 }
 
 /// A wheel.
@@ -93,6 +97,8 @@ impl Spinning {
             tachometer: None,
             known: None,
             compensation: wheels.compensation.clone(),
+            commanded: vec![0.0; speeds.len()],
+            failing: (0..speeds.len()).map(|wheel| wheels.failing(wheel)).collect(),
         }
     }
 
@@ -185,8 +191,10 @@ impl Spinning {
         }
     }
 
-    /// A wheel gets a torque from now on, as far as its limits let it.
+    /// A wheel gets a torque from now on, as far as its failures and its limits let it.
     fn drive(&mut self, now: Instant, index: usize, speed: f64, torque: f64) {
+        self.commanded[index] = torque;
+        let torque = self.failing[index].as_ref().map_or(torque, |failing| failing.of(torque));
         let (torque, seconds) = self.within_limits(index, speed, torque);
         let full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
         (self.wheels[index].torque, self.wheels[index].full) = (torque, full);
@@ -199,6 +207,27 @@ impl Spinning {
         Some(wheels.fold(Vector::zeros(), |sum, (axis, speed)| {
             sum + axis * (self.inertia * (speed + axis.dot(rate)))
         }))
+    }
+
+    /// Failures begin and end: drives then exert something else.
+    fn fail(&mut self, now: Instant, rigid: &Vector) {
+        let mut any = false;
+        for (failing, commanded) in self.failing.iter_mut().zip(&self.commanded) {
+            any |= failing.as_mut().is_some_and(|failing| failing.serve(now, *commanded));
+        }
+        if any {
+            self.turn(now);
+            let speeds = self.speeds(rigid);
+            for index in 0..self.wheels.len() {
+                let speed = self.turned.get(index).map_or(speeds[index], |wheel| wheel.speed);
+                self.drive(now, index, speed, self.commanded[index]);
+            }
+        }
+    }
+
+    /// What a drive exerts as long as nobody knows that it fails (N m).
+    fn believed(&self, index: usize) -> f64 {
+        if self.failing[index].is_some() { self.commanded[index] } else { self.wheels[index].torque }
     }
 
     /// What the drives add against friction at these speeds (rad/s), to these torques (N m).
@@ -229,11 +258,13 @@ impl Actuate for Spinning {
 
     fn due(&self) -> Option<Instant> {
         let read = self.tachometer.as_ref().map(Counting::due);
-        self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).min()
+        let failing = self.failing.iter().flatten().filter_map(Failing::due);
+        self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).chain(failing).min()
     }
 
     /// A wheel at its limit stays there until the next command. Tachometers are read, and compensation follows them.
     fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
+        self.fail(now, &rigid.into());
         let turned = self.turned.iter().map(|wheel| [wheel.angle, wheel.speed]);
         if let Some(tachometer) = self.tachometer.as_mut().filter(|tachometer| tachometer.due() == now) {
             tachometer.read(now, turned);
@@ -250,7 +281,7 @@ impl Actuate for Spinning {
                 (0..self.wheels.len()).filter(|index| self.wheels[*index].full == Some(now)).collect();
             for index in full {
                 if let Some(wheel) = self.turned.get(index) {
-                    self.drive(now, index, wheel.speed, self.wheels[index].torque);
+                    self.drive(now, index, wheel.speed, self.commanded[index]);
                 } else {
                     (self.wheels[index].torque, self.wheels[index].full) = (0.0, None);
                 }
@@ -295,7 +326,9 @@ impl Actuate for Spinning {
     }
 
     fn moment(&self, axis: usize) -> f64 {
-        self.torque(axis) / self.settings[axis].inertia
+        let believed = self.allocation.axes().iter().enumerate();
+        let torque = -believed.map(|(index, about)| about[axis] * self.believed(index)).sum::<f64>();
+        torque / self.settings[axis].inertia
     }
 
     fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<record::Wheel> {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, PulseWidth, Setting};
+use super::{AxisActuate, Failure, PulseWidth, Setting};
 use crate::axes::Each;
 use crate::quantity::{NonNegative, Positive};
 use crate::time::{Instant, Span};
@@ -22,6 +22,9 @@ pub struct Thrusters {
     /// Quantum of a pulse's length (s); 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
+    /// Times at which they fail.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
 }
 
 /// A pulse: this torque (N m) from one instant to another.

@@ -3,9 +3,13 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::failure::Lasting;
+use super::impaired::Impaired;
 use super::{Actuate, Actuator, Demand};
+use crate::attitude::Vector;
 use crate::body::{Forced, Wrench};
 use crate::record::WheelMotion;
+use crate::sine::Sine;
 use crate::time::{Instant, Span};
 use crate::waveform::Waveform;
 
@@ -56,10 +60,25 @@ pub trait AxisActuate: fmt::Debug + Send + Sync {
     /// The torque that it holds (N m), without a waveform and without back-EMF.
     fn torque(&self) -> f64;
 
+    /// The torque that it would hold without a failure (N m), as who does not know of it takes it to be.
+    fn believed(&self) -> f64 {
+        self.torque()
+    }
+
+    /// Sines of the time in its torque, on a body with three axes.
+    fn sines(&self) -> &[Sine] {
+        &[]
+    }
+
     /// The torque that is asked for (N m).
     fn asked(&self) -> f64;
 
-    /// The waveform that it executes from now on as it is.
+    /// Whether it executes the manoeuvre's waveform as it is.
+    fn follows(&self) -> bool {
+        false
+    }
+
+    /// The waveform in its torque from now on, on a body with one angle.
     fn forced(&self, _now: Instant) -> Option<Forced> {
         None
     }
@@ -94,9 +113,14 @@ impl Clone for Box<dyn AxisActuate> {
 pub struct Torquers(Vec<(Box<dyn AxisActuate>, Setting)>);
 
 impl Torquers {
-    /// An actuator in the setting of each axis.
+    /// An actuator in the setting of each axis, with the failures that are its own.
     pub fn new(kind: &Actuator, settings: Vec<Setting>) -> Self {
-        Self(settings.into_iter().map(|setting| (kind.about_an_axis(&setting), setting)).collect())
+        let of = |setting: Setting| {
+            let (actuator, axis) = (kind.about_an_axis(&setting), setting.axis);
+            let own = |of: &Lasting<'_>| of.about.is_none_or(|about| about.index() == axis);
+            (Impaired::by(kind.failures(), own, actuator), setting)
+        };
+        Self(settings.into_iter().map(of).collect())
     }
 }
 
@@ -129,7 +153,13 @@ impl Actuate for Torquers {
         for ((actuator, _), torque) in self.0.iter().zip(&mut onto.hub) {
             *torque += actuator.torque();
         }
-        onto.waveform = self.0[0].0.forced(now);
+        if let [(actuator, _)] = &self.0[..] {
+            onto.waveform = actuator.forced(now);
+            return;
+        }
+        for ((actuator, _), axis) in self.0.iter().zip([Vector::x(), Vector::y(), Vector::z()]) {
+            onto.sines.extend(actuator.sines().iter().map(|sine| (axis, *sine)));
+        }
     }
 
     fn asked(&self, axis: usize) -> f64 {
@@ -146,12 +176,12 @@ impl Actuate for Torquers {
 
     fn moment(&self, axis: usize) -> f64 {
         let (actuator, setting) = &self.0[axis];
-        actuator.torque() / setting.inertia
+        actuator.believed() / setting.inertia
     }
 
     fn waveform_impulse(&self, from: f64, to: f64) -> f64 {
         let (actuator, setting) = &self.0[0];
-        let forced = setting.waveform.as_ref().filter(|_| actuator.forced(Instant::START).is_some());
+        let forced = setting.waveform.as_ref().filter(|_| actuator.follows());
         forced.map_or(0.0, |waveform| waveform.impulse(from, to) / setting.inertia)
     }
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuate, Cycle, Demand, Group, Jets, Magnetic, Magnetorquers, Pulsing, Setting, Spinning};
+use super::{Actuate, Cycle, Demand, Group, Jets, Magnetic, Magnetorquers, Nozzle, Setting, Spinning};
 use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::document::Fault;
@@ -71,12 +71,12 @@ impl Unloading {
     }
 
     /// Wheels and jets before the first command, if jets unload them.
-    pub fn start(&self, wheels: Spinning, groups: &[[Group; 2]; 3]) -> Option<Unloaded> {
+    pub fn start(&self, wheels: Spinning, fitted: (&[[Group; 2]; 3], &[Nozzle])) -> Option<Unloaded> {
         let jets = self.jets.as_ref()?;
         let period = jets.period.unwrap_or(Span::TICK);
         Some(Unloaded {
             wheels,
-            jets: Pulsing::new(jets, groups, period),
+            jets: jets.start(fitted, period),
             limits: [self.above.get(), self.below.get()],
             torque: self.torque.map_or(f64::INFINITY, Positive::get),
             period,
@@ -123,7 +123,7 @@ fn jets_fault(jets: &Jets) -> Option<Fault> {
 #[derive(Clone, Debug)]
 pub struct Unloaded {
     wheels: Spinning,
-    jets: Pulsing,
+    jets: Box<dyn Actuate>,
     /// Momenta at which it begins and ends (N m s).
     limits: [f64; 2],
     /// Largest mean torque of the jets (N m).

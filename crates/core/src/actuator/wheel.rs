@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, Setting};
+use super::{AxisActuate, Failure, Setting};
 use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::record::WheelMotion;
 use crate::time::{Instant, Span};
@@ -37,6 +37,9 @@ pub struct Wheel {
     /// Time from a sample to the command that is computed from it (s).
     #[serde(default)]
     pub delay: Time,
+    /// Times at which what its motor gives of a command fails; its back-EMF stays.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
 }
 
 /// The rate that the back-EMF opposes.

@@ -4,10 +4,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::allocation::{Allocation, Choice};
+use super::failure::{Failing, Lasting};
 use super::per_wheel::PerWheel;
 use super::spinning::Spinning;
 use super::unloading::Unloading;
-use super::{Friction, Imbalance, Setting};
+use super::{Failure, Friction, Imbalance, Setting};
 use crate::attitude::Vector;
 use crate::body::Spatial;
 use crate::body::craft::Rotor;
@@ -62,6 +63,9 @@ pub struct Wheels {
     /// How jets or magnetorquers unload them; left out, none do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unloading: Option<Box<Unloading>>,
+    /// Times at which their motors fail.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
 }
 
 /// What drives take the friction of their wheels to be.
@@ -103,6 +107,21 @@ impl Wheels {
     /// The wheels before their first command, on a body of these settings.
     pub fn start(&self, allocation: &Allocation, settings: &[Setting]) -> Spinning {
         Spinning::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        match self.arrangement {
+            Some(Arrangement::Orthogonal) => 3,
+            Some(Arrangement::Pyramid) => 4,
+            None => self.axes.len(),
+        }
+    }
+
+    /// The failures of a wheel, if it ever fails.
+    pub(super) fn failing(&self, wheel: usize) -> Option<Failing> {
+        let own = |of: &Lasting<'_>| of.wheel.is_none_or(|number| number.get() as usize == wheel + 1);
+        Failing::new(&self.faults, own)
     }
 
     fn speeds(&self, count: usize) -> Vec<f64> {

@@ -1,5 +1,6 @@
 //! What a waveform adds to the motion of the planar body, in closed form.
 
+use std::ops::AddAssign;
 use std::sync::Arc as Shared;
 
 use super::mode::Flow;
@@ -8,6 +9,7 @@ use crate::attitude::Vector;
 use crate::motion::turning::Rotor;
 use crate::numerics::phasor::Phasor;
 use crate::numerics::polynomial::Series;
+use crate::sine::Sine;
 use crate::waveform::Waveform;
 
 /// What drives a body from an instant on.
@@ -44,6 +46,8 @@ pub struct Wrench {
     pub rotors: Vec<Rotor>,
     /// Magnetic moment of torquers, in the body's axes (A m²).
     pub moment: Vector,
+    /// Sines of the time in the torque at the hub of a spacecraft, each with its axis.
+    pub sines: Vec<(Vector, Sine)>,
     /// A waveform about the first axis, and the time on it at that instant.
     pub waveform: Option<Forced>,
 }
@@ -79,6 +83,17 @@ pub struct Push {
     pub force: Vector,
     /// What a unit of each mode adds to the torque (N/sqrt(kg)).
     pub levers: Vec<Vector>,
+}
+
+impl AddAssign<&Self> for Push {
+    fn add_assign(&mut self, other: &Self) {
+        self.torque += other.torque;
+        self.force += other.force;
+        self.forces.resize(other.forces.len(), 0.0);
+        self.forces.iter_mut().zip(&other.forces).for_each(|(sum, force)| *sum += force);
+        self.levers.resize(other.levers.len(), Vector::zeros());
+        self.levers.iter_mut().zip(&other.levers).for_each(|(sum, lever)| *sum += lever);
+    }
 }
 
 impl Push {
@@ -125,6 +140,14 @@ impl Forced {
     /// A waveform from this time on it (s).
     pub fn new(waveform: Shared<Waveform>, since: f64) -> Self {
         Self { waveform, since }
+    }
+
+    /// So many times the command, and another waveform beside it.
+    #[must_use]
+    pub fn changed(&self, factor: f64, beside: &Waveform) -> Self {
+        let mut waveform = self.waveform.shifted(0.0, factor);
+        waveform.terms.extend_from_slice(&beside.terms);
+        Self { waveform: Shared::new(waveform), since: self.since }
     }
 
     /// The command `h` seconds later.

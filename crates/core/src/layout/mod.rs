@@ -12,7 +12,7 @@ mod spatial;
 
 use serde_json::{Map, Value, json};
 
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Firing};
 use crate::estimator::Estimator;
 use crate::metrics::Gather;
 use crate::motion::turning::Bearing;
@@ -111,13 +111,18 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         }
     };
     let estimator = scenario.estimator.as_ref();
+    add(!scenario.failing().is_empty(), "/faults", Events);
     if scenario.axis_count() == 3 {
         add(scenario.study.fires(), "/jets", Events);
+        let alone =
+            scenario.actuator.jets().is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant);
+        add(alone, "/thrusters", Events);
         add(scenario.study.groups.is_none() || scenario.environment.is_some(), "/torques", Full);
         add(planar::filters(scenario), "/estimators", Full);
         add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
         add(matches!(scenario.actuator, Actuator::Wheels(_)), "/wheels", Full);
         add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);
+        add(scenario.sensor.accelerometers().next().is_some(), "/accelerations", Full);
         add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);
         add(scenario.study.drives.is_some(), "/drives", Full);
         add(!scenario.study.bearings.is_empty(), "/bearings", Full);

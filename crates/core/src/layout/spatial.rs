@@ -38,6 +38,14 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     if scenario.actuator.magnetorquers().is_some() {
         motion.push(Panel::plot("moments", "Magnetic moments (A m²)", along("/magnetorquers", "moment_am2")));
     }
+    for (index, accelerometer) in scenario.sensor.accelerometers().take(1) {
+        let (count, name) = (accelerometer.axis_count(), &scenario.study.sensed_at[index]);
+        let axis = |axis: usize| {
+            line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {}", axis + 1))
+        };
+        let title = format!("Specific force at {name} (m/s²)");
+        motion.push(Panel::plot("accelerations", &title, (0..count).map(axis).collect()));
+    }
     if let Actuator::Wheels(_) = &scenario.actuator {
         motion.push(Panel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }

@@ -143,6 +143,8 @@ metrics! {
         "Root mean square of the length of that vector over the law's cycles in reference.pointing.window";
     REQUIREMENT = "requirement", "",
         "Whether pointing_rms_rad is at most reference.pointing.rms: met or missed, none without cycles in the window";
+    ACCELERATION = "acceleration_rms_m_s2", "m/s²",
+        "Root mean square of what each accelerometer tells, as a vector of its axes, over its samples";
     FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
         "Natural frequency of each mode that an adaptive observer tracks, at the last cycle: about x, y and z, by frequency";
     FREQUENCY_ERRORS = "frequency_estimate_errors", "",
@@ -268,6 +270,7 @@ impl Record for Gather {
                 match sample {
                     Sample::Cycle(cycle) => spatial.see(now, cycle),
                     Sample::WheelEvent(event) => spatial.slip(event),
+                    Sample::Accelerations(row) => spatial.shake(row),
                     Sample::Tracking(tracking) => self.tracked.see(tracking),
                     _ => {}
                 }

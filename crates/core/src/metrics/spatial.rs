@@ -2,12 +2,12 @@
 
 use super::goal::{self, Verdict};
 use super::{
-    BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS, FRICTION_HEAT, FUEL,
-    MOMENTUM_END, MOMENTUM_PEAK, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, Told, VISIBLE_END,
-    VISIBLE_PEAK, Value, WHEEL_STOPS, ZERO_CROSSINGS,
+    ACCELERATION, BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS,
+    FRICTION_HEAT, FUEL, MOMENTUM_END, MOMENTUM_PEAK, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT,
+    Told, VISIBLE_END, VISIBLE_PEAK, Value, WHEEL_STOPS, ZERO_CROSSINGS,
 };
 use crate::quantity::Positive;
-use crate::record::{Cycle, Sliding, WheelEvent};
+use crate::record::{Accelerations, Cycle, Sliding, WheelEvent};
 use crate::scenario::{Pointing, Scenario};
 use crate::time::Instant;
 
@@ -24,6 +24,8 @@ pub struct Spatial {
     /// Whether wheels have friction, how often they passed through zero and stuck, which way each turned last, and their heat (J).
     rubs: bool,
     slips: (u64, u64),
+    /// Of each accelerometer, its place among the sensors, the sum of squares of what it tells, and how many samples.
+    shaken: Vec<(u64, f64, u64)>,
     ways: Vec<Option<Sliding>>,
     heat: f64,
     fuel: f64,
@@ -70,6 +72,7 @@ impl Spatial {
             jets: scenario.study.fires(),
             rubs: scenario.study.bearings.iter().any(|bearing| bearing.viscous + bearing.breakaway > 0.0),
             slips: (0, 0),
+            shaken: scenario.sensor.accelerometers().map(|(index, _)| (index as u64, 0.0, 0)).collect(),
             ways: vec![None; scenario.study.bearings.len()],
             heat: 0.0,
             fuel: 0.0,
@@ -127,6 +130,14 @@ impl Spatial {
         self.outside = is_outside.then_some(t);
     }
 
+    /// Takes a sample of an accelerometer.
+    pub fn shake(&mut self, row: &Accelerations) {
+        if let Some((_, square, count)) = self.shaken.iter_mut().find(|(sensor, ..)| *sensor == row.sensor) {
+            *square += row.axes.iter().map(|axis| axis.measured_m_s2 * axis.measured_m_s2).sum::<f64>();
+            *count += 1;
+        }
+    }
+
     /// Takes a wheel that slips otherwise.
     pub fn slip(&mut self, event: &WheelEvent) {
         let Some(way) = self.ways.get_mut(event.wheel as usize) else { return };
@@ -180,8 +191,11 @@ impl Spatial {
             let met = asked.rms.map(|most| goal::within(rms, most.get()));
             pointing.extend(met.map(|word| (&REQUIREMENT, Value::Word(word))));
         }
+        let shaken = self.shaken.iter().map(|(_, square, count)| libm::sqrt(square / *count as f64));
+        let shaken = (!self.shaken.is_empty()).then(|| (&ACCELERATION, Value::Numbers(shaken.collect())));
         jets.chain(friction)
             .chain(metrics)
+            .chain(shaken)
             .chain(rate)
             .chain(stored)
             .chain(pointing)

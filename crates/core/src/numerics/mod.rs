@@ -10,5 +10,6 @@ pub mod phasor;
 pub(crate) mod phi;
 pub(crate) mod polynomial;
 pub(crate) mod quadrature;
+pub(crate) mod simplex;
 pub(crate) mod stumpff;
 pub mod swing_integral;

@@ -35,15 +35,15 @@ pub use message::{Attachment, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;
 pub use spatial::{Cycle, SpatialMotion};
-pub use states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
+pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use topics::{
-    Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
-    ChannelState, Command, DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope, Estimate, Estimates,
-    GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine, MetricPage, Metrics,
-    ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion, OutputName, Outputs,
-    Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary, TOPICS, Torque, Torques,
-    TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelEvent, WheelMotion, Wheels,
-    WindowMean,
+    Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
+    BearingMotion, Bearings, ChannelState, Command, DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope,
+    Estimate, Estimates, FaultEvent, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
+    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion,
+    OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary, TOPICS,
+    ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel,
+    WheelEvent, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -72,6 +72,10 @@ pub enum Sample<'a> {
     AttitudeEstimate(&'a AttitudeEstimate),
     /// A wheel passed through zero speed, stuck, or slipped again.
     WheelEvent(&'a WheelEvent),
+    /// An accelerometer told a sample.
+    Accelerations(&'a Accelerations),
+    /// A failure of a sensor or an actuator began or ended.
+    Fault(&'a FaultEvent),
     /// A cycle of a body with three axes began.
     Cycle(&'a Cycle),
     /// What adaptive observers know after a cycle's sample.
@@ -98,6 +102,7 @@ impl Sample<'_> {
             | Self::Estimates(_)
             | Self::AttitudeEstimate(_)
             | Self::Tracking(_)
+            | Self::Accelerations(_)
             | Self::SpatialMotion(_) => Detail::Full,
             Self::Scene(_) | Self::Frames(_) | Self::Plumes(_) => Detail::Scene,
             _ => Detail::Events,
@@ -329,12 +334,21 @@ trait TakeRow {
             Sample::AttitudeEstimate(estimate) => self.take(now, estimate),
             Sample::Tracking(tracking) => self.take(now, tracking),
             Sample::WheelEvent(event) => self.take(now, event),
+            Sample::Fault(event) => self.take(now, event),
+            Sample::Accelerations(row) => self.take(now, row),
             Sample::Log(line) => self.take(now, line),
             Sample::Scene(scene) => self.take(now, scene),
             Sample::Frames(frames) => self.take(now, frames),
             Sample::Plumes(plumes) => self.take(now, plumes),
             Sample::Cycle(Cycle { pulses: 0, .. }) => Ok(()),
-            Sample::Cycle(cycle) => self.take(now, &cycle.jets),
+            Sample::Cycle(cycle) => {
+                self.take(now, &cycle.jets)?;
+                if cycle.thrusters.is_empty() {
+                    return Ok(());
+                }
+                let thrusters = cycle.thrusters.iter().map(|on_s| ThrusterPulse { on_s: *on_s }).collect();
+                self.take(now, &Thrusters { thrusters })
+            }
             Sample::SpatialMotion(motion) => {
                 self.take(now, &motion.pointing)?;
                 self.take(now, &motion.rates)?;

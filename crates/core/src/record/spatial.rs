@@ -10,6 +10,8 @@ use super::{
 pub struct Cycle {
     /// What the jets do in it.
     pub jets: Jets,
+    /// Of thrusters that act by themselves, the on-time of each (s).
+    pub thrusters: Vec<f64>,
     /// How many pulses begin.
     pub pulses: u64,
     /// Energy of the elastic modes (J).

@@ -29,6 +29,13 @@ macro_rules! states {
 }
 
 states! {
+    /// Whether a failure begins or ends.
+    Onset {
+        /// It ends.
+        Ends = "ends",
+        /// It begins.
+        Begins = "begins",
+    }
     /// Whether a filter follows the body.
     Lock {
         /// It has lost the body.

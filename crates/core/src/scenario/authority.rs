@@ -18,7 +18,7 @@ impl Study {
     pub(super) fn authority(&self, scenario: &Scenario, axis: usize) -> Authority {
         let inertia = self.axes[axis].commanded_inertia();
         let (accelerations, width, delay) = match &scenario.actuator {
-            Actuator::Ideal | Actuator::Hold(_) => ([f64::INFINITY; 2], PulseWidth::default(), 0.0),
+            Actuator::Ideal(_) | Actuator::Hold(_) => ([f64::INFINITY; 2], PulseWidth::default(), 0.0),
             Actuator::Own(own) => {
                 let most = own.limit(axis).map_or(f64::INFINITY, |limit| limit / inertia);
                 ([most; 2], PulseWidth::default(), 0.0)

@@ -12,7 +12,6 @@ use crate::document::key;
 use crate::estimator::Estimator;
 use crate::law::{Extra, Itinerary, Law, Target};
 use crate::quantity::Time;
-use crate::sensor::Outage;
 
 impl Scenario {
     /// The first key that does not fit the others, and what is wrong with it.
@@ -144,7 +143,7 @@ impl Scenario {
         }
         let why = match &self.estimator {
             _ if self.drift.is_some() => "leaves no closed form of modes that drift",
-            _ if self.manoeuvre.is_some() && self.actuator == Actuator::Ideal => {
+            _ if self.manoeuvre.is_some() && matches!(self.actuator, Actuator::Ideal(_)) => {
                 "needs torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]` or \
                  thrusters"
             }
@@ -213,7 +212,7 @@ impl Scenario {
             let why = "executes a `[manoeuvre]` sample by sample of a law, and the law has no period: give it a `[law.pd]`";
             return at(key, why.to_owned());
         }
-        if self.manoeuvre.is_some() && self.actuator == Actuator::Ideal {
+        if self.manoeuvre.is_some() && matches!(self.actuator, Actuator::Ideal(_)) {
             let why = "leaves no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters";
             return at(key, why.to_owned());
         }
@@ -268,12 +267,8 @@ impl Scenario {
                 return at(&format!("disturbance[{index}].pulse.on"), why);
             }
         }
-        let unordered = |outage: Outage| outage.to.is_some_and(|to| outage.from >= to);
-        for (number, sensor) in self.sensor.iter().enumerate() {
-            if let Some(index) = sensor.faults().iter().position(|fault| unordered(fault.outage())) {
-                let why = "must have `from` before `to`".to_owned();
-                return at(&format!("{}.faults[{index}]", self.sensor_key(number)), why);
-            }
+        if let Some(fault) = self.failing_fault() {
+            return Some(fault);
         }
         if let Actuator::Thrusters(thrusters) = &self.actuator {
             let (period, minimum) = (thrusters.period.seconds(), thrusters.minimum_on.get());
@@ -293,7 +288,7 @@ impl Scenario {
     fn drive_inconsistency(&self) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
         let estimates = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
-        if estimates && self.manoeuvre.is_some() && self.actuator == Actuator::Ideal {
+        if estimates && self.manoeuvre.is_some() && matches!(self.actuator, Actuator::Ideal(_)) {
             let why = "follows torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]`, \
                        thrusters or a wheel";
             return at("estimator.envelope", why.to_owned());

@@ -205,6 +205,7 @@ impl Scenario {
         for (index, sensor) in self.sensor.iter().enumerate() {
             let own = match sensor {
                 Sensor::Tachometer(tachometer) => Some(tachometer.period),
+                Sensor::Accelerometer(accelerometer) => Some(accelerometer.period),
                 _ => sensor.period(None),
             };
             if let Some(period) = own {
@@ -224,7 +225,7 @@ impl Scenario {
             Actuator::Thrusters(thrusters) => {
                 each("actuator.thrusters.period".to_owned(), duration, thrusters.period);
             }
-            Actuator::Ideal
+            Actuator::Ideal(_)
             | Actuator::Wheel(_)
             | Actuator::Wheels(_)
             | Actuator::Magnetorquers(_)

@@ -6,6 +6,7 @@ mod cost;
 mod coupled;
 mod drives;
 mod epoch;
+mod failing;
 mod known;
 mod learning;
 mod log;
@@ -43,6 +44,7 @@ use epoch::nanoseconds_since_1970;
 
 pub use cost::{Cost, MOST_RUNS};
 pub use drives::{Courses, Drives};
+pub use failing::Failing;
 pub use log::{Log, SceneSpec};
 pub use reference::{Pointing, Reference};
 pub use study::Study;
@@ -351,6 +353,6 @@ impl Scenario {
 
     /// Whether the torque is more than the switchings of a law.
     pub fn tells_torque(&self) -> bool {
-        !self.law.switches() || !self.disturbance.is_empty() || self.actuator != Actuator::Ideal
+        !self.law.switches() || !self.disturbance.is_empty() || !self.actuator.is_ideal()
     }
 }

@@ -198,7 +198,7 @@ impl Scenario {
                         Actuator::Wheel(wheel) if wheel.limit.is_some() => None,
                         Actuator::Wheels(wheels) if wheels.torque.is_some() => None,
                         Actuator::Own(own) if own.limit(axis).is_some() => None,
-                        Actuator::Ideal
+                        Actuator::Ideal(_)
                         | Actuator::Hold(_)
                         | Actuator::Wheel(_)
                         | Actuator::Wheels(_)

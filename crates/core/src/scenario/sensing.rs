@@ -24,7 +24,7 @@ impl Scenario {
                 return at(index, "knows the motion at every instant, and there is nothing that others add");
             }
         }
-        if let Some(fault) = self.tachometer_fault() {
+        if let Some(fault) = self.tachometer_fault().or_else(|| self.accelerometer_fault()) {
             return Some(fault);
         }
         if self.estimator.as_ref().is_some_and(Estimator::combines) {
@@ -62,8 +62,22 @@ impl Scenario {
             let why = "measures wheels alone: list a sensor of the body beside it, \"continuous\" for one that knows the motion";
             return at(index, why);
         }
-        let mut tachometers = self.sensor.iter().enumerate().filter(|(_, sensor)| !sensor.sees_body());
+        let is_one = |(_, sensor): &(usize, &Sensor)| matches!(sensor, Sensor::Tachometer(_));
+        let mut tachometers = self.sensor.iter().enumerate().filter(is_one);
         tachometers.nth(1).and_then(|(other, _)| at(other, "is on each wheel already: list one alone"))
+    }
+
+    /// An accelerometer on another body than a spacecraft, or without another sensor.
+    fn accelerometer_fault(&self) -> Option<Fault> {
+        let (index, _) = self.sensor.accelerometers().next()?;
+        let why = if self.body.flexible().is_none() {
+            "measures at a point of a `[spacecraft]`, whose mass and centre of mass are known, and whose modes act back on it"
+        } else if self.sensor.of_body() == 0 {
+            "is read by nothing: list a sensor of the body beside it, \"continuous\" for one that knows the motion"
+        } else {
+            return None;
+        };
+        Some(Fault::new(self.sensor_key(index), why))
     }
 
     /// The key of a sensor, its kind included.

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, Matrix3};
 
 use super::{Drives, Scenario};
-use crate::actuator::{Actuate, Actuator, Allocation, Group, Opposes, Pulsing, Setting, Torquers};
+use crate::actuator::{Actuate, Actuator, Allocation, Firing, Group, Nozzle, Opposes, Setting, Torquers};
 use crate::attitude::{Vector, beyond, tensor};
 use crate::body::craft::{Moving, Rotor};
 use crate::body::{Drive, Mode, Planar, Spatial};
@@ -48,7 +48,9 @@ pub struct Study {
     pub way: Itinerary,
     /// What each group of jets by which laws act does: for each axis, plus and minus.
     pub groups: Option<[[Group; 2]; 3]>,
-    /// The same of jets that unload wheels.
+    /// What each thruster of jets does, whether laws act by them or they unload wheels.
+    pub nozzles: Vec<Nozzle>,
+    /// The same of groups of jets that unload wheels.
     pub unloading: Option<[[Group; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
@@ -91,6 +93,13 @@ impl Study {
             Some(body) => study.place(scenario, body)?,
         }
         study.authorities = (0..study.axes.len()).map(|axis| study.authority(scenario, axis)).collect();
+        if let (Some(Estimator::Adaptive(_)), Some((jets, _))) =
+            (&scenario.estimator, scenario.actuator.jets())
+            && jets.allocation == Firing::LeastPropellant
+        {
+            let why = "predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`";
+            return Err(Fault::new("estimator.adaptive", why));
+        }
         if let Some(Estimator::Adaptive(spec)) = &scenario.estimator {
             let Some(period) = study.sampling else {
                 return Err(Fault::new("estimator.adaptive", Estimator::AT_SAMPLES));
@@ -130,6 +139,7 @@ impl Study {
         self.acts_at.clone_from(&first);
         if let Some((jets, key)) = scenario.actuator.jets() {
             let groups = Some(jets.groups_on(body).map_err(|fault| fault.within(key))?);
+            self.nozzles = jets.nozzles_on(body);
             if let Actuator::Jets(_) = &scenario.actuator {
                 self.groups = groups;
             } else {
@@ -241,7 +251,7 @@ impl Study {
         };
         let settings: Vec<Setting> = self.axes.iter().enumerate().map(setting).collect();
         match (&scenario.actuator, &self.groups, &self.wheels) {
-            (Actuator::Jets(jets), Some(groups), _) => Box::new(Pulsing::new(jets, groups, self.tick)),
+            (Actuator::Jets(jets), Some(groups), _) => jets.start((groups, &self.nozzles), self.tick),
             (Actuator::Wheels(wheels), _, Some(allocation)) => {
                 let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
                 let spinning = wheels.start(allocation, &settings).read_by(tachometer);
@@ -250,7 +260,7 @@ impl Study {
                     return Box::new(magnetic);
                 }
                 let by_jets = self.unloading.as_ref();
-                match by_jets.and_then(|groups| unloading.start(spinning.clone(), groups)) {
+                match by_jets.and_then(|groups| unloading.start(spinning.clone(), (groups, &self.nozzles))) {
                     Some(unloaded) => Box::new(unloaded),
                     None => Box::new(spinning),
                 }

@@ -109,7 +109,8 @@ impl SpatialScene {
             turning: spec.turning.map_or_else(|| turning(spatial_angle(scenario, body)), Positive::get),
             size,
             groups: jets.map_or_else(Default::default, |jets| {
-                [&jets.groups.roll, &jets.groups.pitch, &jets.groups.yaw].map(pair)
+                let groups = jets.groups.as_ref();
+                groups.map_or_else(Default::default, |of| [&of.roll, &of.pitch, &of.yaw].map(pair))
             }),
             plumes: Burning::new(nozzles.collect(), 0.3 * size),
             frames: FrameTransforms { transforms: Vec::new() },
@@ -245,8 +246,11 @@ impl SpatialScene {
         (limited(u * self.bending, LARGEST * self.size), limited(theta * self.bending, LARGEST))
     }
 
-    /// The plumes where the jets of each axis push this way, if they are new.
-    pub fn plumes(&mut self, stamp: Stamp, signs: [f64; 3]) -> Option<Plumes> {
+    /// The plumes where the jets of each axis push this way, or thrusters are so far open, if they are new.
+    pub fn plumes(&mut self, stamp: Stamp, signs: [f64; 3], open: Vec<f64>) -> Option<Plumes> {
+        if !open.is_empty() {
+            return self.plumes.change(stamp, open);
+        }
         let mut parts = vec![0.0; self.plumes.nozzles().len()];
         for (pair, sign) in self.groups.iter().zip(signs).filter(|(_, sign)| *sign != 0.0) {
             pair[usize::from(sign < 0.0)].iter().for_each(|nozzle| parts[*nozzle] = 1.0);

@@ -4,11 +4,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::counter::{self, Counter};
+use super::late::failing;
 use super::{Reading, Sense, Truth, stream};
 use crate::axes::Each;
 use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative};
 use crate::random::{Seed, Stream};
+use crate::sensor;
 use crate::time::{Instant, Span};
 
 /// A gyro. One that samples the rate is read once in each cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
@@ -48,6 +50,9 @@ pub struct Gyro {
     /// What each axis, a row, measures of the rates about the others (rad), on a body with three; the diagonal is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub misalignment: Option<Box<[[Finite; 3]; 3]>>,
+    /// Times at which it fails; where the body points is known all the same.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<sensor::Fault>,
 }
 
 fn is_zero(each: &Each<NonNegative>) -> bool {
@@ -132,12 +137,31 @@ impl Gyro {
 }
 
 impl Sense for AtCycles {
-    fn read(&mut self, now: Instant, truth: &Truth, _: Option<&Reading>) -> Option<Reading> {
+    fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
+        // Draws are made in a failure too, and what turns is counted: what follows does not depend on it.
+        let rate = self.rates(now, truth);
+        let seen = Reading { at: truth.orientation, rate: Some(rate), sight: None };
+        let told = failing(&self.gyro.faults, now, Some(seen), last)?;
+        Some(Reading { at: truth.orientation, ..told })
+    }
+
+    fn bias(&self) -> Option<[f64; 3]> {
+        let constant = [0, 1, 2].map(|axis| self.gyro.bias.about(axis).get());
+        Some(self.counter.as_ref().map_or(constant, |counter| counter.bias))
+    }
+
+    fn copy(&self) -> Box<dyn Sense> {
+        Box::new(self.clone())
+    }
+}
+
+impl AtCycles {
+    /// The rates that it measures now (rad/s).
+    fn rates(&mut self, now: Instant, truth: &Truth) -> [f64; 3] {
         let Self { gyro, noise, counter } = self;
         if let Some(counter) = counter {
             let mean = counter.mean(now, truth);
-            let rate = counter.count(gyro, mean, noise);
-            return Some(Reading { at: truth.orientation, rate: Some(rate), sight: None });
+            return counter.count(gyro, mean, noise);
         }
         let mut rate = truth.rate;
         for (axis, (rate, noise)) in rate.iter_mut().zip(noise).enumerate() {
@@ -150,15 +174,6 @@ impl Sense for AtCycles {
                 *rate = libm::round(*rate / quantum) * quantum;
             }
         }
-        Some(Reading { at: truth.orientation, rate: Some(rate), sight: None })
-    }
-
-    fn bias(&self) -> Option<[f64; 3]> {
-        let constant = [0, 1, 2].map(|axis| self.gyro.bias.about(axis).get());
-        Some(self.counter.as_ref().map_or(constant, |counter| counter.bias))
-    }
-
-    fn copy(&self) -> Box<dyn Sense> {
-        Box::new(self.clone())
+        rate
     }
 }

@@ -1,5 +1,6 @@
 //! Sensors: what is measured of the angle or of the attitude, and of the rates, and when.
 
+mod accelerometer;
 mod counter;
 mod gyro;
 mod late;
@@ -24,9 +25,10 @@ use crate::quantity::Positive;
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
+pub use accelerometer::{Accelerating, Accelerometer, Felt};
 pub use gyro::{AtCycles, Gyro};
 pub use magnetometer::Magnetometer;
-pub use sampled::{AtSamples, Fault, Outage, Sampled};
+pub use sampled::{AtSamples, Fault, Sampled};
 pub use star_tracker::StarTracker;
 pub use sun_sensor::SunSensor;
 pub use tachometer::{Counting, Tachometer};
@@ -50,6 +52,8 @@ pub enum Sensor {
     SunSensor(SunSensor),
     /// The speeds of wheels, which their drives know by it; it tells nothing of the body.
     Tachometer(Tachometer),
+    /// The specific force at a point of a spacecraft, for the log alone.
+    Accelerometer(Accelerometer),
     /// A sensor from outside of this crate, which no scenario file can name.
     Own(Own<dyn Instrument>),
 }
@@ -198,6 +202,7 @@ impl Sensor {
             Self::Gyro(gyro) => gyro.inconsistency(),
             Self::Magnetometer(magnetometer) => magnetometer.inconsistency(),
             Self::SunSensor(sensor) => sensor.inconsistency(),
+            Self::Accelerometer(accelerometer) => accelerometer.inconsistency(),
             Self::Continuous
             | Self::Sampled(_)
             | Self::StarTracker(_)
@@ -215,14 +220,14 @@ impl Sensor {
             Self::StarTracker(tracker) => Box::new(tracker.start(seed, ordinal)),
             Self::Magnetometer(magnetometer) => magnetometer.start(seed, ordinal),
             Self::SunSensor(sensor) => sensor.start(seed, ordinal),
-            Self::Tachometer(_) => Box::new(tachometer::Blind),
+            Self::Tachometer(_) | Self::Accelerometer(_) => Box::new(tachometer::Blind),
             Self::Own(own) => own.start(axes, seed),
         }
     }
 
-    /// Whether it measures the body.
+    /// Whether it measures how the body points or turns.
     pub fn sees_body(&self) -> bool {
-        !matches!(self, Self::Tachometer(_))
+        !matches!(self, Self::Tachometer(_) | Self::Accelerometer(_))
     }
 
     /// Whether it knows the motion at every instant.
@@ -240,15 +245,16 @@ impl Sensor {
             Self::Magnetometer(_) => "magnetometer",
             Self::SunSensor(_) => "sun_sensor",
             Self::Tachometer(_) => "tachometer",
+            Self::Accelerometer(_) => "accelerometer",
             Self::Own(_) => "own",
         }
     }
 
     /// The period of its samples of the body under a law with a period of its own or none; none of a continuous sensor, and of
-    /// a tachometer, which tells nothing of the body.
+    /// a tachometer or an accelerometer, which tell nothing of how the body turns.
     pub fn period(&self, law: Option<Span>) -> Option<Span> {
         match self {
-            Self::Continuous | Self::Tachometer(_) => None,
+            Self::Continuous | Self::Tachometer(_) | Self::Accelerometer(_) => None,
             Self::Sampled(sampled) => Some(sampled.period),
             Self::Gyro(gyro) => gyro.period.or(law),
             Self::StarTracker(tracker) => Some(tracker.period),
@@ -267,6 +273,7 @@ impl Sensor {
             Self::StarTracker(tracker) => tracker.point.as_deref(),
             Self::Magnetometer(magnetometer) => magnetometer.point.as_deref(),
             Self::SunSensor(sensor) => sensor.point.as_deref(),
+            Self::Accelerometer(accelerometer) => accelerometer.point.as_deref(),
         }
     }
 
@@ -277,7 +284,8 @@ impl Sensor {
             | Self::StarTracker(_)
             | Self::Magnetometer(_)
             | Self::SunSensor(_)
-            | Self::Tachometer(_) => None,
+            | Self::Tachometer(_)
+            | Self::Accelerometer(_) => None,
             Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
             Self::Gyro(gyro) => Some(gyro.rate_noise(axis)),
             Self::Own(own) => own.rate_noise(),
@@ -294,7 +302,8 @@ impl Sensor {
             | Self::Gyro(_)
             | Self::Magnetometer(_)
             | Self::SunSensor(_)
-            | Self::Tachometer(_) => 0.0,
+            | Self::Tachometer(_)
+            | Self::Accelerometer(_) => 0.0,
         }
     }
 
@@ -316,7 +325,9 @@ impl Sensor {
             Self::Magnetometer(magnetometer) => &magnetometer.faults,
             Self::SunSensor(sensor) => &sensor.faults,
             Self::Tachometer(tachometer) => &tachometer.faults,
-            Self::Continuous | Self::Gyro(_) | Self::Own(_) => &[],
+            Self::Accelerometer(accelerometer) => &accelerometer.faults,
+            Self::Gyro(gyro) => &gyro.faults,
+            Self::Continuous | Self::Own(_) => &[],
         }
     }
 }
@@ -345,6 +356,14 @@ impl Parts<Sensor> {
     pub fn tachometer(&self) -> Option<(usize, &Tachometer)> {
         self.iter().enumerate().find_map(|(index, sensor)| match sensor {
             Sensor::Tachometer(tachometer) => Some((index, tachometer)),
+            _ => None,
+        })
+    }
+
+    /// The accelerometers, each with its place among the sensors.
+    pub fn accelerometers(&self) -> impl Iterator<Item = (usize, &Accelerometer)> {
+        self.iter().enumerate().filter_map(|(index, sensor)| match sensor {
+            Sensor::Accelerometer(accelerometer) => Some((index, accelerometer)),
             _ => None,
         })
     }

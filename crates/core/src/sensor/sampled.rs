@@ -3,8 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::late::failing;
 use super::{Reading, Sense, Truth, stream};
-use crate::quantity::{Finite, NonNegative, Positive, Time};
+use crate::outage::Outage;
+use crate::quantity::{Finite, NonNegative, Positive};
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
@@ -45,30 +47,19 @@ pub enum Fault {
     Silent(Outage),
 }
 
-/// How long a failure lasts.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Outage {
-    /// When it begins (s).
-    pub from: Time,
-    /// When it ends (s); left out, with the run.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub to: Option<Time>,
-}
-
 impl Fault {
     /// How long it lasts.
     pub fn outage(&self) -> Outage {
         let (Self::Stuck(outage) | Self::Silent(outage)) = self;
         *outage
     }
-}
 
-impl Outage {
-    /// Whether it lasts at an instant.
-    pub(super) fn lasts(self, now: Instant) -> bool {
-        let at = |time: Time| Instant::START + Span::from_seconds(time.get());
-        at(self.from) <= now && self.to.is_none_or(|to| now < at(to))
+    /// The kind, as a scenario names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Stuck(_) => "stuck",
+            Self::Silent(_) => "silent",
+        }
     }
 }
 
@@ -116,11 +107,7 @@ impl Sense for AtSamples {
             }
         }
         let reading = Reading { at: truth.orientation.at(angles), rate: gyro.map(|_| rate), sight: None };
-        match sampled.faults.iter().find(|fault| fault.outage().lasts(now)) {
-            None => Some(reading),
-            Some(Fault::Stuck(_)) => Some(last.copied().unwrap_or(reading)),
-            Some(Fault::Silent(_)) => None,
-        }
+        failing(&sampled.faults, now, Some(reading), last)
     }
 
     fn copy(&self) -> Box<dyn Sense> {

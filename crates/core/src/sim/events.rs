@@ -143,6 +143,17 @@ impl Events {
         self.journal.tell(now, (Level::Info, "wheels"), line, record)
     }
 
+    /// A failure of a part begins or ends.
+    pub fn failed(
+        &self,
+        now: Instant,
+        what: (Level, &str),
+        line: String,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        self.journal.tell(now, what, line, record)
+    }
+
     /// What has changed in active damping, and in the trust in what it acts on.
     pub fn damping(
         &mut self,

@@ -4,9 +4,11 @@
 //! window and the adaptation learns, the laws decide once, the actuator acts, the record gets its rows. Between events all that
 //! acts is constant, or a waveform, and the motion exact. `docs/events.md` states the rules.
 
+mod accelerometers;
 mod arrival;
 mod drive;
 mod events;
+mod failing;
 mod journal;
 mod plant;
 mod reference;
@@ -243,6 +245,8 @@ impl Simulation {
             self.depart(record)?;
         }
         self.tell_slips(record)?;
+        self.tell_failures(record)?;
+        self.tell_accelerations(record)?;
         self.tell(record)?;
         self.show(record)
     }

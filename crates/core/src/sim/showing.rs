@@ -60,8 +60,10 @@ impl Simulation {
                     let frames = scene.frames(stamp, &turn.attitude, modes, &drives);
                     record.record(now, Sample::Frames(frames))?;
                 }
-                let burning = self.drive.actuator.cycle().map_or([0.0; 3], |cycle| cycle.burning);
-                scene.plumes(stamp, burning)
+                let cycle = self.drive.actuator.cycle();
+                let (burning, open) =
+                    cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
+                scene.plumes(stamp, burning, open)
             }
             _ => None,
         };

@@ -1,7 +1,9 @@
 //! The rows of a run: when records get them, and what they hold.
 
+use super::accelerometers::Accelerometers;
 use super::arrival::Arrival;
 use super::events::Events;
+use super::failing::Failures;
 use super::plant::{Plant, SpatialPlant};
 use super::reference::Reference;
 use super::{Simulation, SimulationError};
@@ -38,6 +40,10 @@ pub struct Telling {
     next_cycle: Option<Instant>,
     /// The end of the manoeuvre that lies ahead, if any.
     arrival: Option<Arrival>,
+    /// What accelerometers measure.
+    pub accelerometers: Accelerometers,
+    /// What fails.
+    pub failures: Failures,
     /// Whether the torque has more to it than switchings.
     tells_torque: bool,
     stage: Stage,
@@ -66,6 +72,8 @@ impl Telling {
             pulses: 0,
             next_cycle: None,
             arrival: Arrival::new(scenario, &reference.goal),
+            accelerometers: Accelerometers::new(scenario, run),
+            failures: Failures::new(scenario),
             tells_torque: scenario.tells_torque(),
             stage: Stage::Before,
         }
@@ -99,7 +107,9 @@ impl Telling {
     /// When anything is due.
     pub fn due(&self) -> Option<Instant> {
         let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
-        [arrives, self.next_dense, self.next_frames, self.next_cycle].into_iter().flatten().min()
+        let due = [arrives, self.next_dense, self.next_frames, self.next_cycle];
+        let due = due.into_iter().chain([self.failures.due(), self.accelerometers.due()]);
+        due.flatten().min()
     }
 
     /// A window that ended, and what the adaptation made of it.
@@ -252,14 +262,16 @@ impl Simulation {
             let error = truth.orientation.beyond(&origin);
             let (rigid, elastic) = plant.rates();
             let jets = self.drive.actuator.cycle();
-            let (on, fuel_kg, pulses) =
-                jets.map_or(([0.0; 3], f64::NAN, 0), |cycle| (cycle.on, cycle.fuel, cycle.pulses));
+            let none = || ([0.0; 3], f64::NAN, 0, Vec::new());
+            let (on, fuel_kg, pulses, thrusters) =
+                jets.map_or_else(none, |cycle| (cycle.on, cycle.fuel, cycle.pulses, cycle.each));
             let [roll_on_s, pitch_on_s, yaw_on_s] = on;
             // Jets may have cycles of their own, which are longer.
             let pulses = pulses - std::mem::replace(&mut self.telling.pulses, pulses);
             let (elastic_energy_j, visible_energy_j) = plant.elastic_energies();
             let cycle = Cycle {
                 jets: Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg },
+                thrusters,
                 pulses,
                 elastic_energy_j,
                 visible_energy_j,

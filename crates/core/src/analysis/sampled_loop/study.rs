@@ -45,7 +45,7 @@ impl Loop {
         }
         let inertia = body.inertia.get();
         let (wheel, gain, back_emf, total, delay) = match &scenario.actuator {
-            Actuator::Ideal => (None, 1.0, 0.0, true, 0.0),
+            Actuator::Ideal(_) => (None, 1.0, 0.0, true, 0.0),
             Actuator::Wheel(wheel) => {
                 let total = wheel.opposes == Opposes::BodyRate;
                 (Some(wheel), wheel.gain.get(), wheel.back_emf.get(), total, wheel.delay.get())

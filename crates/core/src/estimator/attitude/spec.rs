@@ -214,7 +214,11 @@ impl AttitudeFilter {
             Sensor::SunSensor(sensor) => {
                 Some((sensor.latency(), vector(self.sun_noise, sensor.covariance(), "sun_noise")))
             }
-            Sensor::Continuous | Sensor::Gyro(_) | Sensor::Tachometer(_) | Sensor::Own(_) => None,
+            Sensor::Continuous
+            | Sensor::Gyro(_)
+            | Sensor::Tachometer(_)
+            | Sensor::Accelerometer(_)
+            | Sensor::Own(_) => None,
         }
     }
 

@@ -30,6 +30,8 @@ pub struct Line {
     pub order: f64,
     /// c and s of the torque on the hub (kg m²).
     pub torque: [Vector; 2],
+    /// c and s of the force (kg m).
+    pub force: [Vector; 2],
     /// c and s of the force on each mode, beside phi' times the torque (sqrt(kg) m).
     pub forces: [Vec<f64>; 2],
 }
@@ -185,6 +187,14 @@ impl Borne<'_> {
     pub fn force(&self, mode: usize, waves: &[[f64; 2]]) -> f64 {
         let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
         lines.zip(waves).map(|(line, [c, s])| line.forces[0][mode] * c + line.forces[1][mode] * s).sum()
+    }
+
+    /// The force of the imbalance (N).
+    pub fn shaking(&self, waves: &[[f64; 2]]) -> Vector {
+        let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
+        lines
+            .zip(waves)
+            .fold(Vector::zeros(), |sum, (line, [c, s])| sum + line.force[0] * *c + line.force[1] * *s)
     }
 
     /// Whether any rotor is out of balance.

@@ -12,6 +12,7 @@
 //! oscillators (\[HairerLubichWanner06\], \[Likins70\]). Steps lie on a grid that depends on the departure alone, and what is
 //! seen between is one shorter step beside it, so that looking changes nothing.
 
+mod acceleration;
 mod bearing;
 #[cfg(test)]
 mod borne_tests;
@@ -33,6 +34,7 @@ mod step;
 mod tests;
 mod watch;
 
+pub use acceleration::Accelerations;
 pub use bearing::{Bearing, Line, Slip};
 pub use driven::{Angles, Driven, Driving, Panel, PanelMode};
 pub use flow::{Acting, Effort, Turning};

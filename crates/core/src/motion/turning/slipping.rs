@@ -6,7 +6,7 @@
 
 use super::bearing::{Borne, Slip, Spin};
 use super::flow::Turning;
-use super::model::{Surroundings, outward, tensor};
+use super::model::{Surroundings, tensor};
 use super::state::Seen;
 use crate::attitude::Vector;
 use nalgebra::Matrix3;
@@ -43,38 +43,7 @@ impl Turning {
 
     /// Acceleration of the hub (rad/s²) at the instant seen last, if rotors slip so.
     pub(super) fn acceleration(&self, slips: &[Slip], around: Option<(&dyn Surroundings, f64)>) -> Vector {
-        let (model, seen) = (&self.model, &self.seen);
-        let borne = self.borne_by(slips);
-        let (shape, change) = shapes(self, seen);
-        let mut torque = self.acting.torque;
-        let mut tide = None;
-        if let Some((around, since)) = around {
-            let t = since + self.now;
-            torque += around.torque(t, &seen.attitude, &(model.inertia + shape));
-            tide = if model.stretches { around.tide(t, &seen.attitude) } else { None };
-        }
-        let mut spun = super::bearing::Spun::default();
-        spun.at.extend(self.here.spins.iter().map(|spin: &Spin| spin.sums));
-        spun.now.resize(spun.at.len(), Vector::zeros());
-        torque += borne.feel(&seen.rate, &mut spun);
-        let slipping = borne.stored(spun.now.iter().map(|now| now.x));
-        let mut pushed = Vector::zeros();
-        for (index, mode) in model.modes.iter().enumerate() {
-            let (q, rate) = (seen.displacements[index], seen.rates[index]);
-            let mut force = mode.moved(&outward(&seen.rate)) + borne.force(index, &spun.waves);
-            force += self.acting.forces.get(index).copied().unwrap_or(0.0);
-            if let Some(tide) = &tide {
-                force += mode.pulled(tide);
-            }
-            if let Some(beside) = &model.beside {
-                force -=
-                    seen.rates.iter().enumerate().map(|(other, of)| beside[(index, other)] * of).sum::<f64>();
-            }
-            let w = mode.frequency;
-            pushed += mode.rotation * (force - w * w * q - 2.0 * mode.damping * w * rate);
-        }
-        let turning = torque - seen.rate.cross(&seen.momentum) - slipping - change * seen.rate;
-        model.rates(&turning, &pushed, &(shape + borne.locked())).1
+        self.accelerated(slips, around).hub
     }
 
     /// Decides about the rotors at rest, under what acts since the departure just now.
@@ -175,7 +144,7 @@ impl Turning {
 }
 
 /// What the modes change of the inertia (kg m²), and its rate (kg m²/s).
-fn shapes(turning: &Turning, seen: &Seen) -> (Matrix3<f64>, Matrix3<f64>) {
+pub(super) fn shapes(turning: &Turning, seen: &Seen) -> (Matrix3<f64>, Matrix3<f64>) {
     let sum = |of: &[f64]| {
         let modes = turning.model.modes.iter().zip(of);
         modes.fold(Matrix3::zeros(), |sum: Matrix3<f64>, (mode, q)| sum + tensor(mode.moments) * *q)

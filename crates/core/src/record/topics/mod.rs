@@ -6,7 +6,7 @@ mod three_axes;
 
 use super::foxglove::{self, Level, Plumes};
 use super::row::{Topic, TopicRow};
-use super::states::{Gate, Latch, Light, Lock, Phase, Trust, Use, Watch};
+use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 use crate::adaptation::Decision;
 use crate::label::Labels;
 
@@ -14,11 +14,12 @@ pub use one_angle::{
     Adaptation, Arrival, Attitude, Command, Envelope, Estimate, GoalMotion, Law, ModeEnvelope, ModeEstimate,
     ModeMotion, Modes, OutputMotion, Outputs, Rate, Residual, Torque, Trigger, WheelMotion, WindowMean,
 };
-pub use run::{Metric, MetricLine, MetricPage, Metrics, OutputName, Params, Summary};
+pub use run::{FaultEvent, Metric, MetricLine, MetricPage, Metrics, OutputName, Params, Summary};
 pub use three_axes::{
-    AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings, ChannelState, DriveMotion, DrivenMode,
-    DrivesMotion, Energy, Estimates, Jets, Magnetorquer, Magnetorquers, Orbit, OrbitAxis, Pointing, Position,
-    Rates, Sliding, Torques, TrackedMode, Tracking, Vibration, Vibrations, Wheel, WheelEvent, Wheels,
+    Acceleration, Accelerations, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
+    ChannelState, DriveMotion, DrivenMode, DrivesMotion, Energy, Estimates, Jets, Magnetorquer,
+    Magnetorquers, Orbit, OrbitAxis, Pointing, Position, Rates, Sliding, ThrusterPulse, Thrusters, Torques,
+    TrackedMode, Tracking, Vibration, Vibrations, Wheel, WheelEvent, Wheels,
 };
 
 /// The declarations, in the order of the list.
@@ -67,6 +68,7 @@ const fn same(a: &[u8], b: &[u8]) -> bool {
 pub fn label_of(identifier: &str) -> String {
     let states = [
         &Lock::LABELS,
+        &Onset::LABELS,
         &Gate::LABELS,
         &Use::LABELS,
         &Trust::LABELS,

@@ -1,6 +1,7 @@
 //! Topics of a run as a whole: what was simulated, and what it came to.
 
 use crate::record::row::rows;
+use crate::record::states::Onset;
 
 rows! {
     package "flexsc.v1";
@@ -41,6 +42,23 @@ rows! {
     Summary = "/summary" {
         /// Each page.
         pages: Vec<MetricPage>,
+    }
+    /// A failure of a sensor or an actuator begins or ends.
+    FaultEvent = "/faults" {
+        /// Time since the start, rounded to a double (s).
+        time_s: f64,
+        /// Whole seconds of the exact time.
+        time_whole_s: u64,
+        /// Femtoseconds of the exact time past the whole second.
+        time_fs: u64,
+        /// The key of the part: `sensor.sampled`.
+        part: String,
+        /// What of it fails; empty for all of it.
+        of: String,
+        /// The kind of failure.
+        fault: String,
+        /// Whether it begins or ends.
+        onset: Onset,
     }
     /// The name of an observed coordinate.
     OutputName {

@@ -109,6 +109,22 @@ rows! {
         /// Torque of its motor (N m).
         torque_nm: f64,
     }
+    /// What an accelerometer measures along one of its axes.
+    Acceleration {
+        /// As it is told (m/s²).
+        measured_m_s2: f64,
+        /// As it was when it was sampled (m/s²).
+        true_m_s2: f64,
+        /// The bias of the sample (m/s²).
+        bias_m_s2: f64,
+    }
+    /// An accelerometer tells a sample.
+    Accelerations = "/accelerations" {
+        /// Its place among the sensors of the scenario, from 0.
+        sensor: u64,
+        /// Along each of its axes.
+        axes: Vec<Acceleration>,
+    }
     /// A magnetorquer.
     Magnetorquer {
         /// The magnetic moment that it holds (A m²).
@@ -264,6 +280,17 @@ rows! {
         yaw_on_s: f64,
         /// Propellant used until the end of these pulses, since the start of the run (kg).
         fuel_kg: f64,
+    }
+    /// The pulse of a thruster.
+    ThrusterPulse {
+        /// How long it lasts (s); 0 for none.
+        on_s: f64,
+    }
+    /// A cycle in which jets fire that act by themselves, `least_propellant`: `/jets` then has, about each axis, the time in which the largest
+    /// torque gives as much.
+    Thrusters = "/thrusters" {
+        /// The pulse of each thruster, from the start of the cycle on, in the order of the scenario.
+        thrusters: Vec<ThrusterPulse>,
     }
     /// What an adaptive observer knows of the elastic motion about one axis, and what active damping does with it.
     ChannelState {

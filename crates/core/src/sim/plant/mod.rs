@@ -19,6 +19,7 @@ use crate::time::{Instant, Span};
 
 pub use planar::{Exerted, PlanarPlant};
 pub use spatial::SpatialPlant;
+pub use two_way::Mount;
 
 /// A body that moves.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use nalgebra::Quaternion;
 
-use super::two_way::TwoWay;
+use super::two_way::{Mount, TwoWay};
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
 use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
@@ -246,6 +246,12 @@ impl SpatialPlant {
     /// Momentum of the rotors of a body whose modes do not act back (N m s), and its rate (N m).
     fn rotors(&self, now: Instant) -> Option<(Vector, Vector)> {
         self.rotors.map(|(since, momentum, rate)| (momentum + rate * now.since(since).seconds(), rate))
+    }
+
+    /// The specific force at a place of a spacecraft at the instant seen last (m/s²), under what acts from then on.
+    pub fn specific_force(&self, place: &Mount) -> Vector {
+        let began = self.departed.seconds();
+        self.two_way.as_deref().map_or_else(Vector::zeros, |two_way| two_way.specific_force(place, began))
     }
 
     /// Whether the scenario has an environment.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Quaternion};
 
-use crate::attitude::{Vector, vector};
+use crate::attitude::{Vector, rotation, vector};
 use crate::body::Wrench;
 use crate::body::craft::Moving;
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
@@ -15,6 +15,7 @@ use crate::motion::turning::{
 };
 use crate::scenario::{Courses, Drives};
 use crate::sensor::{Orientation, Truth};
+use crate::sine::Sine;
 
 /// The motion, and what the plant needs to turn what acts and what is seen into its terms.
 #[derive(Clone, Debug)]
@@ -33,25 +34,61 @@ pub struct TwoWay {
     courses: Option<(Arc<Courses>, usize)>,
 }
 
+/// Where an accelerometer is.
+#[derive(Clone, Debug)]
+pub struct Mount {
+    /// While nothing is bent, from the centre of mass (m).
+    at: Vector,
+    /// By how much it moves from there for a unit of each mode, in the hub's axes, and turns against the hub.
+    shifts: Vec<Vector>,
+    turns: Vec<Vector>,
+    /// Mass of the whole (kg).
+    mass: f64,
+}
+
+impl Mount {
+    /// A point of a body of this mass (kg).
+    pub fn new(body: &Spatial, mass: f64, point: &str) -> Self {
+        let first = body.points.first().map_or("", |point| &point.name);
+        let (here, hub) = (body.shapes(point), body.shapes(first));
+        Self {
+            mass,
+            at: body.point(point).unwrap_or_default(),
+            shifts: body.shifts(point, &Vector::zeros()),
+            turns: here.iter().zip(&hub).map(|((_, here), (_, hub))| here - hub).collect(),
+        }
+    }
+}
+
 /// The disturbance of the body, and what is around it.
 #[derive(Clone, Debug)]
 struct Outside {
     own: Option<Periodic>,
     around: Option<Around>,
+    /// Sines in the torque of actuators and disturbances, each with its axis.
+    sines: Vec<(Vector, Sine)>,
 }
 
 impl Outside {
     /// What acts after a departure so long after the start (s), if there is anything.
     fn since(&self, began: f64) -> Option<(&dyn Surroundings, f64)> {
-        let acts = self.own.is_some() || self.around.is_some();
+        let acts = self.own.is_some() || self.around.is_some() || !self.sines.is_empty();
         acts.then_some((self as &dyn Surroundings, began))
+    }
+}
+
+impl Outside {
+    /// The torque of the surroundings alone.
+    fn surrounding(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
+        let own = self.own.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
+        self.around.as_ref().map_or(own, |around| own + around.torque(t, attitude, inertia))
     }
 }
 
 impl Surroundings for Outside {
     fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let own = self.own.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
-        self.around.as_ref().map_or(own, |around| own + around.torque(t, attitude, inertia))
+        let all = self.surrounding(t, attitude, inertia);
+        self.sines.iter().fold(all, |sum, (axis, sine)| sum + axis * sine.at(t))
     }
 
     fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
@@ -64,12 +101,14 @@ impl Surroundings for Outside {
 
     fn bound(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, Periodic::bound);
-        own + self.around.as_ref().map_or(0.0, Surroundings::bound)
+        let sines: f64 = self.sines.iter().map(|(_, sine)| sine.amplitude.get().abs()).sum();
+        own + self.around.as_ref().map_or(0.0, Surroundings::bound) + sines
     }
 
     fn frequency(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, Periodic::frequency);
-        own + self.around.as_ref().map_or(0.0, Surroundings::frequency)
+        let fastest = self.sines.iter().map(|(_, sine)| sine.frequency.get()).fold(0.0, f64::max);
+        own + self.around.as_ref().map_or(0.0, Surroundings::frequency) + fastest
     }
 }
 
@@ -102,7 +141,7 @@ impl TwoWay {
             turning,
             sensed: beyond(sensed),
             acts: beyond(acts),
-            outside: Outside { own: body.disturbance.clone(), around },
+            outside: Outside { own: body.disturbance.clone(), around, sines: Vec::new() },
             acting: Acting::default(),
             frequencies,
             hub,
@@ -187,7 +226,7 @@ impl TwoWay {
 
     /// The torque of the surroundings at the instant seen last, which is so long after the start (s), in the hub's axes (N m).
     pub fn exerted(&self, t: f64) -> Vector {
-        self.outside.torque(t, self.attitude(), &self.turning.inertia())
+        self.outside.surrounding(t, self.attitude(), &self.turning.inertia())
     }
 
     /// Begins a new motion at the instant seen last, so long after the start (s), under what acts from now on.
@@ -196,6 +235,7 @@ impl TwoWay {
         if let Some(around) = &mut self.outside.around {
             around.hold(wrench.moment);
         }
+        self.outside.sines.clone_from(&wrench.sines);
         let Acting { torque, forces, levers, rotors, push: accelerated } = &mut self.acting;
         levers.clone_from(&wrench.levers);
         let moving = self.moving.as_ref();
@@ -247,6 +287,27 @@ impl TwoWay {
             let [position, velocity] = moving.place(self.turning.seen());
             [position - began, velocity]
         })
+    }
+
+    /// The specific force at a place (m/s²), along axes that its mount turns, at the instant seen last of a motion that departed so long
+    /// after the start (s): what accelerates it beside free fall.
+    pub fn specific_force(&self, place: &Mount, began: f64) -> Vector {
+        let seen = self.turning.seen();
+        let found = self.turning.accelerations(self.outside.since(began));
+        let sum = |shapes: &[Vector], of: &[f64]| -> Vector {
+            shapes.iter().zip(of).fold(Vector::zeros(), |sum, (shape, q)| sum + shape * *q)
+        };
+        let arm = place.at + sum(&place.shifts, &seen.displacements);
+        let moves = sum(&place.shifts, &seen.rates);
+        let rate = &seen.rate;
+        let force = found.centre
+            + found.shaking / place.mass
+            + sum(&place.shifts, &found.modes)
+            + 2.0 * rate.cross(&moves)
+            + found.hub.cross(&arm)
+            + rate.cross(&rate.cross(&arm));
+        let turned = rotation(&sum(&place.turns, &seen.displacements));
+        (turned.conjugate() * Quaternion::from_imag(force) * turned).vector().into_owned()
     }
 
     /// The attitude of the hub.

@@ -1,0 +1,39 @@
+//! Figure `accelerations` of a spacecraft: what each accelerometer tells along its axes.
+
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+use super::spatial::Cycles;
+use super::story::Story;
+use super::{time, title};
+
+const COLOURS: [plotters::style::RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
+
+/// Whether a scenario has accelerometers.
+pub fn of(story: &Story) -> bool {
+    story.scenario.sensor.accelerometers().next().is_some()
+}
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let scenario = &story.scenario;
+    let all: Vec<_> = scenario.sensor.accelerometers().collect();
+    let panel = |(place, (index, accelerometer)): (usize, &(usize, &flexsc_core::sensor::Accelerometer))| {
+        let rows = || cycles.accelerations.iter().filter(|(_, row)| row.sensor == *index as u64);
+        let own = accelerometer.along.is_empty();
+        let layer = |axis: usize| {
+            let points: Vec<Point> = rows().map(|(t, row)| (*t, row.axes[axis].measured_m_s2)).collect();
+            let name = if own { ["x", "y", "z"][axis].to_owned() } else { format!("axis {}", axis + 1) };
+            Layer::new(&name, COLOURS[axis], Shape::Line(0.8), points)
+        };
+        let axes = if own { 3 } else { accelerometer.along.len() };
+        let layers: Vec<Layer> = (0..axes).map(layer).collect();
+        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        let y = Axis::around(&scenario.study.sensed_at[*index], "m/s²", values.collect::<Vec<_>>());
+        let x = time(0.0..story.end);
+        Panel::new(if place + 1 == all.len() { x } else { x.unnamed() }, y, layers)
+    };
+    Figure {
+        title: title(story, "specific forces, as accelerometers tell them"),
+        panels: all.iter().enumerate().map(panel).collect(),
+        panel_height: 200,
+    }
+}

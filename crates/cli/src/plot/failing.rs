@@ -1,0 +1,41 @@
+//! When sensors or actuators fail: shaded in every figure over time.
+
+use flexsc_figure::{Figure, Layer, Point, Shape, colour};
+
+use super::story::Story;
+use super::time;
+
+/// How dark the time of a failure is.
+const DARKNESS: f64 = 0.15;
+
+/// A figure with the failures of a run.
+pub fn shaded(mut figure: Figure, story: &Story) -> Figure {
+    let failures = story.scenario.failing();
+    if failures.is_empty() {
+        return figure;
+    }
+    let axis = time(0.0..1.0).name;
+    let is_over_time = figure.panels.last().is_some_and(|panel| panel.x.name == axis);
+    if !is_over_time {
+        return figure;
+    }
+    let mut name = "failure";
+    for panel in &mut figure.panels {
+        let (x, y) = (&panel.x.range, &panel.y.range);
+        let area = |failing: &flexsc_core::scenario::Failing| -> Vec<Point> {
+            let from = failing.outage.begins().seconds().max(x.start);
+            let to = failing.outage.ends().map_or(x.end, |ends| ends.seconds().min(x.end));
+            if from >= to {
+                return Vec::new();
+            }
+            vec![(from, y.start), (to, y.start), (to, y.end), (from, y.end), (f64::NAN, f64::NAN)]
+        };
+        let points: Vec<Point> = failures.iter().flat_map(area).collect();
+        if !points.is_empty() {
+            let layer =
+                Layer::new(std::mem::take(&mut name), colour::VERMILLION, Shape::Area(DARKNESS), points);
+            panel.layers.insert(0, layer);
+        }
+    }
+    figure
+}

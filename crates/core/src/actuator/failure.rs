@@ -1,0 +1,292 @@
+//! Failures of actuators: dead, stuck, weaker than they should be, or with something added, from one time to another.
+
+use std::num::NonZeroU32;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::axes::Axis;
+use crate::document::Fault;
+use crate::outage::Outage;
+use crate::quantity::{Finite, Time};
+use crate::sine::Sine;
+use crate::time::Instant;
+
+/// Declares a kind of failure: how long it lasts, what of the actuator fails, and keys of its own.
+macro_rules! kinds {
+    ($($(#[doc = $doc:literal])* $name:ident { $($(#[$meta:meta])* $field:ident: $of:ty),* $(,)? })+) => {
+        $(
+            $(#[doc = $doc])*
+            #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+            #[serde(deny_unknown_fields)]
+            pub struct $name {
+                /// When it begins (s).
+                pub from: Time,
+                /// When it ends (s); left out, with the run.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub to: Option<Time>,
+                /// The axis of which it fails, on a body with three; left out, of all.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub about: Option<Axis>,
+                /// The wheel that fails, counted from 1; left out, all do.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub wheel: Option<NonZeroU32>,
+                /// The thruster that fails, of jets; left out, all do.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub thruster: Option<String>,
+                $($(#[$meta])* pub $field: $of),*
+            }
+
+            impl $name {
+                fn lasting(&self) -> Lasting<'_> {
+                    let outage = Outage { from: self.from, to: self.to };
+                    Lasting { outage, about: self.about, wheel: self.wheel, thruster: self.thruster.as_deref() }
+                }
+            }
+        )+
+    };
+}
+
+kinds! {
+    /// Nothing is given.
+    Dead {}
+    /// A part of what should be is given.
+    Scaled {
+        /// The part; below 0, it acts the other way.
+        factor: Finite,
+    }
+    /// The same is given all the time.
+    Stuck {
+        /// What: a torque (N m), of magnetorquers a moment (A m²), of jets the part of their thrust; left out, what is given when
+        /// it begins.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        at: Option<Finite>,
+    }
+    /// Something is given beside what should be.
+    Added {
+        /// A constant: a torque (N m), of magnetorquers a moment (A m²), of jets a thrust (N).
+        #[serde(default)]
+        constant: Finite,
+        /// Torques that are sines of the time.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        sines: Vec<Sine>,
+    }
+}
+
+/// A failure of an actuator.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Failure {
+    /// It gives nothing.
+    Dead(Dead),
+    /// It gives a part of what it should.
+    Scaled(Scaled),
+    /// It gives the same all the time.
+    Stuck(Stuck),
+    /// It gives something beside what it should.
+    Added(Added),
+}
+
+/// How long a failure lasts, and what fails.
+#[derive(Copy, Clone, Debug)]
+pub struct Lasting<'a> {
+    /// How long it lasts.
+    pub outage: Outage,
+    /// The axis.
+    pub about: Option<Axis>,
+    /// The wheel, from 1.
+    pub wheel: Option<NonZeroU32>,
+    /// The thruster.
+    pub thruster: Option<&'a str>,
+}
+
+/// What an actuator consists of, as its failures name it.
+#[derive(Copy, Clone, Debug)]
+pub(super) enum Parts<'a> {
+    /// One actuator about each of so many axes; magnetorquers are such a one too.
+    Axes(usize),
+    /// So many wheels.
+    Wheels(usize),
+    /// Thrusters of these names.
+    Thrusters(&'a [String]),
+}
+
+impl Failure {
+    /// How long it lasts, and what fails.
+    pub fn lasting(&self) -> Lasting<'_> {
+        match self {
+            Self::Dead(of) => of.lasting(),
+            Self::Scaled(of) => of.lasting(),
+            Self::Stuck(of) => of.lasting(),
+            Self::Added(of) => of.lasting(),
+        }
+    }
+
+    /// The kind, as a scenario names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Dead(_) => "dead",
+            Self::Scaled(_) => "scaled",
+            Self::Stuck(_) => "stuck",
+            Self::Added(_) => "added",
+        }
+    }
+
+    /// The sines that it adds.
+    pub fn sines(&self) -> &[Sine] {
+        if let Self::Added(added) = self { &added.sines } else { &[] }
+    }
+
+    /// What of it does not fit an actuator of these parts, which `turns` the body by torques or not: a key, and why.
+    pub(super) fn fault(&self, parts: Parts<'_>, turns: bool) -> Option<Fault> {
+        let Lasting { outage, about, wheel, thruster } = self.lasting();
+        if let Some(fault) = outage.disorder() {
+            return Some(fault);
+        }
+        let at = |key: &str, why: &str| Some(Fault::new(format!("{}.{key}", self.kind()), why));
+        let (axes, wheels, names): (usize, usize, &[String]) = match parts {
+            Parts::Axes(axes) => (axes, 0, &[]),
+            Parts::Wheels(wheels) => (0, wheels, &[]),
+            Parts::Thrusters(names) => (0, 0, names),
+        };
+        if about.is_some() && axes < 3 {
+            return at("about", "names an axis of an actuator that acts about each of three by itself");
+        }
+        if let Some(number) = wheel.filter(|wheel| wheel.get() as usize > wheels) {
+            let why = format!("must be one of {wheels} wheels, counted from 1, got {number}");
+            let none = "is of `[actuator.wheels]`: this actuator has none";
+            return at("wheel", if wheels == 0 { none } else { &why });
+        }
+        if let Some(name) = thruster.filter(|name| !names.iter().any(|known| known == name)) {
+            let known: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+            let why = format!("must be one of the thrusters, {}, got `{name}`", known.join(", "));
+            let none = "is of `[actuator.jets]`: this actuator has none";
+            return at("thruster", if names.is_empty() { none } else { &why });
+        }
+        if (axes == 0 || !turns) && !self.sines().is_empty() {
+            let why = "are of a torque on the body: wheels, jets and magnetorquers add a constant, and a `[[disturbance]]` has sines";
+            return at("sines", why);
+        }
+        if let Parts::Thrusters(_) = parts {
+            return self.thruster_fault();
+        }
+        None
+    }
+
+    /// What no thruster does, whose thrust has one direction.
+    fn thruster_fault(&self) -> Option<Fault> {
+        let at = |key: &str, why: String| Some(Fault::new(format!("{}.{key}", self.kind()), why));
+        match self {
+            Self::Scaled(of) if of.factor.get() < 0.0 => {
+                at("factor", format!("must be 0 or more of a thruster, got {}", of.factor.get()))
+            }
+            Self::Stuck(of) => {
+                let part = of.at.map(Finite::get).filter(|part| !(0.0..=1.0).contains(part))?;
+                at("at", format!("must be a part of the thrust, from 0 to 1, got {part}"))
+            }
+            Self::Added(of) if of.constant.get() < 0.0 => {
+                at("constant", format!("must be 0 or more of a thruster, got {}", of.constant.get()))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// What failures make of one value: a torque, a moment, the part of a thrust.
+#[derive(Clone, Debug)]
+pub(super) struct Failing {
+    /// The failures, and what those that stick hold.
+    failures: Vec<(Failure, Option<f64>)>,
+    /// When one begins or ends, latest first.
+    edges: Vec<Instant>,
+    /// What is given of what should be, if it is not the same all the time.
+    factor: f64,
+    fixed: Option<f64>,
+    /// What is added.
+    added: f64,
+    sines: Vec<Sine>,
+}
+
+impl Failing {
+    /// The failures that concern a value, none of which has begun; nothing if there are none.
+    pub fn new(failures: &[Failure], concerns: impl Fn(&Lasting<'_>) -> bool) -> Option<Self> {
+        let own: Vec<_> = failures.iter().filter(|failure| concerns(&failure.lasting())).cloned().collect();
+        if own.is_empty() {
+            return None;
+        }
+        let of = |failure: &Failure| {
+            let outage = failure.lasting().outage;
+            [Some(outage.begins()), outage.ends()]
+        };
+        let mut edges: Vec<Instant> = own.iter().flat_map(of).flatten().collect();
+        edges.sort_by(|a, b| b.cmp(a));
+        edges.dedup();
+        let failures = own.into_iter().map(|failure| (failure, None)).collect();
+        Some(Self { failures, edges, factor: 1.0, fixed: None, added: 0.0, sines: Vec::new() })
+    }
+
+    /// When a failure begins or ends next.
+    pub fn due(&self) -> Option<Instant> {
+        self.edges.last().copied()
+    }
+
+    /// Begins and ends failures, of an actuator that should give this now; tells whether any did.
+    pub fn serve(&mut self, now: Instant, wanted: f64) -> bool {
+        let before = self.edges.len();
+        while self.edges.last().is_some_and(|edge| *edge <= now) {
+            self.edges.pop();
+        }
+        if self.edges.len() == before {
+            return false;
+        }
+        // Without what is added, which is so beside a value that sticks.
+        let given = self.fixed.unwrap_or(self.factor * wanted);
+        (self.factor, self.fixed, self.added) = (1.0, None, 0.0);
+        self.sines.clear();
+        let mut dead = false;
+        for (failure, held) in &mut self.failures {
+            if !failure.lasting().outage.lasts(now) {
+                continue;
+            }
+            match failure {
+                Failure::Dead(_) => dead = true,
+                Failure::Scaled(of) => self.factor *= of.factor.get(),
+                Failure::Stuck(of) => {
+                    self.fixed = Some(*held.get_or_insert_with(|| of.at.map_or(given, Finite::get)));
+                }
+                Failure::Added(of) => {
+                    self.added += of.constant.get();
+                    self.sines.extend_from_slice(&of.sines);
+                }
+            }
+        }
+        if dead {
+            self.fixed = Some(0.0);
+        }
+        true
+    }
+
+    /// What is given where this should be, without the sines.
+    pub fn of(&self, wanted: f64) -> f64 {
+        self.fixed.unwrap_or(self.factor * wanted) + self.added
+    }
+
+    /// The part of what should be that is given; none of what is the same all the time.
+    pub fn part(&self) -> Option<f64> {
+        if self.fixed.is_some() { None } else { Some(self.factor) }
+    }
+
+    /// The sines that are added now.
+    pub fn sines(&self) -> &[Sine] {
+        &self.sines
+    }
+
+    /// All the sines that are ever added, each with when it begins and ends.
+    pub fn all_sines(&self) -> impl Iterator<Item = (Sine, Outage)> + '_ {
+        let of = |(failure, _): &'_ (Failure, Option<f64>)| {
+            let outage = failure.lasting().outage;
+            failure.sines().iter().map(move |sine| (*sine, outage)).collect::<Vec<_>>()
+        };
+        self.failures.iter().flat_map(of)
+    }
+}

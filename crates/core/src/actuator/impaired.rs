@@ -1,0 +1,109 @@
+//! An actuator of one axis that fails at times.
+
+use std::sync::Arc;
+
+use super::AxisActuate;
+use super::failure::{Failing, Failure, Lasting};
+use crate::body::Forced;
+use crate::outage::Outage;
+use crate::record::WheelMotion;
+use crate::sine::Sine;
+use crate::time::Instant;
+use crate::waveform::Waveform;
+
+/// The actuator, and its failures: they change the torque that it gives, and nobody knows of them.
+#[derive(Clone, Debug)]
+pub(super) struct Impaired {
+    inner: Box<dyn AxisActuate>,
+    failing: Failing,
+    /// The sines that are ever added.
+    added: Arc<Waveform>,
+}
+
+impl Impaired {
+    /// An actuator with the failures that concern it; as it is, if none do.
+    pub fn by(
+        failures: &[Failure],
+        concerns: impl Fn(&Lasting<'_>) -> bool,
+        inner: Box<dyn AxisActuate>,
+    ) -> Box<dyn AxisActuate> {
+        let Some(failing) = Failing::new(failures, concerns) else { return inner };
+        let until = |outage: Outage| outage.to.map_or(f64::MAX, |to| to.get());
+        let terms = failing.all_sines().map(|(sine, of)| sine.term(of.from.get(), until(of))).collect();
+        Box::new(Self { inner, failing, added: Arc::new(Waveform { terms }) })
+    }
+
+    /// What it should give now, its waveform included (N m).
+    fn wanted(&self, now: Instant) -> f64 {
+        self.inner.torque() + self.inner.forced(now).map_or(0.0, |forced| forced.at(0.0))
+    }
+}
+
+impl AxisActuate for Impaired {
+    fn command(&mut self, now: Instant, command: f64, rigid_rate: f64) {
+        self.inner.command(now, command, rigid_rate);
+    }
+
+    fn serve(&mut self, now: Instant, rigid_rate: f64) {
+        self.inner.serve(now, rigid_rate);
+        let wanted = self.wanted(now);
+        self.failing.serve(now, wanted);
+    }
+
+    fn due(&self) -> Option<Instant> {
+        [self.inner.due(), self.failing.due()].into_iter().flatten().min()
+    }
+
+    fn unit(&self) -> f64 {
+        self.inner.unit()
+    }
+
+    fn torque(&self) -> f64 {
+        self.failing.of(self.inner.torque())
+    }
+
+    fn believed(&self) -> f64 {
+        self.inner.believed()
+    }
+
+    fn sines(&self) -> &[Sine] {
+        self.failing.sines()
+    }
+
+    fn asked(&self) -> f64 {
+        self.inner.asked()
+    }
+
+    fn follows(&self) -> bool {
+        self.inner.follows()
+    }
+
+    fn forced(&self, now: Instant) -> Option<Forced> {
+        let own = self.failing.part().and_then(|part| Some((self.inner.forced(now)?, part)));
+        match own {
+            None if self.failing.sines().is_empty() => None,
+            None => Some(Forced::new(Arc::clone(&self.added), now.seconds())),
+            Some((own, 1.0)) if self.failing.sines().is_empty() => Some(own),
+            Some((own, part)) => Some(own.changed(part, &self.added)),
+        }
+    }
+
+    fn applied(&self, now: Instant, rates: [f64; 2]) -> f64 {
+        let (wanted, t) = (self.wanted(now), now.seconds());
+        let added: f64 = self.failing.sines().iter().map(|sine| sine.at(t)).sum();
+        // What the rates take stays.
+        self.inner.applied(now, rates) - wanted + self.failing.of(wanted) + added
+    }
+
+    fn back_emf(&self) -> (f64, bool) {
+        self.inner.back_emf()
+    }
+
+    fn rotor(&self, rigid_rate: f64) -> Option<WheelMotion> {
+        self.inner.rotor(rigid_rate)
+    }
+
+    fn copy(&self) -> Box<dyn AxisActuate> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,116 @@
+//! The valves of jets: which thrusters are open, what failures make of that, and the propellant that passes.
+
+use super::failure::{Added, Failing, Failure, Lasting};
+use super::{Jets, Nozzle, Thruster};
+use crate::body::{Push, Wrench};
+use crate::quantity::Finite;
+use crate::time::Instant;
+
+/// The thrusters of a body, each with its failures.
+#[derive(Clone, Debug)]
+pub(super) struct Valves {
+    nozzles: Vec<Nozzle>,
+    failing: Vec<Option<Failing>>,
+    /// How far each is asked to be open: 1, or the number of groups that ask it.
+    open: Vec<f64>,
+    /// Propellant so far (kg), until when, and what passes since (kg/s).
+    fuel: f64,
+    since: Instant,
+    flow: f64,
+}
+
+impl Valves {
+    /// The valves of jets with these nozzles, all closed; none where nothing fails and groups act as they are.
+    pub fn new(jets: &Jets, nozzles: &[Nozzle]) -> Self {
+        let failing = |(nozzle, thruster): (&Nozzle, &Thruster)| {
+            let own = |of: &Lasting<'_>| of.thruster.is_none_or(|name| name == thruster.name);
+            // What is added is a part of the thrust too.
+            let part = |failure: &Failure| match failure {
+                Failure::Added(added) => {
+                    let constant = Finite::new(added.constant.get() / nozzle.thrust).unwrap_or_default();
+                    Failure::Added(Added { constant, ..added.clone() })
+                }
+                other => other.clone(),
+            };
+            Failing::new(&jets.faults.iter().map(part).collect::<Vec<_>>(), own)
+        };
+        Self {
+            failing: nozzles.iter().zip(&jets.thrusters).map(failing).collect(),
+            open: vec![0.0; nozzles.len()],
+            nozzles: nozzles.to_vec(),
+            fuel: 0.0,
+            since: Instant::START,
+            flow: 0.0,
+        }
+    }
+
+    /// Whether any ever fails.
+    pub fn fail(&self) -> bool {
+        self.failing.iter().any(Option::is_some)
+    }
+
+    /// When a failure begins or ends next.
+    pub fn due(&self) -> Option<Instant> {
+        self.failing.iter().flatten().filter_map(Failing::due).min()
+    }
+
+    /// When they changed last.
+    pub fn since(&self) -> Instant {
+        self.since
+    }
+
+    /// The part of its thrust that each gives.
+    fn parts(&self) -> impl Iterator<Item = (&Nozzle, f64)> {
+        let of = |((nozzle, failing), open): ((_, &Option<Failing>), &f64)| {
+            (nozzle, failing.as_ref().map_or(*open, |failing| failing.of(*open)))
+        };
+        self.nozzles.iter().zip(&self.failing).zip(&self.open).map(of)
+    }
+
+    /// Opens valves from now on: so far each, with failures that begin or end now.
+    pub fn set(&mut self, now: Instant, open: impl Fn(usize) -> f64) {
+        self.fuel += self.flow * now.since(self.since).seconds();
+        self.since = now;
+        for (index, (own, failing)) in self.open.iter_mut().zip(&mut self.failing).enumerate() {
+            *own = open(index);
+            if let Some(failing) = failing {
+                failing.serve(now, *own);
+            }
+        }
+        self.flow = self.parts().map(|(nozzle, part)| nozzle.flow * part).sum();
+    }
+
+    /// Propellant until a number of seconds from the last change for each thruster (kg), if nothing else changes.
+    pub fn fuel(&self, remaining: impl Fn(usize) -> f64) -> f64 {
+        let until =
+            self.parts().enumerate().map(|(index, (nozzle, part))| nozzle.flow * part * remaining(index));
+        self.fuel + until.sum::<f64>()
+    }
+
+    /// The part of its thrust that each gives now.
+    pub fn open(&self) -> Vec<f64> {
+        self.parts().map(|(_, part)| part).collect()
+    }
+
+    /// The torque about an axis (N m).
+    pub fn torque(&self, axis: usize) -> f64 {
+        self.parts().map(|(nozzle, part)| nozzle.push.torque[axis] * part).sum()
+    }
+
+    /// Adds what they do.
+    pub fn exert(&self, onto: &mut Wrench) {
+        for (nozzle, part) in self.parts().filter(|(_, part)| *part != 0.0) {
+            onto.push(&scaled(&nozzle.push, part));
+        }
+    }
+}
+
+/// A part of a push.
+pub(super) fn scaled(push: &Push, part: f64) -> Push {
+    Push {
+        torque: push.torque * part,
+        forces: push.forces.iter().map(|force| force * part).collect(),
+        force: push.force * part,
+        levers: push.levers.iter().map(|lever| lever * part).collect(),
+    }
+}

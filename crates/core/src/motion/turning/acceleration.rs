@@ -1,0 +1,85 @@
+//! How fast the rates of a turning body change at an instant, by its equations.
+
+use super::bearing::{Slip, Spin, Spun};
+use super::flow::Turning;
+use super::model::{Surroundings, outward};
+use super::slipping::shapes;
+use crate::attitude::Vector;
+
+/// Accelerations at an instant.
+#[derive(Clone, Debug)]
+pub struct Accelerations {
+    /// Of the hub's rotation, in its axes (rad/s²).
+    pub hub: Vector,
+    /// Of each mode (m sqrt(kg)/s²).
+    pub modes: Vec<f64>,
+    /// Of the centre of mass by forces at points, in the hub's axes (m/s²).
+    pub centre: Vector,
+    /// The force of rotors out of balance on the whole, in the hub's axes (N).
+    pub shaking: Vector,
+}
+
+impl Turning {
+    /// Accelerations at the instant seen last, under what acts from then on.
+    pub fn accelerations(&self, around: Option<(&dyn Surroundings, f64)>) -> Accelerations {
+        self.accelerated(&self.slips, around)
+    }
+
+    /// The same if rotors slip so.
+    pub(super) fn accelerated(
+        &self,
+        slips: &[Slip],
+        around: Option<(&dyn Surroundings, f64)>,
+    ) -> Accelerations {
+        let (model, seen) = (&self.model, &self.seen);
+        let borne = self.borne_by(slips);
+        let (shape, change) = shapes(self, seen);
+        let mut torque = self.acting.torque;
+        for (lever, q) in self.acting.levers.iter().zip(&seen.displacements) {
+            torque += lever * *q;
+        }
+        let (mut tide, mut warm) = (None, (&[][..], 0.0));
+        if let Some((around, since)) = around {
+            let t = since + self.now;
+            torque += around.torque(t, &seen.attitude, &(model.inertia + shape));
+            tide = if model.stretches { around.tide(t, &seen.attitude) } else { None };
+            warm = (around.heated(), t);
+        }
+        let mut spun = Spun::default();
+        spun.at.extend(self.here.spins.iter().map(|spin: &Spin| spin.sums));
+        spun.now.resize(spun.at.len(), Vector::zeros());
+        torque += borne.feel(&seen.rate, &mut spun);
+        let slipping = if self.bearings.is_empty() {
+            self.acting.rotors.iter().fold(Vector::zeros(), |sum, rotor| sum + rotor.axis * rotor.torque)
+        } else {
+            borne.stored(spun.now.iter().map(|now| now.x))
+        };
+        let mut pushed = Vector::zeros();
+        let mut modes = Vec::with_capacity(model.modes.len());
+        for (index, mode) in model.modes.iter().enumerate() {
+            let (q, rate) = (seen.displacements[index], seen.rates[index]);
+            let mut force = mode.moved(&outward(&seen.rate)) + borne.force(index, &spun.waves);
+            force += self.acting.forces.get(index).copied().unwrap_or(0.0);
+            if let Some(tide) = &tide {
+                force += mode.pulled(tide);
+            }
+            for heated in warm.0 {
+                force += heated.forces[index] * heated.level(warm.1);
+            }
+            if let Some(beside) = &model.beside {
+                force -=
+                    seen.rates.iter().enumerate().map(|(other, of)| beside[(index, other)] * of).sum::<f64>();
+            }
+            let w = mode.frequency;
+            modes.push(force - w * w * q - 2.0 * mode.damping * w * rate);
+            pushed += mode.rotation * modes[index];
+        }
+        let turning = torque - seen.rate.cross(&seen.momentum) - slipping - change * seen.rate;
+        // The rate of Gt, which modes feel, and that of the hub.
+        let (felt, hub) = model.rates(&turning, &pushed, &(shape + borne.locked()));
+        for (acceleration, mode) in modes.iter_mut().zip(&model.modes) {
+            *acceleration += mode.rotation.dot(&felt);
+        }
+        Accelerations { hub, modes, centre: self.acting.push, shaking: borne.shaking(&spun.waves) }
+    }
+}

@@ -1,0 +1,241 @@
+//! The bounded simplex method for small linear programmes: minimise c'x with A x = b and 0 <= x <= u.
+//!
+//! Of a few rows and some dozens of columns, again and again in a run: the basis is solved anew at each pivot, so that rounding does
+//! not gather, and pivots follow Bland's rule, the least index first, which ends and has one answer on every machine
+//! (\[Bland77\]). A library would bring sparse factorisations and rules of its own that may change what a log holds.
+
+/// Pivots after which the best point so far is taken: Bland's rule needs far fewer for such programmes.
+const MOST: usize = 500;
+
+/// What is less than this part of a programme's numbers is rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// Columns of equal length, and the largest value of the variable of each; the smallest is 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Programme {
+    columns: Vec<Vec<f64>>,
+    most: Vec<f64>,
+    rows: usize,
+}
+
+/// Where the method is: the basis, and which variables outside of it are at their largest value.
+struct Tableau<'a> {
+    columns: &'a [Vec<f64>],
+    most: Vec<f64>,
+    basis: Vec<usize>,
+    values: Vec<f64>,
+    above: Vec<bool>,
+    rhs: Vec<f64>,
+}
+
+impl Programme {
+    /// A programme of so many rows.
+    pub fn new(rows: usize, columns: Vec<Vec<f64>>, most: Vec<f64>) -> Self {
+        Self { columns, most, rows }
+    }
+
+    /// How many rows it has.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// The cheapest x with A x = s b, 0 <= x <= u, where s is the largest part of b, up to 1, that can be had; and s.
+    pub fn cheapest(&self, b: &[f64], costs: &[f64]) -> (Vec<f64>, f64) {
+        let (rows, count) = (self.rows, self.columns.len());
+        // Each row to the size of 1.
+        let size = |row: usize| self.columns.iter().map(|column| column[row].abs()).fold(0.0, f64::max);
+        let scales: Vec<f64> =
+            (0..rows).map(size).map(|size| if size > 0.0 { 1.0 / size } else { 1.0 }).collect();
+        let largest = self.most.iter().copied().fold(0.0, f64::max);
+        let asked = b.iter().zip(&scales).map(|(b, scale)| (b * scale).abs()).fold(0.0, f64::max);
+        if asked == 0.0 || largest == 0.0 {
+            return (vec![0.0; count], if asked == 0.0 { 1.0 } else { 0.0 });
+        }
+        // In units of the largest x, and of what is asked; then s, then what stands for each row at first.
+        let mut columns: Vec<Vec<f64>> = self
+            .columns
+            .iter()
+            .map(|column| {
+                column.iter().zip(&scales).map(|(a, scale)| a * scale * (largest / asked)).collect()
+            })
+            .collect();
+        columns.push(b.iter().zip(&scales).map(|(b, scale)| -b * scale / asked).collect());
+        for row in 0..rows {
+            columns.push((0..rows).map(|other| if other == row { 1.0 } else { 0.0 }).collect());
+        }
+        let mut most: Vec<f64> = self.most.iter().map(|most| most / largest).collect();
+        most.push(1.0);
+        most.resize(columns.len(), 0.0);
+        let mut tableau = Tableau {
+            basis: (count + 1..columns.len()).collect(),
+            values: vec![0.0; columns.len()],
+            above: vec![false; columns.len()],
+            rhs: vec![0.0; rows],
+            columns: &columns,
+            most,
+        };
+        let mut rising = vec![0.0; columns.len()];
+        rising[count] = -1.0;
+        tableau.minimise(&rising);
+        // Rounding asks for no more than there is.
+        let part = tableau.values[count].clamp(0.0, 1.0);
+        // That part is what is asked from now on, and s takes nothing from it.
+        tableau.rhs = tableau.columns[count].iter().map(|of| -of * part).collect();
+        (tableau.values[count], tableau.most[count], tableau.above[count]) = (0.0, 0.0, false);
+        tableau.refresh();
+        let dearest = costs.iter().map(|cost| cost.abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let mut scaled: Vec<f64> = costs.iter().map(|cost| cost / dearest).collect();
+        scaled.resize(columns.len(), 0.0);
+        tableau.minimise(&scaled);
+        (tableau.values[..count].iter().map(|value| value * largest).collect(), part)
+    }
+}
+
+impl Tableau<'_> {
+    /// The solution of B y = v by elimination with the largest pivot; B' y = v if `transposed`.
+    fn solve(&self, v: &[f64], transposed: bool) -> Vec<f64> {
+        let n = self.basis.len();
+        let entry = |row: usize, column: usize| {
+            if transposed {
+                self.columns[self.basis[row]][column]
+            } else {
+                self.columns[self.basis[column]][row]
+            }
+        };
+        let mut matrix: Vec<Vec<f64>> =
+            (0..n).map(|row| (0..n).map(|column| entry(row, column)).chain([v[row]]).collect()).collect();
+        for pivot in 0..n {
+            let best = (pivot..n).fold(pivot, |best, row| {
+                if matrix[row][pivot].abs() > matrix[best][pivot].abs() { row } else { best }
+            });
+            matrix.swap(pivot, best);
+            for row in pivot + 1..n {
+                let factor = matrix[row][pivot] / matrix[pivot][pivot];
+                for column in pivot..=n {
+                    matrix[row][column] -= factor * matrix[pivot][column];
+                }
+            }
+        }
+        let mut found = vec![0.0; n];
+        for row in (0..n).rev() {
+            let known: f64 = (row + 1..n).map(|column| matrix[row][column] * found[column]).sum();
+            found[row] = (matrix[row][n] - known) / matrix[row][row];
+        }
+        found
+    }
+
+    /// Goes from vertex to vertex until no costs fall any more.
+    fn minimise(&mut self, costs: &[f64]) {
+        for _ in 0..MOST {
+            let of_basis: Vec<f64> = self.basis.iter().map(|index| costs[*index]).collect();
+            let prices = self.solve(&of_basis, true);
+            let Some((enters, sense)) = self.entering(costs, &prices) else { return };
+            let column = self.solve(&self.columns[enters], false);
+            // How far, and what stops it: the variable that enters at its other end, or one of the basis at one of its own.
+            let (mut step, mut leaves) = (self.most[enters], None);
+            for (place, (index, slope)) in self.basis.iter().zip(&column).enumerate() {
+                let change = -sense * slope;
+                if change.abs() <= ROUNDING {
+                    continue;
+                }
+                let end = if change > 0.0 { self.most[*index] } else { 0.0 };
+                let room = ((end - self.values[*index]) / change).max(0.0);
+                let first = leaves.is_none_or(|(_, other): (usize, usize)| *index < other);
+                if room < step - ROUNDING || room <= step + ROUNDING && leaves.is_some() && first {
+                    (step, leaves) = (room.min(step), Some((place, *index)));
+                }
+            }
+            for (index, slope) in self.basis.iter().zip(&column) {
+                let value = self.values[*index] - sense * step * slope;
+                self.values[*index] = value.clamp(0.0, self.most[*index]);
+            }
+            self.values[enters] = (self.values[enters] + sense * step).clamp(0.0, self.most[enters]);
+            match leaves {
+                None => self.above[enters] = sense > 0.0,
+                Some((place, index)) => {
+                    // At the end that is nearer.
+                    self.above[index] = self.values[index] > 0.5 * self.most[index];
+                    self.values[index] = if self.above[index] { self.most[index] } else { 0.0 };
+                    self.basis[place] = enters;
+                    self.refresh();
+                }
+            }
+        }
+    }
+
+    /// The first variable outside of the basis whose change lowers the costs, and which way.
+    fn entering(&self, costs: &[f64], prices: &[f64]) -> Option<(usize, f64)> {
+        (0..self.columns.len()).find_map(|index| {
+            if self.most[index] <= 0.0 || self.basis.contains(&index) {
+                return None;
+            }
+            let worth: f64 = self.columns[index].iter().zip(prices).map(|(a, price)| a * price).sum();
+            let reduced = costs[index] - worth;
+            let tolerance = ROUNDING * (1.0 + worth.abs());
+            match self.above[index] {
+                false if reduced < -tolerance => Some((index, 1.0)),
+                true if reduced > tolerance => Some((index, -1.0)),
+                _ => None,
+            }
+        })
+    }
+
+    /// The values of the basis from those outside of it.
+    fn refresh(&mut self) {
+        let mut left = self.rhs.clone();
+        for (index, column) in self.columns.iter().enumerate() {
+            if self.values[index] != 0.0 && !self.basis.contains(&index) {
+                left.iter_mut().zip(column).for_each(|(left, a)| *left -= a * self.values[index]);
+            }
+        }
+        let found = self.solve(&left, false);
+        for (index, value) in self.basis.clone().into_iter().zip(found) {
+            self.values[index] = value.clamp(0.0, self.most[index]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against SciPy's `linprog`: tests/golden/jets_oracle.py.
+    #[test]
+    fn it_finds_what_scipy_finds() {
+        let text = include_str!("../../../../tests/golden/jets.csv");
+        let (mut cases, mut short) = (0, 0);
+        for line in text.lines().filter(|line| !line.starts_with('#')) {
+            let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            let (rows, count) = (numbers[0] as usize, numbers[1] as usize);
+            let mut rest = numbers[2..].iter().copied();
+            let mut take = |n: usize| -> Vec<f64> { rest.by_ref().take(n).collect() };
+            let columns: Vec<Vec<f64>> = (0..count).map(|_| take(rows)).collect();
+            let (most, costs, b, told) = (take(count), take(count), take(rows), take(2));
+            let programme = Programme::new(rows, columns.clone(), most.clone());
+            let (x, part) = programme.cheapest(&b, &costs);
+            let cost: f64 = x.iter().zip(&costs).map(|(x, cost)| x * cost).sum();
+            assert!((part - told[0]).abs() < 1e-9, "{cases}: {part} of it, not {}", told[0]);
+            assert!((cost - told[1]).abs() < 1e-9 * told[1].max(1.0), "{cases}: {cost}, not {}", told[1]);
+            assert!(x.iter().zip(&most).all(|(x, most)| (0.0..=most * (1.0 + 1e-15)).contains(x)));
+            for row in 0..rows {
+                let sum: f64 = x.iter().zip(&columns).map(|(x, column)| x * column[row]).sum();
+                assert!((sum - part * b[row]).abs() < 1e-9, "{cases}: row {row}");
+            }
+            cases += 1;
+            short += usize::from(part < 1.0);
+        }
+        assert!(cases >= 200 && short >= 40, "{cases} {short}");
+    }
+
+    #[test]
+    fn nothing_costs_nothing_and_what_cannot_be_is_not() {
+        let programme = Programme::new(1, vec![vec![2.0], vec![3.0]], vec![1.0, 1.0]);
+        assert_eq!(programme.cheapest(&[0.0], &[1.0, 1.0]), (vec![0.0, 0.0], 1.0));
+        assert_eq!(programme.cheapest(&[-1.0], &[1.0, 1.0]).1, 0.0);
+        let (x, part) = programme.cheapest(&[10.0], &[1.0, 1.0]);
+        assert!((part - 0.5).abs() < 1e-14 && x.iter().all(|x| (x - 1.0).abs() < 1e-14), "{part} {x:?}");
+        // The second gives more for its cost.
+        let (x, _) = programme.cheapest(&[2.0], &[1.0, 1.0]);
+        assert!(x[0] == 0.0 && (x[1] - 2.0 / 3.0).abs() < 1e-15, "{x:?}");
+    }
+}

@@ -1,0 +1,46 @@
+//! How long something lasts: from one instant to another, or to the end of the run.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::document::Fault;
+use crate::quantity::Time;
+use crate::time::{Instant, Span};
+
+/// How long a failure lasts.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Outage {
+    /// When it begins (s).
+    pub from: Time,
+    /// When it ends (s); left out, with the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<Time>,
+}
+
+impl Outage {
+    /// Whether it lasts at an instant.
+    pub fn lasts(self, now: Instant) -> bool {
+        self.begins() <= now && self.ends().is_none_or(|ends| now < ends)
+    }
+
+    /// When it begins.
+    pub fn begins(self) -> Instant {
+        at(self.from)
+    }
+
+    /// When it ends, unless with the run.
+    pub fn ends(self) -> Option<Instant> {
+        self.to.map(at)
+    }
+
+    /// An end before the beginning: what is wrong, of no key within.
+    pub fn disorder(self) -> Option<Fault> {
+        let unordered = self.to.is_some_and(|to| self.from >= to);
+        unordered.then(|| Fault::new("", "must have `from` before `to`"))
+    }
+}
+
+fn at(time: Time) -> Instant {
+    Instant::START + Span::from_seconds(time.get())
+}

@@ -1,0 +1,102 @@
+//! Failures of sensors and actuators: what of them does not fit, and when each lasts.
+
+use super::Scenario;
+use crate::actuator::{Actuator, Failure, Lasting};
+use crate::attitude::AXES;
+use crate::document::Fault;
+use crate::law::Law;
+use crate::outage::Outage;
+
+/// A failure of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failing {
+    /// The key of the part.
+    pub part: String,
+    /// What of it fails, if not all.
+    pub of: String,
+    /// The kind of failure.
+    pub fault: &'static str,
+    /// How long it lasts.
+    pub outage: Outage,
+}
+
+impl Scenario {
+    /// All failures: of sensors in their order, then of the actuator.
+    pub fn failing(&self) -> Vec<Failing> {
+        let mut all = Vec::new();
+        for (index, sensor) in self.sensor.iter().enumerate() {
+            all.extend(sensor.faults().iter().map(|fault| Failing {
+                part: self.sensor_key(index),
+                of: String::new(),
+                fault: fault.kind(),
+                outage: fault.outage(),
+            }));
+        }
+        for (part, failures) in self.actuator.all_failures() {
+            all.extend(failures.iter().map(|failure| {
+                let Lasting { outage, about, wheel, thruster } = failure.lasting();
+                let about = about.map(|about| AXES[about.index()].to_owned());
+                let of = about
+                    .or(wheel.map(|wheel| format!("wheel {wheel}")))
+                    .or(thruster.map(|thruster| format!("thruster {thruster}")));
+                Failing { part: part.clone(), of: of.unwrap_or_default(), fault: failure.kind(), outage }
+            }));
+        }
+        all
+    }
+
+    /// A failure that does not fit its sensor or actuator, or the motion.
+    pub(super) fn failing_fault(&self) -> Option<Fault> {
+        for (number, sensor) in self.sensor.iter().enumerate() {
+            let disorder = |fault: &crate::sensor::Fault| fault.outage().disorder();
+            let mut faults = sensor.faults().iter().enumerate();
+            if let Some((index, fault)) = faults.find_map(|(index, fault)| Some((index, disorder(fault)?))) {
+                return Some(fault.within(&format!("{}.faults[{index}]", self.sensor_key(number))));
+            }
+        }
+        self.actuator.failure_fault(self.axis_count()).or_else(|| self.sines_fault())
+    }
+
+    /// Sines in a torque where the motion under them has no closed form, and no steps that follow them.
+    fn sines_fault(&self) -> Option<Fault> {
+        let disturbed = self.disturbance.iter().position(|of| !of.sines.is_empty());
+        let disturbed = disturbed.map(|index| format!("disturbance[{index}].sines"));
+        let mut failures = self.actuator.failures().iter();
+        let swings = |failure: &Failure| !failure.sines().is_empty();
+        let failed = failures.position(swings);
+        let failed =
+            failed.map(|index| format!("actuator.{}.faults[{index}].added.sines", self.actuator.kind()));
+        if self.axis_count() == 3 {
+            let key = failed.or(disturbed).filter(|_| self.body.flexible().is_none())?;
+            let why = "are for a `[spacecraft]`: the modes of a `[body.spatial]` are pushed by torques that are constant for a \
+                       while, and its own `disturbance` is periodic";
+            return Some(Fault::new(key, why));
+        }
+        if let Some(key) = disturbed {
+            let why = "are for a `[spacecraft]`: on a body with one angle a failure of the actuator adds them, as \
+                       `added = { from = 0.0, sines = [..] }`";
+            return Some(Fault::new(key, why));
+        }
+        let key = failed?;
+        let why = match (&self.actuator, &self.law) {
+            (Actuator::Wheel(_), _) => {
+                "leave no closed form with a wheel, whose back-EMF couples the modes: take an `[actuator.hold]`"
+            }
+            _ if self.drift.is_some() => "leave no closed form of modes that drift",
+            _ if !self.model.damping_matrix.is_empty() => {
+                "leave no closed form of modes that a damping matrix couples"
+            }
+            (_, law)
+                if self.sensor.period(law.period()).is_none()
+                    && !matches!(law, Law::Open(_) | Law::Pd(_)) =>
+            {
+                "leave a law no crossings in closed form: give it a `[sensor.sampled]`"
+            }
+            _ if self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) => {
+                "are no torques that are constant for a while, which an `[estimator.envelope]` follows"
+            }
+            _ => return None,
+        };
+        Some(Fault::new(key, why))
+    }
+}

@@ -1,0 +1,232 @@
+//! An accelerometer at a point: the specific force along its axes, with noise, a bias that walks, rounding, latency and failures.
+
+use std::collections::VecDeque;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Fault, stream};
+use crate::attitude::Vector;
+use crate::axes::Each;
+use crate::document;
+use crate::quantity::{Finite, NonNegative, Time};
+use crate::random::{Seed, Stream};
+use crate::time::{Instant, Span};
+
+/// An accelerometer on a `[spacecraft]`, which falls freely: it measures what forces, rotation and vibration accelerate its place by.
+///
+/// Numbers are one for all of its axes, or one for each of three.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Accelerometer {
+    /// That nothing reads it, which has to be said: it is logged and changes nothing.
+    #[serde(default)]
+    pub watch_only: bool,
+    /// The point of the structure at which it is; left out, the first of the body's points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub point: Option<String>,
+    /// Period of its samples (s).
+    pub period: Span,
+    /// The directions along which it measures, one to three of any length in the hub's axes while nothing is bent; left out, x, y and z.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub along: Vec<[Finite; 3]>,
+    /// Standard deviation of the white noise along each (m/s²).
+    #[serde(default)]
+    pub noise: Each<NonNegative>,
+    /// Constant error along each (m/s²).
+    #[serde(default)]
+    pub bias: Each<Finite>,
+    /// Random walk of the bias along each (m/s² for the square root of a second).
+    #[serde(default)]
+    pub bias_random_walk: Each<NonNegative>,
+    /// Quantum of the output along each (m/s²); 0 for none.
+    #[serde(default)]
+    pub resolution: Each<NonNegative>,
+    /// Relative error of the scale along each.
+    #[serde(default)]
+    pub scale: Each<Finite>,
+    /// Time from a sample to when it is told (s).
+    #[serde(default)]
+    pub latency: Time,
+    /// Times at which it fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
+}
+
+impl Accelerometer {
+    /// What single values cannot show to be wrong: a key within the accelerometer, and why.
+    pub fn inconsistency(&self) -> Option<document::Fault> {
+        if !self.watch_only {
+            let why = "must be true: nothing reads an accelerometer, which is logged and changes nothing";
+            return Some(document::Fault::new("watch_only", why));
+        }
+        if self.along.len() > 3 {
+            let why = format!("must be one to three directions, got {}", self.along.len());
+            return Some(document::Fault::new("along", why));
+        }
+        let none = self.along.iter().position(|along| along.iter().all(|part| part.get() == 0.0))?;
+        Some(document::Fault::new(format!("along[{none}]"), "must have a length, got [0, 0, 0]"))
+    }
+
+    /// Along how many axes it measures.
+    pub fn axis_count(&self) -> usize {
+        if self.along.is_empty() { 3 } else { self.along.len() }
+    }
+
+    /// The unit vectors along which it measures.
+    fn axes(&self) -> Vec<Vector> {
+        if self.along.is_empty() {
+            return vec![Vector::x(), Vector::y(), Vector::z()];
+        }
+        self.along.iter().map(|along| crate::attitude::vector(along).normalize()).collect()
+    }
+
+    /// The accelerometer in a run, after so many others.
+    pub fn start(&self, seed: Seed, ordinal: usize) -> Accelerating {
+        let axes = self.axes();
+        let draws = |name: &str| -> Vec<Stream> {
+            (0..axes.len()).map(|axis| stream(name, (axis, 3), ordinal, seed)).collect()
+        };
+        Accelerating {
+            noise: draws("accelerometer"),
+            walk: draws("accelerometer bias"),
+            bias: (0..axes.len()).map(|axis| self.bias.about(axis).get()).collect(),
+            exposes: Instant::START,
+            waiting: VecDeque::new(),
+            last: None,
+            axes,
+            spec: self.clone(),
+        }
+    }
+}
+
+/// What is measured along an axis.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Felt {
+    /// As it is told (m/s²).
+    pub measured: f64,
+    /// As it is (m/s²).
+    pub exact: f64,
+    /// The bias (m/s²).
+    pub bias: f64,
+}
+
+/// An accelerometer at work.
+#[derive(Clone, Debug)]
+pub struct Accelerating {
+    spec: Accelerometer,
+    axes: Vec<Vector>,
+    noise: Vec<Stream>,
+    walk: Vec<Stream>,
+    bias: Vec<f64>,
+    /// When it samples next.
+    exposes: Instant,
+    /// What was sampled, and when it is told.
+    waiting: VecDeque<(Instant, Vec<Felt>)>,
+    /// What was measured last.
+    last: Option<Vec<f64>>,
+}
+
+impl Accelerating {
+    /// When it samples or tells next.
+    pub fn due(&self) -> Instant {
+        self.waiting.front().map_or(self.exposes, |(told, _)| self.exposes.min(*told))
+    }
+
+    /// Whether it samples now.
+    pub fn exposes(&self, now: Instant) -> bool {
+        self.exposes <= now
+    }
+
+    /// Takes a sample where this is the specific force along the hub's axes, as its mount is turned (m/s²).
+    pub fn sample(&mut self, now: Instant, force: &Vector) {
+        let Self { spec, axes, noise, walk, bias, .. } = self;
+        self.exposes = now + spec.period;
+        let step = if now == Instant::START { 0.0 } else { libm::sqrt(spec.period.seconds()) };
+        let mut felt = Vec::with_capacity(axes.len());
+        for (index, axis) in axes.iter().enumerate() {
+            // Draws are made in a failure too: those after it do not depend on it.
+            let draws = [walk[index].normal(), noise[index].normal()];
+            bias[index] += spec.bias_random_walk.about(index).get() * step * draws[0];
+            let exact = axis.dot(force);
+            let scaled = exact + spec.scale.about(index).get() * exact;
+            let found = scaled + bias[index] + spec.noise.about(index).get() * draws[1];
+            let quantum = spec.resolution.about(index).get();
+            let measured = if quantum > 0.0 { libm::round(found / quantum) * quantum } else { found };
+            felt.push(Felt { measured, exact, bias: bias[index] });
+        }
+        match spec.faults.iter().find(|fault| fault.outage().lasts(now)) {
+            Some(Fault::Silent(_)) => return,
+            Some(Fault::Stuck(_)) => {
+                let held = self.last.iter().flatten();
+                felt.iter_mut().zip(held).for_each(|(felt, held)| felt.measured = *held);
+            }
+            None => {}
+        }
+        self.last = Some(felt.iter().map(|felt| felt.measured).collect());
+        let told = now + Span::from_seconds(spec.latency.get());
+        self.waiting.push_back((told, felt));
+    }
+
+    /// What is told now.
+    pub fn told(&mut self, now: Instant) -> Option<Vec<Felt>> {
+        self.waiting.front().filter(|(told, _)| *told <= now)?;
+        self.waiting.pop_front().map(|(_, felt)| felt)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn start(keys: &str) -> Accelerating {
+        let spec: Accelerometer =
+            toml::from_str(&format!("watch_only = true\nperiod = 0.5\n{keys}")).unwrap();
+        assert_eq!(spec.inconsistency(), None);
+        spec.start(Seed { scenario: 3, run: 0 }, 0)
+    }
+
+    fn run(at_work: &mut Accelerating, samples: usize, force: Vector) -> Vec<(f64, Vec<Felt>)> {
+        let mut told = Vec::new();
+        for _ in 0..samples {
+            let now = at_work.due();
+            if at_work.exposes(now) {
+                at_work.sample(now, &force);
+            }
+            told.extend(at_work.told(now).map(|felt| (now.seconds(), felt)));
+        }
+        told
+    }
+
+    #[test]
+    fn errors_are_those_that_are_asked_for() {
+        let keys = "along = [[0, 0, 2], [3, 0, 4]]\nscale = 0.1\nbias = [0.5, -0.5, 0]\nresolution = 0.25";
+        let told = run(&mut start(keys), 1, Vector::new(1.0, 2.0, 3.0));
+        let measured: Vec<f64> = told[0].1.iter().map(|felt| felt.measured).collect();
+        // 3.3 + 0.5 and 3 * 1.1 - 0.5, in quarters.
+        assert_eq!(measured, [3.75, 2.75]);
+        assert!((told[0].1[1].exact - 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_bias_walks_and_noise_is_white() {
+        let told = run(&mut start("noise = 0.3\nbias_random_walk = 0.2"), 40_000, Vector::zeros());
+        let mean = |of: &dyn Fn(usize) -> f64| (1..told.len()).map(of).sum::<f64>() / (told.len() - 1) as f64;
+        let step = mean(&|k| libm::pow(told[k].1[0].bias - told[k - 1].1[0].bias, 2.0));
+        assert!((step / (0.04 * 0.5) - 1.0).abs() < 0.022, "{step}");
+        let noise = mean(&|k| libm::pow(told[k].1[0].measured - told[k].1[0].bias, 2.0));
+        assert!((noise / 0.09 - 1.0).abs() < 0.022, "{noise}");
+    }
+
+    #[test]
+    fn it_tells_late_sticks_and_falls_silent() {
+        let keys = "latency = 0.2\nbias_random_walk = 1.0\nfaults = [{ stuck = { from = 1.0, to = 2.0 } }, { silent = { from = 3.0, to = 4.0 } }]";
+        let told = run(&mut start(keys), 20, Vector::zeros());
+        let times: Vec<f64> = told.iter().map(|(t, _)| *t).collect();
+        assert_eq!(times[..7], [0.2, 0.7, 1.2, 1.7, 2.2, 2.7, 4.2]);
+        let of = |k: usize| told[k].1[0].measured;
+        assert!(of(2) == of(1) && of(3) == of(1) && of(4) != of(1));
+        let loud: Accelerometer = toml::from_str("period = 0.5").unwrap();
+        assert!(loud.inconsistency().unwrap().to_string().contains("`watch_only` must be true"));
+    }
+}

@@ -1,0 +1,58 @@
+//! Accelerometers of a run: nothing reads them, and a record gets what they tell.
+
+use super::plant::{Mount, Plant};
+use super::{Simulation, SimulationError};
+use crate::random::Seed;
+use crate::record::{Acceleration, Accelerations, Record, Sample};
+use crate::scenario::Scenario;
+use crate::sensor::{Accelerating, Accelerometer, Felt};
+use crate::time::Instant;
+
+/// The accelerometers at work, each with its place among the sensors.
+#[derive(Clone, Debug)]
+pub struct Accelerometers(Vec<(usize, Mount, Accelerating)>);
+
+impl Accelerometers {
+    /// Those of a scenario, before its start.
+    pub fn new(scenario: &Scenario, run: u64) -> Self {
+        let seed = Seed { scenario: scenario.seed, run };
+        let of = |(index, accelerometer): (usize, &Accelerometer)| {
+            let point = scenario.study.sensed_at.get(index)?;
+            let mount = Mount::new(scenario.body.spatial()?, scenario.body.craft()?.mass, point);
+            Some((index, mount, accelerometer.start(seed, scenario.sensor.ordinal(index))))
+        };
+        Self(scenario.sensor.accelerometers().filter_map(of).collect())
+    }
+
+    /// When one samples or tells next.
+    pub fn due(&self) -> Option<Instant> {
+        self.0.iter().map(|(.., sensor)| sensor.due()).min()
+    }
+}
+
+impl Simulation {
+    /// Samples the accelerometers that are due now, after all that acts has changed, and tells what they tell.
+    pub(super) fn tell_accelerations(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        if self.telling.accelerometers.due().is_none_or(|due| due > now) {
+            return Ok(());
+        }
+        self.plant.view(now)?;
+        let Plant::Spatial(plant) = &self.plant else { return Ok(()) };
+        for (index, mount, sensor) in &mut self.telling.accelerometers.0 {
+            if sensor.exposes(now) {
+                sensor.sample(now, &plant.specific_force(mount));
+            }
+            while let Some(felt) = sensor.told(now) {
+                let axis = |felt: &Felt| Acceleration {
+                    measured_m_s2: felt.measured,
+                    true_m_s2: felt.exact,
+                    bias_m_s2: felt.bias,
+                };
+                let row = Accelerations { sensor: *index as u64, axes: felt.iter().map(axis).collect() };
+                record.record(now, Sample::Accelerations(&row))?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,64 @@
+//! Failures of sensors and actuators as they begin and end, for log and journal.
+
+use super::Simulation;
+use crate::record::foxglove::Level;
+use crate::record::{Command, FaultEvent, Onset, Record, RecordError, Sample};
+use crate::scenario::{Failing, Scenario};
+use crate::time::Instant;
+
+/// What fails in a run, and when, the latest first.
+#[derive(Clone, Debug)]
+pub struct Failures(Vec<(Instant, Onset, Failing)>);
+
+impl Failures {
+    /// The failures of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let mut edges = Vec::new();
+        for failing in scenario.failing() {
+            edges.push((failing.outage.begins(), Onset::Begins, failing.clone()));
+            edges.extend(failing.outage.ends().map(|ends| (ends, Onset::Ends, failing)));
+        }
+        // At one instant in the order of the scenario.
+        edges.reverse();
+        edges.sort_by(|a, b| b.0.cmp(&a.0));
+        Self(edges)
+    }
+
+    /// When one begins or ends next.
+    pub fn due(&self) -> Option<Instant> {
+        self.0.last().map(|(at, ..)| *at)
+    }
+
+    /// One that begins or ends by now.
+    fn next(&mut self, now: Instant) -> Option<(Onset, Failing)> {
+        let (_, onset, failing) = self.0.pop_if(|(at, ..)| *at <= now)?;
+        Some((onset, failing))
+    }
+}
+
+impl Simulation {
+    /// Tells what begins or ends to fail now.
+    pub(super) fn tell_failures(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
+        let now = self.now;
+        while let Some((onset, Failing { part, of, fault, .. })) = self.telling.failures.next(now) {
+            let (time_s, time_whole_s, time_fs) = Command::times(now);
+            let whose = if of.is_empty() { String::new() } else { format!("{of}: ") };
+            let (level, line) = match onset {
+                Onset::Begins => (Level::Warning, format!("{whose}`{fault}` begins")),
+                Onset::Ends => (Level::Info, format!("{whose}`{fault}` ends")),
+            };
+            let event = FaultEvent {
+                time_s,
+                time_whole_s,
+                time_fs,
+                part: part.clone(),
+                of,
+                fault: fault.to_owned(),
+                onset,
+            };
+            record.record(now, Sample::Fault(&event))?;
+            self.telling.events.failed(now, (level, &part), line, record)?;
+        }
+        Ok(())
+    }
+}

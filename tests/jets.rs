@@ -1,0 +1,145 @@
+//! Jets that act by themselves: the least propellant for what laws demand. The programme itself is compared with SciPy's in
+//! `numerics/simplex.rs`; here it is what comes of it.
+
+use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::record::{Column, Detail, Trace};
+use flexsc_core::{Scenario, Simulation};
+
+use crate::util::SCENARIOS;
+
+fn text(name: &str) -> String {
+    std::fs::read_to_string(format!("{SCENARIOS}/{name}.toml")).expect("a file")
+}
+
+fn flown(text: &str) -> (Metrics, Trace) {
+    let scenario = Scenario::parse("jets.toml", text).unwrap_or_else(|error| panic!("{error}"));
+    let (mut gather, mut trace) = (Gather::new(&scenario), Trace::new(Detail::Full));
+    Simulation::new(&scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
+    (gather.finish(&scenario), trace)
+}
+
+/// The on-times of each cycle in which any thruster fires.
+fn pulses(trace: &Trace) -> Vec<Vec<f64>> {
+    match trace.topic("/thrusters").and_then(|rows| rows.get("thrusters")) {
+        Some(Column::Rows(counts, columns)) => {
+            let all = columns.numbers("on_s").expect("times");
+            all.chunks(counts[0] as usize).map(<[f64]>::to_vec).collect()
+        }
+        _ => panic!("no thrusters"),
+    }
+}
+
+/// The scenario's comment: canted thrusters turn the body as the law demands, and hold it.
+#[test]
+fn canted_thrusters_turn_a_body_by_what_is_cheapest() {
+    let (metrics, trace) = flown(&text("canted-jets"));
+    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+    let (fuel, pulses) = (metrics.number("fuel_kg").expect("propellant"), pulses(&trace));
+    let on: f64 = pulses.iter().flatten().sum();
+    assert!((fuel / (on * 0.5 / (220.0 * 9.806_65)) - 1.0).abs() < 1e-12, "{fuel}");
+    // A vertex of three rows has three thrusters that fire in part, unless the torque is more than there is.
+    assert!(pulses.iter().all(|row| row.iter().filter(|on| **on > 0.0 && **on < 1.0).count() <= 3));
+    assert!(pulses.iter().flatten().all(|on| *on == 0.0 || (0.005..=1.0).contains(on)));
+    // Without a force the body stays where it is, and propellant is more.
+    let (free, calm) =
+        flown(&text("canted-jets").replace("minimum_on = 0.005", "force_free = true\nminimum_on = 0.0"));
+    assert_eq!(free.get("goal"), Some(&Value::Word("met")));
+    let speed = |trace: &Trace| {
+        let last = |name: &str| {
+            *trace.topic("/position").and_then(|rows| rows.numbers(name)?.last()).expect("a row")
+        };
+        ["x_m_s", "y_m_s", "z_m_s"].map(last).iter().map(|v| v * v).sum::<f64>().sqrt()
+    };
+    assert!(free.number("fuel_kg").expect("propellant") > fuel);
+    assert!(speed(&calm) < 0.02 * speed(&trace), "{} {}", speed(&calm), speed(&trace));
+}
+
+/// The pulses of a cycle turn a rigid body by the impulse that was demanded: J w' = torque over the cycle.
+#[test]
+fn pulses_give_what_is_demanded() {
+    let rigid = "duration = 4.0\n[spacecraft]\nmass = 100.0\ninertia = [[30, 0, 0], [0, 40, 0], [0, 0, 35]]\npoints = [{ name = \"bus\" }]\n\
+        [law.open]\n[[disturbance]]\nabout = \"roll\"\n[log]\nperiod = 1.0\n";
+    let jets = text("canted-jets");
+    let jets = &jets[jets.find("[actuator.jets]").expect("jets")..jets.find("[reference]").expect("an end")];
+    let jets = jets.replace("minimum_on = 0.005", "minimum_on = 0.0");
+    let body = rigid.replace(
+        "[law.open]",
+        "attitude = [0.99999, 0.003, -0.002, 0.001]\n[law.pd]\nk_p = 3.0\nk_d = 0.0\nperiod = 1.0",
+    );
+    let (_, trace) = flown(&format!("{body}{jets}"));
+    let rows = |topic: &str, name: &str| match trace.topic(topic).and_then(|rows| rows.get("axes")) {
+        Some(Column::Rows(_, columns)) => columns.numbers(name).expect("numbers").to_vec(),
+        _ => panic!("{topic}"),
+    };
+    let pulses = pulses(&trace);
+    let places = [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [1.0, -1.0, 1.0]];
+    let directions = [
+        [0.48, -0.64, -0.6],
+        [-0.48, 0.64, -0.6],
+        [0.64, 0.48, -0.6],
+        [-0.64, -0.48, -0.6],
+        [-0.64, 0.48, 0.6],
+        [0.64, -0.48, 0.6],
+        [-0.48, -0.64, 0.6],
+        [0.48, 0.64, 0.6],
+    ];
+    let mut turned = [0.0; 3];
+    for (thruster, on) in pulses[0].iter().enumerate() {
+        let [x, y, z] = places[thruster % 4];
+        let (x, y, z) = (0.5 * x, 0.5 * y, if thruster < 4 { 0.4 * z } else { -0.4 * z });
+        let [u, v, w] = directions[thruster].map(|part| 0.5 * part * on);
+        let torque = [y * w - z * v, z * u - x * w, x * v - y * u];
+        (0..3).for_each(|axis| turned[axis] += torque[axis]);
+    }
+    // Half of an angle is in the quaternion: -3 times 0.006, -0.004 and 0.002 rad.
+    let rates = rows("/rates", "rigid_rad_s");
+    for (axis, (angle, inertia)) in [(0.006, 30.0), (-0.004, 40.0), (0.002, 35.0)].into_iter().enumerate() {
+        assert!((turned[axis] + 3.0 * angle).abs() < 1e-6, "{axis}: {}", turned[axis]);
+        assert!((rates[3 + axis] * inertia - turned[axis]).abs() < 1e-6, "{axis}");
+    }
+}
+
+/// Jets that unload wheels do so by the least propellant too, and one that is dead is made up for by the wheels.
+#[test]
+fn wheels_are_unloaded_by_the_least_propellant() {
+    let unloading = text("momentum-unloading");
+    let groups = unloading.find("groups = {").expect("groups");
+    let end = unloading.find("\n[reference]").expect("an end");
+    let alone = format!("{}{}", &unloading[..groups], &unloading[end..])
+        .replace("minimum_on = 0.01", "allocation = \"least_propellant\"\nminimum_on = 0.01");
+    let ((by_groups, _), (by_itself, trace)) = (flown(&unloading), flown(&alone));
+    assert_eq!(by_itself.get("goal"), Some(&Value::Word("met")));
+    let fuel = |metrics: &Metrics| metrics.number("fuel_kg").expect("propellant");
+    // Each group turns the body about its axis alone, nearly: there is little to gain.
+    assert!(fuel(&by_itself) < 1.01 * fuel(&by_groups) && fuel(&by_itself) > 0.8 * fuel(&by_groups));
+    assert!(!pulses(&trace).is_empty());
+}
+
+#[test]
+fn what_does_not_go_with_it_is_refused() {
+    let jets = text("canted-jets");
+    let refused = |from: &str, to: &str, words: &str| {
+        assert!(jets.contains(from), "{from}");
+        let error = Scenario::parse("j.toml", &jets.replace(from, to)).expect_err(to).to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    let groups = "groups = { roll = { plus = [\"a\"], minus = [\"b\"] }, pitch = { plus = [\"a\"], minus = [\"b\"] }, yaw = { plus = [\"a\"], minus = [\"b\"] } }\nspecific";
+    refused("specific", groups, "`actuator.jets.groups` are those of `allocation");
+    refused("allocation = \"least_propellant\"\n", "", "`actuator.jets.groups` must be given, or");
+    refused(
+        "allocation = \"least_propellant\"\n",
+        "force_free = true\n",
+        "`actuator.jets.force_free` is that of",
+    );
+    let only = jets.find("    { name = \"e\"").expect("a thruster");
+    let last = jets.find("]\n\n[reference]").expect("an end");
+    let error = Scenario::parse("j.toml", &format!("{}{}", &jets[..only], &jets[last..]))
+        .expect_err("four")
+        .to_string();
+    assert!(error.contains("`actuator.jets.thrusters` must be able to turn the body to"), "{error}");
+    refused(
+        "[actuator.jets]",
+        "[sensor.gyro]\n[estimator.adaptive]\n[actuator.jets]",
+        "`estimator.adaptive` predicts by the pulses of groups",
+    );
+}
