@@ -12,6 +12,7 @@ use crate::document::Fault;
 use crate::environment::{Sky, into};
 use crate::law::Frame;
 use crate::motion::turning::{Angles, Driven};
+use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
 
 /// Panels turn by so much at most until modes of another angle carry the motion on (rad).
@@ -272,6 +273,10 @@ impl Scenario {
         for (index, sensor) in self.sensor.iter().enumerate() {
             if !on_hub(sensor.point()) {
                 return place(format!("{}.point", self.sensor_key(index)));
+            }
+            if matches!(sensor, Sensor::Accelerometer(_)) {
+                let why = "goes with appendages that do not turn: what a turning one's modes accelerate is not known";
+                return Some(Fault::new(self.sensor_key(index), why));
             }
         }
         for (index, disturbance) in self.disturbance.iter().enumerate() {
