@@ -3,10 +3,11 @@
     pip install numpy scipy
     python3 tests/golden/accelerometer_oracle.py > tests/golden/accelerometer.csv
 
-A rigid hub of 200 kg, whose centre of mass is the origin, and 5 kg on a spring and a damper that slide along the hub's
-z at (0, 2, 0). The hub spins at 0.1 rad/s about z; from 1 to 2 s a force of (0.3, 0, 1) N pushes at (0.5, 0, 0).
-Unknowns are the accelerations of origin, rotation and mass in the hub's axes, of the whole kinematics; no free mode and
-no centre of mass of the whole is used. Explicit Runge-Kutta of order 8, relative tolerance 1e-12.
+A rigid hub of 200 kg, whose centre of mass is the origin, and 5 kg on a spring and a damper that slide along
+the hub's z at (0, 2, 0). The hub spins at 0.1 rad/s about z; from 1 to 2 s a force of (0.3, 0, 1) N pushes at
+(0.5, 0, 0). Unknowns are the accelerations of origin, rotation and mass in the hub's axes, of the whole
+kinematics; no free mode and no centre of mass of the whole is used. Explicit Runge-Kutta of order 8, relative
+tolerance 1e-12.
 
 A line each: time, the specific force at (0.5, 0.3, 0.2) of the hub (3), and at the mass (3), in m/s^2.
 """

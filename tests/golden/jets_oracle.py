@@ -3,10 +3,11 @@
     pip install numpy scipy
     python3 tests/golden/jets_oracle.py > tests/golden/jets.csv
 
-Minimise c'x with B x = s b and 0 <= x <= u, where s <= 1 is as large as it can be: two programmes for `linprog`, the
-largest s and then the least cost. Arrangements of thrusters: twelve in pairs on a box, eight canted at the corners of
-another, six that just reach all axes, and twelve of random places and directions, with torques alone (3 rows) and with
-the forces balanced (6 rows). Costs are the flows of thrusters of different specific impulses.
+Minimise c'x with B x = s b and 0 <= x <= u, where s <= 1 is as large as it can be: two programmes for
+`linprog`, the largest s and then the least cost. Arrangements of thrusters: twelve in pairs on a box, eight
+canted at the corners of another, six that just reach all axes, and twelve of random places and directions,
+with torques alone (3 rows) and with the forces balanced (6 rows). Costs are the flows of thrusters of
+different specific impulses.
 
 A line each: rows, columns, B column by column, u, c, b, then s and the cost.
 """
@@ -48,7 +49,9 @@ def corners():
 
 def six():
     places = [np.array(p, float) for p in ([0, 1, 0], [0, 1, 0], [0, 0, 1], [0, 0, 1], [1, 0, 0], [1, 0, 0])]
-    directions = [np.array(d, float) for d in ([0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0])]
+    directions = [
+        np.array(d, float) for d in ([0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0])
+    ]
     return places, directions
 
 

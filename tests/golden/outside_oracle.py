@@ -14,10 +14,11 @@ the number.
   inertia and coupling; a PD law on modified Rodrigues parameters with a limit, held for 1 s.
 - di-gennaro-faults: the same with another inertia, modes 10 % stiffer, a disturbance, and actuators that give
   half from 10 s on and add 0.3 + 0.05 sin t N m from 50 s on; without noise.
-- di-gennaro-noise: the same with the study's white noise on what the law reads, over 10 runs, seen at the samples.
-- di-gennaro-study: the same with torques that hold the value of each step's end from its start on, failures too: so
-  the study must have it, for with it its numbers come out (its largest p 2.02e-2, w 8.43e-4, rms of eta 1.37e-2 and
-  of the torque 1.042 after 160 s, and the peaks of w 8.05e-2 and of eta 0.132).
+- di-gennaro-noise: the same with the study's white noise on what the law reads, over 10 runs, seen at the
+  samples.
+- di-gennaro-study: the same with torques that hold the value of each step's end from its start on, failures
+  too: so the study must have it, for with it its numbers come out (its largest p 2.02e-2, w 8.43e-4, rms of
+  eta 1.37e-2 and of the torque 1.042 after 160 s, and the peaks of w 8.05e-2 and of eta 0.132).
 - panels: a hub with two hinged panels in the plane, which is Basilisk's test of its hinged panels by its
   Lagrangian, with the whole kinematics of three rigid bodies; the second angle is counter-clockwise.
 - pulse: a body with a mode that couples to translation and rotation, under a torque and an acceleration of
@@ -126,7 +127,7 @@ def di_gennaro_faults():
 
 
 def di_gennaro_noise(problem, torque, runs=10, end=300):
-    """The study's numbers with its white noise, over some runs with other draws each: mean and standard deviation."""
+    """The study's numbers with its white noise over some runs: mean and standard deviation."""
     rate, found = di_gennaro_body(FAULTS, 1.1), []
     for run in range(runs):
         draws, all_of = np.random.default_rng(run), []

@@ -6,6 +6,7 @@ use super::AxisActuate;
 use super::failure::{Failing, Failure, Lasting};
 use crate::body::Forced;
 use crate::outage::Outage;
+use crate::quantity::Time;
 use crate::record::WheelMotion;
 use crate::sine::Sine;
 use crate::time::Instant;
@@ -28,7 +29,7 @@ impl Impaired {
         inner: Box<dyn AxisActuate>,
     ) -> Box<dyn AxisActuate> {
         let Some(failing) = Failing::new(failures, concerns) else { return inner };
-        let until = |outage: Outage| outage.to.map_or(f64::MAX, |to| to.get());
+        let until = |outage: Outage| outage.to.map_or(f64::MAX, Time::get);
         let terms = failing.all_sines().map(|(sine, of)| sine.term(of.from.get(), until(of))).collect();
         Box::new(Self { inner, failing, added: Arc::new(Waveform { terms }) })
     }

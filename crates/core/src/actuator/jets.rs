@@ -35,10 +35,10 @@ pub struct Jets {
     /// The thrusters.
     pub thrusters: Vec<Thruster>,
     /// How what is demanded becomes pulses.
-    #[serde(default, skip_serializing_if = "Firing::by_groups")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub allocation: Firing,
     /// Of `least_propellant`, whether the forces of the pulses shall cancel.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub force_free: bool,
     /// Of `groups`, which of them act together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -59,10 +59,8 @@ pub enum Firing {
     LeastPropellant,
 }
 
-impl Firing {
-    fn by_groups(&self) -> bool {
-        *self == Self::Groups
-    }
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// One thruster.

@@ -218,8 +218,8 @@ impl Spinning {
         if any {
             self.turn(now);
             let speeds = self.speeds(rigid);
-            for index in 0..self.wheels.len() {
-                let speed = self.turned.get(index).map_or(speeds[index], |wheel| wheel.speed);
+            for (index, known) in speeds.into_iter().enumerate() {
+                let speed = self.turned.get(index).map_or(known, |wheel| wheel.speed);
                 self.drive(now, index, speed, self.commanded[index]);
             }
         }

@@ -109,11 +109,11 @@ impl Tableau<'_> {
                 if matrix[row][pivot].abs() > matrix[best][pivot].abs() { row } else { best }
             });
             matrix.swap(pivot, best);
-            for row in pivot + 1..n {
-                let factor = matrix[row][pivot] / matrix[pivot][pivot];
-                for column in pivot..=n {
-                    matrix[row][column] -= factor * matrix[pivot][column];
-                }
+            let (done, below) = matrix.split_at_mut(pivot + 1);
+            let lead = &done[pivot];
+            for row in below {
+                let factor = row[pivot] / lead[pivot];
+                row.iter_mut().zip(lead).skip(pivot).for_each(|(a, of)| *a -= factor * of);
             }
         }
         let mut found = vec![0.0; n];

@@ -20,7 +20,7 @@ impl Failures {
         }
         // At one instant in the order of the scenario.
         edges.reverse();
-        edges.sort_by(|a, b| b.0.cmp(&a.0));
+        edges.sort_by_key(|edge| std::cmp::Reverse(edge.0));
         Self(edges)
     }
 
