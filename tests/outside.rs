@@ -240,7 +240,7 @@ fn two_masses_are_stable_for_the_springs_that_were_published() {
     for (spring, stable) in [(0.44_f64, false), (0.47, true), (2.2, true), (2.35, false)] {
         let mut document = flexsc_core::Document::parse(
             "two-masses.toml",
-            &std::fs::read_to_string(format!("{GOLDEN}/outside/two-masses.toml")).expect("there"),
+            std::fs::read_to_string(format!("{GOLDEN}/outside/two-masses.toml")).expect("there"),
         )
         .expect("a document");
         for (key, value) in [
