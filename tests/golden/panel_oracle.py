@@ -32,7 +32,9 @@ def nodes(path):
         elif reading and line.startswith(" -3"):
             return found
         elif reading:
-            found[int(line[3:13])] = np.array([float(line[13 + 12 * axis : 25 + 12 * axis]) for axis in range(3)])
+            found[int(line[3:13])] = np.array(
+                [float(line[13 + 12 * axis : 25 + 12 * axis]) for axis in range(3)]
+            )
     raise ValueError(f"{path}: no nodes")
 
 
@@ -62,7 +64,9 @@ def main():
         run(directory, "shapes", deck)
         run(directory, "matrices", deck.replace("*FREQUENCY", "*FREQUENCY, SOLVER=MATRIXSTORAGE"))
         positions = nodes(directory / "shapes.frd")
-        freedoms = [tuple(map(int, line.split("."))) for line in (directory / "matrices.dof").read_text().split()]
+        freedoms = [
+            tuple(map(int, line.split("."))) for line in (directory / "matrices.dof").read_text().split()
+        ]
         order = len(freedoms)
         mass, stiffness = (matrix(directory / f"matrices.{kind}", order) for kind in ("mas", "sti"))
     rigid = np.zeros((order, 6))

@@ -25,7 +25,7 @@ impl Target {
                     let task = Task { time: duration.get(), impulse: 0.0, travel: angle };
                     command
                         .waveform(&task, &command.zeros(modes)?)
-                        .map_err(|fault| fault.within("command"))?
+                        .map_err(|fault| Fault::new("duration", fault.why))?
                         .0
                 }
                 _ => {
