@@ -243,8 +243,8 @@ fn panels_visibly_bend() {
     let names =
         shipped.filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned));
     for name in names {
-        // A rigid body has nothing to bend.
-        if name == "detumble-and-point" {
+        // A rigid body has nothing to bend, and drives turn the wings by far more than they bend.
+        if ["detumble-and-point", "sun-tracking"].contains(&name.as_str()) {
             continue;
         }
         let dir = Dir::with(&[&name]);

@@ -148,7 +148,7 @@ fn what_no_filter_with_modes_can_be_is_refused() {
         (("modes = [0], noise", "modes = [7], noise"), "`estimator.attitude.elastic.modes[0]` must be below"),
         (("modes = [0], noise", "modes = [0, 0], noise"), "names mode 0 again"),
         (("modes = [0], noise", "modes = [], noise"), "must name a mode at least"),
-        (("modes = [0], noise", "modes = [0], feeds = \"modes\", noise"), "must be `rigid` or `hub`"),
+        (("feeds = \"hub\"", "feeds = \"modes\""), "must be `rigid` or `hub`"),
         (
             ("modes = [0], noise", "modes = [0], frequencies = [1, 2], noise"),
             "must be one for each of 1 modes, got 2",
