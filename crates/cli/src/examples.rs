@@ -19,9 +19,12 @@ macro_rules! shipped {
 /// Name and text of each.
 pub const EXAMPLES: &[(&str, &str)] = shipped![
     "attitude-hold",
+    "canted-jets",
     "detumble-and-point",
     "earth-observer",
+    "flexible-boom",
     "four-clamped-modes",
+    "four-clamped-modes-faults",
     "half-turn",
     "iss-delay-limit",
     "iss-identification",
@@ -46,8 +49,10 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "rotation-sine",
     "rotation-spin-up",
     "rotation-thrusters",
+    "shaped-slew",
     "slew-wheel-lqg",
     "station-keeping",
+    "sun-tracking",
     "thruster-phase-plane",
     "wheel-ekf",
     "wheel-fast-mode",

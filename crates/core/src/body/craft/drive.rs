@@ -244,7 +244,7 @@ mod tests {
             ("rate = 1.0\ntrack = \"sun\"", ""),
             ("track = \"sun\"\nfrom = 3", "from"),
             ("track = \"sun\"\nnormal = [0, 1, 1]", "normal"),
-            ("rate = 0.02\nuntil = 5\nacceleration = 0.002", "acceleration"),
+            ("rate = 0.02\nfrom = 1\nuntil = 5\nacceleration = 0.002", "acceleration"),
             ("rate = 0.02\nfrom = 6\nuntil = 5", "until"),
             ("table = [{ time = 1, angle = 0 }]", "table"),
             ("table = [{ time = 1, angle = 0 }, { time = 1, angle = 1 }]", "table[1].time"),
@@ -253,7 +253,7 @@ mod tests {
                 "acceleration",
             ),
         ] {
-            let fault = drive(text).check().unwrap_err();
+            let fault = drive(text).check().expect_err(text);
             assert_eq!(fault.key, key, "{text}: {fault}");
         }
         assert_eq!(drive("track = \"sun\"").check(), Ok(()));

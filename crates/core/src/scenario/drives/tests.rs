@@ -61,6 +61,7 @@ fn modes_change_often_enough() {
     for pair in courses.changes.windows(2) {
         let [a, b] = [pair[0].0.seconds(), pair[1].0.seconds()];
         assert!(a < pair[0].1 && pair[0].1 < b);
-        assert!((courses.at(0, b)[0] - courses.at(0, a)[0]).abs() <= APART);
+        let turned = courses.at(0, b)[0] - courses.at(0, a)[0];
+        assert!(libm::remainder(turned, std::f64::consts::TAU).abs() <= APART, "{a} to {b}: {turned}");
     }
 }
