@@ -64,7 +64,7 @@ fn pulses_give_what_is_demanded() {
     let jets = jets.replace("minimum_on = 0.005", "minimum_on = 0.0");
     let body = rigid.replace(
         "[law.open]",
-        "attitude = [0.99999, 0.003, -0.002, 0.001]\n[law.pd]\nk_p = 3.0\nk_d = 0.0\nperiod = 1.0",
+        "attitude = [0.9999929999754998, 0.003, -0.002, 0.001]\n[law.pd]\nk_p = 3.0\nk_d = 0.0\nperiod = 1.0",
     );
     let (_, trace) = flown(&format!("{body}{jets}"));
     let rows = |topic: &str, name: &str| match trace.topic(topic).and_then(|rows| rows.get("axes")) {

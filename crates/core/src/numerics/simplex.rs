@@ -48,22 +48,21 @@ impl Programme {
             (0..rows).map(size).map(|size| if size > 0.0 { 1.0 / size } else { 1.0 }).collect();
         let largest = self.most.iter().copied().fold(0.0, f64::max);
         let asked = b.iter().zip(&scales).map(|(b, scale)| (b * scale).abs()).fold(0.0, f64::max);
+        let unit = largest.min(asked);
         if asked == 0.0 || largest == 0.0 {
             return (vec![0.0; count], if asked == 0.0 { 1.0 } else { 0.0 });
         }
-        // In units of the largest x, and of what is asked; then s, then what stands for each row at first.
+        // What is found is of the size of 1, however little is asked. In units of x, and of what is asked; then s, then what stands for each row at first.
         let mut columns: Vec<Vec<f64>> = self
             .columns
             .iter()
-            .map(|column| {
-                column.iter().zip(&scales).map(|(a, scale)| a * scale * (largest / asked)).collect()
-            })
+            .map(|column| column.iter().zip(&scales).map(|(a, scale)| a * scale * (unit / asked)).collect())
             .collect();
         columns.push(b.iter().zip(&scales).map(|(b, scale)| -b * scale / asked).collect());
         for row in 0..rows {
             columns.push((0..rows).map(|other| if other == row { 1.0 } else { 0.0 }).collect());
         }
-        let mut most: Vec<f64> = self.most.iter().map(|most| most / largest).collect();
+        let mut most: Vec<f64> = self.most.iter().map(|most| most / unit).collect();
         most.push(1.0);
         most.resize(columns.len(), 0.0);
         let mut tableau = Tableau {
@@ -87,7 +86,7 @@ impl Programme {
         let mut scaled: Vec<f64> = costs.iter().map(|cost| cost / dearest).collect();
         scaled.resize(columns.len(), 0.0);
         tableau.minimise(&scaled);
-        (tableau.values[..count].iter().map(|value| value * largest).collect(), part)
+        (tableau.values[..count].iter().map(|value| value * unit).collect(), part)
     }
 }
 
@@ -225,6 +224,22 @@ mod tests {
             short += usize::from(part < 1.0);
         }
         assert!(cases >= 200 && short >= 40, "{cases} {short}");
+    }
+
+    #[test]
+    fn little_is_found_as_exactly_as_much() {
+        let column = |angle: f64| vec![libm::cos(angle), libm::sin(angle), 0.3 * libm::sin(3.0 * angle)];
+        let columns: Vec<Vec<f64>> = (0..9).map(|k| column(0.7 * f64::from(k))).collect();
+        let programme = Programme::new(3, columns, vec![1.0; 9]);
+        let costs = [1.0, 1.5, 2.0, 1.0, 1.5, 2.0, 1.0, 1.5, 2.0];
+        let of = |size: f64| programme.cheapest(&[0.02 * size, -0.01 * size, 0.004 * size], &costs);
+        let (whole, part) = of(1.0);
+        assert!(part == 1.0 && whole.iter().any(|x| *x > 0.0));
+        for size in [1e-3, 1e-7, 1e-12, 1e-20] {
+            let (x, part) = of(size);
+            let off = x.iter().zip(&whole).map(|(x, whole)| (x / size - whole).abs()).fold(0.0, f64::max);
+            assert!(part == 1.0 && off < 1e-12, "{size:e}: {part} {off:e}");
+        }
     }
 
     #[test]
