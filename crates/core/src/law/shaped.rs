@@ -20,19 +20,14 @@ impl Target {
     /// The key that does not fit the modes, and why.
     pub(super) fn turn(&self, ways: [Quaternion<f64>; 2], modes: &[Mode]) -> Result<Turn, Fault> {
         Turn::new(ways, |angle| {
-            let plan = match (&self.command, self.duration) {
-                (Some(command), Some(duration)) => {
-                    let task = Task { time: duration.get(), impulse: 0.0, travel: angle };
-                    command
-                        .waveform(&task, &command.zeros(modes)?)
-                        .map_err(|fault| Fault::new("duration", fault.why))?
-                        .0
-                }
-                _ => {
-                    let acceleration = self.acceleration.map_or(0.0, Positive::get);
-                    let rate_limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
-                    Slew::new(ways, acceleration, rate_limit, self.profile).command()
-                }
+            let plan = if let (Some(command), Some(duration)) = (&self.command, self.duration) {
+                let task = Task { time: duration.get(), impulse: 0.0, travel: angle };
+                let planned = command.waveform(&task, &command.zeros(modes)?);
+                planned.map_err(|fault| Fault::new("duration", fault.why))?.0
+            } else {
+                let acceleration = self.acceleration.map_or(0.0, Positive::get);
+                let rate_limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
+                Slew::new(ways, acceleration, rate_limit, self.profile).command()
             };
             let Some(shaper) = &self.shaper else { return Ok(plan) };
             Ok(shaped(&plan, &shaper.impulses(modes)?))

@@ -106,7 +106,7 @@ pub fn read(text: impl BufRead) -> Result<Deck, String> {
         }
         // A keyword goes on behind a comma at its end.
         if text.starts_with('*') || keyword.ends_with(',') {
-            keyword.extend(line.squeezed().to_ascii_uppercase().chars());
+            keyword.push_str(&line.squeezed().to_ascii_uppercase());
             if !keyword.ends_with(',') {
                 at = reader.open(&keyword, &line)?;
                 keyword.clear();
@@ -204,15 +204,12 @@ impl Reader {
                     ));
                 }
                 *missing = nodes + 1 - words.len();
-                match rule {
-                    Some(rule) => {
-                        self.deck.rules.insert(element, rule);
-                    }
-                    None => {
-                        self.points.insert(element, (whole(1, "node")?, number));
-                        if let Some(set) = set {
-                            self.members.entry(set.clone()).or_default().push(Member::Element(element));
-                        }
+                if let Some(rule) = rule {
+                    self.deck.rules.insert(element, rule);
+                } else {
+                    self.points.insert(element, (whole(1, "node")?, number));
+                    if let Some(set) = set {
+                        self.members.entry(set.clone()).or_default().push(Member::Element(element));
                     }
                 }
             }

@@ -85,7 +85,9 @@ impl Kind {
         let layer = |z: f64| ring.iter().map(move |[x, y]| [*x, *y, z]);
         let edges = |z: f64| {
             let after = ring.iter().cycle().skip(1);
-            ring.iter().zip(after).map(move |(a, b)| [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0, z])
+            ring.iter()
+                .zip(after)
+                .map(move |(a, b)| [f64::midpoint(a[0], b[0]), f64::midpoint(a[1], b[1]), z])
         };
         let mut nodes: Vec<[f64; 3]> = if prism {
             let upright = layer(-1.0).map(|[x, y, _]| [x, y, 0.0]);
@@ -211,7 +213,9 @@ impl Functions {
 }
 
 fn monomial(powers: [i32; 3], at: [f64; 3]) -> f64 {
-    powers.iter().zip(at).map(|(power, x)| x.powi(*power)).product()
+    // Powers are 0, 1 or 2.
+    let one = |power: i32, x: f64| [1.0, x, x * x][power.clamp(0, 2) as usize];
+    powers.iter().zip(at).map(|(power, x)| one(*power, x)).product()
 }
 
 impl Values {
