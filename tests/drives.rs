@@ -40,8 +40,10 @@ fn parsed(text: &str) -> Scenario {
 fn panels_of_point_masses_turn_as_the_oracle_says() {
     let (_, trace) = flown(&parsed(&golden()), Detail::Full);
     let text = std::fs::read_to_string(format!("{GOLDEN}/driven.csv")).expect("a file");
-    let rows: Vec<Vec<f64>> =
-        text.lines().map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
     let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| numbers(&trace, "/pointing", name));
     let rates = within(&trace, "/rates", "axes", "rate_rad_s");
     let [momentum, elastic, rotational] =

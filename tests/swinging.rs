@@ -20,7 +20,7 @@ const READ: &str = include_str!("golden/swinging-in.csv");
 const GIVEN: &str = include_str!("golden/swinging-out.csv");
 
 fn rows(text: &str) -> Vec<Vec<f64>> {
-    text.lines().map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+    text.lines().map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect()
 }
 
 fn known() -> KnownModes {

@@ -1,5 +1,6 @@
 //! `flexsc examples` and `flexsc new`: the shipped scenarios, which the command has inside, listed and copied.
 
+use std::fmt::Write as _;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -165,7 +166,7 @@ fn list(as_json: bool) -> Result<(), Failure> {
         let document = Document::parse(name, (*text).to_owned())?;
         let about = document.text_of("about").unwrap_or_default();
         objects.push(json!({ "name": name, "about": about }));
-        lines += &format!("{name:widest$}  {about}\n");
+        let _ = writeln!(lines, "{name:widest$}  {about}");
     }
     if as_json {
         return print(format!("{}\n", json!(objects)).as_bytes());

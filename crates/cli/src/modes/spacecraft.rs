@@ -76,7 +76,8 @@ impl Results for Spacecraft {
             say!("  {:>10}{:>width$}", "s", "angles, rad", width = 12 * drives);
             for at in &parts.turned {
                 let row = |of: &[f64], digits: usize| -> String {
-                    of.iter().map(|value| format!("{value:>12.digits$}")).collect()
+                    let values: Vec<_> = of.iter().map(|value| format!("{value:>12.digits$}")).collect();
+                    values.concat()
                 };
                 say!("  {:>10.1}{}{}", at.time_s, row(&at.angles_rad, 4), row(&at.frequencies_rad_s, 6));
             }

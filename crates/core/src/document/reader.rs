@@ -41,7 +41,7 @@ pub fn read_value<T: DeserializeOwned>(value: &Value) -> Result<T, Wrong> {
 struct Reader<'a>(&'a Value);
 
 impl<'de> Reader<'de> {
-    fn found(&self) -> Unexpected<'de> {
+    fn found(self) -> Unexpected<'de> {
         match self.0 {
             Value::String(text) => Unexpected::Str(text),
             Value::Integer(number) => Unexpected::Signed(*number),

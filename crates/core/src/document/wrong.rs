@@ -50,24 +50,27 @@ impl Wrong {
     }
 
     /// A name that is none of those known.
-    fn unknown(name: String, given: &str, known: &'static [&'static str], none: &str) -> Self {
+    fn unknown(name: &str, given: &str, known: &'static [&'static str], none: &str) -> Self {
         let hint = hint(given, known).map_or_else(String::new, |hint| format!("; {hint}"));
         let why = format!("{name}, {}{hint}", one_of(known, none));
         Self { meant: meant(given, known), ..Self::because(why) }
     }
 
     /// The same, at the key itself, not at its value.
+    #[must_use]
     pub fn at_key(self, key: &str) -> Self {
         Self { key: Some(key.to_owned()), ..self }
     }
 
     /// The same, within the value of a key.
+    #[must_use]
     pub fn in_key(mut self, key: &str) -> Self {
         self.steps.push(bare_or_quoted(key));
         self
     }
 
     /// The same, within an element of an array.
+    #[must_use]
     pub fn in_element(mut self, index: usize) -> Self {
         self.steps.push(format!("[{index}]"));
         self
@@ -136,7 +139,7 @@ impl Error for Wrong {
 
     fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
         Self::unknown(
-            format!("`{}` is not known here", shortened(name)),
+            &format!("`{}` is not known here", shortened(name)),
             name,
             known,
             "there are no kinds here",
@@ -144,7 +147,7 @@ impl Error for Wrong {
     }
 
     fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
-        Self::unknown(format!("unknown key `{}`", shortened(name)), name, known, "there are no keys here")
+        Self::unknown(&format!("unknown key `{}`", shortened(name)), name, known, "there are no keys here")
     }
 
     fn missing_field(name: &'static str) -> Self {

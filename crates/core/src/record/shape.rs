@@ -4,7 +4,7 @@
 //! straight into columns, so that nothing takes more memory than what is kept of it.
 
 use prost_types::field_descriptor_proto::Type;
-use prost_types::{DescriptorProto, EnumDescriptorProto, FieldDescriptorProto};
+use prost_types::{DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto};
 
 use super::descriptor::{Kind, Pool, is_group, is_list};
 use super::table::{Budget, Schema};
@@ -252,7 +252,7 @@ fn scalar(kind: &Kind<'_>) -> (Scalar, Column) {
         }
         Kind::Enum(of) => {
             let labels = of.value.iter().map(|value| label_of(value.name())).collect();
-            let known = of.value.iter().map(|value| value.number()).collect();
+            let known = of.value.iter().map(EnumValueDescriptorProto::number).collect();
             (Scalar::Label(known), Column::Labels(Vec::new(), labels))
         }
         Kind::Scalar(of) => match of {

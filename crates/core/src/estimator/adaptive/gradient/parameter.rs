@@ -40,8 +40,8 @@ impl Motion {
     /// Whether it can be carried on.
     pub fn is_sound(&self) -> bool {
         // Without a branch for each number: this is asked of every derivative, twice a cycle.
-        let wild = |wild: bool, n: &f64| wild | !(n.abs() < HUGE);
-        !self.phases.as_flattened().iter().fold(wild(false, &self.rate), wild)
+        let tame = |tame: bool, n: &f64| tame & (n.abs() < HUGE);
+        self.phases.as_flattened().iter().fold(tame(true, &self.rate), tame)
     }
 
     /// Begins again from nothing.
