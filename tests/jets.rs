@@ -54,7 +54,7 @@ fn canted_thrusters_turn_a_body_by_what_is_cheapest() {
     assert!(speed(&calm) < 0.02 * speed(&trace), "{} {}", speed(&calm), speed(&trace));
 }
 
-/// The pulses of a cycle turn a rigid body by the impulse that was demanded: J w' = torque over the cycle.
+/// The pulses of a cycle turn a rigid body by the impulse that was demanded: J w' = torque over the cycle, but for the gyroscopic torque.
 #[test]
 fn pulses_give_what_is_demanded() {
     let rigid = "duration = 4.0\n[spacecraft]\nmass = 100.0\ninertia = [[30, 0, 0], [0, 40, 0], [0, 0, 35]]\npoints = [{ name = \"bus\" }]\n\
@@ -95,7 +95,8 @@ fn pulses_give_what_is_demanded() {
     let rates = rows("/rates", "rigid_rad_s");
     for (axis, (angle, inertia)) in [(0.006, 30.0), (-0.004, 40.0), (0.002, 35.0)].into_iter().enumerate() {
         assert!((turned[axis] + 3.0 * angle).abs() < 1e-6, "{axis}: {}", turned[axis]);
-        assert!((rates[3 + axis] * inertia - turned[axis]).abs() < 1e-6, "{axis}");
+        // Within a second (J_y - J_x) w_x w_y adds 1.8e-6 N m s about yaw at most.
+        assert!((rates[3 + axis] * inertia - turned[axis]).abs() < 2e-6, "{axis}");
     }
 }
 
