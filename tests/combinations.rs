@@ -56,7 +56,7 @@ const SENSORS: [Kind; 6] = [
     ),
 ];
 
-const ESTIMATORS: [Kind; 9] = [
+const ESTIMATORS: [Kind; 10] = [
     ("none", "-", ""),
     ("envelope", "E", "envelope = { window = 10.0 }"),
     ("truth", "T", "truth = {}"),
@@ -64,11 +64,12 @@ const ESTIMATORS: [Kind; 9] = [
     ("extended_kalman", "X", "extended_kalman = { angle_noise = 1e-6 }"),
     ("unscented_kalman", "U", "unscented_kalman = { angle_noise = 1e-6 }"),
     ("attitude", "Q", "attitude = {}"),
+    ("attitude with modes", "M", "attitude = { elastic = { modes = [0], noise = 1e-6 } }"),
     ("rigid_rate", "R", "rigid_rate = { correction = 0.05 }"),
     ("adaptive", "A", "adaptive = {}"),
 ];
 
-const ACTUATORS: [Kind; 7] = [
+const ACTUATORS: [Kind; 8] = [
     ("ideal", "", "\"ideal\""),
     ("hold", "", "{ hold = { period = 0.2 } }"),
     ("thrusters", "", "{ thrusters = { torque = 0.05, period = 0.2 } }"),
@@ -86,6 +87,18 @@ const ACTUATORS: [Kind; 7] = [
     { name = \"e\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], thrust = 0.05 },
     { name = \"f\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, -1.0, 0.0], thrust = 0.05 },
 ], groups = { roll = { plus = [\"a\"], minus = [\"b\"] }, pitch = { plus = [\"c\"], minus = [\"d\"] }, yaw = { plus = [\"e\"], minus = [\"f\"] } } } }",
+    ),
+    (
+        "jets by least_propellant",
+        "",
+        "{ jets = { period = 0.2, specific_impulse = 270.0, allocation = \"least_propellant\", thrusters = [
+    { name = \"a\", point = \"hub\", offset = [0.0, 1.0, 0.0], direction = [0.0, 0.0, 1.0], thrust = 0.05 },
+    { name = \"b\", point = \"hub\", offset = [0.0, 1.0, 0.0], direction = [0.0, 0.0, -1.0], thrust = 0.05 },
+    { name = \"c\", point = \"hub\", offset = [0.0, 0.0, 1.0], direction = [1.0, 0.0, 0.0], thrust = 0.05 },
+    { name = \"d\", point = \"hub\", offset = [0.0, 0.0, 1.0], direction = [-1.0, 0.0, 0.0], thrust = 0.05 },
+    { name = \"e\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], thrust = 0.05 },
+    { name = \"f\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, -1.0, 0.0], thrust = 0.05 },
+] } }",
     ),
 ];
 
@@ -145,6 +158,9 @@ fn combined(
         ("none", _) => String::new(),
         // A filter that an open loop does not read is there to be assessed.
         ("attitude", "open") => "estimator = { attitude = { watch_only = true } }\n".to_owned(),
+        ("attitude with modes", "open") => {
+            format!("estimator = {{ {} }}\n", estimator.2.replacen("{ ", "{ watch_only = true, ", 1))
+        }
         (kind, "open") if kind.contains("kalman") => {
             format!("estimator = {{ {} }}\n", estimator.2.replace(" }", ", watch_only = true }"))
         }
@@ -204,10 +220,12 @@ fn run(scenario: &Scenario, name: &str) {
 #[test]
 fn parts_combine_as_the_documents_say() {
     let all = LAWS.len() * SENSORS.len() * ESTIMATORS.len() * ACTUATORS.len();
+    let turning = SPACECRAFT.replace("plate =", "drive = { about = [0, 1, 0], rate = 0.02 }\nplate =");
     let bodies = [
         ("One angle", ONE_ANGLE, 338),
         ("Three axes", THREE_AXES, 377),
         ("A spacecraft from parts", SPACECRAFT, 377),
+        ("A spacecraft with a panel that turns", &turning, 377),
     ];
     let tables: Vec<_> = std::thread::scope(|scope| {
         let threads: Vec<_> = bodies.iter().map(|(_, body, _)| scope.spawn(|| table(body))).collect();

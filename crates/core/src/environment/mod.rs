@@ -9,6 +9,7 @@ mod magnetic_field;
 mod orbit;
 mod sky;
 mod solar_pressure;
+mod sun;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +28,7 @@ pub use magnetic_field::MagneticField;
 pub(crate) use orbit::into;
 pub use sky::{Seen, Sky};
 pub use solar_pressure::SolarPressure;
+pub use sun::Sun;
 
 /// What surrounds a body with three axes. The torques add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -38,9 +40,9 @@ pub struct Environment {
     /// The magnetic field of the orbit's planet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetic_field: Option<MagneticField>,
-    /// The direction to the Sun in inertial axes, of any length; the orbit's planet throws a shadow.
+    /// The direction to the Sun in inertial axes, of any length, or by the date of the start; the orbit's planet throws a shadow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sun: Option<[Finite; 3]>,
+    pub sun: Option<Sun>,
     /// Gravity gradient of a circular orbit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_gradient: Option<GravityGradient>,
@@ -64,7 +66,7 @@ impl Environment {
         if let Some(fault) = self.orbit.as_ref().and_then(Kepler::fault) {
             return Some(fault.within("orbit"));
         }
-        if self.sun.is_some_and(|sun| sun.iter().all(|part| part.get() == 0.0)) {
+        if self.sun.is_some_and(|sun| sun.is_nowhere()) {
             return Some(Fault::new("sun", "must have a length, got [0, 0, 0]"));
         }
         if self.magnetic_field.is_some() && self.orbit.is_none() {

@@ -1,7 +1,7 @@
 //! What is around a body wherever it faces: its place on the orbit, the magnetic field there, the Sun, and the planet's shadow.
 
 use super::{Environment, Kepler, MagneticField, Place};
-use crate::attitude::{Vector, vector};
+use crate::attitude::Vector;
 use crate::time::{Instant, Span};
 
 /// The sky of a run.
@@ -25,9 +25,9 @@ pub struct Seen {
 }
 
 impl Sky {
-    /// The sky of an environment, for a run that lasts so long.
-    pub fn new(environment: &Environment, duration: Span) -> Self {
-        let sun = environment.sun.map(|sun| vector(&sun).normalize());
+    /// The sky of an environment, for a run that lasts so long and begins so many nanoseconds after 1970.
+    pub fn new(environment: &Environment, duration: Span, epoch_ns: u64) -> Self {
+        let sun = environment.sun.map(|sun| sun.direction(epoch_ns));
         let shadows = match (&environment.orbit, &sun) {
             (Some(orbit), Some(sun)) => orbit.shadows(sun, duration.seconds()),
             _ => Vec::new(),

@@ -23,7 +23,7 @@ fn upright() -> Matrix3<f64> {
 
 fn around(text: &str, inertia: &Matrix3<f64>) -> Around {
     let environment: Environment = crate::document::from_text(text).expect("an environment");
-    let sky = Sky::new(&environment, Span::from_seconds(1e5));
+    let sky = Sky::new(&environment, Span::from_seconds(1e5), 0);
     Around::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
 }
 
@@ -287,7 +287,7 @@ fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     let text = "solar_pressure = { force = [1e-4, 0.0, 0.0], at = [0.1, 0.5, 0.0], shadow = [[10.0, 20.0]] }";
     let environment: Environment = crate::document::from_text(text).expect("an environment");
     let centre = Vector::new(0.1, 0.3, 0.0);
-    let sky = Sky::new(&environment, Span::from_seconds(100.0));
+    let sky = Sky::new(&environment, Span::from_seconds(100.0), 0);
     let around = Around::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);
     let at = |t: f64| around.torque(t, &Quaternion::identity(), &upright());
     let pushed = Vector::new(0.0, 0.0, -0.2e-4);

@@ -7,6 +7,8 @@ use crate::time::Instant;
 
 /// Chi-square of three degrees of freedom lies between these with a probability of 95 %.
 const INSIDE: [f64; 2] = [0.215_795_282_623_897_85, 9.348_403_604_496_148];
+/// The same of two, times 3/2 as the NIS of a direction is: -3 ln 0.975 and -3 ln 0.025.
+const INSIDE_OF_TWO: [f64; 2] = [0.075_953_423_952_869_69, 11.066_638_362_341_81];
 
 /// Gathers the samples of a filter.
 #[derive(Clone, Debug)]
@@ -46,7 +48,8 @@ impl Known {
         if estimate.measured == Use::Used {
             self.count.1 += 1;
             self.nis += estimate.nis;
-            self.inside += u64::from((INSIDE[0]..=INSIDE[1]).contains(&estimate.nis));
+            let [low, high] = if estimate.numbers == 2 { INSIDE_OF_TWO } else { INSIDE };
+            self.inside += u64::from((low..=high).contains(&estimate.nis));
         }
     }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::Scenario;
 use crate::document::Fault;
-use crate::environment::Sky;
+use crate::environment::{Sky, Sun};
 use crate::sensor::Sensor;
 
 /// The planet's shadow is known for so many orbits at most.
@@ -17,6 +17,9 @@ impl Scenario {
         if let Some(fault) = around.fault() {
             return Some(fault.within("environment"));
         }
+        if around.sun == Some(Sun::Epoch) && self.epoch.is_none() {
+            return Some(Fault::new("environment.sun", "is that of the scenario's `epoch`, and there is none"));
+        }
         let turns =
             around.orbit.filter(|_| around.sun.is_some())?.mean_motion() * self.duration.seconds() / TAU;
         let why = || {
@@ -27,7 +30,7 @@ impl Scenario {
 
     /// What is around the body wherever it faces.
     pub fn sky(&self) -> Sky {
-        let of = |environment| Sky::new(environment, self.duration);
+        let of = |environment| Sky::new(environment, self.duration, self.epoch_ns());
         self.environment.as_ref().map(of).unwrap_or_default()
     }
 

@@ -206,6 +206,7 @@ impl Estimate for Tracking {
             axes: [0, 1, 2].map(axis).into(),
             nees: off.nees(truth, &bias),
             nis: self.told.nis,
+            numbers: self.told.numbers,
             measured: self.used.into(),
         })
     }

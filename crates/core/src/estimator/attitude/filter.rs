@@ -46,6 +46,8 @@ pub struct Correction {
     pub innovation: Vector,
     /// The normalised square of the innovation, of a direction, which has two numbers, times 3/2.
     pub nis: f64,
+    /// How many numbers it has.
+    pub numbers: u64,
 }
 
 impl Filter {
@@ -101,7 +103,7 @@ impl Filter {
         let (innovation, Told { error: [angle, bias], nis }) = told?;
         self.attitude = unit(self.attitude * rotation(&angle));
         self.bias += bias;
-        Some(Correction { innovation, nis })
+        Some(Correction { innovation, nis, numbers: measured.numbers() })
     }
 
     /// Takes a measured attitude whose error in the body's axes has this covariance (rad²). It tells nothing where the
@@ -119,7 +121,7 @@ impl Filter {
         told -= gain;
         self.covariance =
             symmetric(&(kept * self.covariance * kept.transpose() + gain * noise * gain.transpose()));
-        Some(Correction { innovation, nis: innovation.dot(&(inverse * innovation)) })
+        Some(Correction { innovation, nis: innovation.dot(&(inverse * innovation)), numbers: 3 })
     }
 
     /// Takes a measured vector whose error in the body's axes has this covariance.
@@ -132,7 +134,8 @@ impl Filter {
         } else {
             self.update(&moved, &off, noise)?
         };
-        Some(Correction { innovation: off.cross(&expected) / expected.norm_squared(), nis })
+        let numbers = if sight.is_direction { 2 } else { 3 };
+        Some(Correction { innovation: off.cross(&expected) / expected.norm_squared(), nis, numbers })
     }
 
     /// The same with a constant gain from the angle that is measured beyond the attitude. The covariance is that of the errors
@@ -153,10 +156,8 @@ impl Filter {
         };
         let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
         let spread = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?;
-        // A direction has two numbers.
-        let scale =
-            if matches!(measured, Measured::Vector(Sight { is_direction: true, .. })) { 1.5 } else { 1.0 };
-        let nis = scale * off.dot(&spread.solve(&off));
+        let numbers = measured.numbers();
+        let nis = 3.0 / numbers as f64 * off.dot(&spread.solve(&off));
         let error = gain * off;
         let innovation = match measured {
             Measured::Attitude(_) => off,
@@ -166,7 +167,7 @@ impl Filter {
             }
         };
         self.take(&error, &(gain * moved), &(gain * noise * gain.transpose()));
-        Some(Correction { innovation, nis })
+        Some(Correction { innovation, nis, numbers })
     }
 
     /// Takes errors over that were found with a gain of which this acts on the attitude, and adds this to the covariance.

@@ -37,6 +37,13 @@ pub enum Measured {
     Vector(Sight),
 }
 
+impl Measured {
+    /// How many numbers it has: a direction has two.
+    pub fn numbers(&self) -> u64 {
+        if matches!(self, Self::Vector(Sight { is_direction: true, .. })) { 2 } else { 3 }
+    }
+}
+
 impl Fix {
     fn correct(&self, filter: &mut Filter) -> Option<Correction> {
         if filter.swinging.is_some() {

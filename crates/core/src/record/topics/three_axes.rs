@@ -94,6 +94,8 @@ rows! {
         nis: f64,
         /// Whether an attitude was measured.
         measured: Use,
+        /// How many numbers were measured: 2 of a direction, whose NIS is scaled as if there were 3.
+        numbers: u64,
     }
     /// The wheels of a spatial body.
     Wheels = "/wheels" {
