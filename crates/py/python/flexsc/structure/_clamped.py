@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,9 +42,9 @@ def appendage_from_nastran(
 ) -> dict[str, Any]:
     """The keys of an `[[appendage]]` by a normal-modes solution (SOL 103) of the clamped structure.
 
-    Participations, first moments and mass properties are sums over the lumped masses of the bulk data: bars and
-    beams, rods, shells and solids without mid-side grid points, `CONM2`. They are right to the digits of the
-    shapes, which have to be in the file at all grid points with mass.
+    Participations, first moments and mass properties are sums over the lumped masses of the bulk data: bars,
+    beams, rods, shells and solids without mid-side grid points, and `CONM2`. They are right to the digits of
+    the shapes, which have to be in the file at all grid points with mass.
 
     Args:
         results: The OP2 file, or the punch file (`.pch`) of `DISPLACEMENT(PUNCH) = ALL`. Shapes of an OP2
@@ -82,8 +83,8 @@ def appendage_from_nastran(
     massive = {lump.grid for lump in lumps}
     if missing := sorted(massive - set(solution.shapes)):
         raise ValueError(
-            f"{path}: must have shapes at all grid points with mass, by `DISPLACEMENT = ALL`, and has none at "
-            f"{', '.join(map(str, missing[:5]))}{' and others' if missing[5:] else ''}"
+            f"{path}: must have shapes at all grid points with mass, by `DISPLACEMENT = ALL`, and has none "
+            f"at {', '.join(map(str, missing[:5]))}{' and others' if missing[5:] else ''}"
         )
     for point, number in points.items():
         if number not in bulk.nodes or number not in solution.shapes:
@@ -146,10 +147,10 @@ def _lowest(solution: Solution, keep: int | None, path: Path) -> Solution:
 
     order = np.argsort(solution.frequencies, kind="stable")
     frequencies = solution.frequencies[order]
-    for slow, fast in zip(frequencies, frequencies[1:], strict=False):
+    for slow, fast in pairwise(frequencies.tolist()):
         if slow <= MECHANISM * fast:
             raise ValueError(
-                f"{path}: must have no mode at {slow:g} rad/s, below a thousandth of the next ({fast:g} rad/s): "
+                f"{path}: must have no mode at {slow:g} rad/s, below a thousandth of the next ({fast:g}): "
                 f"a mechanism, or a free structure; clamp the root"
             )
     if keep is not None and not 1 <= keep <= len(order):

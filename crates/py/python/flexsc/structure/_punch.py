@@ -69,8 +69,8 @@ def read_punch(path: Path, subcase: int | None = None) -> Solution:
             of_grid = rows.setdefault(int(fields[0]), {})
             if mode in of_grid:
                 raise ValueError(
-                    f"{path}: line {number}: must have each grid point once in a mode, got {fields[0]} again in "
-                    f"mode {mode}"
+                    f"{path}: line {number}: must have each grid point once in a mode, got {fields[0]} again "
+                    f"in mode {mode}"
                 )
             of_grid[mode] = last
         else:
