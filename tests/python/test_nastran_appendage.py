@@ -154,7 +154,7 @@ def turned(about: int, by: float) -> Numbers:
     return axes
 
 
-@pytest.mark.parametrize("system", ["basic", "turned", "place"])
+@pytest.mark.parametrize("system", ["basic", "turned", "place", "cylinder", "sphere"])
 def test_offsets_inertias_coordinate_systems_and_units(tmp_path: Path, system: str) -> None:
     """A CONM2 with its inertia and an offset bar are the mass points that they are made of; mm and tonnes."""
     rng = np.random.default_rng(7)
@@ -171,7 +171,7 @@ def test_offsets_inertias_coordinate_systems_and_units(tmp_path: Path, system: s
     arms = points - mean
     tensor = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(masses, arms, strict=True))
     at = mean + grid if system == "place" else mean
-    number = {"basic": 0, "turned": 6, "place": -1}[system]
+    number = {"turned": 6, "place": -1}.get(system, 0)
     products = (tensor[0, 0], -tensor[1, 0], tensor[1, 1], -tensor[2, 0], -tensor[2, 1], tensor[2, 2])
     deck = card("GRID", 1, "", *root) + card("GRID", 2, "", *grid, 5)
     for system_number, rows in ((5, b5), (6, b6)):
@@ -182,6 +182,19 @@ def test_offsets_inertias_coordinate_systems_and_units(tmp_path: Path, system: s
     deck += card("PBAR", 1, 1, 100.0, 1.0, 1.0, 1.0) + card("MAT1", 1, 7e4, "", 0.3, 2e-9) + "ENDDATA\n"
     model = tmp_path / "model.bdf"
     model.write_text(deck)
+    if system in ("cylinder", "sphere"):
+        # The same in a system of polar coordinates about a place of its own; the axes follow from it.
+        away = np.array([100.0, 50.0, -20.0])
+        kind = {"cylinder": "CORD2C", "sphere": "CORD2S"}[system]
+        polar = card(kind, 5, "", *away, *(away + b5[2]), *(away + b5[0]))
+        deck = deck.replace(card("CORD2R", 5, "", 0.0, 0.0, 0.0, *b5[2], *b5[0]), polar)
+        model.write_text(deck)
+        radial = grid - away
+        round_it = np.cross(b5[2], radial)
+        round_it /= np.linalg.norm(round_it)
+        first = radial / np.linalg.norm(radial) if system == "sphere" else np.cross(round_it, b5[2])
+        second, third = (np.cross(round_it, first), round_it) if system == "sphere" else (round_it, b5[2])
+        b5 = np.array([first, second, third])
     end = offset @ b5
     bar = 2e-7 * np.linalg.norm(grid + end - root)
     everything = [*zip(masses, points @ axes, strict=True), (bar / 2.0, end)]
@@ -209,12 +222,10 @@ def test_offsets_inertias_coordinate_systems_and_units(tmp_path: Path, system: s
     np.testing.assert_allclose(mode["translation"], t, rtol=0.0, atol=1e-7 * np.abs(t).max())
     np.testing.assert_allclose(mode["moments"], n, rtol=0.0, atol=1e-7 * np.abs(n).max())
     np.testing.assert_allclose(mode["rotation"], r, rtol=0.0, atol=1e-7 * np.abs(n).max())
-    np.testing.assert_allclose(
-        mode["shapes"]["tip"]["translation"], phi / np.sqrt(1e3 * generalised), rtol=1e-6
-    )
-    np.testing.assert_allclose(
-        mode["shapes"]["tip"]["rotation"], 1e3 * theta / np.sqrt(1e3 * generalised), rtol=1e-6
-    )
+    tip = mode["shapes"]["tip"]
+    f, psi = phi / np.sqrt(1e3 * generalised), 1e3 * theta / np.sqrt(1e3 * generalised)
+    np.testing.assert_allclose(tip["translation"], f, rtol=0.0, atol=1e-7 * np.abs(f).max())
+    np.testing.assert_allclose(tip["rotation"], psi, rtol=0.0, atol=1e-7 * np.abs(psi).max())
     everywhere = [(m, p) for m, p, _ in moved] + [(bar / 2.0, np.zeros(3))]
     mass = sum(m for m, _ in everywhere)
     centre = sum(m * p for m, p in everywhere) / mass
@@ -244,6 +255,35 @@ def test_a_plate_shares_its_mass_among_its_corners(tmp_path: Path) -> None:
     np.testing.assert_allclose(
         appendage["modes"][0]["rotation"], [5.0 / np.sqrt(10.0), -20.0 / np.sqrt(10.0), 0]
     )
+
+
+@pytest.mark.parametrize(
+    ("cards", "mass", "moving"),
+    [
+        ("CROD,1,1,1,5\nPROD,1,1,.01\n", 20.0, 10.0),
+        ("CBEAM,1,1,1,5,1.,0.,0.\nPBEAM,1,1,.01,1.-6,1.-6,,1.-6,0.5\n", 20.5, 10.25),
+        ("CTRIA3,1,1,1,2,5\nPSHELL,1,1,.01\n", 10.0, 10.0 / 3.0),
+        ("CTETRA,1,1,1,2,4,5\nPSOLID,1,1\n", 1000.0 / 3.0, 250.0 / 3.0),
+        ("CPENTA,1,1,1,2,3,5,6,7\nPSOLID,1,1\n", 1000.0, 500.0),
+        ("CHEXA,1,1,1,2,3,4,5,6\n,7,8\nPSOLID,1,1\n", 2000.0, 1000.0),
+    ],
+)
+def test_elements_share_their_mass(tmp_path: Path, cards: str, mass: float, moving: float) -> None:
+    """In a unit cube of 2000 kg/m³ whose upper corners move along x, t_x² is the mass that moves."""
+    model = tmp_path / "cube.bdf"
+    corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    grids = "".join(f"GRID,{at},,{x}.,{y}.,{z}.\n" for at, (x, y, z) in enumerate(corners, 1))
+    model.write_text(f"{grids}{cards}MAT1,1,7.+10,,0.3,2000.\nENDDATA\n")
+    shapes = np.zeros((1, 8, 6))
+    shapes[0, 4:, 0] = 1.0
+    results = op2(
+        tmp_path / "run.op2", frequencies=(3.0,), masses=(moving,), grids=range(1, 9), shapes=shapes
+    )
+    appendage = flexsc.appendage_from_nastran(results, model, damping=0.0)
+    assert appendage["mass"] == pytest.approx(mass)
+    assert appendage["modes"][0]["translation"] == pytest.approx([moving**0.5, 0.0, 0.0])
+    # At z = 1.
+    assert appendage["modes"][0]["moments"][2] == pytest.approx([moving**0.5, 0.0, 0.0])
 
 
 def craft(appendage: dict[str, Any]) -> flexsc.Scenario:
@@ -320,9 +360,16 @@ def test_what_the_files_do_not_tell_is_refused(tmp_path: Path) -> None:
     refused("run.pch: line 43: must have each grid point once in a mode, got 1 again in mode 1", twice)
     same = "".join(lines[:35]) + "".join(lines[:35]).replace("MODE =     1", "MODE =     2")
     refused("shapes must be orthogonal by the masses .*, and modes 1 and 2 have", same)
-    system = deck.replace("GRID    2               0.5000  0.0000  0.0000  ", "GRID,2,,0.5,0.,0.,5")
-    refused(
-        "model.bdf: GRID 2: CD: must be a rectangular coordinate system, and 5 is CORD2C",
-        deck=system.replace("SPC1 ", "CORD2C,5,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nSPC1 "),
+    polar = deck.replace("      0       2.0\n", "      5       2.0     1.0\n").replace(
+        "SPC1 ", "CORD2C,5,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nSPC1 "
     )
+    refused("CONM2 50: CID: must be a rectangular coordinate system, and 5 is CORD2C", deck=polar)
+    axial = deck.replace("GRID    1               0.0000  0.0000  0.0000  ", "GRID,1,,0.,0.,0.,5")
+    axial = axial.replace("SPC1 ", "CORD2S,5,,0.,0.,-1.,0.,0.,1.\n,1.,0.,0.\nSPC1 ")
+    refused("model.bdf: GRID 1: CD: must have axes, and the grid point is on the z axis", deck=axial)
+    refused(
+        "CBAR 1: must have a property and a material",
+        deck=deck.replace("CBAR    1       1", "CBAR    1       9"),
+    )
+    refused("CONM1 9: must be a CONM2", deck=deck.replace("SPC1 ", "CONM1,9,14,,1.\nSPC1 "))
     refused("model.bdf: pyNastran cannot read it", deck=deck.replace("0.5000", "0.5.00"))

@@ -23,10 +23,12 @@ _EQUAL = {
     "CTRIA3": 3,
     "CQUAD4": 4,
     "CTETRA": 4,
-    "CPYRAM": 5,
     "CPENTA": 6,
     "CHEXA": 8,
 }
+
+# A grid point this near to the z axis of a cylindrical system, of its distance, has no radial direction.
+AXIS = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +76,22 @@ class Integrals:
 
 def axes_of(grid: Any, path: Path) -> Numbers:
     """The axes of a grid point's displacements, as rows in the basic coordinate system."""
-    return _axes(grid.cd_ref, grid.Cd(), f"{path}: GRID {grid.nid}: CD")
+    name, system = f"{path}: GRID {grid.nid}: CD", grid.cd_ref
+    if system is None or system.type.endswith("R"):
+        return _axes(system, grid.Cd(), name)
+    # Cylindrical or spherical: along the coordinate lines through the grid point.
+    axes: Numbers = np.asarray(system.beta(), dtype=np.float64)
+    x, y, z = axes @ (grid.get_position() - system.origin)
+    across = np.hypot(x, y)
+    if not across > AXIS * np.linalg.norm((x, y, z)):
+        raise ValueError(
+            f"{name}: must have axes, and the grid point is on the z axis of {system.type} {system.cid}"
+        )
+    c, s = x / across, y / across
+    if system.type.endswith("C"):
+        return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ axes
+    up, out = np.array([z, across]) / np.hypot(z, across)
+    return np.array([[out * c, out * s, up], [up * c, up * s, -out], [-s, c, 0.0]]) @ axes
 
 
 def lumps_of(bulk: Any, path: Path) -> list[Lump]:
@@ -131,13 +148,13 @@ def _of_element(bulk: Any, element: Any, path: Path) -> Iterator[Lump]:
     try:
         grids = [int(grid) for grid in element.node_ids if grid]
         if kind in _BARS:
-            ends = [_end(bulk, element, end, name) for end in (0, 1)]
+            ends = [_end(bulk, element, end, path) for end in (0, 1)]
             between = bulk.nodes[grids[1]].get_position() - bulk.nodes[grids[0]].get_position()
             mass = element.MassPerLength() * float(np.linalg.norm(between + ends[1] - ends[0]))
         else:
             mass, ends = float(element.Mass()), [np.zeros(3)] * len(grids)
-    except (AttributeError, KeyError, TypeError, NotImplementedError) as error:
-        raise ValueError(f"{name}: must have a property and a material with a mass: {error}") from error
+    except (AttributeError, KeyError, TypeError, RuntimeError) as error:
+        raise ValueError(f"{name}: must have a property and a material, of which its mass follows") from error
     if not mass:
         return
     if kind not in _BARS and len(grids) != _EQUAL.get(kind):
@@ -149,15 +166,18 @@ def _of_element(bulk: Any, element: Any, path: Path) -> Iterator[Lump]:
         yield Lump(grid, mass / len(grids), end, np.zeros((3, 3)))
 
 
-def _end(bulk: Any, element: Any, end: int, name: str) -> Numbers:
+def _end(bulk: Any, element: Any, end: int, path: Path) -> Numbers:
     """Where the end of a bar is, from its grid point."""
     offset = np.asarray(element.wa if end == 0 else element.wb, dtype=np.float64)
     if not offset.any():
         return offset
     if element.offt[1 + end : 2 + end] != "G":
-        raise ValueError(f"{name}: OFFT: must be `GGG` where there are offsets, got `{element.offt}`")
+        raise ValueError(
+            f"{path}: {element.type} {element.eid}: OFFT: must be `GGG` where there are offsets, got "
+            f"`{element.offt}`"
+        )
     grid = bulk.nodes[element.node_ids[end]]
-    turned: Numbers = offset @ _axes(grid.cd_ref, grid.Cd(), f"{name}: CD of GRID {grid.nid}")
+    turned: Numbers = offset @ axes_of(grid, path)
     return turned
 
 
