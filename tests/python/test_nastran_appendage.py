@@ -286,13 +286,13 @@ def test_elements_share_their_mass(tmp_path: Path, cards: str, mass: float, movi
     assert appendage["modes"][0]["moments"][2] == pytest.approx([moving**0.5, 0.0, 0.0])
 
 
-def craft(appendage: dict[str, Any]) -> flexsc.Scenario:
+def craft(appendage: dict[str, Any], force: str = "tip") -> flexsc.Scenario:
     return flexsc.Scenario(
         {
             "duration": 60.0,
             "spacecraft": {"mass": 600.0, "inertia": [[250, 0, 0], [0, 300, 0], [0, 0, 220]]},
             "appendage": [{**appendage, "at": [1.0, 0.0, 0.0]}],
-            "disturbance": [{"force": [0.0, 0.0, 1.0], "point": "tip", "from": 5.0, "to": 15.0}],
+            "disturbance": [{"force": [0.0, 0.0, 1.0], "point": force, "from": 5.0, "to": 15.0}],
             "law": {"attitude": {"period": 0.5, "bandwidth": 0.05}},
             "actuator": {
                 "wheels": {"arrangement": "pyramid", "inertia": 0.06, "torque": 0.2, "momentum": 25.0}
@@ -310,6 +310,10 @@ def test_a_spacecraft_with_it_runs(tmp_path: Path) -> None:
     # With the hub free a mode is faster.
     assert len(scenario.modes["frequency"]) == 6
     assert scenario.modes["frequency"][0] > appendage["modes"][0]["frequency"]
+    # The same from the factors that the solver printed, which the engine reads itself.
+    printed = {key: appendage[key] for key in ("name", "mass", "centre", "inertia")}
+    rival = craft({**printed, "modes": str(FE / "bars.F06"), "damping": 0.005, "keep": 6}, force="hub")
+    np.testing.assert_allclose(rival.modes["frequency"], scenario.modes["frequency"], rtol=1e-6)
     run = scenario.simulate(log="none")
     assert run.metrics["elastic_energy_peak_j"] > 0.0
     again = flexsc.Scenario.parse(scenario.to_toml(), "boom").simulate(log="none")
