@@ -38,7 +38,14 @@ SHAPES = np.random.default_rng(3).uniform(-1.0, 1.0, (4, 2, 6)).astype(np.float3
 POINTS = {"bus": 10, "tip": 20}
 
 
-def op2(path: Path, subcases: Sequence[int] = (1,)) -> Path:
+def op2(
+    path: Path,
+    subcases: Sequence[int] = (1,),
+    frequencies: Sequence[float] = FREQUENCIES,
+    masses: Sequence[float] = MASSES,
+    grids: Sequence[int] = GRIDS,
+    shapes: Numbers = SHAPES,
+) -> Path:
     """An OP2 file of eigenvalues and eigenvectors: Fortran records, tables of numbered ones."""
 
     def words(*numbers: int) -> bytes:
@@ -61,23 +68,23 @@ def op2(path: Path, subcases: Sequence[int] = (1,)) -> Path:
         return b"".join(numbers) + b" " * 384
 
     def eigenvalue(at: int) -> bytes:
-        w, mass = FREQUENCIES[at], MASSES[at]
+        w, mass = frequencies[at], masses[at]
         return struct.pack("<2i5f", at + 1, at + 1, w * w, w, w / (2 * np.pi), mass, mass * w * w)
 
     vectors = []
     for subcase in subcases:
-        for at, w in enumerate(FREQUENCIES):
+        for at, w in enumerate(frequencies):
             cycles = w / (2 * np.pi)
             vectors.append(
                 identification(w1=22, w2=7, w4=subcase, w5=at + 1, w6=w * w, w7=cycles, w9=1, w10=8)
             )
-            rows = zip(GRIDS, SHAPES[at], strict=True)
+            rows = zip(grids, shapes[at], strict=True)
             vectors.append(b"".join(struct.pack("<2i6f", 10 * grid + 2, 1, *row) for grid, row in rows))
     head = (
         words(3) + record(struct.pack("<3i", 1, 1, 20)) + words(7) + record(b"NASTRAN FORT TAPE ID CODE - ")
     )
     head += words(2) + record(b"XXXXXXXX") + words(-1, 0)
-    values = [identification(w1=21, w2=6, w4=1, w10=7), b"".join(map(eigenvalue, range(4)))]
+    values = [identification(w1=21, w2=6, w4=1, w10=7), b"".join(map(eigenvalue, range(len(frequencies))))]
     path.write_bytes(head + table("LAMA", values) + table("OUGV1", vectors) + words(0))
     return path
 

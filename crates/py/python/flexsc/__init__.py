@@ -29,6 +29,7 @@ from flexsc._scenario import Log, Result, Scenario
 from flexsc.structure import (
     StateSpace,
     Structure,
+    appendage_from_nastran,
     from_csv,
     from_nastran,
     from_state_space,
@@ -47,6 +48,7 @@ __all__ = [
     "Structure",
     "Table",
     "__version__",
+    "appendage_from_nastran",
     "campaign",
     "examples",
     "from_csv",

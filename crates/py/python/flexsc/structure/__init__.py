@@ -7,10 +7,19 @@
 `python -m flexsc.structure iss.mat --check` does so for a MATLAB file.
 """
 
+from flexsc.structure._clamped import appendage_from_nastran
 from flexsc.structure._files import from_csv, write_scenario
 from flexsc.structure._modal_model import StateSpace
 from flexsc.structure._nastran import from_nastran
 from flexsc.structure._state_space import from_state_space
 from flexsc.structure._structure import Structure
 
-__all__ = ["StateSpace", "Structure", "from_csv", "from_nastran", "from_state_space", "write_scenario"]
+__all__ = [
+    "StateSpace",
+    "Structure",
+    "appendage_from_nastran",
+    "from_csv",
+    "from_nastran",
+    "from_state_space",
+    "write_scenario",
+]

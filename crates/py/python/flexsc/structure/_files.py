@@ -88,6 +88,10 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> Path:
         OSError: A file cannot be written.
     """
     values = scenario.to_dict()
+    if "spacecraft" in values:
+        raise ValueError(
+            f"{scenario.name}: must have a `[body.spatial]`, got `[spacecraft]`: write `to_toml()` as it is"
+        )
     spatial = values["body"].get("spatial")
     if spatial is None:
         raise ValueError(f"{scenario.name}: must have a `[body.spatial]`, got `{next(iter(values['body']))}`")

@@ -125,8 +125,11 @@ def _read_bulk(path: Path) -> Any:
     text = path.read_text(encoding="latin-1").upper()
     bulk = _pynastran("bdf.bdf").BDF(debug=None)
     # Without the sections before it, it is bulk data alone.
-    bulk.read_bdf(str(path), xref=False, punch="BEGIN BULK" not in text)
-    bulk.safe_cross_reference()
+    try:
+        bulk.read_bdf(str(path), xref=False, punch="BEGIN BULK" not in text)
+        bulk.safe_cross_reference()
+    except Exception as error:  # pyNastran's are of many kinds
+        raise ValueError(f"{path}: pyNastran cannot read it: {' '.join(str(error).split())}") from error
     return bulk
 
 

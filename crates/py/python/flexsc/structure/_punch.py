@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     Numbers = npt.NDArray[np.float64]
 
 _EIGENVALUE = re.compile(r"\$EIGENVALUE\s*=\s*(\S+)\s+MODE\s*=\s*(\d+)")
+_EXPONENT = re.compile(r"(\d)([+-]\d{3})$")
 _SUBCASE = re.compile(r"\$SUBCASE ID\s*=\s*(\d+)")
 
 
@@ -65,7 +66,13 @@ def read_punch(path: Path, subcase: int | None = None) -> Solution:
                 last.extend(_number(path, number, field) for field in fields[1:])
         elif len(fields) >= 3 and fields[1] == "G":
             last = [_number(path, number, field) for field in fields[2:]]
-            rows.setdefault(int(fields[0]), {})[mode] = last
+            of_grid = rows.setdefault(int(fields[0]), {})
+            if mode in of_grid:
+                raise ValueError(
+                    f"{path}: line {number}: must have each grid point once in a mode, got {fields[0]} again "
+                    f"in mode {mode}"
+                )
+            of_grid[mode] = last
         else:
             last = None  # a scalar point
     if not squares:
@@ -81,6 +88,7 @@ def read_punch(path: Path, subcase: int | None = None) -> Solution:
 
 def _number(path: Path, line: int, field: str) -> float:
     try:
-        return float(field)
+        # Fortran leaves the E out before an exponent of three digits.
+        return float(_EXPONENT.sub(r"\1E\2", field))
     except ValueError:
         raise ValueError(f"{path}: line {line}: must have numbers, got `{field}`") from None
