@@ -136,7 +136,10 @@ fn what_does_not_go_with_drives_is_refused() {
         ),
         (("rate = 0.05, angle = 0.3", "angle = 0.3"), "`appendage[0].drive` says how it turns"),
         (
-            ("[law.open]", "[sensor.accelerometer]\nperiod = 0.1\nwatch_only = true\n[law.open]"),
+            (
+                "[law.open]",
+                "[[sensor]]\ngyro = { period = 0.1 }\n[[sensor]]\naccelerometer = { period = 0.1, watch_only = true }\n[law.open]",
+            ),
             "goes with appendages that do not turn",
         ),
         (

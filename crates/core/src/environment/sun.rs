@@ -46,10 +46,8 @@ impl Sun {
 fn seen(seconds: f64) -> Vector {
     let days = (seconds - J2000) / 86_400.0;
     let anomaly = (357.528 + 0.985_600_3 * days).to_radians();
-    let longitude = 280.460
-        + 0.985_647_4 * days
-        + 1.915 * libm::sin(anomaly)
-        + 0.020 * libm::sin(2.0 * anomaly);
+    let longitude =
+        280.460 + 0.985_647_4 * days + 1.915 * libm::sin(anomaly) + 0.020 * libm::sin(2.0 * anomaly);
     let (sin, cos) = libm::sincos(longitude.to_radians());
     let (up, along) = libm::sincos((23.439 - 4e-7 * days).to_radians());
     Vector::new(cos, along * sin, up * sin)

@@ -18,7 +18,10 @@ impl Scenario {
             return Some(fault.within("environment"));
         }
         if around.sun == Some(Sun::Epoch) && self.epoch.is_none() {
-            return Some(Fault::new("environment.sun", "is that of the scenario's `epoch`, and there is none"));
+            return Some(Fault::new(
+                "environment.sun",
+                "is that of the scenario's `epoch`, and there is none",
+            ));
         }
         let turns =
             around.orbit.filter(|_| around.sun.is_some())?.mean_motion() * self.duration.seconds() / TAU;

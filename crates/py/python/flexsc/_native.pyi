@@ -15,6 +15,7 @@ __all__ = [
     "SimulationError",
     "__version__",
     "campaign",
+    "examples",
     "gain_regions_json",
     "identify_json",
     "main",
