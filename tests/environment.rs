@@ -193,3 +193,31 @@ fn steps_of_a_rotation_are_counted() {
     let years = long(1e10, PANEL).expect("possible").cost(None, false);
     assert!(years.excess().is_some_and(|why| why.starts_with("`duration` makes")), "{years:?}");
 }
+
+/// The Sun of the date is where the same direction, given, has it; without a date there is none.
+#[test]
+fn the_sun_of_the_date_is_a_direction() {
+    let text = |sun: &str, epoch: &str| {
+        format!(
+            "duration = 10.0\n{epoch}\n[spacecraft]\n{HUB}[environment]\norbit = {{ semi_major_axis = 7e6, inclination = 1.7 }}\nsun = {sun}\n\
+             [[sensor]]\nsun_sensor = {{ period = 1.0 }}\n[[sensor]]\ngyro = {{ period = 1.0 }}\n[estimator.attitude]\n[law.pd]\nk_p = 0.1\n\
+             k_d = 1.0\nperiod = 1.0\n[log]\nperiod = 1.0\n"
+        )
+    };
+    let sun = |text: &str| {
+        let scenario = Scenario::parse("sun.toml", text).unwrap_or_else(|error| panic!("{error}"));
+        *scenario.sky().sun().expect("a Sun")
+    };
+    // The solstice of June: over the tropic, at a right ascension of 90 degrees.
+    let found = sun(&text("\"epoch\"", "epoch = 2024-06-20T20:51:00Z"));
+    let given = sun(&text("[0.0, 0.917482, 0.397777]", ""));
+    assert!((found - given).norm() < 4e-4, "{found} {given}");
+    for (sun, words) in [
+        ("\"epoch\"", "`environment.sun` is that of the scenario's `epoch`, and there is none"),
+        ("\"epok\"", "did you mean `epoch`?"),
+        ("[0, 0, 0]", "`environment.sun` must have a length"),
+    ] {
+        let error = Scenario::parse("sun.toml", &text(sun, "")).expect_err(sun).to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
