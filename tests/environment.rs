@@ -200,7 +200,7 @@ fn the_sun_of_the_date_is_a_direction() {
     let text = |sun: &str, epoch: &str| {
         format!(
             "duration = 10.0\n{epoch}\n[spacecraft]\n{HUB}[environment]\norbit = {{ semi_major_axis = 7e6, inclination = 1.7 }}\nsun = {sun}\n\
-             [[sensor]]\nsun_sensor = {{ period = 1.0 }}\n[[sensor]]\ngyro = {{ period = 1.0 }}\n[estimator.attitude]\n[law.pd]\nk_p = 0.1\n\
+             [[sensor]]\nsun_sensor = {{ period = 1.0, noise = 1e-3 }}\n[[sensor]]\ngyro = {{ period = 1.0, angle_random_walk = 1e-6 }}\n[estimator.attitude]\n[law.pd]\nk_p = 0.1\n\
              k_d = 1.0\nperiod = 1.0\n[log]\nperiod = 1.0\n"
         )
     };
