@@ -128,6 +128,8 @@ const KEYS: &[Case] = &[
     ("unknown sides", Line(12, "dead_zone = 5e-4\nsides = \"three\""), 13, "\"three\"", &["`law.relay.sides`", "`three` is not known here", "expected `two` or `one`"]),
     ("keys of a kind outside it", Line(11, "[law]"), 11, "[law]", &["`law`: exactly one kind", "more than one", "`dead_zone`, `hysteresis`"]),
     ("two laws", Line(16, "k_t = 0.31\n[law.other]\na = 1"), 11, "law", &["`law`: exactly one kind", "more than one", "`relay`, `other`"]),
+    ("two sensors", Line(26, "period = 0.1\n[sensor.gyro]\nperiod = 0.1"), 25, "sensor", &["`sensor`: exactly one kind", "more than one", "`sampled`, `gyro`"]),
+    ("two actuators", Line(28, "[actuator.hold]\nperiod = 0.1\n[actuator.wheel]\ngain = 1.0\n[log]"), 28, "actuator", &["`actuator`: exactly one kind", "more than one", "`hold`, `wheel`"]),
     ("two bodies", Line(9, "displacement = 2.75e-6\n[body.other]\na = 1"), 3, "body", &["`body`: exactly one kind", "more than one", "`planar`, `other`"]),
     ("a misspelt body beside its modes", Line(3, "[body.planer]"), 3, "body", &["`body`: exactly one kind", "`planer`, `planar`"]),
     ("no kind of law", Lines(&[(11, "[law]"), (12, ""), (13, ""), (14, ""), (15, ""), (16, "")]), 11, "[law]", &["`law`: exactly one kind is needed", "none is given"]),

@@ -7,7 +7,7 @@ use serde::de::{
 };
 use toml::{Table, Value};
 
-use super::wrong::{MORE_THAN_ONE, Wrong};
+use super::wrong::Wrong;
 
 /// What a date asks for: as a newtype of this name, whose content is then the date's text.
 pub const DATE: &str = "date";
@@ -73,7 +73,12 @@ impl<'de> Reader<'de> {
 
     fn table<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
         match self.0 {
-            Value::Table(table) => visitor.visit_map(Entries::new(table)),
+            Value::Table(table) => {
+                let mut entries = Entries::new(table);
+                let made = visitor.visit_map(&mut entries)?;
+                // A part that takes a kind from a map takes its first key, and would leave others unread.
+                if entries.entries.next().is_some() { Err(Wrong::several_kinds(table)) } else { Ok(made) }
+            }
             _ => self.refused(&visitor),
         }
     }
@@ -161,10 +166,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                 match (given.next(), given.next()) {
                     (Some((name, value)), None) => visitor.visit_enum(Kind { name, value: Some(value) }),
                     (None, _) => Err(Wrong::custom("exactly one kind is needed here, and none is given")),
-                    _ => {
-                        let given: Vec<_> = kinds.keys().map(|kind| format!("`{kind}`")).collect();
-                        Err(Wrong::custom(format!("{MORE_THAN_ONE}: {}", given.join(", "))))
-                    }
+                    _ => Err(Wrong::several_kinds(kinds)),
                 }
             }
             _ => Err(Wrong::no_kind(self.0)),

@@ -3,14 +3,11 @@
 use std::fmt;
 
 use serde::de::{Error, Expected, Unexpected};
-use toml::Value;
+use toml::{Table, Value};
 
 use super::key::bare_or_quoted;
 use super::nearest::{hint, meant};
 use super::words::shortened;
-
-/// Beginning of the text about several kinds.
-pub const MORE_THAN_ONE: &str = "exactly one kind is accepted here, and more than one is given";
 
 /// Something that does not fit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,6 +39,13 @@ impl Wrong {
             Value::Table(_) => "a table",
         };
         Self::because(format!("found {found}, expected the name of a kind or a table"))
+    }
+
+    /// Several kinds in the place of one.
+    pub fn several_kinds(kinds: &Table) -> Self {
+        let given: Vec<_> = kinds.keys().map(|kind| format!("`{kind}`")).collect();
+        let given = given.join(", ");
+        Self::because(format!("exactly one kind is accepted here, and more than one is given: {given}"))
     }
 
     /// A name where a kind needs a table.
