@@ -14,7 +14,7 @@ pub struct Pool {
 }
 
 /// What a field holds.
-pub enum Kind<'a> {
+pub enum Content<'a> {
     /// A number, a text or bytes.
     Scalar(Type),
     /// A message of this full name.
@@ -55,18 +55,18 @@ impl Pool {
     }
 
     /// What a field of a message holds; nothing if its type is not in the schema.
-    pub fn kind(&self, message: &str, field: &FieldDescriptorProto) -> Option<Kind<'_>> {
+    pub fn kind(&self, message: &str, field: &FieldDescriptorProto) -> Option<Content<'_>> {
         match field.r#type.and_then(|kind| Type::try_from(kind).ok()) {
             None | Some(Type::Message | Type::Group | Type::Enum) => self.named(message, field.type_name()),
-            Some(kind) => Some(Kind::Scalar(kind)),
+            Some(kind) => Some(Content::Scalar(kind)),
         }
     }
 
     /// The type of a name: a full one begins with a dot, others are looked for from within to without.
-    fn named(&self, scope: &str, name: &str) -> Option<Kind<'_>> {
+    fn named(&self, scope: &str, name: &str) -> Option<Content<'_>> {
         let full = |name: &str| {
-            let message = self.message(name).map(|(name, message)| Kind::Message(name, message));
-            message.or_else(|| self.enums.get(name).map(Kind::Enum))
+            let message = self.message(name).map(|(name, message)| Content::Message(name, message));
+            message.or_else(|| self.enums.get(name).map(Content::Enum))
         };
         if let Some(name) = name.strip_prefix('.') {
             return full(name);

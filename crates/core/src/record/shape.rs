@@ -6,7 +6,7 @@
 use prost_types::field_descriptor_proto::Type;
 use prost_types::{DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto};
 
-use super::descriptor::{Kind, Pool, is_group, is_list};
+use super::descriptor::{Content, Pool, is_group, is_list};
 use super::table::{Budget, Schema};
 use super::topics::label_of;
 use super::wire::{Raw, Wire};
@@ -209,11 +209,11 @@ impl<'a> Maker<'a> {
         columns: &mut Columns,
         name: String,
         path: &str,
-        (field, kind): (&FieldDescriptorProto, Kind<'a>),
+        (field, kind): (&FieldDescriptorProto, Content<'a>),
     ) -> Result<Place, String> {
         let index = columns.columns.len();
         let (scalar, column) = match kind {
-            Kind::Message(of, message) if !is_time(of) => {
+            Content::Message(of, message) if !is_time(of) => {
                 let path = format!("{path}.");
                 if !is_list(field) {
                     return Ok(Place::Inner(self.add(columns, &format!("{name}."), &path, (of, message))?));
@@ -242,20 +242,20 @@ fn is_time(name: &str) -> bool {
 }
 
 /// What a field holds, and its empty column.
-fn scalar(kind: &Kind<'_>) -> (Scalar, Column) {
+fn scalar(kind: &Content<'_>) -> (Scalar, Column) {
     let (numbers, counts) = (Column::Numbers(Vec::new()), Column::Counts(Vec::new()));
     let integers = Column::Integers(Vec::new());
     match kind {
-        Kind::Message(..) => (Scalar::Time, numbers),
-        Kind::Enum(of) if of.value.len() > MOST_LABELS => {
+        Content::Message(..) => (Scalar::Time, numbers),
+        Content::Enum(of) if of.value.len() > MOST_LABELS => {
             (Scalar::Word((*of).clone()), Column::Texts(Vec::new()))
         }
-        Kind::Enum(of) => {
+        Content::Enum(of) => {
             let labels = of.value.iter().map(|value| label_of(value.name())).collect();
             let known = of.value.iter().map(EnumValueDescriptorProto::number).collect();
             (Scalar::Label(known), Column::Labels(Vec::new(), labels))
         }
-        Kind::Scalar(of) => match of {
+        Content::Scalar(of) => match of {
             Type::Double => (Scalar::Double, numbers),
             Type::Float => (Scalar::Float, numbers),
             Type::Int32 => (Scalar::Int32, integers),
