@@ -49,9 +49,51 @@ fn check_accepts_the_good_and_refuses_the_bad() {
     dir.run("check relay-fixed.toml").exits(0).says(&["relay-fixed.toml: accepted", "20000 s", "2 modes"]);
     dir.write("bad.toml", UNCERTAIN.replace("k_t = 0.31", "k_t = 31"));
     dir.run("check relay-fixed.toml bad.toml").exits(2).says(&["bad.toml:18:7", "got 31"]);
+    // Every file is checked, whatever is wrong with those before.
+    dir.run("check bad.toml relay-fixed.toml")
+        .exits(2)
+        .says(&["bad.toml:18:7", "relay-fixed.toml: accepted"]);
     for name in scenarios() {
         dir.run(&format!("check {SCENARIOS}/{name}")).exits(0);
     }
+}
+
+#[test]
+fn check_tells_mistakes_to_programs() {
+    let dir = Dir::with(&["relay-fixed"]);
+    dir.write(
+        "bad.toml",
+        UNCERTAIN.replace("dead_zone", "deadzone").replace("window = 100.0", "window = 'x'"),
+    );
+    let ran = dir.run("check bad.toml relay-fixed.toml none.toml --json").exits(2);
+    assert!(ran.err.is_empty(), "{}", ran.err);
+    let told: Vec<Json> = ran.out.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!(told.len(), 3);
+    assert_eq!(told[0]["accepted"], false);
+    let mistakes = told[0]["mistakes"].as_array().expect("a list");
+    assert_eq!(mistakes.len(), 2, "{mistakes:?}");
+    let first = &mistakes[0];
+    assert_eq!((&first["line"], &first["column"]), (&Json::from(14), &Json::from(1)));
+    assert_eq!((&first["key"], &first["suggestion"]), (&"law.relay.deadzone".into(), &"dead_zone".into()));
+    assert_eq!(
+        (&mistakes[1]["line"], &mistakes[1]["key"]),
+        (&Json::from(21), &"estimator.envelope.window".into())
+    );
+    assert_eq!(told[1]["accepted"], true);
+    assert_eq!((&told[2]["accepted"], &told[2]["mistakes"][0]["line"]), (&Json::from(false), &Json::Null));
+}
+
+#[test]
+fn a_scenario_is_no_log() {
+    let dir = Dir::with(&["relay-fixed"]);
+    for verb in ["plot", "export"] {
+        dir.run(&format!("{verb} relay-fixed.toml"))
+            .exits(2)
+            .says(&["not a log", "flexsc simulate relay-fixed.toml"]);
+    }
+    dir.run("simulate relay-fixed.toml --set duration=100").exits(0);
+    dir.run("export relay-fixed.mcap --topic /modes").exits(2).says(&["no topic `/modes`", "--log full"]);
+    assert!(!dir.run("export relay-fixed.mcap --topic /nothing").exits(2).err.contains("--log full"));
 }
 
 /// The files of the shipped scenarios.

@@ -41,6 +41,7 @@ mod foreign;
 mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
+mod help;
 mod jets;
 mod layout;
 #[cfg(not(feature = "full"))]

@@ -220,7 +220,9 @@ fn what_is_no_log_is_not_recovered() {
     let dir = Dir::with(&["relay-fixed"]);
     dir.run("log recover relay-fixed.toml -o saved.mcap")
         .exits(2)
-        .says(&["relay-fixed.toml: not a readable MCAP log"]);
+        .says(&["relay-fixed.toml: a scenario, not a log"]);
+    let other = Dir::holding("notes.txt", "no log");
+    other.run("log recover notes.txt -o saved.mcap").exits(2).says(&["notes.txt: not a readable MCAP log"]);
     dir.run("log recover relay-fixed.toml").exits(2);
     dir.run("log recover missing.mcap").exits(2).says(&["missing.mcap", "No such file"]);
     dir.run("log recover relay-fixed.toml -o relay-fixed.toml").exits(2).says(&["into itself"]);

@@ -1,8 +1,9 @@
 //! `flexsc check`: is a scenario file accepted?
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use flexsc_core::{Scenario, ScenarioError};
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -13,29 +14,59 @@ pub struct Args {
     /// Scenario files
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
-    /// Print one JSON object for each scenario on stdout
+    /// Print one JSON object for each scenario on stdout, with the mistakes of one that is not accepted
     #[arg(long)]
     json: bool,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    let mut all = true;
     for path in &args.scenarios {
-        let scenario = scenario::load(path, &[], None)?;
-        let modes = scenario.mode_count();
-        let costly = scenario.cost(None, false).excess();
-        if args.json {
-            let (file, duration) = (path.display().to_string(), scenario.duration.seconds());
-            let object = json!({
-                "file": file, "scenario": scenario.name, "duration_s": duration, "modes": modes, "accepted": true,
-                "needs_yes": costly.is_some(),
-            });
-            print(format!("{object}\n").as_bytes())?;
-            continue;
-        }
-        say!("{}: accepted: {} s, {modes} modes", path.display(), scenario.duration.seconds());
-        if let Some(why) = costly {
-            say!("  {why}");
+        match scenario::load(path, &[], None) {
+            Ok(scenario) => accepted(path, &scenario, args.json)?,
+            Err(Failure::Scenario(error)) => {
+                if args.json {
+                    refused(path, &error)?;
+                } else {
+                    Failure::Scenario(error).tell();
+                }
+                all = false;
+            }
+            Err(other) => return Err(other),
         }
     }
+    if all { Ok(()) } else { Err(Failure::Told) }
+}
+
+fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), Failure> {
+    let (modes, duration) = (scenario.mode_count(), scenario.duration.seconds());
+    let costly = scenario.cost(None, false).excess();
+    if json {
+        let object = json!({
+            "file": path.display().to_string(), "scenario": scenario.name, "duration_s": duration, "modes": modes,
+            "accepted": true, "needs_yes": costly.is_some(),
+        });
+        return print(format!("{object}\n").as_bytes());
+    }
+    say!("{}: accepted: {duration} s, {modes} modes", path.display());
+    if let Some(why) = costly {
+        say!("  {why}");
+    }
     Ok(())
+}
+
+/// Tells each mistake with its place, as editors and other programs take it.
+fn refused(path: &Path, error: &ScenarioError) -> Result<(), Failure> {
+    let mistakes = error.mistakes().into_iter().map(|mistake| {
+        json!({
+            "line": mistake.place.as_ref().map(|place| place.line),
+            "column": mistake.place.as_ref().map(|place| place.column),
+            "key": mistake.key,
+            "message": mistake.message,
+            "suggestion": mistake.suggestion,
+        })
+    });
+    let mistakes: Vec<_> = mistakes.collect();
+    let object = json!({"file": path.display().to_string(), "accepted": false, "mistakes": mistakes});
+    print(format!("{object}\n").as_bytes())
 }

@@ -21,6 +21,7 @@ const OTHERS: [&str; 14] =
 
 /// Whether a command that tells numbers also draws them.
 #[derive(clap::Args)]
+#[group(skip)]
 pub struct Drawing {
     /// Draw what is told into this directory, made if it is not there
     #[arg(long, value_name = "DIR")]

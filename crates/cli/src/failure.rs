@@ -16,6 +16,9 @@ pub enum Failure {
     /// A scenario is not accepted.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
+    /// Scenarios are not accepted, and why has been told.
+    #[error("not every scenario is accepted")]
+    Told,
     /// The arguments do not fit each other.
     #[error("{0}")]
     Arguments(String),
@@ -100,6 +103,9 @@ impl Failure {
         {
             return 0;
         }
+        if matches!(self, Self::Told) {
+            return self.code();
+        }
         // Colours go to terminals that have them only, and never where NO_COLOR is set.
         let _ = anstream::stderr().lock().write_all(coloured(&shown(&self.to_string())).as_bytes());
         self.code()
@@ -108,7 +114,7 @@ impl Failure {
     fn code(&self) -> u8 {
         match self {
             Self::Kept { failure, .. } => failure.code(),
-            Self::Scenario(_) | Self::Arguments(_) | Self::Log(_) | Self::Busy { .. } => 2,
+            Self::Scenario(_) | Self::Told | Self::Arguments(_) | Self::Log(_) | Self::Busy { .. } => 2,
             Self::Interrupted(_) => 130,
             _ => 1,
         }

@@ -11,6 +11,7 @@ mod export;
 mod failure;
 mod files;
 mod grid;
+mod help;
 mod identify;
 mod layout;
 #[cfg(not(all(feature = "papers", feature = "png")))]
@@ -43,7 +44,7 @@ mod tune;
 use std::ffi::OsString;
 use std::io::Write;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use examples::EXAMPLES;
 use failure::Failure;
@@ -58,43 +59,53 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Verb {
-    /// Simulate scenarios: once each, or many times over their uncertain keys
+    /// Simulate scenarios once, or many times as a Monte Carlo study
     Simulate(simulate::Args),
     /// Simulate a scenario once for each value of a key
     Sweep(sweep::Args),
-    /// Print the elastic modes of a scenario's body
+    /// Print the elastic modes of a spacecraft
     Modes(scenario::Args),
-    /// Print the limit cycles of a scenario's relay law on a rigid body, and its resonances
+    /// Print the limit cycles of a relay law, and its resonances
+    ///
+    /// On the body without its modes, in closed form; a resonance is a gain at which an odd harmonic of the cycle meets a mode.
     Cycle(scenario::Args),
-    /// Plan the manoeuvre of a scenario, or compare it with every other command
+    /// Plan a manoeuvre that leaves modes at rest, or compare plans
     Plan(plan::Args),
-    /// Find the gains of a sampled loop that are stable and settle in time, over the dominant mode's frequency
+    /// Find gains of a sampled loop that are stable and settle in time
+    ///
+    /// Over the frequency of the dominant mode; as a region, a schedule, or robust gains.
     Tune(tune::Args),
-    /// Map the stability of a sampled loop over the dominant mode's frequency and the sampling period
+    /// Map the stability of a sampled loop over frequency and period
+    ///
+    /// The frequency is that of the dominant mode, the period that of the samples.
     Map(map::Args),
-    /// Analyse active damping by a relay of thrusters: which modes it damps, how fast, and its limit cycle with a delay
+    /// Analyse active damping by thrusters
+    ///
+    /// Which modes a relay of thrusters damps, how fast, and its limit cycle with a delay.
     Damping(damping::Args),
-    /// Measure how often and how fast an adaptive observer identifies elastic modes, over many runs
+    /// Measure how well an adaptive observer identifies modes
+    ///
+    /// How often and how fast, over many runs.
     Identify(identify::Args),
-    /// Find the weights for which the recurrence observer of an elastic mode converges
+    /// Find the weights for which an observer of a mode converges
     Observer(observer::Args),
-    /// Draw the figures of a log
+    /// Draw the figures of a log or a campaign
     Plot(plot::Args),
-    /// Reproduce the papers behind the studies: every figure and number, on one HTML page
+    /// Reproduce the papers behind the studies, on one HTML page
     Reproduce(reproduce::Args),
     /// Print a topic of a log as a table
     Export(export::Args),
     /// Inspect logs, and recover incomplete ones
     Log(log::Args),
-    /// Write a viewer layout for a log, or for the logs of a scenario
+    /// Write a layout for viewers, of a log or a scenario
     Layout(layout::Args),
-    /// Check scenario files
+    /// Check scenario files without running them
     Check(check::Args),
     /// Write a new scenario, a commented copy of an example
     New(examples::NewArgs),
     /// List the shipped scenarios, or copy some
     Examples(examples::Args),
-    /// Print the JSON Schema of scenarios, for editors, or what the metrics mean
+    /// Print the JSON Schema of scenarios, or what metrics mean
     Schema(schema::Args),
     /// Print a completion script for a shell
     Completions {
@@ -105,14 +116,15 @@ enum Verb {
 
 /// The parser of the command line, for completions and tests.
 pub fn command() -> clap::Command {
-    Cli::command()
+    help::completed(Cli::command())
 }
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code: 0 done, 1 a run
 /// failed or a file could not be written, 2 bad input, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     terminal::settle_colours();
-    let cli = match Cli::try_parse_from(args) {
+    let parsed = command().try_get_matches_from(args);
+    let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
             // Nothing is left to do if stderr cannot be written.

@@ -10,6 +10,7 @@ use crate::failure::Failure;
 
 /// What counts as settled, and which modes follow.
 #[derive(clap::Args)]
+#[group(skip)]
 pub struct Settled {
     /// Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the start
     #[arg(long, value_name = "ANGLE")]

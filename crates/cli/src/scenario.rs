@@ -12,6 +12,7 @@ pub const LARGEST_SEED: u64 = i64::MAX as u64;
 
 /// One scenario to analyse.
 #[derive(clap::Args)]
+#[group(skip)]
 pub struct Args {
     /// Scenario file
     pub scenario: PathBuf,

@@ -75,6 +75,6 @@ pub mod uncertain;
 pub mod waveform;
 pub mod whole;
 
-pub use document::{Document, LONGEST, ScenarioError, nearest};
+pub use document::{Document, LONGEST, Mistake, ScenarioError, nearest};
 pub use scenario::Scenario;
 pub use sim::{Simulation, SimulationError};

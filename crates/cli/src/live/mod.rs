@@ -37,6 +37,7 @@ use crate::{say, stop};
 const FLUSH: Duration = Duration::from_secs(5);
 
 #[derive(clap::Args)]
+#[group(skip)]
 pub struct Args {
     /// Serve the run to viewers such as Foxglove and Lichtblick while it goes on, in real time
     #[arg(

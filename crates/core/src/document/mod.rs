@@ -3,6 +3,7 @@
 mod deep;
 mod fault;
 pub mod key;
+mod mistake;
 mod mistakes;
 mod nearest;
 mod parts;
@@ -18,13 +19,14 @@ use toml::de::DeTable;
 use toml::{Table, Value};
 
 pub use fault::Fault;
+pub use mistake::{Mistake, Place};
 pub use nearest::meant as nearest;
 pub use parts::Parts;
 pub use reader::{DATE, read_value};
 pub use wrong::Wrong;
 
 use key::{bare_or_quoted, span_of};
-use words::{point, shortened, told, unfit, unparsed};
+use words::{mistaken, shortened, told, unfit, unparsed};
 
 /// No scenario is longer (bytes).
 pub const LONGEST: u64 = 4 << 20;
@@ -41,8 +43,8 @@ pub enum ScenarioError {
         why: String,
     },
     /// The document has something that is not accepted.
-    #[error("{0}")]
-    Invalid(String),
+    #[error("{}", all_of(.0))]
+    Invalid(Vec<Mistake>),
     /// A key given beside the document is not accepted.
     #[error("{origin}: {key}: {why}")]
     Key {
@@ -53,6 +55,31 @@ pub enum ScenarioError {
         /// What is wrong.
         why: String,
     },
+}
+
+/// Mistakes one after another.
+fn all_of(mistakes: &[Mistake]) -> String {
+    mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}
+
+impl ScenarioError {
+    /// All that is known to be wrong.
+    pub fn mistakes(&self) -> Vec<Mistake> {
+        match self {
+            Self::Unreadable { path, why } => vec![Mistake::new(&path.display().to_string(), why)],
+            Self::Invalid(mistakes) => mistakes.clone(),
+            Self::Key { origin, key, why } => {
+                vec![Mistake::new(origin, format!("{key}: {why}")).about(key)]
+            }
+        }
+    }
+}
+
+impl Mistake {
+    /// The error that consists of this mistake.
+    fn alone(self) -> ScenarioError {
+        ScenarioError::Invalid(vec![self])
+    }
 }
 
 /// A scenario as written: its text, and the keys that were set since.
@@ -96,7 +123,7 @@ impl Document {
 
     /// Takes a text. `origin` is what errors call it.
     pub fn parse(origin: &str, text: String) -> Result<Self, ScenarioError> {
-        let mut table = text.parse::<Table>().map_err(|error| unparsed(origin, &text, &error))?;
+        let mut table = text.parse::<Table>().map_err(|error| unparsed(origin, &text, &error).alone())?;
         key::respell(&mut table);
         Ok(Self { origin: origin.to_owned(), text: Some(text), table, changed: Vec::new() })
     }
@@ -133,10 +160,11 @@ impl Document {
     /// An error for a key at the top that is missing.
     pub fn missing(&self, key: &str) -> ScenarioError {
         let message = format!("missing key `{key}`");
-        ScenarioError::Invalid(match &self.text {
-            Some(text) => point(&self.origin, text, 0..0, &message),
-            None => format!("{}: {message}", self.origin),
-        })
+        let mistake = Mistake::new(&self.origin, message).about(key);
+        match &self.text {
+            Some(text) => mistake.at(text, &(0..0)).alone(),
+            None => mistake.alone(),
+        }
     }
 
     /// Sets a key, given by its path: `law.relay.k_t`, `body.planar.modes[0].frequency`.
@@ -159,17 +187,17 @@ impl Document {
             Err(wrong) => wrong,
         };
         let all = mistakes::all::<T>(&self.table, wrong);
-        let told: Vec<_> = all.iter().map(|wrong| self.unfit(wrong)).collect();
-        Err(ScenarioError::Invalid(told.join("\n")))
+        Err(ScenarioError::Invalid(all.iter().map(|wrong| self.unfit(wrong)).collect()))
     }
 
     /// What does not fit, pointed at its place if the text has it.
-    fn unfit(&self, wrong: &Wrong) -> String {
-        match (&self.text, self.changed.as_slice()) {
-            (Some(text), []) => unfit(&self.origin, text, wrong),
-            (_, []) => format!("{}: {}", self.origin, told(wrong)),
-            (_, changed) => format!("{}: {} (with {} set)", self.origin, told(wrong), changed.join(", ")),
-        }
+    fn unfit(&self, wrong: &Wrong) -> Mistake {
+        let message = match (&self.text, self.changed.as_slice()) {
+            (Some(text), []) => return unfit(&self.origin, text, wrong),
+            (_, []) => told(wrong),
+            (_, changed) => format!("{} (with {} set)", told(wrong), changed.join(", ")),
+        };
+        mistaken(&self.origin, wrong, message)
     }
 
     /// An error at the first value of which a part was left unread: what was read of it is in `understood`.
@@ -182,13 +210,14 @@ impl Document {
     /// An error at a fault's key, pointed at its value if the text has it.
     pub fn inconsistent(&self, fault: &Fault) -> ScenarioError {
         let key = &fault.key;
+        let mistake = Mistake::new(&self.origin, fault.to_string()).about(key);
         if let Some(text) = self.text.as_ref().filter(|_| !self.changed.iter().any(|k| k == key)) {
             let table = DeTable::parse(text).ok();
             if let Some(span) = table.and_then(|table| span_of(table.get_ref(), key)) {
-                return ScenarioError::Invalid(point(&self.origin, text, span, &fault.to_string()));
+                return mistake.at(text, &span).alone();
             }
         }
-        ScenarioError::Invalid(format!("{}: {fault}", self.origin))
+        mistake.alone()
     }
 
     fn key_error(&self, key: &str, why: String) -> ScenarioError {
@@ -203,8 +232,8 @@ fn too_long(length: u64) -> String {
 /// Reads a part from a TOML text, as the tests of parts do.
 #[cfg(test)]
 pub fn from_text<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ScenarioError> {
-    let table = text.parse().map_err(|error| unparsed("text", text, &error))?;
-    read_value(&Value::Table(table)).map_err(|wrong| ScenarioError::Invalid(unfit("text", text, &wrong)))
+    let table = text.parse().map_err(|error| unparsed("text", text, &error).alone())?;
+    read_value(&Value::Table(table)).map_err(|wrong| unfit("text", text, &wrong).alone())
 }
 
 /// The first part of a value that is not in what was read of it.

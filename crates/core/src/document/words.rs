@@ -1,30 +1,29 @@
 //! Errors in an engineer's words, pointed at the very value.
 
-use std::ops::Range;
-
 use toml::de::DeTable;
 
-use super::key::{path_of, span_of, span_of_key};
-use super::{ScenarioError, Wrong, deep};
-
-/// Errors show no more of a line than this before and after the place that they are about (characters).
-const SHOWN: usize = 80;
+use super::key::{bare_or_quoted, path_of, span_of, span_of_key};
+use super::mistake::{Mistake, SHOWN};
+use super::{Wrong, deep};
 
 /// The parser's error, pointed at the place that it is about.
-pub fn unparsed(origin: &str, text: &str, error: &toml::de::Error) -> ScenarioError {
+pub fn unparsed(origin: &str, text: &str, error: &toml::de::Error) -> Mistake {
     if let Some(span) = deep::place(text, error) {
-        return ScenarioError::Invalid(point(origin, text, span.clone(), &deep::why(text, &span)));
+        return Mistake::new(origin, deep::why(text, &span)).at(text, &span);
     }
     let message = explained(error.message());
-    let Some(span) = error.span() else { return ScenarioError::Invalid(format!("{origin}: {message}")) };
+    let Some(span) = error.span() else { return Mistake::new(origin, message) };
     let table = DeTable::parse(text).ok();
-    let key = table.and_then(|table| path_of(table.get_ref(), &span));
-    let message = key.map_or_else(|| message.clone(), |key| format!("`{}`: {message}", shortened(&key)));
-    ScenarioError::Invalid(point(origin, text, span, &message))
+    match table.and_then(|table| path_of(table.get_ref(), &span)) {
+        None => Mistake::new(origin, message).at(text, &span),
+        Some(key) => {
+            Mistake::new(origin, format!("`{}`: {message}", shortened(&key))).about(key).at(text, &span)
+        }
+    }
 }
 
 /// What does not fit, pointed at its key or value where the text has it.
-pub fn unfit(origin: &str, text: &str, wrong: &Wrong) -> String {
+pub fn unfit(origin: &str, text: &str, wrong: &Wrong) -> Mistake {
     let path = wrong.path();
     let table = DeTable::parse(text).ok();
     let span = table.and_then(|table| match wrong.key() {
@@ -35,9 +34,21 @@ pub fn unfit(origin: &str, text: &str, wrong: &Wrong) -> String {
     });
     let from = span.as_ref().map_or("", |span| &text[span.start..]);
     let message = bracketed(&path, from, &wrong.to_string()).unwrap_or_else(|| told(wrong));
+    let mistake = mistaken(origin, wrong, message);
     match span {
-        Some(span) => point(origin, text, span, &message),
-        None => format!("{origin}: {message}"),
+        Some(span) => mistake.at(text, &span),
+        None => mistake,
+    }
+}
+
+/// A mistake with the key and the suggestion of what does not fit.
+pub fn mistaken(origin: &str, wrong: &Wrong, message: String) -> Mistake {
+    let mistake = Mistake { suggestion: wrong.meant(), ..Mistake::new(origin, message) };
+    match (wrong.path(), wrong.key().or(wrong.missing()).map(bare_or_quoted)) {
+        (path, None) if path.is_empty() => mistake,
+        (path, None) => mistake.about(path),
+        (path, Some(key)) if path.is_empty() => mistake.about(key),
+        (path, Some(key)) => mistake.about(format!("{path}.{key}")),
     }
 }
 
@@ -95,26 +106,4 @@ pub fn shortened(text: &str) -> String {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),
     }
-}
-
-/// The message with the line that it is about and a caret under the place.
-pub fn point(origin: &str, text: &str, span: Range<usize>, message: &str) -> String {
-    let start = span.start.min(text.len());
-    let before = &text[..start];
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    let line_number = before.matches('\n').count() + 1;
-    let column = text[line_start..start].chars().count();
-    let line = text[line_start..].lines().next().unwrap_or_default();
-    let marked = text[start..span.end.min(text.len()).max(start)].lines().next().unwrap_or_default();
-    // A line may be as long as the file, and hold what a terminal obeys.
-    let hidden = column.saturating_sub(SHOWN);
-    let printable = |c: char| if c.is_control() { ' ' } else { c };
-    let line: String = line.chars().skip(hidden).take(2 * SHOWN).map(printable).collect();
-    let width = marked.chars().count().clamp(1, SHOWN);
-    let (number, gutter) = (line_number.to_string(), " ".repeat(line_number.to_string().len()));
-    let (indent, carets) = (" ".repeat(column - hidden), "^".repeat(width));
-    format!(
-        "{origin}:{line_number}:{}: {message}\n{gutter} |\n{number} | {line}\n{gutter} | {indent}{carets}",
-        column + 1,
-    )
 }

@@ -15,6 +15,16 @@ use thiserror::Error;
 use super::Columns;
 use super::bounds::{outer, parsed, walk};
 use super::table::{Budget, Schema, Table};
+use super::topics::TOPICS;
+
+/// What helps where a topic is not in a log, but in others.
+fn elsewhere(topic: &str) -> &'static str {
+    if TOPICS.iter().any(|known| known.name == topic) {
+        "\nhint: its scenario has no such part, or the run was not made with `--log full`, which also keeps the motion"
+    } else {
+        ""
+    }
+}
 
 /// A log that cannot be used.
 #[derive(Debug, Error)]
@@ -45,8 +55,14 @@ pub enum LogError {
         /// Why.
         source: McapError,
     },
+    /// The file is a scenario.
+    #[error("{}: a scenario, not a log\n\nhint: `flexsc simulate {}` writes its log", path.display(), path.display())]
+    Scenario {
+        /// The file.
+        path: PathBuf,
+    },
     /// The log has no such topic.
-    #[error("{}: no topic `{topic}` in this log\n\nhint: it has {topics}", path.display())]
+    #[error("{}: no topic `{topic}` in this log\n\nhint: it has {topics}{}", path.display(), elsewhere(topic))]
     NoTopic {
         /// The file.
         path: PathBuf,
@@ -93,7 +109,13 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, LogError> {
     let mut file = File::open(path).map_err(io)?;
     let mut magic = [0; 8];
     if file.read_exact(&mut magic).is_err() || magic != *mcap::MAGIC {
-        return Err(LogError::Damaged { path: path.to_owned(), source: McapError::BadMagic });
+        let path = path.to_owned();
+        let is_scenario = path.extension().is_some_and(|extension| extension == "toml");
+        return Err(if is_scenario {
+            LogError::Scenario { path }
+        } else {
+            LogError::Damaged { path, source: McapError::BadMagic }
+        });
     }
     let mut bytes = Vec::new();
     let length = file.seek(SeekFrom::End(0)).map_err(io)?;

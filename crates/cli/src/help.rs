@@ -1,0 +1,275 @@
+//! What `--help` says beside the options: the verbs in groups, and two examples of each verb.
+
+use std::fmt::Write as _;
+
+use clap::Command;
+
+/// A verb, and two commands that a user may begin with, each with what it does.
+type Verb = (&'static str, [(&'static str, &'static str); 2]);
+
+/// The verbs by what they are for. Every example is run by `tests/help.rs`, in this order, in one directory that holds the
+/// shipped scenarios.
+const GROUPS: [(&str, &[Verb]); 4] = [
+    (
+        "Run",
+        &[
+            (
+                "simulate",
+                [
+                    ("flexsc simulate relay-adaptive.toml", "one run; its log is relay-adaptive.mcap"),
+                    (
+                        "flexsc simulate earth-observer.toml --runs 20 -o monte-carlo",
+                        "20 runs with other noise, as a table with statistics",
+                    ),
+                ],
+            ),
+            (
+                "sweep",
+                [
+                    (
+                        "flexsc sweep relay-fixed.toml --vary law.relay.k_t=0.28:0.40:25 -o gains",
+                        "25 gains, and the metrics of each",
+                    ),
+                    (
+                        "flexsc sweep relay-fixed.toml --vary law.relay.k_t=0.3:0.4:5 --vary seed=1:4:4",
+                        "every combination with 4 seeds",
+                    ),
+                ],
+            ),
+        ],
+    ),
+    (
+        "Look",
+        &[
+            (
+                "plot",
+                [
+                    ("flexsc plot relay-adaptive.mcap -o figures", "every figure that the log has"),
+                    ("flexsc plot gains -o gains.svg", "the figures of a campaign or a sweep, on one sheet"),
+                ],
+            ),
+            (
+                "export",
+                [
+                    ("flexsc export relay-adaptive.mcap", "the topics of a log"),
+                    (
+                        "flexsc export relay-adaptive.mcap --topic /command -o command.csv",
+                        "one topic as a table",
+                    ),
+                ],
+            ),
+            (
+                "layout",
+                [
+                    (
+                        "flexsc layout relay-adaptive.mcap -o layout.json",
+                        "a layout for Foxglove and Lichtblick that shows this log",
+                    ),
+                    (
+                        "flexsc layout earth-observer.toml -o live.json",
+                        "a layout for a live run of a scenario",
+                    ),
+                ],
+            ),
+            (
+                "log",
+                [
+                    ("flexsc log scenario relay-adaptive.mcap", "the scenario that a log was made from"),
+                    (
+                        "flexsc log recover relay-adaptive.mcap -o whole.mcap",
+                        "what a killed run has left, as a whole log",
+                    ),
+                ],
+            ),
+        ],
+    ),
+    (
+        "Design",
+        &[
+            (
+                "modes",
+                [
+                    ("flexsc modes earth-observer.toml", "clamped and free frequencies, masses, influences"),
+                    ("flexsc modes relay-fixed.toml --json", "the same as JSON"),
+                ],
+            ),
+            (
+                "cycle",
+                [
+                    ("flexsc cycle relay-fixed.toml", "the limit cycle of the law, in closed form"),
+                    ("flexsc cycle relay-fixed.toml --set law.relay.k_t=0.34", "with another gain"),
+                ],
+            ),
+            (
+                "plan",
+                [
+                    ("flexsc plan rotation-cosine.toml", "the manoeuvre with its modes at rest at the end"),
+                    ("flexsc plan rotation-cosine.toml --compare", "the same beside every other command"),
+                ],
+            ),
+            (
+                "tune",
+                [
+                    ("flexsc tune wheel-scheduled-gain.toml", "the gains that settle, over frequency"),
+                    (
+                        "flexsc tune wheel-scheduled-gain.toml --schedule",
+                        "the best of them as keys of a scenario",
+                    ),
+                ],
+            ),
+            (
+                "map",
+                [
+                    (
+                        "flexsc map wheel-fixed-gain.toml --frequency 0.5:2:12 --period 0.1:1:10 -o map.csv",
+                        "spectral radius and settling time as a table",
+                    ),
+                    (
+                        "flexsc map wheel-fixed-gain.toml --frequency 0.5:2:12 --period 0.1:1:10 --figures maps",
+                        "and as figures",
+                    ),
+                ],
+            ),
+            (
+                "damping",
+                [
+                    (
+                        "flexsc damping --frequency 0.5:8:16 --acceleration 4e-5",
+                        "which modes thrusters damp, with samples every 0.2 s",
+                    ),
+                    (
+                        "flexsc damping --frequency 0.5:8:16 --acceleration 4e-5 --delay 0.1",
+                        "the same with a delay",
+                    ),
+                ],
+            ),
+            (
+                "observer",
+                [
+                    ("flexsc observer --frequency 1.556", "the weights for which an observer converges"),
+                    ("flexsc observer --frequency 1.556 --weights 0.05,0.3,0.2", "whether these weights do"),
+                ],
+            ),
+            (
+                "identify",
+                [
+                    (
+                        "flexsc identify --runs 20 --off 0.1",
+                        "how often 20 runs identify frequencies 10 % off",
+                    ),
+                    (
+                        "flexsc identify --runs 20 --off 0.1 --modes 1.556:2.89,3.77:3.0",
+                        "the same of these two modes",
+                    ),
+                ],
+            ),
+        ],
+    ),
+    (
+        "Files",
+        &[
+            (
+                "new",
+                [
+                    ("flexsc new my-satellite", "a commented scenario to begin with"),
+                    ("flexsc new slew --like earth-observer", "the same from another example"),
+                ],
+            ),
+            (
+                "examples",
+                [
+                    ("flexsc examples", "the shipped scenarios, a line each"),
+                    ("flexsc examples wheel-ekf sun-tracking -o copies", "copies of two of them"),
+                ],
+            ),
+            (
+                "check",
+                [
+                    ("flexsc check my-satellite.toml", "every mistake in a scenario, before it is run"),
+                    ("flexsc check my-satellite.toml slew.toml --json", "the same for programs"),
+                ],
+            ),
+            (
+                "schema",
+                [
+                    ("flexsc schema > scenario.schema.json", "the JSON Schema of scenarios, for editors"),
+                    ("flexsc schema --metrics", "the metrics, their units and what they mean"),
+                ],
+            ),
+            (
+                "reproduce",
+                [
+                    ("flexsc reproduce -o papers", "every figure and number of the papers"),
+                    ("flexsc reproduce wheel -o wheel", "those of one paper"),
+                ],
+            ),
+            (
+                "completions",
+                [
+                    ("flexsc completions bash > flexsc.bash", "completions for bash"),
+                    ("flexsc completions fish > flexsc.fish", "completions for fish"),
+                ],
+            ),
+        ],
+    ),
+];
+
+/// The command with its verbs in groups, and with the examples of each.
+pub fn completed(command: Command) -> Command {
+    let mut verbs = String::new();
+    for (group, members) in GROUPS {
+        let _ = write!(verbs, "\n{group}:\n");
+        for (name, _) in members {
+            let about = command.find_subcommand(name).and_then(Command::get_about);
+            let about = about.map(ToString::to_string).unwrap_or_default();
+            let _ = writeln!(verbs, "  {name:<12} {about}");
+        }
+    }
+    let hint = "`flexsc VERB --help` shows the options of a verb, and two examples.";
+    let template =
+        format!("{{about}}\n\n{{usage-heading}} {{usage}}\n{verbs}\nOptions:\n{{options}}\n\n{hint}\n");
+    let all = GROUPS.into_iter().flat_map(|(_, members)| members);
+    all.fold(command.help_template(template), |command, (name, examples)| {
+        let told = examples.map(|(line, what)| format!("  {line}\n      {what}")).join("\n");
+        command.mut_subcommand(name, |verb| verb.after_help(format!("Examples:\n{told}")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use clap::CommandFactory;
+
+    use super::*;
+    use crate::Cli;
+
+    #[test]
+    fn every_verb_is_in_one_group() {
+        let grouped: Vec<&str> =
+            GROUPS.iter().flat_map(|(_, members)| *members).map(|(name, _)| *name).collect();
+        let command = Cli::command();
+        let verbs: BTreeSet<&str> = command.get_subcommands().map(Command::get_name).collect();
+        assert_eq!(grouped.iter().copied().collect::<BTreeSet<_>>(), verbs);
+        assert_eq!(grouped.len(), verbs.len());
+    }
+
+    #[test]
+    fn a_line_of_the_overview_fits_a_terminal() {
+        for verb in Cli::command().get_subcommands() {
+            let about = verb.get_about().map(ToString::to_string).unwrap_or_default();
+            assert!(about.chars().count() <= 65, "{}: {about}", verb.get_name());
+        }
+    }
+
+    /// In a build with debug assertions the parser panics otherwise.
+    #[test]
+    fn every_name_of_a_group_of_options_is_taken_once() {
+        for verb in Cli::command().get_subcommands() {
+            let mut names = BTreeSet::new();
+            for group in verb.get_groups() {
+                assert!(names.insert(group.get_id()), "{}: {}", verb.get_name(), group.get_id());
+            }
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! What `--help` promises: verbs in groups, and examples that work as they stand, one after another in one directory.
+
+use crate::util::{Dir, SCENARIOS};
+
+/// The examples at the end of a verb's help, without what is redirected.
+fn examples(dir: &Dir, verb: &str) -> Vec<String> {
+    let ran = dir.run(&format!("{verb} --help")).exits(0);
+    let (_, examples) = ran.out.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb}: {}", ran.out));
+    let lines = examples.lines().filter_map(|line| line.trim().strip_prefix("flexsc "));
+    lines.map(|line| line.split(" > ").next().unwrap_or(line).to_owned()).collect()
+}
+
+#[test]
+fn every_example_of_the_help_works() {
+    let dir = Dir::new();
+    for entry in std::fs::read_dir(SCENARIOS).expect("shipped").flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.ends_with(".toml") {
+            std::fs::copy(entry.path(), dir.path(&name)).expect("copied");
+        }
+    }
+    let overview = dir.run("--help").exits(0).out;
+    let verbs = overview.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next());
+    let verbs: Vec<&str> = verbs.filter(|word| !word.starts_with('-')).collect();
+    assert_eq!(verbs.len(), 20, "{overview}");
+    // The papers take a minute, are of the full build, and have a test of their own.
+    for verb in verbs.into_iter().filter(|verb| *verb != "reproduce") {
+        let examples = examples(&dir, verb);
+        assert_eq!(examples.len(), 2, "{verb}");
+        for line in &examples {
+            dir.run(line).exits(0);
+        }
+    }
+}
