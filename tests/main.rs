@@ -83,6 +83,7 @@ mod study;
 mod swinging;
 mod tuning;
 mod typos;
+mod units;
 mod unloading;
 mod unwatched;
 mod util;

@@ -226,7 +226,7 @@ fn what_is_no_log_is_not_recovered() {
     dir.run("log recover relay-fixed.toml").exits(2);
     dir.run("log recover missing.mcap").exits(2).says(&["missing.mcap", "No such file"]);
     dir.run("log recover relay-fixed.toml -o relay-fixed.toml").exits(2).says(&["into itself"]);
-    dir.run("export relay-fixed.toml").exits(2).says(&["relay-fixed.toml: not a readable MCAP log"]);
+    dir.run("export relay-fixed.toml").exits(2).says(&["relay-fixed.toml: a scenario, not a log"]);
     dir.run("export missing.mcap").exits(2).says(&["missing.mcap", "No such file"]);
     assert_eq!(dir.names(""), ["relay-fixed.toml"]);
     dir.run("simulate relay-fixed.toml").exits(0);

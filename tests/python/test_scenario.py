@@ -197,6 +197,28 @@ def test_errors_are_pointed_where_there_is_a_text(fixed: Scenario) -> None:
     assert lines[-1].strip(" |") == "^^^"
 
 
+def test_errors_tell_every_mistake_with_its_key(fixed: Scenario) -> None:
+    text = fixed.to_toml().replace("dead_zone", "deadzone").replace("k_t = 0.31", "k_t = 3.1")
+    with pytest.raises(ScenarioError) as raised:
+        Scenario.parse(text)
+    by_key = {mistake["key"]: mistake for mistake in raised.value.mistakes}
+    assert set(by_key) == {"law.relay.deadzone", "law.relay.k_t"}
+    assert by_key["law.relay.deadzone"]["suggestion"] == "dead_zone"
+    lines = text.splitlines()
+    for mistake in by_key.values():
+        name = mistake["key"].rpartition(".")[2]
+        assert name in lines[mistake["line"] - 1]
+        assert mistake["message"] in str(raised.value)
+    for bad in ({"law": {"relay": {"k_t": None}}}, {"durations": 3.0}):
+        with pytest.raises(ScenarioError) as raised:
+            Scenario({"duration": 1.0, **bad})
+        assert all(mistake["line"] is None for mistake in raised.value.mistakes)
+        assert raised.value.mistakes[0]["key"] in ("law.relay.k_t", "durations")
+    with pytest.raises(ScenarioError) as raised:
+        fixed.with_("law.relay.k_t", 2.0)
+    assert [mistake["key"] for mistake in raised.value.mistakes] == ["law.relay.k_t"]
+
+
 @pytest.mark.parametrize(
     ("values", "words"),
     [

@@ -4,24 +4,44 @@ use std::io;
 use std::path::Path;
 
 use flexsc_core::record::RecordError;
-use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 pyo3::create_exception!(
     flexsc,
     ScenarioError,
     PyValueError,
-    "A scenario, or a key of it, that is not accepted."
+    "A scenario, or a key of it, that is not accepted. `mistakes` has a dictionary for each: `line` and `column` in the text \
+     and the path of the `key`, each None where there is none, the `message`, and as `suggestion` the key or the word that was \
+     probably meant, or None."
 );
 pyo3::create_exception!(flexsc, SimulationError, PyRuntimeError, "A simulation that cannot go on.");
 pyo3::create_exception!(flexsc, LogError, PyOSError, "A log that cannot be read or written.");
 
+/// The exception of a scenario that is not accepted; its `mistakes` are a dictionary each.
 pub fn scenario_error(error: flexsc_core::ScenarioError) -> PyErr {
-    ScenarioError::new_err(error.to_string())
+    let raised = ScenarioError::new_err(error.to_string());
+    let mistakes = error.mistakes();
+    Python::attach(|py| {
+        let each = mistakes.iter().map(|mistake| {
+            let told = PyDict::new(py);
+            told.set_item("line", mistake.place.as_ref().map(|place| place.line))?;
+            told.set_item("column", mistake.place.as_ref().map(|place| place.column))?;
+            told.set_item("key", mistake.key.as_ref())?;
+            told.set_item("message", &mistake.message)?;
+            told.set_item("suggestion", mistake.suggestion)?;
+            Ok(told)
+        });
+        let set =
+            each.collect::<PyResult<Vec<_>>>().and_then(|all| raised.value(py).setattr("mistakes", all));
+        // What cannot be told so is an error of its own.
+        set.map_or_else(|error| error, |()| raised)
+    })
 }
 
 /// Refuses work that costs too much, unless it is wanted.
-pub fn allowed(cost: &flexsc_core::scenario::Cost, yes: bool) -> pyo3::PyResult<()> {
+pub fn allowed(cost: &flexsc_core::scenario::Cost, yes: bool) -> PyResult<()> {
     match cost.excess() {
         Some(why) if !yes => {
             Err(PyValueError::new_err(format!("{why}\n\nhint: `yes=True` does it all the same")))

@@ -7,10 +7,13 @@ mod mistake;
 mod mistakes;
 mod nearest;
 mod parts;
+mod quantity;
 mod reader;
+mod units;
 mod words;
 mod wrong;
 
+use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -178,6 +181,27 @@ impl Document {
     pub fn set_text(&mut self, key: &str, text: &str) -> Result<(), ScenarioError> {
         let value = format!("value = {text}").parse::<Table>().ok().and_then(|t| t.get("value").cloned());
         self.set(key, value.unwrap_or_else(|| Value::String(text.to_owned())))
+    }
+
+    /// The document with numbers in SI in the place of those with units, such as `"2 deg"`; `schema` says the units of keys.
+    ///
+    /// # Errors
+    /// A unit that is not known, or not one of its key.
+    pub fn in_si(
+        &self,
+        schema: impl FnOnce() -> &'static serde_json::Value,
+    ) -> Result<Cow<'_, Self>, ScenarioError> {
+        if !quantity::any(&self.table) {
+            return Ok(Cow::Borrowed(self));
+        }
+        let mut converted = self.clone();
+        match &quantity::to_si(&mut converted.table, schema())[..] {
+            [] => Ok(Cow::Owned(converted)),
+            faults => {
+                let mistakes = faults.iter().flat_map(|fault| self.inconsistent(fault).mistakes());
+                Err(ScenarioError::Invalid(mistakes.collect()))
+            }
+        }
     }
 
     /// The document as the type that it describes.

@@ -19,7 +19,7 @@ mod study;
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -157,6 +157,7 @@ impl Scenario {
     }
 
     fn solved(document: &Document, parent: Option<&Self>) -> Result<Self, ScenarioError> {
+        let document = &*document.in_si(units)?;
         let mut scenario: Self = document.read()?;
         if let Some(error) = document.unread(&scenario.to_table()) {
             return Err(error);
@@ -355,4 +356,10 @@ impl Scenario {
     pub fn tells_torque(&self) -> bool {
         !self.law.switches() || !self.disturbance.is_empty() || !self.actuator.is_ideal()
     }
+}
+
+/// The schema, whose descriptions say the units of keys.
+fn units() -> &'static serde_json::Value {
+    static SCHEMA: OnceLock<serde_json::Value> = OnceLock::new();
+    SCHEMA.get_or_init(Scenario::schema)
 }

@@ -50,6 +50,8 @@ _Column: TypeAlias = (
 class ScenarioError(ValueError):
     """A scenario, or a key of it, that is not accepted."""
 
+    mistakes: list[dict[str, Any]]
+
 class SimulationError(RuntimeError):
     """A simulation that cannot go on."""
 

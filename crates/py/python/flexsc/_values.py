@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from datetime import date, datetime, time
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +24,7 @@ def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
     """Write a value as TOML; what TOML cannot express is an error at its key."""
 
     def refused(why: str) -> ScenarioError:
-        return ScenarioError(f"{origin}: `{key}`: {why}")
+        return _mistaken(f"{origin}: `{key}`", key, why)
 
     if depth > _DEEPEST:
         raise refused("nested too deep")
@@ -61,7 +61,7 @@ def document(name: str, values: Mapping[str, object]) -> str:
     lines = []
     for key, value in values.items():
         if not isinstance(key, str):
-            raise ScenarioError(f"{name}: found a key of type {type(key).__name__}, expected a str")
+            raise _mistaken(name, None, f"found a key of type {type(key).__name__}, expected a str")
         lines.append(f"{_quoted(key)} = {toml(name, _path('', key), value)}\n")
     return "".join(lines)
 
@@ -71,7 +71,18 @@ def _path(above: str, key: str) -> str:
     return f"{above}.{step}" if above else step
 
 
-def _quoted(text: str, refused: Any = ScenarioError) -> str:
+def _mistaken(place: str, key: str | None, why: str) -> ScenarioError:
+    """Make the error that the engine would raise."""
+    error = ScenarioError(f"{place}: {why}")
+    error.mistakes = [{"line": None, "column": None, "key": key, "message": why, "suggestion": None}]
+    return error
+
+
+def _keyless(why: str) -> ScenarioError:
+    return _mistaken("a key", None, why)
+
+
+def _quoted(text: str, refused: Callable[[str], ScenarioError] = _keyless) -> str:
     try:
         text.encode()
     except UnicodeEncodeError:

@@ -1,0 +1,176 @@
+//! Numbers with units, such as `"2 deg"`, where a key takes a number: they are stored in SI, the unit of the key.
+//!
+//! The unit of a key is the one that its description in the JSON Schema of scenarios ends with, as in `(rad/s)`.
+
+use serde_json::Value as Json;
+use toml::{Table, Value};
+
+use super::Fault;
+use super::key::bare_or_quoted;
+use super::units::Unit;
+
+/// References of a schema are followed so far.
+const DEEPEST: usize = 32;
+
+/// Whether some text in a table may be a number with a unit.
+pub fn any(table: &Table) -> bool {
+    fn within(value: &Value) -> bool {
+        match value {
+            Value::String(text) => split(text).is_some(),
+            Value::Array(values) => values.iter().any(within),
+            Value::Table(table) => any(table),
+            _ => false,
+        }
+    }
+    table.values().any(within)
+}
+
+/// Puts numbers in SI in the place of numbers with units, and tells what is no such number where one is expected.
+pub fn to_si(table: &mut Table, schema: &Json) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let root = [Node { schema, unit: None }];
+    for (key, value) in table.iter_mut() {
+        convert(value, &bare_or_quoted(key), &within(schema, &root, Some(key)), schema, &mut faults);
+    }
+    faults
+}
+
+/// A place in the schema, and the unit that the descriptions on the way to it say.
+#[derive(Copy, Clone)]
+struct Node<'a> {
+    schema: &'a Json,
+    unit: Option<&'a str>,
+}
+
+fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, faults: &mut Vec<Fault>) {
+    match value {
+        Value::Table(table) => {
+            for (key, value) in table.iter_mut() {
+                let path = format!("{path}.{}", bare_or_quoted(key));
+                convert(value, &path, &within(schema, nodes, Some(key)), schema, faults);
+            }
+        }
+        Value::Array(values) => {
+            let elements = within(schema, nodes, None);
+            for (index, value) in values.iter_mut().enumerate() {
+                convert(value, &format!("{path}[{index}]"), &elements, schema, faults);
+            }
+        }
+        Value::String(text) => {
+            let Some((number, unit)) = split(text) else { return };
+            let ends = flat(schema, nodes);
+            let is = |name: &str| ends.iter().any(|node| of_type(node.schema, name));
+            if is("string") || !is("number") {
+                return;
+            }
+            match in_si(number, unit, &ends) {
+                Ok(number) => *value = Value::Float(number),
+                Err(why) => faults.push(Fault::new(path, why)),
+            }
+        }
+        _ => {}
+    }
+}
+
+/// A number in the unit of its key.
+fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
+    let wanted: Vec<&str> = ends.iter().filter_map(|node| node.unit).collect();
+    let Some(first) = wanted.first() else {
+        return Err(format!("has the unit `{unit}`, and takes a number without one"));
+    };
+    let Some(given) = Unit::parse(unit) else {
+        return Err(format!(
+            "has the unit `{unit}`, which is not known; expected one of {first}, such as `1 {first}`"
+        ));
+    };
+    let factor = wanted.iter().find_map(|wanted| given.per(Unit::parse(wanted)?));
+    factor
+        .map(|factor| number * factor)
+        .ok_or_else(|| format!("has the unit `{unit}`, expected one of {first}"))
+}
+
+/// A text that begins with a number and goes on with something else.
+fn split(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    if !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
+        return None;
+    }
+    // The longest number counts: `1e-3 rad`, but `2 e`.
+    let ends = text.char_indices().map(|(index, _)| index).filter(|index| *index > 0);
+    let longest = ends.filter_map(|end| Some((text[..end].parse::<f64>().ok()?, end))).last()?;
+    let unit = text[longest.1..].trim();
+    let named =
+        unit.starts_with(|c: char| c.is_alphabetic() || c == '\u{b0}' || c == '1' || c == '(' || c == '/');
+    (longest.0.is_finite() && named).then_some((longest.0, unit))
+}
+
+/// Where a key, or an element, of what may stand at some places is described.
+fn within<'a>(schema: &'a Json, nodes: &[Node<'a>], key: Option<&str>) -> Vec<Node<'a>> {
+    let mut inner = Vec::new();
+    for node in flat(schema, nodes) {
+        let found = match key {
+            Some(key) => [
+                node.schema.get("properties").and_then(|properties| properties.get(key)),
+                node.schema.get("additionalProperties"),
+            ],
+            None => [node.schema.get("items"), None],
+        };
+        for schema in found.into_iter().flatten() {
+            let unit = if key.is_some() { None } else { node.unit };
+            inner.push(Node { schema, unit: unit_of(schema).or(unit) });
+        }
+        if let (None, Some(elements)) = (key, node.schema.get("prefixItems").and_then(Json::as_array)) {
+            inner.extend(elements.iter().map(|schema| Node { schema, unit: unit_of(schema).or(node.unit) }));
+        }
+    }
+    inner
+}
+
+/// All that some places may be, references and choices resolved.
+fn flat<'a>(schema: &'a Json, nodes: &[Node<'a>]) -> Vec<Node<'a>> {
+    fn follow<'a>(schema: &'a Json, node: Node<'a>, depth: usize, all: &mut Vec<Node<'a>>) {
+        if depth == DEEPEST {
+            return;
+        }
+        let node = Node { unit: node.unit.or_else(|| unit_of(node.schema)), ..node };
+        all.push(node);
+        let target = node.schema.get("$ref").and_then(Json::as_str);
+        let target = target.and_then(|path| schema.pointer(path.strip_prefix('#')?));
+        let choices =
+            ["anyOf", "oneOf", "allOf"].into_iter().filter_map(|of| node.schema.get(of)?.as_array());
+        for inner in target.into_iter().chain(choices.flatten()) {
+            follow(schema, Node { schema: inner, unit: node.unit }, depth + 1, all);
+        }
+    }
+    let mut all = Vec::new();
+    for node in nodes {
+        follow(schema, *node, 0, &mut all);
+    }
+    all
+}
+
+/// The unit that a description says: `Angle (rad)`, `Torque (N m; rad/s² on a body without inertia)`.
+fn unit_of(schema: &Json) -> Option<&str> {
+    let text = schema.get("description")?.as_str()?;
+    let places = text.match_indices('(').filter_map(|(open, _)| {
+        let mut depth = 0;
+        let end = text[open..].char_indices().find(|(_, c)| {
+            depth += i32::from(*c == '(') - i32::from(*c == ')');
+            depth == 0
+        });
+        let inner = &text[open + 1..open + end?.0];
+        inner
+            .split([';', ','])
+            .map(|part| part.split(" for ").next().unwrap_or(part).trim())
+            .find(|part| Unit::parse(part).is_some())
+    });
+    places.into_iter().next()
+}
+
+fn of_type(schema: &Json, name: &str) -> bool {
+    match schema.get("type") {
+        Some(Json::String(of)) => of == name,
+        Some(Json::Array(of)) => of.iter().any(|of| of == name),
+        _ => false,
+    }
+}

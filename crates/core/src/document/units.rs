@@ -1,0 +1,211 @@
+//! Units of numbers that are written as texts, such as `deg/s`: what they are in SI.
+
+use std::f64::consts::{PI, TAU};
+
+/// A unit: its factor to SI, and twice the exponents of metre, kilogram, second, ampere and radian.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Unit {
+    factor: f64,
+    twice: [i16; 5],
+    /// Whether cycles are counted, which are taken for 2π rad where an angle is expected.
+    cycles: bool,
+}
+
+const ONE: Unit = Unit { factor: 1.0, twice: [0; 5], cycles: false };
+const DEGREE: f64 = PI / 180.0;
+
+/// Units by their symbols: factor, exponents of metre, kilogram, second, ampere and radian, and whether prefixes are taken.
+const SYMBOLS: &[(&str, f64, [i16; 5], bool)] = &[
+    ("m", 1.0, [1, 0, 0, 0, 0], true),
+    ("g", 1e-3, [0, 1, 0, 0, 0], true),
+    ("s", 1.0, [0, 0, 1, 0, 0], true),
+    ("A", 1.0, [0, 0, 0, 1, 0], true),
+    ("rad", 1.0, [0, 0, 0, 0, 1], true),
+    ("min", 60.0, [0, 0, 1, 0, 0], false),
+    ("h", 3600.0, [0, 0, 1, 0, 0], false),
+    ("d", 86400.0, [0, 0, 1, 0, 0], false),
+    ("deg", DEGREE, [0, 0, 0, 0, 1], false),
+    ("\u{b0}", DEGREE, [0, 0, 0, 0, 1], false),
+    ("arcmin", DEGREE / 60.0, [0, 0, 0, 0, 1], false),
+    ("arcsec", DEGREE / 3600.0, [0, 0, 0, 0, 1], false),
+    ("mas", DEGREE / 3.6e6, [0, 0, 0, 0, 1], false),
+    ("rpm", TAU / 60.0, [0, 0, -1, 0, 1], false),
+    ("N", 1.0, [1, 1, -2, 0, 0], true),
+    ("Nm", 1.0, [2, 1, -2, 0, 0], true),
+    ("Nms", 1.0, [2, 1, -1, 0, 0], true),
+    ("T", 1.0, [0, 1, -2, -1, 0], true),
+    ("Hz", 1.0, [0, 0, -1, 0, 0], true),
+];
+
+const PREFIXES: &[(&str, f64)] = &[
+    ("n", 1e-9),
+    ("u", 1e-6),
+    ("\u{b5}", 1e-6),
+    ("\u{3bc}", 1e-6),
+    ("m", 1e-3),
+    ("c", 1e-2),
+    ("k", 1e3),
+    ("M", 1e6),
+    ("G", 1e9),
+];
+
+impl Unit {
+    /// A unit from its text, such as `N m s/rad`, `deg/sqrt(h)`, `kg m²` or `m/s^2`; a slash is of the next factor alone.
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut rest = Rest(text.trim());
+        let unit = rest.product()?;
+        rest.0.is_empty().then_some(unit)
+    }
+
+    /// How many of another unit this one is, if they measure the same. Cycles are taken for 2π rad where an angle is expected.
+    pub fn per(self, other: Self) -> Option<f64> {
+        if self.twice == other.twice {
+            return Some(self.factor / other.factor);
+        }
+        let mut turned = other.twice;
+        turned[4] -= 2;
+        (self.cycles && self.twice == turned).then(|| TAU * self.factor / other.factor)
+    }
+
+    fn times(self, other: Self) -> Self {
+        let mut twice = self.twice;
+        for (twice, more) in twice.iter_mut().zip(other.twice) {
+            *twice = twice.saturating_add(more);
+        }
+        Self { factor: self.factor * other.factor, twice, cycles: self.cycles || other.cycles }
+    }
+
+    /// The unit to half of this power.
+    fn to_half(self, power: i16) -> Option<Self> {
+        let mut twice = self.twice;
+        for exponent in &mut twice {
+            let product = exponent.checked_mul(power)?;
+            if product % 2 != 0 {
+                return None;
+            }
+            *exponent = product / 2;
+        }
+        Some(Self { factor: libm::pow(self.factor, f64::from(power) / 2.0), twice, ..self })
+    }
+
+    fn symbol(word: &str) -> Option<Self> {
+        if word == "1" {
+            return Some(ONE);
+        }
+        let of = |(symbol, factor, exponents, _): &(&str, f64, [i16; 5], bool), prefix: f64| {
+            let twice = exponents.map(|exponent| 2 * exponent);
+            Self { factor: prefix * factor, twice, cycles: *symbol == "Hz" }
+        };
+        if let Some(known) = SYMBOLS.iter().find(|known| known.0 == word) {
+            return Some(of(known, 1.0));
+        }
+        PREFIXES.iter().find_map(|(prefix, factor)| {
+            let word = word.strip_prefix(prefix)?;
+            // A milli-kilogram would be the word of a gram.
+            SYMBOLS.iter().find(|known| known.3 && known.0 == word).map(|known| of(known, *factor))
+        })
+    }
+}
+
+/// What is left of a text.
+struct Rest<'a>(&'a str);
+
+impl Rest<'_> {
+    fn product(&mut self) -> Option<Unit> {
+        let mut product = self.power()?;
+        loop {
+            self.0 = self.0.trim_start();
+            if let Some(rest) = self.0.strip_prefix('/') {
+                self.0 = rest.trim_start();
+                product = product.times(self.power()?.to_half(-2)?);
+            } else if let Some(rest) = self.0.strip_prefix(['*', '\u{b7}']) {
+                self.0 = rest.trim_start();
+                product = product.times(self.power()?);
+            } else if self.0.is_empty() || self.0.starts_with(')') {
+                return Some(product);
+            } else {
+                product = product.times(self.power()?);
+            }
+        }
+    }
+
+    fn power(&mut self) -> Option<Unit> {
+        if let Some(rest) = self.0.strip_prefix("sqrt(") {
+            self.0 = rest;
+            return self.closed()?.to_half(1);
+        }
+        let base = if let Some(rest) = self.0.strip_prefix('(') {
+            self.0 = rest;
+            self.closed()?
+        } else {
+            let end = self.0.find(|c: char| !(c.is_alphabetic() || c == '\u{b0}'));
+            let end = if self.0.starts_with('1') { 1 } else { end.unwrap_or(self.0.len()) };
+            let (word, rest) = self.0.split_at(end);
+            self.0 = rest;
+            Unit::symbol(word)?
+        };
+        for (sign, power) in [('\u{b2}', 4), ('\u{b3}', 6)] {
+            if let Some(rest) = self.0.strip_prefix(sign) {
+                self.0 = rest;
+                return base.to_half(power);
+            }
+        }
+        let Some(rest) = self.0.strip_prefix('^') else { return Some(base) };
+        let end = rest.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-')).unwrap_or(rest.len());
+        let (power, rest) = rest.split_at(end);
+        self.0 = rest;
+        let twice = 2.0 * power.parse::<f64>().ok()?;
+        (twice == libm::trunc(twice) && twice.abs() <= 12.0).then(|| base.to_half(twice as i16))?
+    }
+
+    /// A product up to a bracket.
+    fn closed(&mut self) -> Option<Unit> {
+        let inner = self.product()?;
+        self.0 = self.0.strip_prefix(')')?;
+        Some(inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn converted(from: &str, to: &str) -> Option<f64> {
+        Unit::parse(from)?.per(Unit::parse(to).expect("a unit"))
+    }
+
+    #[test]
+    fn units_are_what_they_are_in_si() {
+        let close =
+            |a: Option<f64>, b: f64| assert!(a.is_some_and(|a| (a / b - 1.0).abs() < 1e-15), "{a:?} {b}");
+        close(converted("deg", "rad"), 0.017_453_292_519_943_295);
+        close(converted("arcsec", "rad"), 4.848_136_811_095_36e-6);
+        close(converted("deg/h", "rad/s"), 4.848_136_811_095_36e-6);
+        close(converted("rpm", "rad/s"), 0.104_719_755_119_659_77);
+        close(converted("Hz", "rad/s"), 6.283_185_307_179_586);
+        close(converted("mHz", "1/s"), 1e-3);
+        close(converted("deg/sqrt(h)", "rad/sqrt(s)"), 2.908_882_086_657_216e-4);
+        close(converted("mN m", "N m"), 1e-3);
+        close(converted("mNm", "N m"), 1e-3);
+        close(converted("kg cm^2", "kg m\u{b2}"), 1e-4);
+        close(converted("g cm\u{b2}", "kg m\u{b2}"), 1e-7);
+        close(converted("min", "s"), 60.0);
+        close(converted("ms", "s"), 1e-3);
+        close(converted("\u{b5}T", "T"), 1e-6);
+        close(converted("N m s/rad", "N m s/rad"), 1.0);
+        close(converted("m sqrt(kg)/s^1.5", "sqrt(kg) m/s^1.5"), 1.0);
+        close(converted("(N m)\u{b2} s", "(Nm)^2 s"), 1.0);
+        close(converted("km^3/s^2", "m\u{b3}/s\u{b2}"), 1e9);
+    }
+
+    #[test]
+    fn what_measures_something_else_is_no_such_unit() {
+        assert_eq!(converted("kg", "rad"), None);
+        assert_eq!(converted("Hz", "s"), None);
+        assert_eq!(converted("deg", "rad/s"), None);
+        assert_eq!(converted("rad/s", "1/s"), None);
+        for none in ["", "foo", "deg/", "mdeg", "kmin", "m^", "sqrt(m", "(m", "m)", "m^0.3", "kkg", "1.5"] {
+            assert_eq!(Unit::parse(none), None, "{none}");
+        }
+    }
+}

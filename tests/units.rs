@@ -1,0 +1,131 @@
+//! Numbers with units in scenarios: they are those in SI, whatever key they stand at.
+
+use flexsc_core::{Document, Scenario};
+use toml::Value;
+
+use crate::util::{Dir, SCENARIOS};
+
+const PLAIN: &str = r#"
+duration = 120.0
+
+[spacecraft]
+mass = 600.0
+inertia = [[120.0, 0.0, 0.0], [0.0, 90.0, 0.0], [0.0, 0.0, 100.0]]
+attitude = [0.0, 0.0, 0.0, 1.0]
+rate = [0.017453292519943295, 0.0, 0.0]
+
+[[appendage]]
+name = "panel"
+mass = 20.0
+centre = [0.0, 1.5, 0.0]
+inertia = [[20.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 20.0]]
+at = [0.5, 0.0, 0.0]
+modes = [{ frequency = 3.141592653589793, damping = 0.002, translation = [0.0, 0.0, 2.0], rotation = [3.5, 0.0, 0.0] }]
+
+[law.attitude]
+period = 0.25
+bandwidth = 0.1
+damping = 0.7
+"#;
+
+#[test]
+fn numbers_with_units_are_those_in_si() {
+    let plain = Scenario::parse("x", PLAIN).unwrap_or_else(|error| panic!("{error}"));
+    let mut text = PLAIN.to_owned();
+    for (number, unit) in [
+        ("120.0\n", "\"2 min\"\n"),
+        ("600.0", "\"0.6e3 kg\""),
+        ("[[120.0, 0.0, 0.0]", "[[\"120 kg m^2\", 0.0, \"0 g cm\u{b2}\"]"),
+        ("0.017453292519943295", "\"1 deg/s\""),
+        ("[0.5, 0.0, 0.0]", "[\"50cm\", 0.0, 0.0]"),
+        ("frequency = 3.141592653589793", "frequency = \"0.5 Hz\""),
+        ("bandwidth = 0.1", "bandwidth = \"100 mrad/s\""),
+    ] {
+        assert!(text.contains(number), "{number}");
+        text = text.replacen(number, unit, 1);
+    }
+    let read = Scenario::parse("x", &text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(read.to_toml(), plain.to_toml());
+}
+
+#[test]
+fn wrong_units_are_told_all_at_once_with_their_places() {
+    let text = PLAIN
+        .replace("duration = 120.0", "duration = '2 kg'")
+        .replace("frequency = 3.141592653589793", "frequency = '3 fortnights'")
+        .replace("damping = 0.7", "damping = '70 deg'");
+    let told = Scenario::parse("x", &text).expect_err("refused").to_string();
+    for words in [
+        "x:2:12: `duration` has the unit `kg`, expected one of s",
+        "`appendage[0].modes[0].frequency` has the unit `fortnights`, which is not known; expected one of rad/s",
+        "`law.attitude.damping` has the unit `deg`, and takes a number without one",
+    ] {
+        assert!(told.contains(words), "no `{words}` in\n{told}");
+    }
+    assert_eq!(told.matches('^').count(), 6 + 14 + 8, "{told}");
+}
+
+/// Every number of the shipped scenarios, with one of these units, is what it was or is refused for its unit.
+#[test]
+fn every_key_with_a_unit_takes_it() {
+    let schema: &'static _ = Box::leak(Box::new(Scenario::schema()));
+    let (mut taken, mut without) = (0, Vec::new());
+    for entry in std::fs::read_dir(SCENARIOS).expect("shipped").flatten() {
+        let path = entry.path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let plain = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}")).to_table();
+        let mut keys = Vec::new();
+        numbers(&Value::Table(plain.clone()), String::new(), &mut keys);
+        for (key, number) in keys {
+            let mut fits = 0;
+            for unit in ["s", "rad", "rad/s", "m", "kg", "N", "N m", "kg m^2", "rad/s^2", "N m s", "1/s", "T"]
+            {
+                let mut document = Document::from_table("x", plain.clone());
+                document.set(&key, Value::String(format!("{number:e} {unit}"))).expect("a key");
+                match document.in_si(|| schema) {
+                    Ok(read) => {
+                        assert_eq!(*read.table(), plain, "{key} {unit}");
+                        fits += 1;
+                    }
+                    Err(error) => assert!(error.to_string().contains("has the unit"), "{error}"),
+                }
+            }
+            taken += usize::from(fits > 0);
+            if fits == 0 {
+                without.push(key);
+            }
+        }
+    }
+    println!("{taken} with a unit, {} without: {without:#?}", without.len());
+    assert!(taken > 800, "{taken}");
+}
+
+#[test]
+fn the_command_and_its_options_take_units() {
+    let dir = Dir::with(&["attitude-hold"]);
+    dir.run("simulate attitude-hold.toml --set duration=2min --set name=short").exits(0).says(&["120 s"]);
+    dir.run("simulate attitude-hold.toml --set duration=2kg").exits(2).says(&["`duration`", "unit `kg`"]);
+}
+
+/// The paths and values of the floating-point numbers within a value.
+fn numbers(value: &Value, path: String, all: &mut Vec<(String, f64)>) {
+    match value {
+        Value::Float(number) if number.is_finite() => all.push((path, *number)),
+        Value::Array(values) => {
+            for (index, value) in values.iter().enumerate() {
+                numbers(value, format!("{path}[{index}]"), all);
+            }
+        }
+        Value::Table(table) => {
+            for (key, value) in table {
+                let plain = key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+                let step = if plain { key.clone() } else { format!("\"{key}\"") };
+                let path = if path.is_empty() { step } else { format!("{path}.{step}") };
+                numbers(value, path, all);
+            }
+        }
+        _ => {}
+    }
+}
