@@ -20,6 +20,7 @@ mod live;
 mod log;
 mod logged;
 mod map;
+mod merge;
 mod modes;
 mod number;
 mod observer;
@@ -38,6 +39,7 @@ mod summary;
 mod sweep;
 mod table;
 mod terminal;
+mod top;
 mod tune;
 
 use std::ffi::OsString;
@@ -62,6 +64,10 @@ enum Verb {
     Simulate(simulate::Args),
     /// Simulate a scenario once for each value of a key
     Sweep(sweep::Args),
+    /// Join the runs of one campaign from several directories
+    Merge(merge::Args),
+    /// Show how far a campaign is, and what its runs come to so far
+    Top(top::Args),
     /// Print the elastic modes of a scenario's body
     Modes(scenario::Args),
     /// Print the limit cycles of a scenario's relay law on a rigid body, and its resonances
@@ -130,6 +136,8 @@ fn execute(verb: Verb) -> Result<(), Failure> {
     match verb {
         Verb::Simulate(args) => simulate::run(&args),
         Verb::Sweep(args) => sweep::run(&args),
+        Verb::Merge(args) => merge::run(&args),
+        Verb::Top(args) => top::run(&args),
         Verb::Modes(args) => modes::run(&args),
         Verb::Cycle(args) => cycle::run(&args),
         Verb::Plan(args) => plan::run(&args),
