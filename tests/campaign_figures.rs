@@ -212,7 +212,9 @@ fn bad_tables_are_named() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     dir.run("simulate u.toml --runs 3 -o out").exits(0);
     std::fs::create_dir(dir.path("empty")).expect("made");
-    dir.run("plot empty").exits(2).says(&["empty: no table of a campaign, `runs.csv`", "flexsc simulate"]);
+    dir.run("plot empty")
+        .exits(2)
+        .says(&["empty: no campaign, neither parts nor a table `runs.csv`", "flexsc simulate"]);
     dir.run("plot out --metric dutie").exits(2).says(&["no metric `dutie`", "switchings", "duty"]);
     dir.run("plot out --metric cycle_kind").exits(2).says(&["no metric `cycle_kind` that is a number"]);
     dir.run("plot out --what gain").exits(2).says(&["no figure `gain`", "it has distribution, scatter"]);

@@ -1,18 +1,21 @@
 //! Running a campaign: the row of each run, and the statistics.
 
 mod kept;
+mod live;
+pub mod options;
+pub mod parts;
 
 use std::io::Write;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::campaign::{Campaign, Outcome, Run, RunError};
-use flexsc_core::metrics::Metrics;
+use flexsc_core::campaign::{Campaign, Directory, Outcome, Run, RunError, Sampling};
+use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
-use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
+use flexsc_core::statistics::{Gathered, QUANTILES, Statistics};
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
@@ -20,10 +23,40 @@ use crate::failure::Failure;
 use crate::number::short;
 use crate::results::print_lines;
 use crate::table::Table;
-use crate::{files, progress, say, stop, summary};
+use crate::{files, say, stop, summary};
 
 use kept::Kept;
 pub use kept::SCENARIO;
+use live::Live;
+pub use live::{Running, table as table_so_far};
+pub use options::{Kind, Options};
+
+/// The metrics that are told and drawn of a campaign if none is named: the first of these that vary.
+pub const MAIN: [&str; 23] = [
+    "goal",
+    "envelope_late_mean_rad",
+    "gain_final",
+    "cycle_period_s",
+    "torque_impulse_per_hour_nm_s",
+    "switchings",
+    "settling_time_s",
+    "time_outside_s",
+    "angle_error_late_rad",
+    "angle_residual_rad",
+    "frequency_error_rms_rad_s",
+    "nees_mean",
+    "peak_torque_nm",
+    "angle_error_peak_rad",
+    "spectral_radius",
+    "pointing_rms_rad",
+    "pointing_error_end_rad",
+    "elastic_rate_rms_rad_s",
+    "fuel_kg",
+    "elastic_energy_end_j",
+    "elastic_energy_peak_j",
+    "energy_below_10pct_at_s",
+    "firings",
+];
 
 /// What of a campaign is run, and what is made of it.
 pub struct Job<'a> {
@@ -33,6 +66,12 @@ pub struct Job<'a> {
     pub part: bool,
     /// The directory of the tables, if any are wanted.
     pub table: Option<&'a Path>,
+    /// The form of the rows there.
+    pub kind: Kind,
+    /// The metrics of the rows.
+    pub selection: Selection,
+    /// Whether the first run that fails ends it.
+    pub fail_fast: bool,
     /// What the tables' names begin with, where several campaigns share a directory.
     pub prefix: Option<&'a str>,
     /// Whether tables of another campaign are replaced.
@@ -43,6 +82,20 @@ pub struct Job<'a> {
     pub json: bool,
 }
 
+/// What a campaign came to.
+pub struct Told {
+    /// How many runs there are.
+    pub runs: usize,
+    /// Their statistics.
+    pub statistics: Vec<Statistics>,
+    /// How many of them failed, the first of them, and why.
+    pub failed: Option<(u64, u64, String)>,
+    /// The metrics of a run that is alone.
+    pub only: Option<Metrics>,
+    /// Where the rows are.
+    pub table: Option<PathBuf>,
+}
+
 /// Runs a campaign; `work` simulates one run.
 pub fn run(
     study: &Arc<Campaign>,
@@ -51,56 +104,110 @@ pub fn run(
 ) -> Result<(), Failure> {
     let began = WallInstant::now();
     let _writing = stop::writing();
-    let threads = usize::from(job.jobs.unwrap_or(0));
+    let told = match job.table {
+        Some(path) if job.kind == Kind::Parquet => {
+            let path = job.prefix.map_or_else(|| path.to_owned(), |name| path.join(name));
+            parts::run(study, job, &path, work)?
+        }
+        _ => table(study, job, work)?,
+    };
+    let runs = told.runs as u64;
+    if !job.json {
+        let (name, took) = (&study.scenario().name, began.elapsed().as_secs_f64());
+        if let Some(only) = &told.only {
+            summary::tell(study.scenario(), only, took);
+        } else {
+            say!("{name}   {runs} runs, {took:.2} s");
+            tell_statistics(&told.statistics, told.runs);
+        }
+        if let Some(path) = &told.table {
+            say!("  table          {}", path.display());
+        }
+    }
+    match told.failed {
+        None => Ok(()),
+        Some((failed, number, why)) => Err(Failure::Runs { failed, runs, number, why }),
+    }
+}
+
+/// Runs a campaign into one table, or none.
+fn table(
+    study: &Arc<Campaign>,
+    job: &Job<'_>,
+    work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+) -> Result<Told, Failure> {
     let runs = job.range.end - job.range.start;
     let mut table = None;
     if let Some(dir) = job.table {
+        let design = study.design();
+        if !study.scenario().uncertain.is_empty() && (design.replicas > 1 || design.draws != Sampling::Random)
+        {
+            // Its `scenario.toml` could not repeat a run.
+            let why = "--sample and --replicas of a scenario with [uncertain] keys need --table parquet";
+            return Err(Failure::Arguments(format!("{why}, or no -o")));
+        }
+        if Directory::is_one(dir) && !job.force {
+            let why = "holds a campaign as Parquet files";
+            let hint = "hint: give another directory with -o, or leave out `--table csv` to continue it";
+            return Err(Failure::Arguments(format!("{}: {why}\n\n{hint}", dir.display())));
+        }
         let kept = Kept::new(dir, job, study);
         // Before what a killed campaign left is touched, and again by the only process that writes there.
         kept.check()?;
         table = Some(Table::create(&dir.join(job.file("runs")))?);
         kept.keep()?;
     }
-    let bar = progress::bar(runs, "runs");
-    let next = job.range.start;
-    let mut telling =
-        Telling { study, json: job.json, table: table.as_mut(), all: Vec::new(), next, failed: None };
-    let done = study.each(job.range.clone(), threads, work, |outcome| {
-        bar.inc(u64::from(outcome.is_some()));
-        telling.tell(outcome)
-    });
-    bar.finish_and_clear();
-    let Telling { all, failed, .. } = telling;
+    let mut telling = Telling {
+        study,
+        job,
+        table: table.as_mut(),
+        all: Gathered::default(),
+        only: None,
+        live: Live::new(runs, 0),
+        next: job.range.start,
+        failed: None,
+    };
+    let done = study.each(job.range.clone(), job.threads(), work, |outcome| telling.tell(outcome));
+    let Telling { all, only, failed, .. } = telling;
     if let Err(failure) = done {
         return Err(match (&failure, table) {
-            (Failure::Interrupted(_) | Failure::Write { .. }, Some(table)) => table.interrupt(study, failure),
+            (Failure::Interrupted(_) | Failure::Write { .. } | Failure::First { .. }, Some(table)) => {
+                table.interrupt(study, failure)
+            }
             _ => failure,
         });
     }
     let table = table.map(|table| table.finish(study)).transpose()?;
-    let statistics = statistics(&all);
+    let only = only.filter(|_| all.runs() == 1);
+    let (runs, statistics) = (runs as usize, all.finish());
     if let Some(dir) = job.table {
         write_statistics(&dir.join(job.file("statistics")), &statistics)?;
     }
-    if !job.json {
-        let (name, took) = (&study.scenario().name, began.elapsed().as_secs_f64());
-        if let [only] = &all[..] {
-            summary::tell(study.scenario(), only, took);
-        } else {
-            say!("{name}   {runs} runs, {took:.2} s");
-            tell_statistics(&statistics, all.len());
+    Ok(Told { runs, statistics, failed, only, table })
+}
+
+fn interruption(at: u64) -> Failure {
+    Failure::Interrupted(format!(" at run {at}"))
+}
+
+/// The outcome of a run, unless its log stopped it.
+fn accepted(outcome: Outcome) -> Result<Outcome, Failure> {
+    match outcome.metrics {
+        Err(RunError::Simulation(SimulationError::Record(RecordError::Io(source)))) => {
+            Err(Failure::write(Path::new(&format!("the log of run {}", outcome.number)))(source))
         }
-        if let Some(path) = table {
-            say!("  table          {}", path.display());
+        Err(RunError::Simulation(SimulationError::Record(RecordError::Interrupted))) => {
+            Err(interruption(outcome.number))
         }
-    }
-    match failed {
-        None => Ok(()),
-        Some((failed, number, why)) => Err(Failure::Runs { failed, runs, number, why }),
+        _ => Ok(outcome),
     }
 }
 
 impl Job<'_> {
+    fn threads(&self) -> usize {
+        usize::from(self.jobs.unwrap_or(0))
+    }
+
     fn file(&self, kind: &str) -> String {
         let prefix = self.prefix.map_or(String::new(), |name| format!("{name}-"));
         let part =
@@ -112,9 +219,11 @@ impl Job<'_> {
 /// The rows of the runs, in order.
 struct Telling<'a> {
     study: &'a Campaign,
-    json: bool,
+    job: &'a Job<'a>,
     table: Option<&'a mut Table>,
-    all: Vec<Metrics>,
+    all: Gathered,
+    only: Option<Metrics>,
+    live: Live,
     /// The run whose row is next.
     next: u64,
     /// How many runs failed, and the first of them.
@@ -126,28 +235,28 @@ impl Telling<'_> {
         if let Some(table) = &mut self.table {
             table.flush_in_time()?;
         }
-        let interrupted = |at: u64| Failure::Interrupted(format!(" at run {at}"));
         let Some(outcome) = outcome else {
-            return if stop::asked() { Err(interrupted(self.next)) } else { Ok(()) };
+            self.live.show();
+            return if stop::asked() { Err(interruption(self.next)) } else { Ok(()) };
         };
         self.next = outcome.number + 1;
-        if let Err(RunError::Simulation(SimulationError::Record(error))) = outcome.metrics {
-            return Err(match error {
-                RecordError::Io(source) => {
-                    Failure::write(Path::new(&format!("the log of run {}", outcome.number)))(source)
-                }
-                RecordError::Interrupted => interrupted(outcome.number),
-            });
-        }
+        let outcome = accepted(outcome)?;
+        self.live.add(&outcome);
         if let Some(table) = &mut self.table {
             table.row(self.study, &outcome)?;
         }
-        if self.json {
-            let Outcome { number, drawn, metrics } = &outcome;
+        if self.job.json {
+            let Outcome { number, drawn, metrics, .. } = &outcome;
             print_lines(&[object(self.study, *number, drawn, metrics.as_ref())])?;
         }
         match outcome.metrics {
-            Ok(metrics) => self.all.push(metrics),
+            Ok(metrics) => {
+                self.all.add(&metrics);
+                self.only = Some(metrics);
+            }
+            Err(error) if self.job.fail_fast => {
+                return Err(Failure::First { number: outcome.number, why: error.to_string() });
+            }
             Err(error) => {
                 let first = self.failed.take();
                 let (failed, number, why) = first.unwrap_or_else(|| (0, outcome.number, error.to_string()));
@@ -197,7 +306,8 @@ fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failur
     files::write(path, &table().map_err(|error| Failure::write(path)(error.into()))?)
 }
 
-fn tell_statistics(statistics: &[Statistics], runs: usize) {
+/// Prints statistics.
+pub fn tell_statistics(statistics: &[Statistics], runs: usize) {
     if runs == 0 {
         return;
     }

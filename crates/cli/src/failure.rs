@@ -31,6 +31,9 @@ pub enum Failure {
     /// Some runs of a campaign failed.
     #[error("{failed} of {runs} runs failed; the first: run {number}: {why}")]
     Runs { failed: u64, runs: u64, number: u64, why: String },
+    /// A run of a campaign failed that was to stop there.
+    #[error("run {number} failed, and --fail-fast stops there: {why}")]
+    First { number: u64, why: String },
     /// A file could not be written.
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },

@@ -36,11 +36,25 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                     ),
                 ],
             ),
+            (
+                "merge",
+                [
+                    ("flexsc merge monte-carlo -o all", "the runs of a directory, or of several, in one"),
+                    ("flexsc merge monte-carlo all -o once", "runs that are in both are taken once"),
+                ],
+            ),
         ],
     ),
     (
         "Look",
         &[
+            (
+                "top",
+                [
+                    ("flexsc top monte-carlo", "how far a campaign is, and its statistics so far"),
+                    ("flexsc top monte-carlo --json", "the same once, as JSON"),
+                ],
+            ),
             (
                 "plot",
                 [

@@ -21,6 +21,7 @@ mod live;
 mod log;
 mod logged;
 mod map;
+mod merge;
 mod modes;
 mod number;
 mod observer;
@@ -39,6 +40,7 @@ mod summary;
 mod sweep;
 mod table;
 mod terminal;
+mod top;
 mod tune;
 
 use std::ffi::OsString;
@@ -63,6 +65,10 @@ enum Verb {
     Simulate(simulate::Args),
     /// Simulate a scenario once for each value of a key
     Sweep(sweep::Args),
+    /// Join the runs of one campaign from several directories
+    Merge(merge::Args),
+    /// Show how far a campaign is, and what its runs come to so far
+    Top(top::Args),
     /// Print the elastic modes of a spacecraft
     Modes(scenario::Args),
     /// Print the limit cycles of a relay law, and its resonances
@@ -142,6 +148,8 @@ fn execute(verb: Verb) -> Result<(), Failure> {
     match verb {
         Verb::Simulate(args) => simulate::run(&args),
         Verb::Sweep(args) => sweep::run(&args),
+        Verb::Merge(args) => merge::run(&args),
+        Verb::Top(args) => top::run(&args),
         Verb::Modes(args) => modes::run(&args),
         Verb::Cycle(args) => cycle::run(&args),
         Verb::Plan(args) => plan::run(&args),

@@ -11,12 +11,18 @@ use crate::terminal::is_plain;
 
 /// A bar on the terminal over so many steps; invisible elsewhere, and where escape sequences are not wanted.
 pub fn bar(steps: u64, unit: &str) -> ProgressBar {
+    bar_from(steps, 0, unit)
+}
+
+/// The same where some of the steps were done before; a message stands below it.
+pub fn bar_from(steps: u64, done: u64, unit: &str) -> ProgressBar {
     if is_plain() {
         return ProgressBar::hidden();
     }
-    let template = format!("{{bar:30}} {{human_pos}}/{{human_len}} {unit}, {{per_sec}}, {{eta}} left");
+    let template =
+        format!("{{bar:30}} {{human_pos}}/{{human_len}} {unit}, {{per_sec}}, {{eta}} left\n{{msg}}");
     let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(steps).with_style(style)
+    ProgressBar::new(steps).with_style(style).with_position(done)
 }
 
 /// A line on the terminal with the current activity; invisible where a bar is.

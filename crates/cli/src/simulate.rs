@@ -9,12 +9,12 @@ use std::time::Instant as WallInstant;
 
 use clap::ValueEnum;
 use flexsc_core::SimulationError;
-use flexsc_core::campaign::{Campaign, Run};
-use flexsc_core::metrics::Metrics;
+use flexsc_core::campaign::{Campaign, Design, Directory, Run};
+use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd, There, there};
 use flexsc_core::scenario::{Cost, MOST_RUNS};
 
-use crate::campaign;
+use crate::campaign::{self, Options, parts};
 use crate::consent::Consent;
 use crate::failure::{Failure, Refused};
 use crate::progress::Progress;
@@ -25,8 +25,14 @@ use crate::{files, say, scenario, summary};
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario files
-    #[arg(required = true, value_name = "SCENARIO")]
+    #[arg(required_unless_present = "from", value_name = "SCENARIO")]
     pub scenarios: Vec<PathBuf>,
+    /// Repeat a run of a campaign's directory, with its log
+    #[arg(long, value_name = "DIR", requires = "row", conflicts_with_all = ["scenarios", "runs", "set", "seed"])]
+    from: Option<PathBuf>,
+    /// The number of that run
+    #[arg(long, value_name = "N", requires = "from")]
+    row: Option<u64>,
     /// Directory for logs and tables, created if missing [default: this one, for logs only]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -51,6 +57,8 @@ pub struct Args {
     /// Print one JSON object for each run on stdout
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    options: Options,
     #[command(flatten)]
     consent: Consent,
     #[cfg(feature = "live")]
@@ -89,7 +97,8 @@ impl LogDetail {
     }
 }
 
-fn runs(text: &str) -> Result<Runs, String> {
+/// Reads `N` or `LO:HI`.
+pub fn runs(text: &str) -> Result<Runs, String> {
     let number = |text: &str| {
         text.parse::<u64>().map_err(|_| format!("`{text}` is not a number of runs; give N or LO:HI"))
     };
@@ -108,6 +117,14 @@ fn runs(text: &str) -> Result<Runs, String> {
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    if let (Some(from), Some(row)) = (&args.from, args.row) {
+        return args.again(from, row);
+    }
+    let selection = args.options.selection()?;
+    if args.runs.is_none() && !args.options.are_default() {
+        let why = "--table, --metrics, --fail-fast, --sample and --replicas are of campaigns, by --runs";
+        return Err(Failure::Arguments(why.to_owned()));
+    }
     #[cfg(feature = "live")]
     if args.live.live.is_some() && args.scenarios.len() > 1 {
         let count = args.scenarios.len();
@@ -132,7 +149,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let studies = scenarios
         .into_iter()
         .map(|(scenario, origin)| {
-            let study = Campaign::new(scenario, &origin, None)?;
+            let design = args.design(!scenario.uncertain.is_empty())?;
+            let study = Campaign::of(scenario, &origin, design)?;
             args.consent.to(&args.cost(&study)?)?;
             Ok(Arc::new(study))
         })
@@ -144,8 +162,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let mut failures = Vec::new();
     for study in studies {
         let done = match &args.runs {
-            None => single(&study, args),
-            Some(runs) => several(&study, args, runs, prefixed),
+            None => single(&study, &itself(&study), args, args.own_log(&study)),
+            Some(runs) => several(&study, args, runs, (prefixed, &selection)),
         };
         match done {
             // The other scenarios are run all the same.
@@ -161,6 +179,45 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
+    /// The points of the campaign.
+    fn design(&self, uncertain: bool) -> Result<Design, Failure> {
+        let Some(Runs { range, part }) = &self.runs else { return Ok(Design::default()) };
+        let whole = (!part).then(|| range.end.div_ceil(self.options.replicas));
+        let design = self.options.complete(Design::default(), uncertain, self.options.points().or(whole))?;
+        match design.runs() {
+            Some(all) if range.end > all => {
+                Err(Failure::Arguments(format!("--runs: {all} runs are all that --sample has points for")))
+            }
+            _ => Ok(design),
+        }
+    }
+
+    /// Repeats a run of a campaign's directory.
+    fn again(&self, from: &Path, row: u64) -> Result<(), Failure> {
+        let directory = Directory::open(from).map_err(parts::failure)?;
+        let work = directory.work();
+        let runs = work.manifest.runs();
+        if !runs.contains(&row) {
+            let why = format!("has runs {} to {}, not {row}", runs.start, runs.end - 1);
+            return Err(Failure::Arguments(format!("{}: {why}", from.display())));
+        }
+        let run = work.campaign.run(row)?;
+        let detail = self.log.unwrap_or(LogDetail::Full).detail();
+        self.consent.to(&run.scenario.cost(detail, false))?;
+        if let Some(out) = &self.out {
+            files::make_directory(out)?;
+        }
+        let file = format!("{}-{row}.mcap", run.scenario.name);
+        single(&work.campaign, &run, self, (self.out.as_deref().unwrap_or(Path::new("")).join(file), detail))
+    }
+
+    /// The log of a scenario that is run once, and its detail.
+    fn own_log(&self, study: &Campaign) -> (PathBuf, Option<Detail>) {
+        let file = format!("{}.mcap", study.scenario().name);
+        let path = self.out.as_deref().unwrap_or(Path::new("")).join(file);
+        (path, self.log.unwrap_or(LogDetail::Events).detail())
+    }
+
     /// What the runs of a scenario ask for.
     fn cost(&self, study: &Campaign) -> Result<Cost, Failure> {
         let Some(Runs { range, .. }) = &self.runs else {
@@ -172,11 +229,19 @@ impl Args {
 }
 
 /// Runs a campaign over a scenario; its tables are named after it where several share a directory.
-fn several(study: &Arc<Campaign>, args: &Args, runs: &Runs, prefixed: bool) -> Result<(), Failure> {
+fn several(
+    study: &Arc<Campaign>,
+    args: &Args,
+    runs: &Runs,
+    (prefixed, selection): (bool, &Selection),
+) -> Result<(), Failure> {
     let job = campaign::Job {
         range: runs.range.clone(),
         part: runs.part,
         table: args.out.as_deref(),
+        kind: args.options.table(),
+        selection: selection.clone(),
+        fail_fast: args.options.fail_fast,
         prefix: prefixed.then_some(study.scenario().name.as_str()),
         force: args.force,
         jobs: args.jobs,
@@ -187,12 +252,12 @@ fn several(study: &Arc<Campaign>, args: &Args, runs: &Runs, prefixed: bool) -> R
     let (name, force) = (study.scenario().name.clone(), args.force);
     let log = move |number| directory.join(format!("{name}-{number}.mcap"));
     campaign::run(study, &job, {
-        let log = log.clone();
+        let (log, selection) = (log.clone(), selection.clone());
         move |run| match detail {
             // No log for the runs that had not begun.
-            _ if stop::asked() => Err(SimulationError::from(RecordError::Interrupted).into()),
-            None => Ok(Campaign::simulate(run, Stop)?),
-            Some(detail) => Ok(logged(run, &log(run.number), (detail, force), Stop)?.0),
+            _ if stop::asked() => Err(stop::interrupted().into()),
+            None => Ok(Campaign::simulate_for(run, &selection, Stop)?),
+            Some(detail) => Ok(selection.of_run(logged(run, &log(run.number), (detail, force), Stop)?.0)),
         }
     })?;
     if detail.is_some() && !args.json {
@@ -211,15 +276,17 @@ pub fn itself(study: &Campaign) -> Run {
     Run { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() }
 }
 
-/// Runs a scenario once, with its log.
-fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
-    let run = itself(study);
-    let detail = args.log.unwrap_or(LogDetail::Events).detail();
+/// Makes one run, with its log.
+fn single(
+    study: &Campaign,
+    run: &Run,
+    args: &Args,
+    (path, detail): (PathBuf, Option<Detail>),
+) -> Result<(), Failure> {
     let _writing = detail.map(|_| stop::writing());
     let name = run.scenario.name.clone();
-    let path = args.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.mcap"));
     #[cfg(feature = "live")]
-    let mut live = args.live.serve(&run)?;
+    let mut live = args.live.serve(run)?;
     #[cfg(not(feature = "live"))]
     let mut live: Option<()> = None;
     let began = WallInstant::now();
@@ -227,9 +294,9 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
     let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
     let record = (Stop, (&mut progress, &mut live));
     let result = match detail {
-        None => Campaign::simulate(&run, record).map(|metrics| (metrics, None)),
+        None => Campaign::simulate(run, record).map(|metrics| (metrics, None)),
         Some(detail) => {
-            logged(&run, &path, (detail, args.force), record).map(|(metrics, bytes)| (metrics, Some(bytes)))
+            logged(run, &path, (detail, args.force), record).map(|(metrics, bytes)| (metrics, Some(bytes)))
         }
     };
     if let Some(progress) = progress {
@@ -238,9 +305,7 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
     let took = began.elapsed().as_secs_f64();
     let (metrics, bytes) = result.map_err(|source| match source {
         SimulationError::Record(RecordError::Io(source)) => Failure::write(&path)(source),
-        SimulationError::Record(RecordError::Interrupted) => {
-            Failure::Interrupted(interrupted(args.log, &path))
-        }
+        SimulationError::Record(RecordError::Interrupted) => Failure::Interrupted(interrupted(detail, &path)),
         source => Failure::Run { name: name.clone(), source },
     })?;
     if args.json {
@@ -258,12 +323,8 @@ fn single(study: &Campaign, args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn interrupted(log: Option<LogDetail>, path: &Path) -> String {
-    if log == Some(LogDetail::None) {
-        String::new()
-    } else {
-        format!("; {} holds the run up to there", path.display())
-    }
+fn interrupted(log: Option<Detail>, path: &Path) -> String {
+    if log.is_none() { String::new() } else { format!("; {} holds the run up to there", path.display()) }
 }
 
 /// Simulates a run into a log file, and returns its size. An interrupted run leaves a finished log, a failed one

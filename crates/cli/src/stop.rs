@@ -7,6 +7,7 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, Once, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
+use flexsc_core::SimulationError;
 use flexsc_core::motion::Stretch;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
@@ -143,6 +144,11 @@ pub fn ask() {
 /// Whether the user asked to stop.
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
+}
+
+/// Why a run that had not begun is not made.
+pub fn interrupted() -> SimulationError {
+    RecordError::Interrupted.into()
 }
 
 /// A record that ends the simulation when the user asks.

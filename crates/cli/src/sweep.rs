@@ -1,28 +1,38 @@
-//! `flexsc sweep`: a scenario once for each value of a key, or of several.
+//! `flexsc sweep`: a scenario once for each point of a design.
+
+mod points;
 
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::Scenario;
-use flexsc_core::campaign::{Campaign, Grid};
+use flexsc_core::campaign::{Block, Campaign, Design, Span};
 
+use crate::campaign::Options;
 use crate::consent::Consent;
 use crate::failure::Failure;
-use crate::stop::Stop;
+use crate::simulate::{Runs, runs};
+use crate::stop::{self, Stop};
 use crate::{campaign, files, scenario};
 
-/// Values, and what their runs come to, are held in memory.
+/// No sweep has more combinations.
 const MOST_VALUES: u32 = 10_000_000;
 
 #[derive(clap::Args)]
 pub struct Args {
     /// Scenario file
     pub scenario: PathBuf,
-    /// A key, and its first value, last value and number of values, such as law.relay.k_t=0.28:0.40:2401; given again, every
-    /// combination with the values of another key
-    #[arg(long, required = true, value_name = "KEY=START:END:COUNT", value_parser = varied)]
+    /// A key and its values: START:END:COUNT, evenly apart, such as law.relay.k_t=0.28:0.40:2401; a list A,B,C; or a range
+    /// START:END for --sample. Given again, every combination with the values of another key; ranges are sampled together
+    #[arg(long, required_unless_present = "points", value_name = "KEY=VALUES", value_parser = varied)]
     vary: Vec<Varied>,
+    /// A table of points, as CSV: a column for each key, a row for each point; combined with the values of --vary
+    #[arg(long, value_name = "FILE")]
+    points: Option<PathBuf>,
+    /// Only the runs LO to HI - 1 of the sweep
+    #[arg(long, value_name = "LO:HI", value_parser = runs)]
+    runs: Option<Runs>,
     /// Directory for the tables, created if missing
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -42,63 +52,128 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    options: Options,
+    #[command(flatten)]
     consent: Consent,
 }
 
-/// A key, its first value, its last, and how many there are.
+/// A key and its values.
 #[derive(Clone)]
 struct Varied {
     key: String,
-    first: f64,
-    last: f64,
-    count: u32,
+    values: Values,
+}
+
+#[derive(Clone)]
+enum Values {
+    Even { first: f64, last: f64, count: u32 },
+    List(Vec<f64>),
+    Range { from: f64, to: f64 },
 }
 
 fn varied(text: &str) -> Result<Varied, String> {
-    let form = || format!("`{text}` is not KEY=START:END:COUNT, such as law.relay.k_t=0.28:0.40:25");
-    let (key, range) = text.split_once('=').ok_or_else(form)?;
-    let [start, end, count] = range.split(':').collect::<Vec<_>>()[..] else { return Err(form()) };
-    let bound = |text: &str| text.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(form);
-    let count: u64 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
-    if count > u64::from(MOST_VALUES) {
-        return Err(format!("a sweep has at most {MOST_VALUES} values, got {count}"));
-    }
-    Ok(Varied { key: key.to_owned(), first: bound(start)?, last: bound(end)?, count: count as u32 })
+    let form = || {
+        format!(
+            "`{text}` is not KEY=START:END:COUNT, such as law.relay.k_t=0.28:0.40:25, KEY=A,B,C or KEY=START:END"
+        )
+    };
+    let (key, values) = text.split_once('=').ok_or_else(form)?;
+    let number = |text: &str| text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(form);
+    let values = if values.contains(',') {
+        Values::List(values.split(',').map(number).collect::<Result<_, _>>()?)
+    } else {
+        match values.split(':').collect::<Vec<_>>()[..] {
+            [start, end] => Values::Range { from: number(start)?, to: number(end)? },
+            [start, end, count] => {
+                let count: u64 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
+                if count > u64::from(MOST_VALUES) {
+                    return Err(format!("a sweep has at most {MOST_VALUES} values, got {count}"));
+                }
+                Values::Even { first: number(start)?, last: number(end)?, count: count as u32 }
+            }
+            _ => return Err(form()),
+        }
+    };
+    Ok(Varied { key: key.to_owned(), values })
 }
 
 impl Args {
+    /// The points, and how many they are.
+    fn design(&self, uncertain: bool) -> Result<(Design, u64), Failure> {
+        let mut blocks = Vec::new();
+        if let Some(path) = &self.points {
+            blocks.push(points::read(path)?);
+        }
+        let mut ranges = Vec::new();
+        for Varied { key, values } in &self.vary {
+            let key = key.clone();
+            match *values {
+                Values::Even { first, last, count } => blocks.push(Block::Even { key, first, last, count }),
+                Values::List(ref values) => blocks.push(Block::List { key, values: values.clone() }),
+                Values::Range { from, to } => ranges.push(Span { key, from, to }),
+            }
+        }
+        if let Some(range) = ranges.first() {
+            let Some(count) = self.options.points() else {
+                let why = "is a range, from which --sample takes points, such as --sample sobol:1024";
+                return Err(Failure::Arguments(format!("--vary {}: {why}", range.key)));
+            };
+            blocks.push(Block::Sample { sampling: self.options.sampling(), count, ranges });
+        }
+        let too_many = || {
+            let why = format!("a sweep has at most {MOST_VALUES} combinations of values");
+            Failure::Arguments(format!("--vary: {why}"))
+        };
+        let points = blocks.iter().try_fold(1_u64, |points, block| points.checked_mul(block.count()));
+        let points = points.ok_or_else(too_many)?;
+        let design = self.options.complete(Design::of(blocks), uncertain, Some(points))?;
+        let runs = points.checked_mul(self.options.replicas).filter(|runs| *runs <= u64::from(MOST_VALUES));
+        let runs = runs.ok_or_else(too_many)?;
+        if let Some(problem) = design.problem(usize::from(uncertain)) {
+            return Err(Failure::Arguments(format!("--vary {problem}")));
+        }
+        Ok((design, runs))
+    }
+
     /// The sweep over a scenario of this origin, and its runs.
     pub fn study(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), Failure> {
-        let runs = self.vary.iter().try_fold(1_u64, |runs, grid| runs.checked_mul(u64::from(grid.count)));
-        let runs = runs.filter(|runs| *runs <= u64::from(MOST_VALUES)).ok_or_else(|| {
-            Failure::Arguments(format!("--vary: a sweep has at most {MOST_VALUES} combinations of values"))
-        })?;
-        let twice = |(place, grid): &(usize, &Varied)| self.vary[..*place].iter().any(|o| o.key == grid.key);
-        if let Some((_, twice)) = self.vary.iter().enumerate().find(twice) {
-            return Err(Failure::Arguments(format!("--vary {}: a key can be varied once", twice.key)));
+        let (design, all) = self.design(!scenario.uncertain.is_empty())?;
+        let range = self.runs.as_ref().map_or(0..all, |runs| runs.range.clone());
+        if range.end > all {
+            return Err(Failure::Arguments(format!("--runs: the sweep has {all} runs")));
         }
-        let grid = |of: &Varied| Grid::even(of.key.clone(), of.first, of.last, of.count);
-        let study = Campaign::new(scenario, origin, self.vary.iter().map(grid))?;
+        let study = Campaign::of(scenario, origin, design)?;
+        let runs = range.end - range.start;
         let cost = study.cost(runs, None).map_err(|why| Failure::Arguments(format!("--vary: {why}")))?;
         self.consent.to(&cost)?;
-        Ok((study, 0..runs))
+        Ok((study, range))
     }
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
+    let selection = args.options.selection()?;
     let (study, range) = args.study(scenario, &args.scenario.display().to_string())?;
     if let Some(out) = &args.out {
         files::make_directory(out)?;
     }
     let job = campaign::Job {
         range,
-        part: false,
+        part: args.runs.is_some(),
         table: args.out.as_deref(),
+        kind: args.options.table(),
+        selection: selection.clone(),
+        fail_fast: args.options.fail_fast,
         prefix: None,
         force: args.force,
         jobs: args.jobs,
         json: args.json,
     };
-    campaign::run(&Arc::new(study), &job, |run| Ok(Campaign::simulate(run, Stop)?))
+    campaign::run(&Arc::new(study), &job, move |run| {
+        if stop::asked() {
+            Err(stop::interrupted().into())
+        } else {
+            Ok(Campaign::simulate_for(run, &selection, Stop)?)
+        }
+    })
 }

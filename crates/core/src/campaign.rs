@@ -1,19 +1,35 @@
 //! Campaigns: many runs of one scenario.
 
 mod crew;
+mod design;
+mod directory;
+mod draws;
+mod manifest;
+mod merge;
+#[cfg_attr(not(feature = "parquet"), path = "campaign/left_out.rs")]
+mod parquet;
+mod part;
+mod rows;
+mod sampling;
 
 use std::collections::BTreeMap;
+use std::time::Instant as WallInstant;
 
 use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::document::{Document, ScenarioError, key};
 use crate::layout::Layout;
-use crate::metrics::{Gather, Metrics};
-use crate::random::Seed;
+use crate::metrics::{Gather, Metrics, Selection};
 use crate::record::{Attachment, Detail, OutputName, Provenance, Record};
 use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
+
+pub use design::{Block, Design, MOST_NUMBERS, MOST_POINTS, Span};
+pub use directory::{Directory, DirectoryError, MANIFEST, Work};
+pub use manifest::Manifest;
+pub use rows::{Column, ERROR, Field, Kind, RUN, Rows, SECONDS, SEED};
+pub use sampling::Sampling;
 
 /// A run that failed.
 #[derive(Debug, Error)]
@@ -32,7 +48,7 @@ pub struct Campaign {
     scenario: Scenario,
     table: Table,
     origin: String,
-    grids: Vec<Grid>,
+    design: Design,
 }
 
 /// One key that takes these values. Run i of a campaign over one grid has value i; over several, their combinations are
@@ -48,11 +64,7 @@ pub struct Grid {
 impl Grid {
     /// So many values from the first to the last, evenly apart.
     pub fn even(key: String, first: f64, last: f64, count: u32) -> Self {
-        let value = |index: u32| {
-            let part = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.0 };
-            first * (1.0 - part) + last * part
-        };
-        Self { key, values: (0..count).map(value).collect() }
+        Self { key, values: (0..count).map(|index| design::even(first, last, count, index)).collect() }
     }
 }
 
@@ -76,6 +88,8 @@ pub struct Outcome {
     pub drawn: Vec<Value>,
     /// Its metrics, or why it failed.
     pub metrics: Result<Metrics, RunError>,
+    /// How long it took (s).
+    pub seconds: f64,
 }
 
 impl Campaign {
@@ -85,24 +99,30 @@ impl Campaign {
         origin: &str,
         grids: impl IntoIterator<Item = Grid>,
     ) -> Result<Self, ScenarioError> {
+        Self::of(scenario, origin, Design::of(grids.into_iter().map(Block::from)))
+    }
+
+    /// The campaign of a scenario over its `[uncertain]` keys and the points of a design.
+    pub fn of(scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
         let scenario = scenario.with_own_modes();
         let mut table = scenario.to_table();
         // What was drawn is said by the keys themselves.
         table.remove("uncertain");
+        table.remove("correlated");
         // Parts of a program's own have no text: runs take them over.
         table.retain(|_, part| part.get("own").is_none());
-        let grids = grids.into_iter().collect();
-        let campaign = Self { scenario, table, origin: origin.to_owned(), grids };
-        for grid in &campaign.grids {
-            // A key that does not exist, or a range that is not accepted, fails all runs: report it at once.
-            for value in grid.values.first().into_iter().chain(grid.values.last()) {
-                campaign.scenario_with(&[(&grid.key, campaign.like(&grid.key, *value))])?;
-            }
+        if let Some(why) = design.problem(scenario.uncertain.len()) {
+            return Err(ScenarioError::Key { origin: origin.to_owned(), key: "design".to_owned(), why });
+        }
+        let campaign = Self { scenario, table, origin: origin.to_owned(), design };
+        // A key that does not exist, or a range that is not accepted, fails all runs: report it at once.
+        for (key, value) in campaign.design.ends() {
+            campaign.scenario_with(&[(key, campaign.like(key, value))])?;
         }
         Ok(campaign)
     }
 
-    /// What so many runs ask for, each with a log of this detail: as much as the costliest of the ends of the grids.
+    /// What so many runs ask for, each with a log of this detail: as much as the costliest of the ends of the design.
     ///
     /// # Errors
     /// More runs than there can be.
@@ -111,11 +131,9 @@ impl Campaign {
             return Err(format!("must be at most {MOST_RUNS} runs, got {runs}"));
         }
         let mut cost = self.scenario.cost(log, false);
-        for grid in &self.grids {
-            for value in grid.values.first().into_iter().chain(grid.values.last()) {
-                let ends = self.scenario_with(&[(&grid.key, self.like(&grid.key, *value))]);
-                cost = cost.max(ends.map_err(|error| error.to_string())?.cost(log, false));
-            }
+        for (key, value) in self.design.ends() {
+            let ends = self.scenario_with(&[(key, self.like(key, value))]);
+            cost = cost.max(ends.map_err(|error| error.to_string())?.cost(log, false));
         }
         Ok(cost.times(runs))
     }
@@ -137,20 +155,21 @@ impl Campaign {
 
     /// The keys that vary from run to run, in the order of [`Run::drawn`].
     pub fn keys(&self) -> impl Iterator<Item = &str> {
-        let grids = self.grids.iter().map(|grid| grid.key.as_str());
-        grids.chain(self.scenario.uncertain.keys().map(String::as_str))
+        let designed = self.design.keys().into_iter();
+        designed.chain(self.scenario.uncertain.keys().map(String::as_str))
     }
 
     /// A run, with its keys drawn. It is the same whichever runs are made beside it.
     pub fn run(&self, number: u64) -> Result<Run, ScenarioError> {
         let drawn = self.draw(number);
         if drawn.is_empty() {
-            let scenario = Scenario { uncertain: BTreeMap::new(), ..self.scenario.clone() };
+            let scenario =
+                Scenario { uncertain: BTreeMap::new(), correlated: Vec::new(), ..self.scenario.clone() };
             return Ok(Run { number, scenario, drawn });
         }
         let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
         if self.plans_first() {
-            let model = self.scenario_with(&keys[..self.grids.len()])?.model;
+            let model = self.scenario_with(&keys[..self.design.keys().len()])?.model;
             // A body holds nothing that TOML cannot express.
             let model = Value::try_from(model).unwrap_or_else(|_| Value::Table(Table::new()));
             keys.push(("manoeuvre.model", model));
@@ -166,26 +185,40 @@ impl Campaign {
 
     /// Simulates a run and gathers its metrics, beside another record.
     pub fn simulate(run: &Run, record: impl Record) -> Result<Metrics, SimulationError> {
+        Self::simulate_for(run, &Selection::ALL, record)
+    }
+
+    /// The same, for some of the metrics.
+    pub fn simulate_for(
+        run: &Run,
+        selection: &Selection,
+        record: impl Record,
+    ) -> Result<Metrics, SimulationError> {
         let mut both = (Gather::new(&run.scenario), record);
         let mut simulation = Simulation::new(&run.scenario, run.number);
         if both.scene() {
             simulation.draw(&run.scenario);
         }
         simulation.run(&mut both)?;
-        Ok(both.0.finish(&run.scenario))
+        Ok(selection.of_run(both.0.finish(&run.scenario)))
     }
 
     /// What a run comes to; `work` simulates it.
     pub(crate) fn outcome(&self, number: u64, work: impl Fn(&Run) -> Result<Metrics, RunError>) -> Outcome {
-        match self.run(number) {
-            Ok(run) => Outcome { number, metrics: work(&run), drawn: run.drawn },
-            Err(error) => Outcome { number, drawn: self.draw(number), metrics: Err(error.into()) },
-        }
+        let began = WallInstant::now();
+        let (drawn, metrics) = match self.run(number) {
+            Ok(run) => {
+                let metrics = work(&run);
+                (run.drawn, metrics)
+            }
+            Err(error) => (self.draw(number), Err(error.into())),
+        };
+        Outcome { number, drawn, metrics, seconds: began.elapsed().as_secs_f64() }
     }
 
-    /// The keys that take given values.
-    pub fn grids(&self) -> &[Grid] {
-        &self.grids
+    /// The points of the campaign.
+    pub fn design(&self) -> &Design {
+        &self.design
     }
 
     /// The provenance in the log of a run in this detail, with a layout for viewers.
@@ -212,33 +245,14 @@ impl Campaign {
         }
     }
 
-    fn draw(&self, number: u64) -> Vec<Value> {
-        // How many runs one value of a grid lasts: those of all grids after it.
-        let lasts =
-            |later: &[Grid]| later.iter().map(|grid| grid.values.len() as u64).product::<u64>().max(1);
-        let grids = self.grids.iter().enumerate().map(|(place, grid)| {
-            let index = number / lasts(&self.grids[place + 1..]);
-            let index = if place == 0 { index } else { index % grid.values.len().max(1) as u64 };
-            // A run beyond the first grid has no value: it fails, as any value that is not accepted.
-            let value = usize::try_from(index).ok().and_then(|index| grid.values.get(index));
-            self.like(&grid.key, value.copied().unwrap_or(f64::NAN))
-        });
-        let seed = Seed { scenario: self.scenario.seed, run: number };
-        let drawn = self.scenario.uncertain.iter().map(|(key, distribution)| {
-            let mut stream = seed.stream(&format!("uncertain {key}"));
-            // The scenario was checked: every uncertain key holds a number.
-            let nominal = key::get(&self.table, key).unwrap_or(&Value::Float(f64::NAN));
-            distribution.draw(nominal, &mut stream)
-        });
-        grids.chain(drawn).collect()
+    /// Whether a key has an integer in the scenario.
+    fn is_integer(&self, key: &str) -> bool {
+        matches!(key::get(&self.table, key), Some(Value::Integer(_)))
     }
 
     /// A number as the type that a key has in the scenario.
     fn like(&self, key: &str, value: f64) -> Value {
-        match key::get(&self.table, key) {
-            Some(Value::Integer(_)) => Value::Integer(libm::round(value) as i64),
-            _ => Value::Float(value),
-        }
+        if self.is_integer(key) { Value::Integer(libm::round(value) as i64) } else { Value::Float(value) }
     }
 
     fn scenario_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {

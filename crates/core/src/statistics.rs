@@ -1,6 +1,6 @@
 //! Statistics of a campaign: mean, standard deviation and quantiles of every metric.
 
-use crate::metrics::{Metrics, Value, goal};
+use crate::metrics::{Meaning, Metrics, Told, Value, goal};
 
 /// The quantiles that are reported.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -24,42 +24,73 @@ pub struct Statistics {
     pub quantiles: [f64; 5],
 }
 
-/// The statistics of every metric that is a number, over runs of one scenario. A goal or a requirement counts as 1 where it is
-/// met and as 0 where it is missed: its mean is the fraction of runs that meet it.
-pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
-    let Some(first) = runs.first() else { return Vec::new() };
-    let numeric = first.0.iter().enumerate().filter_map(|(index, (meaning, value))| {
-        let counts = match value {
-            Value::Count(_) | Value::Number(_) => true,
-            Value::Word(_) => goal::NAMES.contains(&meaning.name),
-            Value::Numbers(_) | Value::Quantities(_) => false,
-        };
-        counts.then_some((index, *meaning))
-    });
-    numeric
-        .map(|(index, meaning)| {
-            let value = |metrics: &Metrics| match metrics.0[index].1 {
-                Value::Count(count) => count as f64,
-                Value::Number(number) => number,
-                Value::Word(word) => goal::score(word).unwrap_or(f64::NAN),
-                Value::Numbers(_) | Value::Quantities(_) => f64::NAN,
+/// The metrics of runs that are numbers, as columns: all that statistics need.
+#[derive(Clone, Debug, Default)]
+pub struct Gathered {
+    runs: usize,
+    columns: Vec<(&'static Meaning, Vec<f64>)>,
+}
+
+impl Gathered {
+    /// Adds a run.
+    pub fn add(&mut self, run: &Metrics) {
+        if self.runs == 0 {
+            let counts = |(meaning, value): &Told| match value {
+                Value::Count(_) | Value::Number(_) => true,
+                Value::Word(_) => goal::NAMES.contains(&meaning.name),
+                Value::Numbers(_) | Value::Quantities(_) => false,
             };
-            let mut values: Vec<f64> = runs.iter().map(value).filter(|v| !v.is_nan()).collect();
-            let told = values.len();
-            values.retain(|v| v.is_finite());
-            values.sort_by(f64::total_cmp);
-            let (mean, sd) = mean_and_sd(&values);
-            Statistics {
-                name: meaning.name,
-                unit: meaning.unit,
-                runs: values.len(),
-                infinite: told - values.len(),
-                mean,
-                sd,
-                quantiles: QUANTILES.map(|q| quantile(&values, q)),
-            }
-        })
-        .collect()
+            self.columns =
+                run.0.iter().filter(|told| counts(told)).map(|told| (told.0, Vec::new())).collect();
+        }
+        self.runs += 1;
+        for (meaning, values) in &mut self.columns {
+            values.push(match run.get(meaning.name) {
+                Some(Value::Count(count)) => *count as f64,
+                Some(Value::Number(number)) => *number,
+                Some(Value::Word(word)) => goal::score(word).unwrap_or(f64::NAN),
+                _ => f64::NAN,
+            });
+        }
+    }
+
+    /// How many runs there are.
+    pub fn runs(&self) -> usize {
+        self.runs
+    }
+
+    /// The statistics of each metric. A goal or a requirement counts as 1 where it is met and as 0 where it is missed: its mean
+    /// is the fraction of runs that meet it.
+    pub fn finish(self) -> Vec<Statistics> {
+        self.columns.into_iter().map(|(meaning, values)| Statistics::of(meaning, values)).collect()
+    }
+}
+
+impl Statistics {
+    /// The statistics of a metric with these values, NaN where a run has none.
+    pub fn of(meaning: &Meaning, mut values: Vec<f64>) -> Self {
+        values.retain(|v| !v.is_nan());
+        let told = values.len();
+        values.retain(|v| v.is_finite());
+        values.sort_by(f64::total_cmp);
+        let (mean, sd) = mean_and_sd(&values);
+        Self {
+            name: meaning.name,
+            unit: meaning.unit,
+            runs: values.len(),
+            infinite: told - values.len(),
+            mean,
+            sd,
+            quantiles: QUANTILES.map(|q| quantile(&values, q)),
+        }
+    }
+}
+
+/// The statistics of every metric that is a number, over runs of one scenario.
+pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
+    let mut gathered = Gathered::default();
+    runs.iter().for_each(|run| gathered.add(run));
+    gathered.finish()
 }
 
 /// Mean and standard deviation of finite values. Sums and squares that are too large for a double are made of smaller values:

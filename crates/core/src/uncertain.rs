@@ -1,9 +1,14 @@
 //! Uncertain keys: what a Monte Carlo campaign draws anew for each run.
 
+mod correlation;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::Value;
 
+pub use correlation::Correlated;
+
+use crate::numerics::normal;
 use crate::quantity::{Finite, Positive};
 use crate::random::Stream;
 
@@ -77,9 +82,48 @@ impl Distribution {
             Self::RelativeNormal(sd) => own * (1.0 + sd.get() * stream.normal()),
             Self::Choice(values) => values[stream.index(values.len())].get(),
         };
-        match nominal {
-            Value::Integer(_) => Value::Integer(libm::round(drawn) as i64),
-            _ => Value::Float(drawn),
+        like(nominal, drawn)
+    }
+
+    /// The value with this probability below it, in (0, 1), for a key that has this one in the scenario. Of a choice each value
+    /// has an equal part of the probabilities.
+    pub fn quantile(&self, nominal: &Value, probability: f64) -> Value {
+        let own = nominal.as_float().or(nominal.as_integer().map(|i| i as f64)).unwrap_or(f64::NAN);
+        let between = |low: f64, high: f64| low + (high - low) * probability;
+        let value = match self {
+            Self::Uniform([low, high]) => between(low.get(), high.get()),
+            Self::LogUniform([low, high]) => libm::exp(between(libm::log(low.get()), libm::log(high.get()))),
+            Self::RelativeUniform(part) => own * between(1.0 - part.get(), 1.0 + part.get()),
+            Self::Choice(values) => {
+                values[((probability * values.len() as f64) as usize).min(values.len() - 1)].get()
+            }
+            Self::Normal(_) | Self::RelativeNormal(_) => {
+                return self.of_normal(nominal, normal::quantile(probability));
+            }
+        };
+        like(nominal, value)
+    }
+
+    /// The value that stands where this number does in a standard normal distribution.
+    pub fn of_normal(&self, nominal: &Value, z: f64) -> Value {
+        let own = nominal.as_float().or(nominal.as_integer().map(|i| i as f64)).unwrap_or(f64::NAN);
+        match self {
+            Self::Normal(Normal { mean, sd }) => like(nominal, mean.get() + sd.get() * z),
+            Self::RelativeNormal(sd) => like(nominal, own * (1.0 + sd.get() * z)),
+            _ => self.quantile(nominal, normal::cumulative(z)),
         }
+    }
+
+    /// Whether it can be drawn together with others: its values have an order.
+    pub(crate) fn is_continuous(&self) -> bool {
+        !matches!(self, Self::Choice(_))
+    }
+}
+
+/// A number as the type of the key's own value.
+fn like(nominal: &Value, value: f64) -> Value {
+    match nominal {
+        Value::Integer(_) => Value::Integer(libm::round(value) as i64),
+        _ => Value::Float(value),
     }
 }

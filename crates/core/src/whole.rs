@@ -69,6 +69,15 @@ impl Partial {
         Ok(bytes)
     }
 
+    /// Puts the file into its place once all of it is on the disk: it is there, and whole, after a loss of power too.
+    pub fn finish_synced(self) -> io::Result<u64> {
+        self.file.sync_all()?;
+        let place = self.place.clone();
+        let bytes = self.finish()?;
+        sync_directory(&place)?;
+        Ok(bytes)
+    }
+
     /// Puts the file into another place of the same directory.
     pub fn finish_as(mut self, path: &Path) -> io::Result<u64> {
         self.place = place(path)?;
@@ -99,6 +108,23 @@ impl Drop for Partial {
             let _ = fs::remove_file(&self.beside);
         }
     }
+}
+
+/// Brings the names of the directory of a file to the disk, where the system has a way to.
+fn sync_directory(of: &Path) -> io::Result<()> {
+    if cfg!(unix) {
+        let directory = of.parent().filter(|parent| !parent.as_os_str().is_empty());
+        File::open(directory.unwrap_or(Path::new(".")))?.sync_all()?;
+    }
+    Ok(())
+}
+
+/// Writes a file that is on the disk before its name is: what was there stays until the new one is whole, even through a loss
+/// of power.
+pub fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut partial = Partial::create_in_time(path)?;
+    partial.write_all(bytes)?;
+    partial.finish_synced().map(|_| ())
 }
 
 /// Writes a file: what was there stays until the new one is whole. A device is written as it is, and a file that is

@@ -32,13 +32,7 @@ impl<'a> Kept<'a> {
     /// What is kept of a job of a campaign there.
     pub fn new(directory: &'a Path, job: &'a Job<'a>, study: &Campaign) -> Self {
         let prefix = job.prefix.map_or(String::new(), |name| format!("{name}-"));
-        let grids = study.grids().iter().map(|grid| match &grid.values[..] {
-            [first, .., last] => {
-                format!("# {} = {first} to {last}, {} values\n", grid.key, grid.values.len())
-            }
-            values => format!("# {} = {values:?}\n", grid.key),
-        });
-        let grids: String = grids.collect();
+        let grids = study.design().describe();
         let text = format!("{MARK} {}.\n{grids}{}", env!("CARGO_PKG_VERSION"), study.to_toml());
         Self { directory, prefix, job, text }
     }

@@ -74,7 +74,7 @@ fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, Failur
         0,
         |run| Ok(Campaign::simulate(run, Stop)?),
         |outcome| {
-            let Some(Outcome { number, drawn, metrics }) = outcome else { return Ok(()) };
+            let Some(Outcome { number, drawn, metrics, .. }) = outcome else { return Ok(()) };
             let failed = |why| Failure::Runs { failed: 1, runs, number, why };
             let metrics = metrics.map_err(|error| failed(error.to_string()))?;
             objects.push(campaign::object(study, number, &drawn, Ok(&metrics)));

@@ -4,6 +4,7 @@ mod attitude;
 mod filter;
 pub mod goal;
 mod rotation;
+mod selection;
 mod spatial;
 mod switchings;
 mod tracking;
@@ -14,6 +15,8 @@ use crate::scenario::Scenario;
 use crate::time::Instant;
 
 pub use record::measured::{Meaning, Metrics, Quantity, Told, Value};
+
+pub use selection::Selection;
 
 use attitude::Known;
 use filter::Filter;

@@ -6,6 +6,7 @@ pub mod elliptic;
 pub mod exponential;
 pub(crate) mod extrapolation;
 pub(crate) mod gauss_legendre;
+pub(crate) mod normal;
 pub mod phasor;
 pub(crate) mod phi;
 pub(crate) mod polynomial;

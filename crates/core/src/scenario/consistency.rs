@@ -49,15 +49,38 @@ impl Scenario {
         let parts =
             if self.axis_count() == 3 { self.spatial_inconsistency() } else { self.planar_inconsistency() };
         parts.or_else(|| {
-            if self.uncertain.is_empty() {
+            if self.uncertain.is_empty() && self.correlated.is_empty() {
                 return None;
+            }
+            if let Some(fault) = self.correlation_fault() {
+                return Some(fault);
             }
             let mut table = self.clone().with_own_modes().to_table();
             table.remove("uncertain");
+            table.remove("correlated");
             self.uncertain.iter().find_map(|(key, distribution)| {
                 let why = distribution.problem(key::get(&table, key))?;
                 Some(Fault::new(format!("uncertain.\"{key}\""), why))
             })
+        })
+    }
+
+    /// What is wrong with keys that are drawn together.
+    fn correlation_fault(&self) -> Option<Fault> {
+        self.correlated.iter().enumerate().find_map(|(group, correlated)| {
+            let within = format!("correlated[{group}]");
+            let why = |key: &String| match self.uncertain.get(key) {
+                None => Some(format!("names `{key}`, which is no key of `[uncertain]`")),
+                Some(distribution) if !distribution.is_continuous() => {
+                    Some(format!("names `{key}`, a choice: only numbers of a range are correlated"))
+                }
+                _ if self.correlated[..group].iter().any(|other| other.keys.contains(key)) => {
+                    Some(format!("names `{key}`, which is correlated with others already"))
+                }
+                _ => None,
+            };
+            let fault = correlated.keys.iter().find_map(why).map(|why| Fault::new("keys", why));
+            fault.or_else(|| correlated.fault()).map(|fault| fault.within(&within))
         })
     }
 

@@ -38,7 +38,7 @@ use crate::manoeuvre::{Manoeuvre, Plan};
 use crate::motion::linear::Linear;
 use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
-use crate::uncertain::Distribution;
+use crate::uncertain::{Correlated, Distribution};
 
 use epoch::nanoseconds_since_1970;
 
@@ -123,6 +123,9 @@ pub struct Scenario {
     /// Distributions of keys that a campaign draws anew for each run.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertain: BTreeMap<String, Distribution>,
+    /// Keys of `uncertain` that are drawn together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub correlated: Vec<Correlated>,
     /// The exact flow of a body whose modes are coupled, where the motion is in closed form.
     #[serde(skip)]
     pub linear: Option<Arc<Linear>>,
@@ -205,6 +208,14 @@ impl Scenario {
         let fault = |fault: Fault| ScenarioError::Key { origin, key: fault.key, why: fault.why };
         self.fit().and_then(|()| self.inconsistency().map_or(Ok(()), Err)).map_err(fault)?;
         Ok(self)
+    }
+
+    /// Whether it has a part of a program's own, which no text can hold.
+    pub fn has_own_parts(&self) -> bool {
+        matches!(self.law, Law::Own(_))
+            || self.sensor.iter().any(|sensor| matches!(sensor, Sensor::Own(_)))
+            || matches!(self.estimator, Some(Estimator::Own(_)))
+            || matches!(self.actuator, Actuator::Own(_))
     }
 
     /// Takes over the parts of a program's own.
@@ -327,7 +338,9 @@ impl Scenario {
         let mut scenario = self.clone().with_own_modes();
         if matches!(self.body, Body::Matrices(_)) {
             scenario.body = Body::Planar(self.model.clone());
-            scenario.uncertain.retain(|key, _| !key.starts_with("body.matrices"));
+            let of_matrices = |key: &String| key.starts_with("body.matrices");
+            scenario.uncertain.retain(|key, _| !of_matrices(key));
+            scenario.correlated.retain(|group| !group.keys.iter().any(of_matrices));
         }
         scenario
     }

@@ -3,6 +3,7 @@
 mod curve;
 mod distribution;
 mod fan;
+mod parts;
 mod region;
 mod scatter;
 mod table;
@@ -16,38 +17,13 @@ use flexsc_figure::Figure;
 
 use super::Args;
 use super::what::{What, chosen};
+use crate::campaign::MAIN;
 use crate::drawing::Target;
 use crate::failure::Failure;
 use crate::{print, say};
 use table::{Metric, Runs};
 
-/// What is drawn of a campaign if no metric is named: the first of these that vary.
-const MAIN: [&str; 23] = [
-    "goal",
-    "envelope_late_mean_rad",
-    "gain_final",
-    "cycle_period_s",
-    "torque_impulse_per_hour_nm_s",
-    "switchings",
-    "settling_time_s",
-    "time_outside_s",
-    "angle_error_late_rad",
-    "angle_residual_rad",
-    "frequency_error_rms_rad_s",
-    "nees_mean",
-    "peak_torque_nm",
-    "angle_error_peak_rad",
-    "spectral_radius",
-    "pointing_rms_rad",
-    "pointing_error_end_rad",
-    "elastic_rate_rms_rad_s",
-    "fuel_kg",
-    "elastic_energy_end_j",
-    "elastic_energy_peak_j",
-    "energy_below_10pct_at_s",
-    "firings",
-];
-/// So many of them.
+/// So many metrics are drawn if none is named.
 const MOST: usize = 4;
 /// So many of the worst runs are listed for each metric.
 const WORST: usize = 3;
@@ -56,7 +32,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let directory = args.path.as_path();
     let target = Target::new(args.out.as_deref(), directory, args.format)?;
     let files = files(directory)?;
-    let tables = table::read(directory, &files)?;
+    let mut tables = table::read(directory, &files)?;
+    tables.extend(parts::read(directory, &files, &args.metric)?);
     let fans = if args.what.is_empty() || args.what.contains(&What::Fan) {
         fan::logs(directory, &files, tables.is_empty() || !args.what.is_empty())?
     } else {
@@ -64,7 +41,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     if tables.is_empty() && fans.is_empty() {
         return Err(Failure::Arguments(format!(
-            "{}: no table of a campaign, `runs.csv`, and not several logs of one scenario\n\n\
+            "{}: no campaign, neither parts nor a table `runs.csv`, and not several logs of one scenario\n\n\
              hint: `flexsc simulate SCENARIO --runs 1000 -o {}` makes one",
             directory.display(),
             directory.display()

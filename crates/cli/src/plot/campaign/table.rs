@@ -13,8 +13,8 @@ use crate::failure::Failure;
 pub struct Runs {
     /// The scenario's name, or else the directory's.
     pub name: String,
-    /// What the runs were drawn from, and its file; none beside tables of before it was kept.
-    pub scenario: Option<(Scenario, PathBuf)>,
+    /// What the runs were drawn from, and where that is; none beside tables of before it was kept.
+    pub scenario: Option<(Scenario, Source)>,
     /// Numbers of the runs.
     pub numbers: Vec<u64>,
     /// The keys that vary.
@@ -25,11 +25,45 @@ pub struct Runs {
     pub errors: Vec<String>,
 }
 
+/// Where the scenario of a campaign is.
+pub enum Source {
+    /// In a file beside its tables.
+    File(PathBuf),
+    /// In the directory of its parts.
+    Directory(PathBuf),
+}
+
+/// The cells of a column as text.
+pub enum Texts {
+    /// As a table has them.
+    Cells(Vec<String>),
+    /// Integers.
+    Integers,
+    /// Numbers.
+    Numbers,
+    /// Goals that are met or not.
+    Goals,
+}
+
+impl Texts {
+    /// The text of a cell with this value; empty where there is none.
+    fn of(&self, index: usize, value: f64) -> String {
+        match self {
+            Self::Cells(cells) => cells[index].clone(),
+            Self::Goals if value > 0.0 => "met".to_owned(),
+            Self::Goals if value == 0.0 => "missed".to_owned(),
+            _ if value.is_nan() => String::new(),
+            Self::Integers => format!("{value}"),
+            Self::Numbers | Self::Goals => format!("{value:e}"),
+        }
+    }
+}
+
 /// A key that varies.
 pub struct Key {
     pub name: String,
     /// Its values as TOML, and as numbers.
-    pub texts: Vec<String>,
+    pub texts: Texts,
     pub values: Vec<f64>,
     /// Whether a sweep varies it; else it is drawn.
     pub swept: bool,
@@ -39,7 +73,7 @@ pub struct Key {
 pub struct Metric {
     pub meaning: &'static Meaning,
     /// Its values as the table has them, and as numbers; NaN where a run has none.
-    pub texts: Vec<String>,
+    pub texts: Texts,
     pub values: Vec<f64>,
 }
 
@@ -126,7 +160,7 @@ impl Rows {
             return Err(refused(&directory.join(format!("{prefix}runs.csv")), "there is no run in it"));
         }
         let path = directory.join(format!("{prefix}{SCENARIO}"));
-        let scenario = if path.is_file() { Some((Scenario::load(&path)?, path)) } else { None };
+        let scenario = if path.is_file() { Some((Scenario::load(&path)?, Source::File(path))) } else { None };
         let absolute = std::path::absolute(directory).unwrap_or_default();
         let folder = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let name = match (&scenario, prefix.strip_suffix('-')) {
@@ -150,12 +184,12 @@ impl Rows {
                 // Words and lists are no numbers.
                 let goal = metrics::goal::NAMES.contains(&meaning.name);
                 if goal || texts.iter().zip(&values).all(|(text, value)| text.is_empty() || !value.is_nan()) {
-                    all.push(Metric { meaning, texts, values });
+                    all.push(Metric { meaning, texts: Texts::Cells(texts), values });
                 }
             } else {
                 let drawn = scenario.as_ref().map(|(scenario, _)| scenario.uncertain.contains_key(header));
                 let swept = !drawn.unwrap_or_else(|| !values.is_sorted());
-                keys.push(Key { name: header.clone(), texts, values, swept });
+                keys.push(Key { name: header.clone(), texts: Texts::Cells(texts), values, swept });
             }
         }
         let errors = column("error");
@@ -180,7 +214,19 @@ impl Runs {
     }
 }
 
+impl Key {
+    /// Its value in a run, as TOML.
+    pub fn text(&self, index: usize) -> String {
+        self.texts.of(index, self.values[index])
+    }
+}
+
 impl Metric {
+    /// Its value in a run; empty if there is none.
+    pub fn text(&self, index: usize) -> String {
+        self.texts.of(index, self.values[index])
+    }
+
     /// Its values that there are, sorted.
     pub fn sorted(&self) -> Vec<f64> {
         let mut values: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use flexsc_core::metrics::goal;
 use serde_json::json;
 
-use super::table::{Metric, Runs};
+use super::table::{Metric, Runs, Source};
 use crate::number::short;
 
 /// Metrics of which more is better.
@@ -39,29 +39,30 @@ struct Worst<'a> {
     what: &'a str,
     run: u64,
     /// The value, or why the run failed.
-    value: &'a str,
+    value: String,
     command: Option<String>,
 }
 
 fn worst<'a>(runs: &'a Runs, directory: &Path, metrics: &[&'a Metric], most: usize) -> Vec<Worst<'a>> {
     let ran = |index: &usize| runs.errors[*index].is_empty();
     let told = |what, index: usize, value| {
-        let command = runs.scenario.as_ref().map(|(_, path)| command(runs, directory, path, index));
+        let command = runs.scenario.as_ref().map(|(_, source)| match source {
+            Source::File(path) => command(runs, directory, path, index),
+            Source::Directory(path) => command_from(path, runs.numbers[index]),
+        });
         Worst { what, run: runs.numbers[index], value, command }
     };
     let all = 0..runs.numbers.len();
     let failed = all.clone().filter(|index| !ran(index)).take(most);
     let mut worst: Vec<Worst<'a>> =
-        failed.map(|index| told("error", index, runs.errors[index].as_str())).collect();
+        failed.map(|index| told("error", index, runs.errors[index].clone())).collect();
     for metric in metrics {
         let bad = all.clone().filter(ran).filter_map(|index| Some((badness(metric, index)?, index)));
         let mut bad: Vec<(f64, usize)> = bad.collect();
         bad.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         for (_, index) in bad.into_iter().take(most) {
-            let value = match metric.texts[index].as_str() {
-                "" => "never",
-                text => text,
-            };
+            let text = metric.text(index);
+            let value = if text.is_empty() { "never".to_owned() } else { text };
             worst.push(told(metric.meaning.name, index, value));
         }
     }
@@ -73,7 +74,7 @@ fn command(runs: &Runs, directory: &Path, scenario: &Path, index: usize) -> Stri
     let number = runs.numbers[index];
     let mut command = format!("flexsc simulate {}", quoted(&scenario.display().to_string()));
     for key in runs.swept() {
-        let _ = write!(command, " --set {}", quoted(&format!("{}={}", key.name, key.texts[index])));
+        let _ = write!(command, " --set {}", quoted(&format!("{}={}", key.name, key.text(index))));
     }
     let own: PathBuf = directory.join(format!("run-{number}"));
     let _ = write!(
@@ -83,6 +84,13 @@ fn command(runs: &Runs, directory: &Path, scenario: &Path, index: usize) -> Stri
         quoted(&own.display().to_string())
     );
     command
+}
+
+/// The same of a run of a directory of parts.
+fn command_from(directory: &Path, number: u64) -> String {
+    let own = directory.join(format!("run-{number}"));
+    let [directory, own] = [directory, &own].map(|path| quoted(&path.display().to_string()));
+    format!("flexsc simulate --from {directory} --row {number} -o {own}")
 }
 
 /// A word as a shell takes it for one.

@@ -1,0 +1,161 @@
+//! A campaign at work, on the terminal: how far it is, how fast, and a few statistics of the runs so far.
+
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+use flexsc_core::campaign::Outcome;
+use flexsc_core::metrics::{Metrics, Value, goal};
+use indicatif::ProgressBar;
+use serde_json::{Value as Json, json};
+
+use super::MAIN;
+use crate::number::short;
+use crate::progress;
+
+/// So many metrics are shown.
+const SHOWN: usize = 4;
+/// How often the table is written anew.
+const AGAIN: Duration = Duration::from_millis(250);
+
+/// Mean and spread of a metric so far (Welford's recurrence).
+#[derive(Clone, Debug, Default)]
+pub struct Running {
+    count: u64,
+    mean: f64,
+    squares: f64,
+    least: f64,
+    most: f64,
+}
+
+impl Running {
+    /// Adds a value; NaN is none.
+    pub fn add(&mut self, value: f64) {
+        if !value.is_finite() {
+            return;
+        }
+        if self.count == 0 {
+            (self.least, self.most) = (value, value);
+        }
+        self.count += 1;
+        let from_mean = value - self.mean;
+        self.mean += from_mean / self.count as f64;
+        self.squares += from_mean * (value - self.mean);
+        (self.least, self.most) = (self.least.min(value), self.most.max(value));
+    }
+
+    /// The statistics as JSON.
+    pub fn to_json(&self) -> Json {
+        let Self { count, mean, least, most, .. } = self;
+        json!({"runs": count, "mean": mean, "sd": self.sd(), "least": least, "most": most})
+    }
+
+    fn sd(&self) -> f64 {
+        if self.count > 1 { (self.squares / (self.count - 1) as f64).sqrt() } else { f64::NAN }
+    }
+}
+
+/// The lines of a table of some metrics so far.
+pub fn table(metrics: &[(&str, Running)]) -> String {
+    let mut text = String::new();
+    let any: Vec<_> = metrics.iter().filter(|(_, so_far)| so_far.count > 0).collect();
+    if !any.is_empty() {
+        let _ = write!(
+            text,
+            "  {:32}{:>10}{:>12}{:>11}{:>11}{:>11}",
+            "so far", "runs", "mean", "sd", "least", "most"
+        );
+    }
+    for (name, so_far) in any {
+        let Running { count, mean, least, most, .. } = so_far;
+        let _ = write!(
+            text,
+            "\n  {name:32}{count:>10}{:>12}{:>11}{:>11}{:>11}",
+            short(*mean),
+            short(so_far.sd()),
+            short(*least),
+            short(*most)
+        );
+    }
+    text
+}
+
+/// The value of a metric as a number.
+fn number(metrics: &Metrics, name: &str) -> Option<f64> {
+    match metrics.get(name)? {
+        Value::Count(count) => Some(*count as f64),
+        Value::Number(number) => Some(*number),
+        Value::Word(word) => goal::score(word),
+        Value::Numbers(_) | Value::Quantities(_) => None,
+    }
+}
+
+/// The bar, and below it the table.
+pub struct Live {
+    bar: ProgressBar,
+    metrics: Vec<(&'static str, Running)>,
+    failed: u64,
+    shown: Instant,
+}
+
+impl Live {
+    /// A bar over so many runs, of which some are there.
+    pub fn new(runs: u64, there: u64) -> Self {
+        let bar = progress::bar_from(runs, there, "runs");
+        Self { bar, metrics: Vec::new(), failed: 0, shown: Instant::now() }
+    }
+
+    /// A run has ended.
+    pub fn add(&mut self, outcome: &Outcome) {
+        self.bar.inc(1);
+        match &outcome.metrics {
+            Ok(metrics) => {
+                if self.metrics.is_empty() {
+                    let has = |name: &&str| number(metrics, name).is_some();
+                    self.metrics = MAIN
+                        .into_iter()
+                        .filter(has)
+                        .take(SHOWN)
+                        .map(|name| (name, Running::default()))
+                        .collect();
+                }
+                for (name, running) in &mut self.metrics {
+                    running.add(number(metrics, name).unwrap_or(f64::NAN));
+                }
+            }
+            Err(_) => self.failed += 1,
+        }
+        self.show();
+    }
+
+    /// Writes the table anew, unless that was done just now.
+    pub fn show(&mut self) {
+        if self.bar.is_hidden() || self.shown.elapsed() < AGAIN {
+            return;
+        }
+        self.shown = Instant::now();
+        let failed = if self.failed > 0 { format!("  {} failed\n", self.failed) } else { String::new() };
+        self.bar.set_message(format!("{failed}{}", table(&self.metrics)));
+    }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn running_statistics_are_those_of_all() {
+        let mut running = Running::default();
+        // Python: statistics.fmean and statistics.stdev of [1, 2, 4, 8].
+        [1.0, 2.0, f64::NAN, 4.0, 8.0].into_iter().for_each(|value| running.add(value));
+        assert_eq!((running.count, running.mean, running.least, running.most), (4, 3.75, 1.0, 8.0));
+        assert!((running.sd() - 3.095_695_936_834_452).abs() < 1e-15);
+        let lines = table(&[("goal", running), ("duty", Running::default())]);
+        assert!(lines.lines().count() == 2 && lines.contains("3.75"), "{lines}");
+    }
+}

@@ -1,0 +1,106 @@
+//! What campaigns and sweeps have in common on the command line.
+
+use clap::ValueEnum;
+use flexsc_core::campaign::{Design, Sampling};
+use flexsc_core::metrics::Selection;
+
+use crate::failure::Failure;
+
+/// No point is run more often.
+const MOST_REPLICAS: u64 = 1_000_000;
+
+#[derive(clap::Args, Clone)]
+#[group(skip)]
+pub struct Options {
+    /// How the rows are kept in DIR [default: parquet, or csv in a build without]
+    #[arg(long, value_name = "TABLE", requires = "out")]
+    table: Option<Kind>,
+    /// Metrics that the rows have, parted by commas [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    metrics: Option<Vec<String>>,
+    /// Stop at the first run that fails, instead of noting why in its row
+    #[arg(long)]
+    pub fail_fast: bool,
+    /// How values are spread over the [uncertain] keys, and over ranges of a sweep: random, latin-hypercube or sobol
+    #[arg(long, value_name = "METHOD[:POINTS]", value_parser = sample)]
+    sample: Option<Sample>,
+    /// Make so many runs of each point, which differ in their noise only
+    #[arg(long, value_name = "R", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=MOST_REPLICAS))]
+    pub replicas: u64,
+}
+
+/// The form of a campaign's rows.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    /// A directory of parts, which is continued after any stop
+    Parquet,
+    /// One file, runs.csv
+    Csv,
+}
+
+/// How points are spread, and over how many, if that was told.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Sample {
+    pub sampling: Sampling,
+    pub points: Option<u64>,
+}
+
+fn sample(text: &str) -> Result<Sample, String> {
+    let (name, points) = text.split_once(':').map_or((text, None), |(name, points)| (name, Some(points)));
+    let found = Sampling::ALL.into_iter().find(|(known, _)| *known == name);
+    let names = Sampling::ALL.map(|(name, _)| name).join(", ");
+    let (_, sampling) = found.ok_or_else(|| format!("must be one of {names}, got `{name}`"))?;
+    let points = points.map(|text| text.parse().ok().filter(|points| *points > 0));
+    match points {
+        Some(None) => Err("needs a number of points after the colon".to_owned()),
+        points => Ok(Sample { sampling, points: points.flatten() }),
+    }
+}
+
+impl Options {
+    /// Whether none is given.
+    pub fn are_default(&self) -> bool {
+        let Self { table, metrics, fail_fast, sample, replicas } = self;
+        table.is_none() && metrics.is_none() && !fail_fast && sample.is_none() && *replicas == 1
+    }
+
+    /// The form of the rows.
+    pub fn table(&self) -> Kind {
+        self.table.unwrap_or(if cfg!(feature = "parquet") { Kind::Parquet } else { Kind::Csv })
+    }
+
+    /// The metrics that are wanted.
+    pub fn selection(&self) -> Result<Selection, Failure> {
+        let Some(names) = &self.metrics else { return Ok(Selection::ALL) };
+        Selection::of(names).map_err(|why| Failure::Arguments(format!("--metrics: {why}")))
+    }
+
+    /// How points are spread.
+    pub fn sampling(&self) -> Sampling {
+        self.sample.map_or(Sampling::Random, |sample| sample.sampling)
+    }
+
+    /// How many points `--sample` tells.
+    pub fn points(&self) -> Option<u64> {
+        self.sample.and_then(|sample| sample.points)
+    }
+
+    /// A design with these replicas and, where keys are uncertain, these draws; `points` are those of the whole campaign, if
+    /// that is known.
+    pub fn complete(&self, design: Design, uncertain: bool, points: Option<u64>) -> Result<Design, Failure> {
+        let draws = if uncertain { self.sampling() } else { Sampling::Random };
+        let hypercube = match (draws, points) {
+            (Sampling::LatinHypercube, Some(points)) => points,
+            (Sampling::LatinHypercube, None) => {
+                let why = "a Latin hypercube needs its number of points, such as latin-hypercube:1000";
+                return Err(Failure::Arguments(format!("--sample: {why}")));
+            }
+            _ => 0,
+        };
+        if !uncertain && design.blocks.is_empty() && self.sample.is_some() {
+            let why = "no key is uncertain, and none is varied: there is nothing to draw";
+            return Err(Failure::Arguments(format!("--sample: {why}")));
+        }
+        Ok(Design { draws, hypercube, replicas: self.replicas, ..design })
+    }
+}

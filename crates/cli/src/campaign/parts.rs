@@ -1,0 +1,203 @@
+//! A campaign as a directory of parts: begun, continued after any stop, and told of.
+
+use std::io::Write;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use flexsc_core::campaign::{
+    Campaign, Column, Directory, DirectoryError, ERROR, Kind, MANIFEST, Manifest, Outcome, RUN, Rows, Run,
+    RunError,
+};
+use flexsc_core::metrics::{self, Metrics, goal};
+use flexsc_core::statistics::Statistics;
+
+use super::live::Live;
+use super::{Job, Told, interruption, object, write_statistics};
+use crate::failure::Failure;
+use crate::results::print_lines;
+use crate::{say, stop};
+
+/// What helps where another campaign is in the way.
+const HINT: &str = "hint: give another directory with -o, or --force to replace what is there";
+/// No more numbers of the rows are held at once for the statistics, or a metric's alone (64 MB).
+const HELD: usize = 1 << 23;
+
+/// A failure of a directory, for people.
+pub fn failure(error: DirectoryError) -> Failure {
+    match error {
+        DirectoryError::Other { .. } => Failure::Arguments(format!("{error}\n\n{HINT}")),
+        DirectoryError::Wrong { .. } => Failure::Arguments(error.to_string()),
+        DirectoryError::Busy { path } => Failure::Busy { path },
+        DirectoryError::Io { path, source } => Failure::write(&path)(source),
+        DirectoryError::Scenario(error) => Failure::Scenario(error),
+        DirectoryError::Interrupted => Failure::Interrupted(String::new()),
+    }
+}
+
+/// A campaign's directory, begun or continued.
+pub fn create(path: &Path, manifest: Manifest, job: &Job<'_>) -> Result<Directory, Failure> {
+    let runs = manifest.runs();
+    let mut directory = Directory::create(path, manifest, job.force).map_err(failure)?;
+    let there = directory.work().manifest.runs();
+    if !job.part && there != runs {
+        if !job.force {
+            let (before, now) = (there.end - there.start, runs.end - runs.start);
+            let why = format!("holds {before} runs of this campaign, and {now} would replace them");
+            return Err(Failure::Arguments(format!("{}: {why}\n\n{HINT}", path.join(MANIFEST).display())));
+        }
+        directory.shrink(runs).map_err(failure)?;
+    }
+    Ok(directory)
+}
+
+/// Makes the runs of a job that are not there yet.
+pub fn run(
+    study: &Arc<Campaign>,
+    job: &Job<'_>,
+    path: &Path,
+    work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+) -> Result<Told, Failure> {
+    let manifest = Manifest::new(study, job.range.clone(), &job.selection)
+        .map_err(|why| Failure::Arguments(format!("{}: {why}", study.scenario().name)))?;
+    let directory = create(path, manifest, job)?;
+    let missing = directory.missing_of(job.range.clone()).map_err(failure)?;
+    let count = |ranges: &[Range<u64>]| ranges.iter().map(|runs| runs.end - runs.start).sum::<u64>();
+    let (all, left) = (job.range.end - job.range.start, count(&missing));
+    if left < all && !job.json {
+        say!("{}: {} of {all} runs are there", path.display(), all - left);
+    }
+    let work = Arc::new(work);
+    let mut making =
+        Making { directory: &directory, job, live: Live::new(all, all - left), part: None, next: 0, made: 0 };
+    for gap in gaps(&missing) {
+        let inside = |part: &&Range<u64>| gap.start <= part.start && part.end <= gap.end;
+        let mut parts = missing.iter().filter(inside);
+        let work = work.clone();
+        // What the manifest holds is what is run, here as on any other machine.
+        let campaign = &directory.work().campaign;
+        let done = campaign.each(
+            gap.clone(),
+            job.threads(),
+            move |run| work(run),
+            |outcome| making.take(outcome, &mut parts),
+        );
+        if let Err(failure) = done {
+            let made = all - left + making.made;
+            drop(making);
+            return Err(match failure {
+                Failure::Interrupted(at) => Failure::Interrupted(format!(
+                    "{at}; {} holds {made} of {all} runs, and the same command goes on",
+                    path.display()
+                )),
+                failure => failure,
+            });
+        }
+    }
+    drop(making);
+    told(&directory)
+}
+
+/// Ranges that touch one another as one.
+fn gaps(parts: &[Range<u64>]) -> Vec<Range<u64>> {
+    let mut gaps: Vec<Range<u64>> = Vec::new();
+    for part in parts {
+        match gaps.last_mut() {
+            Some(gap) if gap.end == part.start => gap.end = part.end,
+            _ => gaps.push(part.clone()),
+        }
+    }
+    gaps
+}
+
+/// The parts that are being made, in order.
+struct Making<'a> {
+    directory: &'a Directory,
+    job: &'a Job<'a>,
+    live: Live,
+    /// The part whose rows are gathered.
+    part: Option<(Range<u64>, Rows)>,
+    /// The run whose row is next.
+    next: u64,
+    /// Runs whose parts are written.
+    made: u64,
+}
+
+impl Making<'_> {
+    fn take<'r>(
+        &mut self,
+        outcome: Option<Outcome>,
+        parts: &mut impl Iterator<Item = &'r Range<u64>>,
+    ) -> Result<(), Failure> {
+        let Some(outcome) = outcome else {
+            self.live.show();
+            return if stop::asked() { Err(interruption(self.next)) } else { Ok(()) };
+        };
+        self.next = outcome.number + 1;
+        let outcome = super::accepted(outcome)?;
+        if let (Err(error), true) = (&outcome.metrics, self.job.fail_fast) {
+            return Err(Failure::First { number: outcome.number, why: error.to_string() });
+        }
+        let campaign = &self.directory.work().campaign;
+        if self.job.json {
+            let Outcome { number, drawn, metrics, .. } = &outcome;
+            print_lines(&[object(campaign, *number, drawn, metrics.as_ref())])?;
+        }
+        self.live.add(&outcome);
+        if self.part.is_none() {
+            self.part = parts.next().map(|runs| (runs.clone(), self.directory.work().rows()));
+        }
+        let Some((runs, rows)) = &mut self.part else { return Ok(()) };
+        rows.push(campaign, &outcome);
+        if self.next == runs.end {
+            self.directory.write(runs, rows).map_err(failure)?;
+            self.made += runs.end - runs.start;
+            self.part = None;
+        }
+        Ok(())
+    }
+}
+
+/// What the rows of a directory come to, with the table of its statistics.
+pub fn told(directory: &Directory) -> Result<Told, Failure> {
+    let column = |name| directory.column(name).map_err(failure);
+    let (mut runs, mut failed) = (0, None);
+    if let (Some(Column::Integers(numbers)), Some(Column::Words(errors))) = (column(RUN)?, column(ERROR)?) {
+        runs = numbers.len();
+        for (number, error) in numbers.into_iter().zip(errors) {
+            let (Some(number), Some(error)) = (number, error) else { continue };
+            let (count, first, why) = failed.unwrap_or_else(|| (0, number.cast_unsigned(), error));
+            failed = Some((count + 1, first, why));
+        }
+    }
+    let statistics = statistics(directory, runs)?;
+    write_statistics(&directory.path().join("statistics.csv"), &statistics)?;
+    Ok(Told { runs, statistics, failed, only: None, table: Some(directory.path().to_owned()) })
+}
+
+/// The statistics of the metrics that are numbers, some columns at a time.
+pub fn statistics(directory: &Directory, runs: usize) -> Result<Vec<Statistics>, Failure> {
+    let work = directory.work();
+    let keys: Vec<&str> = work.campaign.keys().collect();
+    let meaning = |name: &str| metrics::meaning(name, Some(work.campaign.scenario()));
+    let numeric: Vec<_> = work
+        .fields()
+        .iter()
+        .filter(|field| !keys.contains(&field.name.as_str()))
+        .filter(|field| match field.kind {
+            Kind::Integers | Kind::Numbers => true,
+            Kind::Words => goal::NAMES.contains(&field.name.as_str()),
+            Kind::Lists => false,
+        })
+        .filter_map(|field| Some((field.name.as_str(), meaning(&field.name)?)))
+        .collect();
+    let mut all = Vec::new();
+    for some in numeric.chunks((HELD / runs.max(1)).max(1)) {
+        let names: Vec<&str> = some.iter().map(|(name, _)| *name).collect();
+        let columns = directory.columns(&names).map_err(failure)?;
+        for ((_, meaning), column) in some.iter().zip(columns) {
+            all.push(Statistics::of(meaning, column.map_or_else(Vec::new, |column| column.numbers())));
+        }
+    }
+    Ok(all)
+}

@@ -1,0 +1,77 @@
+//! The campaigns of a directory that are kept as parts, read column by column.
+
+use std::path::{Path, PathBuf};
+
+use flexsc_core::campaign::{Column, Directory, ERROR, Field, Kind, RUN};
+use flexsc_core::metrics::{self, goal};
+
+use super::table::{Key, Metric, Runs, Source, Texts};
+use crate::campaign::{MAIN, parts};
+use crate::failure::Failure;
+
+/// More numbers than this are not held at once: then only the main metrics are read, and those that are named.
+const HELD: usize = 40_000_000;
+
+/// The campaign of a directory, and those of the directories in it.
+pub fn read(directory: &Path, files: &[String], named: &[String]) -> Result<Vec<Runs>, Failure> {
+    let within = files.iter().map(|file| directory.join(file));
+    let all: Vec<PathBuf> =
+        [directory.to_owned()].into_iter().chain(within).filter(|path| Directory::is_one(path)).collect();
+    all.iter().map(|path| runs(path, named)).collect()
+}
+
+fn runs(path: &Path, named: &[String]) -> Result<Runs, Failure> {
+    let directory = Directory::open(path).map_err(parts::failure)?;
+    let work = directory.work();
+    let (campaign, scenario) = (&work.campaign, work.campaign.scenario());
+    let read = |names: &[&str]| directory.columns(names).map_err(parts::failure);
+    let mut about = read(&[RUN, ERROR])?.into_iter();
+    let (Some(Some(Column::Integers(numbers))), Some(Some(Column::Words(errors)))) =
+        (about.next(), about.next())
+    else {
+        return Err(Failure::Arguments(format!("{}: has no runs", path.display())));
+    };
+    if numbers.is_empty() {
+        return Err(Failure::Arguments(format!("{}: there is no run in it yet", path.display())));
+    }
+    let keys: Vec<&str> = campaign.keys().collect();
+    let is_number = |field: &&Field| match field.kind {
+        Kind::Integers | Kind::Numbers => true,
+        Kind::Words => goal::NAMES.contains(&field.name.as_str()),
+        Kind::Lists => false,
+    };
+    let of_metrics = |field: &&Field| !keys.contains(&field.name.as_str()) && is_number(field);
+    let all = work.fields().iter().filter(of_metrics).collect::<Vec<_>>();
+    let few = all.len() * numbers.len() <= HELD;
+    let wanted = |name: &str| few || MAIN.contains(&name) || named.iter().any(|named| named == name);
+    let fields: Vec<(&Field, _)> = all
+        .into_iter()
+        .filter(|field| wanted(&field.name))
+        .filter_map(|field| Some((field, metrics::meaning(&field.name, Some(scenario))?)))
+        .collect();
+    let names: Vec<&str> =
+        keys.iter().copied().chain(fields.iter().map(|(field, _)| field.name.as_str())).collect();
+    let mut columns = read(&names)?.into_iter().map(|column| {
+        let texts = match &column {
+            Some(Column::Integers(_)) => Texts::Integers,
+            Some(Column::Words(_)) => Texts::Goals,
+            _ => Texts::Numbers,
+        };
+        (texts, column.map_or_else(Vec::new, |column| column.numbers()))
+    });
+    let key = |(name, (texts, values)): (&&str, (Texts, Vec<f64>))| {
+        let swept = !scenario.uncertain.contains_key(*name);
+        Key { name: (*name).to_owned(), texts, values, swept }
+    };
+    let keys = keys.iter().zip(columns.by_ref()).map(key).collect();
+    let metric = |((_, meaning), (texts, values))| Metric { meaning, texts, values };
+    let metrics = fields.into_iter().zip(columns).map(metric).collect();
+    Ok(Runs {
+        name: scenario.name.clone(),
+        scenario: Some((scenario.clone(), Source::Directory(path.to_owned()))),
+        numbers: numbers.into_iter().map(|number| number.unwrap_or_default().cast_unsigned()).collect(),
+        keys,
+        metrics,
+        errors: errors.into_iter().map(Option::unwrap_or_default).collect(),
+    })
+}

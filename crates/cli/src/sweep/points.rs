@@ -1,0 +1,35 @@
+//! A table of points as CSV: a column for each key, a row for each point.
+
+use std::path::Path;
+
+use flexsc_core::campaign::{Block, MOST_NUMBERS};
+
+use crate::failure::Failure;
+
+/// Reads a table.
+pub fn read(path: &Path) -> Result<Block, Failure> {
+    let refused = |why: String| Failure::Arguments(format!("{}: {why}", path.display()));
+    let wrong = |error: csv::Error| refused(format!("is no table of points: {error}"));
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(wrong)?;
+    let keys: Vec<String> = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();
+    if let Some(key) = keys.iter().find(|key| key.is_empty() || key.parse::<f64>().is_ok()) {
+        return Err(refused(format!("must begin with the keys of its columns, got `{key}`")));
+    }
+    let mut points = Vec::new();
+    for row in reader.records() {
+        let row = row.map_err(wrong)?;
+        let line = row.position().map_or(0, csv::Position::line);
+        let number = |(key, cell): (&String, &str)| {
+            let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
+            number.ok_or_else(|| refused(format!("line {line}: `{key}` must be a number, got `{cell}`")))
+        };
+        points.push(keys.iter().zip(&row).map(number).collect::<Result<Vec<f64>, _>>()?);
+        if points.len() * keys.len() > MOST_NUMBERS {
+            return Err(refused(format!("has more than {MOST_NUMBERS} numbers")));
+        }
+    }
+    if points.is_empty() {
+        return Err(refused("has no point".to_owned()));
+    }
+    Ok(Block::Table { keys, points })
+}

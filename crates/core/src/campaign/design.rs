@@ -1,0 +1,313 @@
+//! Designs: the points of a campaign, which give keys their values, and how often each point is run.
+
+use std::fmt::Write as _;
+
+use serde::{Deserialize, Serialize};
+
+use super::Grid;
+use super::sampling::{Dimension, MOST_DIMENSIONS, Sampling};
+use crate::random::fnv1a;
+
+/// No design has more points.
+pub const MOST_POINTS: u64 = 100_000_000;
+/// Nor a list or a table more numbers: they are held in memory.
+pub const MOST_NUMBERS: usize = 10_000_000;
+
+/// The points of a campaign. With blocks, the points are all combinations of the points of each, counted as numbers are: those
+/// of the last block from point to point. Without, a point is the scenario itself, as often as it is wanted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    /// How the `[uncertain]` keys are drawn.
+    #[serde(default)]
+    pub draws: Sampling,
+    /// How many points a Latin hypercube of the `[uncertain]` keys has; 0 for others.
+    #[serde(default)]
+    pub hypercube: u64,
+    /// So many runs of each point, which differ in nothing but their noise.
+    pub replicas: u64,
+    /// What the points are combined from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blocks: Vec<Block>,
+}
+
+impl Default for Design {
+    fn default() -> Self {
+        Self { draws: Sampling::Random, hypercube: 0, replicas: 1, blocks: Vec::new() }
+    }
+}
+
+/// Points of some keys.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Block {
+    /// Values of one key, evenly apart.
+    Even {
+        /// The key.
+        key: String,
+        /// The first value.
+        first: f64,
+        /// The last one.
+        last: f64,
+        /// How many there are.
+        count: u32,
+    },
+    /// Values of one key.
+    List {
+        /// The key.
+        key: String,
+        /// Its values.
+        values: Vec<f64>,
+    },
+    /// Points, each with a value of every key.
+    Table {
+        /// The keys.
+        keys: Vec<String>,
+        /// The values of each point.
+        points: Vec<Vec<f64>>,
+    },
+    /// Points that are spread over ranges of keys.
+    Sample {
+        /// How they are spread.
+        sampling: Sampling,
+        /// How many they are.
+        count: u64,
+        /// The ranges.
+        ranges: Vec<Span>,
+    },
+}
+
+/// The range of a key.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Span {
+    /// The key.
+    pub key: String,
+    /// From here ...
+    pub from: f64,
+    /// ... to there.
+    pub to: f64,
+}
+
+impl From<Grid> for Block {
+    fn from(Grid { key, values }: Grid) -> Self {
+        Self::List { key, values }
+    }
+}
+
+/// One of so many values from the first to the last, evenly apart.
+pub(super) fn even(first: f64, last: f64, count: u32, index: u32) -> f64 {
+    let part = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.0 };
+    first * (1.0 - part) + last * part
+}
+
+impl Block {
+    /// How many points there are.
+    pub fn count(&self) -> u64 {
+        match self {
+            Self::Even { count, .. } => u64::from(*count),
+            Self::List { values, .. } => values.len() as u64,
+            Self::Table { points, .. } => points.len() as u64,
+            Self::Sample { count, .. } => *count,
+        }
+    }
+
+    /// The keys.
+    pub fn keys(&self) -> Vec<&str> {
+        match self {
+            Self::Even { key, .. } | Self::List { key, .. } => vec![key],
+            Self::Table { keys, .. } => keys.iter().map(String::as_str).collect(),
+            Self::Sample { ranges, .. } => ranges.iter().map(|range| range.key.as_str()).collect(),
+        }
+    }
+
+    /// The values of a point, in the order of the keys; NaN where there is no such point.
+    fn values(&self, point: u64, seed: u64) -> Vec<f64> {
+        if point >= self.count() {
+            return vec![f64::NAN; self.keys().len()];
+        }
+        let index = point as usize;
+        match self {
+            Self::Even { first, last, count, .. } => vec![even(*first, *last, *count, point as u32)],
+            Self::List { values, .. } => vec![values[index]],
+            Self::Table { points, .. } => points[index].clone(),
+            Self::Sample { sampling, count, ranges } => {
+                let value = |(place, Span { key, from, to }): (usize, &Span)| {
+                    let name = format!("design {key}");
+                    let part = sampling.number(Dimension { seed, name: &name, place }, point, *count);
+                    from * (1.0 - part) + to * part
+                };
+                ranges.iter().enumerate().map(value).collect()
+            }
+        }
+    }
+
+    /// The ends of what each key takes: its first and its last value.
+    fn ends(&self) -> Vec<(&str, f64)> {
+        match self {
+            Self::Even { key, first, last, .. } => vec![(key, *first), (key, *last)],
+            Self::List { key, values } => {
+                values.first().into_iter().chain(values.last()).map(|value| (key.as_str(), *value)).collect()
+            }
+            Self::Table { keys, points } => {
+                let ends = points.first().into_iter().chain(points.last());
+                ends.flat_map(|point| keys.iter().map(String::as_str).zip(point.iter().copied())).collect()
+            }
+            Self::Sample { ranges, .. } => {
+                ranges.iter().flat_map(|of| [(of.key.as_str(), of.from), (of.key.as_str(), of.to)]).collect()
+            }
+        }
+    }
+
+    fn problem(&self) -> Option<String> {
+        let (count, keys) = (self.count(), self.keys());
+        if count == 0 || keys.is_empty() {
+            return Some("a design needs a point".to_owned());
+        }
+        let finite = match self {
+            Self::Even { first, last, .. } => first.is_finite() && last.is_finite(),
+            Self::List { values, .. } => values.iter().all(|value| value.is_finite()),
+            Self::Table { points, .. } => {
+                points.iter().all(|p| p.len() == keys.len() && p.iter().all(|v| v.is_finite()))
+            }
+            Self::Sample { ranges, .. } => {
+                ranges.iter().all(|of| of.from < of.to && of.from.is_finite() && of.to.is_finite())
+            }
+        };
+        if !finite {
+            return Some(match self {
+                Self::Sample { .. } => "a range needs two numbers, the lower one first".to_owned(),
+                _ => "the values of keys must be finite numbers".to_owned(),
+            });
+        }
+        let held = match self {
+            Self::List { values, .. } => values.len(),
+            Self::Table { points, .. } => points.len() * keys.len(),
+            Self::Even { .. } | Self::Sample { .. } => 0,
+        };
+        if held > MOST_NUMBERS {
+            return Some(format!("a list or a table has at most {MOST_NUMBERS} numbers, got {held}"));
+        }
+        match self {
+            Self::Sample { sampling: Sampling::Sobol, ranges, .. } if ranges.len() > MOST_DIMENSIONS => {
+                Some(format!("a Sobol sequence has at most {MOST_DIMENSIONS} keys, got {}", ranges.len()))
+            }
+            _ => None,
+        }
+    }
+
+    /// What it is, for people, and different from that of any other one.
+    fn describe(&self, text: &mut String) {
+        let _ = match self {
+            Self::Even { key, first, last, count } => {
+                writeln!(text, "# {key} = {first} to {last}, {count} values")
+            }
+            Self::List { key, values } if values.len() <= 8 => writeln!(text, "# {key} = {values:?}"),
+            Self::List { key, values } => {
+                let (count, hash) = (values.len(), fnv1a(&format!("{values:?}")));
+                writeln!(text, "# {key} = a list of {count} values, hash {hash:016x}")
+            }
+            Self::Table { keys, points } => {
+                let hash = fnv1a(&format!("{points:?}"));
+                writeln!(text, "# {} = a table of {} points, hash {hash:016x}", keys.join(", "), points.len())
+            }
+            Self::Sample { sampling, count, ranges } => {
+                let range = |of: &Span| format!("{} = {} to {}", of.key, of.from, of.to);
+                let ranges: Vec<String> = ranges.iter().map(range).collect();
+                writeln!(text, "# {}: {count} points, {}", ranges.join(", "), sampling.name())
+            }
+        };
+    }
+}
+
+impl Sampling {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, sampling)| *sampling == self).map_or("", |(name, _)| name)
+    }
+}
+
+impl Design {
+    /// The design of some blocks.
+    pub fn of(blocks: impl IntoIterator<Item = Block>) -> Self {
+        Self { blocks: blocks.into_iter().collect(), ..Self::default() }
+    }
+
+    /// The keys whose values it gives.
+    pub fn keys(&self) -> Vec<&str> {
+        self.blocks.iter().flat_map(Block::keys).collect()
+    }
+
+    /// How many runs it has, if it is not as many as are wanted.
+    pub fn runs(&self) -> Option<u64> {
+        if self.blocks.is_empty() {
+            return (self.hypercube > 0).then(|| self.hypercube.saturating_mul(self.replicas));
+        }
+        let points = self.blocks.iter().fold(1_u64, |points, block| points.saturating_mul(block.count()));
+        Some(points.saturating_mul(self.replicas))
+    }
+
+    /// The point of a run.
+    pub fn point(&self, run: u64) -> u64 {
+        run / self.replicas.max(1)
+    }
+
+    /// The values of the keys of a point.
+    pub(super) fn values(&self, point: u64, seed: u64) -> Vec<f64> {
+        let mut rest = point;
+        let mut values = Vec::new();
+        for (place, block) in self.blocks.iter().enumerate().rev() {
+            // A point beyond the first block has no values: its runs fail, as with any value that is not accepted.
+            let count = if place == 0 { u64::MAX } else { block.count().max(1) };
+            let mut own = block.values(rest % count, seed);
+            own.append(&mut values);
+            values = own;
+            rest /= count;
+        }
+        values
+    }
+
+    /// The ends of what each key takes.
+    pub(super) fn ends(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.blocks.iter().flat_map(Block::ends)
+    }
+
+    /// What is wrong with it, if anything is; `uncertain` keys are drawn.
+    pub fn problem(&self, uncertain: usize) -> Option<String> {
+        if let Some(problem) = self.blocks.iter().find_map(Block::problem) {
+            return Some(problem);
+        }
+        let keys = self.keys();
+        let twice = keys.iter().enumerate().find(|(place, key)| keys[..*place].contains(key));
+        if let Some((_, key)) = twice {
+            return Some(format!("{key}: a key can be varied once"));
+        }
+        if self.replicas == 0 {
+            return Some("a point needs a run: replicas must be at least 1".to_owned());
+        }
+        if self.runs().is_some_and(|runs| runs > MOST_POINTS) {
+            return Some(format!("a design has at most {MOST_POINTS} runs"));
+        }
+        if self.draws == Sampling::Sobol && uncertain > MOST_DIMENSIONS {
+            let most = MOST_DIMENSIONS;
+            return Some(format!("a Sobol sequence has at most {most} keys, got {uncertain} uncertain ones"));
+        }
+        (self.draws != Sampling::Random && uncertain == 0)
+            .then(|| format!("no key is uncertain: there is nothing to draw by {}", self.draws.name()))
+    }
+
+    /// What it is, for people, as lines of comments; nothing of a campaign that only draws.
+    pub fn describe(&self) -> String {
+        let mut text = String::new();
+        self.blocks.iter().for_each(|block| block.describe(&mut text));
+        if self.draws != Sampling::Random {
+            let of =
+                if self.hypercube > 0 { format!(" of {} points", self.hypercube) } else { String::new() };
+            let _ = writeln!(text, "# drawn by {}{of}", self.draws.name());
+        }
+        if self.replicas > 1 {
+            let _ = writeln!(text, "# {} runs of each point", self.replicas);
+        }
+        text
+    }
+}

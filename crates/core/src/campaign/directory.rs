@@ -1,0 +1,430 @@
+//! The directory of a campaign: a manifest, and parts of consecutive runs as Parquet files. Any number of processes write parts
+//! of it, on any number of machines; the rows are the same.
+//!
+//! ```text
+//! manifest.toml                          Manifest: version, scenario, design, runs, hash
+//! part-0000000000-0000002048.parquet     a row a run; each written beside its place, synced and renamed
+//! .lock                                  held by the command at work there, released by the kernel on its death
+//! ```
+//!
+//! What a worker needs, such as a process of Dask:
+//!
+//! ```text
+//! let campaign = Directory::open(path)?;           // or Work::of(manifest text), without any file system
+//! for runs in campaign.missing()? {                // by the head: ranges of whole parts
+//!     campaign.write_part(runs, threads, poll)?;   // by a worker: atomic, and harmless if done twice
+//! }
+//! ```
+//!
+//! Where parts go to a bucket, [`Work::part`] gives a part's name and bytes. [`Directory::create`] makes or continues a directory,
+//! and holds its lock; workers need none.
+
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use thiserror::Error;
+
+use super::manifest::{LARGEST, Manifest};
+use super::parquet::{Reading, encode};
+use super::rows::{Column, Field, Rows};
+use super::{Campaign, Outcome, Run, RunError, part};
+use crate::document::ScenarioError;
+use crate::metrics::{Metrics, Selection};
+use crate::record::{Record, RecordError};
+use crate::sim::SimulationError;
+use crate::whole::{self, Partial};
+
+/// The manifest's file.
+pub const MANIFEST: &str = "manifest.toml";
+/// The file whose lock the command at work holds.
+const LOCK: &str = ".lock";
+/// The note of a part that says which campaign it is of.
+const NOTE: &str = "flexsc.campaign";
+/// The note that has the units of its columns.
+const UNITS: &str = "flexsc.units";
+
+/// Why a directory cannot be used.
+#[derive(Debug, Error)]
+pub enum DirectoryError {
+    /// It is no campaign, or has a file that is none of it.
+    #[error("{}: {why}", path.display())]
+    Wrong {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        why: String,
+    },
+    /// It is of another campaign.
+    #[error("{}: what is there is of another campaign ({difference})", path.display())]
+    Other {
+        /// The manifest there.
+        path: PathBuf,
+        /// In what they differ.
+        difference: String,
+    },
+    /// Another process is at work there.
+    #[error("{}: another process is at work there", path.display())]
+    Busy {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// A file cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// Its scenario is not accepted.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The work was stopped.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+pub(super) fn wrong(path: &Path, why: impl Into<String>) -> DirectoryError {
+    DirectoryError::Wrong { path: path.to_owned(), why: why.into() }
+}
+
+pub(super) fn io_of(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
+    |source| match source.kind() {
+        io::ErrorKind::InvalidData | io::ErrorKind::Unsupported => wrong(path, source.to_string()),
+        _ => DirectoryError::Io { path: path.to_owned(), source },
+    }
+}
+
+/// What makes the rows of a campaign: its manifest, and what that comes to.
+#[derive(Clone, Debug)]
+pub struct Work {
+    /// The manifest.
+    pub manifest: Manifest,
+    /// The campaign.
+    pub campaign: Arc<Campaign>,
+    /// The metrics of its rows.
+    pub selection: Selection,
+    fields: Arc<[Field]>,
+}
+
+impl Work {
+    /// The work that a manifest describes; `origin` is what errors call it.
+    pub fn of(manifest: Manifest, origin: &Path) -> Result<Self, DirectoryError> {
+        let selection = manifest.selection().map_err(|why| wrong(origin, why))?;
+        let campaign = Arc::new(manifest.campaign()?);
+        let fields = campaign.fields(&selection);
+        Ok(Self { manifest, campaign, selection, fields })
+    }
+
+    /// No rows yet.
+    pub fn rows(&self) -> Rows {
+        Rows::new(self.fields.clone())
+    }
+
+    /// The columns of the rows.
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// Rows as the bytes of a part.
+    pub fn encode(&self, rows: &Rows) -> io::Result<Vec<u8>> {
+        let units = self.fields.iter().filter(|field| !field.unit.is_empty());
+        let units: serde_json::Map<_, _> =
+            units.map(|field| (field.name.clone(), field.unit.into())).collect();
+        let units = serde_json::Value::Object(units).to_string();
+        encode(rows, &[(NOTE, self.manifest.hash.clone()), (UNITS, units)])
+    }
+
+    /// Makes some runs on so many threads, or with 0 on one for each core; `poll` is asked again and again whether to stop.
+    pub fn make(
+        &self,
+        runs: Range<u64>,
+        threads: usize,
+        poll: impl Record + Clone + Send + Sync + 'static,
+    ) -> Result<Rows, DirectoryError> {
+        let mut rows = self.rows();
+        let (selection, record) = (self.selection.clone(), poll.clone());
+        let work = move |run: &Run| -> Result<Metrics, RunError> {
+            Ok(Campaign::simulate_for(run, &selection, record.clone())?)
+        };
+        let mut poll = poll;
+        self.campaign.each(runs, threads, work, |outcome: Option<Outcome>| {
+            poll.poll().map_err(|_| DirectoryError::Interrupted)?;
+            if let Some(outcome) = outcome {
+                let stopped = matches!(
+                    outcome.metrics,
+                    Err(RunError::Simulation(SimulationError::Record(RecordError::Interrupted)))
+                );
+                if stopped {
+                    return Err(DirectoryError::Interrupted);
+                }
+                rows.push(&self.campaign, &outcome);
+            }
+            Ok(())
+        })?;
+        Ok(rows)
+    }
+
+    /// A part as the name of its file and its bytes.
+    pub fn part(
+        &self,
+        runs: Range<u64>,
+        threads: usize,
+        poll: impl Record + Clone + Send + Sync + 'static,
+    ) -> Result<(String, Vec<u8>), DirectoryError> {
+        let name = part::name(&runs);
+        let rows = self.make(runs, threads, poll)?;
+        let bytes = self.encode(&rows).map_err(io_of(Path::new(&name)))?;
+        Ok((name, bytes))
+    }
+}
+
+/// The directory of a campaign.
+#[derive(Debug)]
+pub struct Directory {
+    path: PathBuf,
+    work: Work,
+    /// Held as long as this lives, by the command at work.
+    _lock: Option<File>,
+}
+
+impl Directory {
+    /// Opens a directory, to read it or to write parts.
+    pub fn open(path: &Path) -> Result<Self, DirectoryError> {
+        let place = path.join(MANIFEST);
+        let manifest =
+            read(&place)?.ok_or_else(|| wrong(path, format!("is no campaign: it has no {MANIFEST}")))?;
+        Ok(Self { path: path.to_owned(), work: Work::of(manifest, &place)?, _lock: None })
+    }
+
+    /// Whether a directory is that of a campaign.
+    pub fn is_one(path: &Path) -> bool {
+        path.join(MANIFEST).is_file()
+    }
+
+    /// Makes a directory, or continues the one that is there with these runs of the same campaign too, or with `force` in place
+    /// of another one. Its lock is held as long as this lives.
+    ///
+    /// # Errors
+    /// Another campaign, which is not to be replaced; another process at work.
+    pub fn create(path: &Path, mut manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
+        fs::create_dir_all(path).map_err(io_of(path))?;
+        let place = path.join(MANIFEST);
+        // Before anything is touched, and again by the only one that may.
+        fitting(path, &place, &manifest, force)?;
+        let lock = lock(path)?;
+        let there = fitting(path, &place, &manifest, force)?;
+        let fits = there.as_ref().is_some_and(|there| there.difference(&manifest).is_none());
+        if !fits {
+            for file in parts(path)?.iter().map(|runs| path.join(part::name(runs))) {
+                fs::remove_file(&file).map_err(io_of(&file))?;
+            }
+        }
+        if let Some(there) = there.filter(|_| fits) {
+            manifest.part = there.part;
+            manifest.from = manifest.from.min(there.from);
+            manifest.to = manifest.to.max(there.to);
+        }
+        let work = Work::of(manifest, &place)?;
+        let directory = Self { path: path.to_owned(), work, _lock: Some(lock) };
+        directory.write_manifest()?;
+        directory.remove_leftovers()?;
+        for runs in directory.parts()? {
+            directory.reading(&runs)?;
+        }
+        Ok(directory)
+    }
+
+    /// Leaves nothing but these runs of it.
+    pub fn shrink(&mut self, runs: Range<u64>) -> Result<(), DirectoryError> {
+        for part in self.parts()?.iter().filter(|part| part.start < runs.start || part.end > runs.end) {
+            let file = self.file(part);
+            fs::remove_file(&file).map_err(io_of(&file))?;
+        }
+        (self.work.manifest.from, self.work.manifest.to) = (runs.start, runs.end);
+        self.write_manifest()
+    }
+
+    fn write_manifest(&self) -> Result<(), DirectoryError> {
+        let (place, text) = (self.path.join(MANIFEST), self.work.manifest.to_toml());
+        if fs::read(&place).ok().as_deref() == Some(text.as_bytes()) {
+            return Ok(());
+        }
+        whole::write_synced(&place, text.as_bytes()).map_err(io_of(&place))
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What makes its rows.
+    pub fn work(&self) -> &Work {
+        &self.work
+    }
+
+    /// The runs of the parts that are there, in order.
+    pub fn parts(&self) -> Result<Vec<Range<u64>>, DirectoryError> {
+        parts(&self.path)
+    }
+
+    /// The runs of the parts that are not there, part by part.
+    pub fn missing(&self) -> Result<Vec<Range<u64>>, DirectoryError> {
+        self.missing_of(self.work.manifest.runs())
+    }
+
+    /// The same of some runs.
+    pub fn missing_of(&self, runs: Range<u64>) -> Result<Vec<Range<u64>>, DirectoryError> {
+        let gaps = part::without(runs, &self.parts()?);
+        Ok(gaps.into_iter().flat_map(|gap| part::cut(gap, self.work.manifest.part)).collect())
+    }
+
+    /// Makes the runs of a part, and writes it.
+    pub fn write_part(
+        &self,
+        runs: Range<u64>,
+        threads: usize,
+        poll: impl Record + Clone + Send + Sync + 'static,
+    ) -> Result<PathBuf, DirectoryError> {
+        let rows = self.work.make(runs.clone(), threads, poll)?;
+        self.write(&runs, &rows)
+    }
+
+    /// Writes the rows of a part: beside its place, to the disk, and then under its name.
+    pub fn write(&self, runs: &Range<u64>, rows: &Rows) -> Result<PathBuf, DirectoryError> {
+        let path = self.file(runs);
+        let bytes = self.work.encode(rows).map_err(io_of(&path))?;
+        whole::write_synced(&path, &bytes).map_err(io_of(&path))?;
+        Ok(path)
+    }
+
+    /// A column of all rows that there are, in the order of their runs. Parts without it have nothing there.
+    pub fn column(&self, name: &str) -> Result<Option<Column>, DirectoryError> {
+        Ok(self.columns(&[name])?.remove(0))
+    }
+
+    /// Several columns, each part opened once.
+    pub fn columns(&self, names: &[&str]) -> Result<Vec<Option<Column>>, DirectoryError> {
+        let kind =
+            |name: &str| self.work.fields.iter().find(|field| field.name == name).map(|field| field.kind);
+        let mut all: Vec<Option<Column>> = names.iter().map(|name| kind(name).map(Column::of)).collect();
+        let known: Vec<&str> = names.iter().copied().filter(|name| kind(name).is_some()).collect();
+        for runs in self.parts()? {
+            for (all, column) in all.iter_mut().flatten().zip(self.columns_of(&runs, &known)?) {
+                all.append(column);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Columns of a part.
+    pub fn columns_of(&self, runs: &Range<u64>, names: &[&str]) -> Result<Vec<Column>, DirectoryError> {
+        let path = self.file(runs);
+        let reading = self.reading(runs)?;
+        let column = |name: &&str| {
+            let column = reading.column(name).map_err(io_of(&path))?;
+            column.ok_or_else(|| wrong(&path, format!("has no column `{name}`")))
+        };
+        names.iter().map(column).collect()
+    }
+
+    /// The file of a part.
+    pub fn file(&self, runs: &Range<u64>) -> PathBuf {
+        self.path.join(part::name(runs))
+    }
+
+    /// Opens a part, which must be one of this campaign.
+    pub(super) fn reading(&self, runs: &Range<u64>) -> Result<Reading, DirectoryError> {
+        let path = self.file(runs);
+        let reading = Reading::open(&path).map_err(io_of(&path))?;
+        if reading.note(NOTE).as_deref() != Some(self.work.manifest.hash.as_str()) {
+            return Err(wrong(&path, format!("is no part of the campaign of {MANIFEST}")));
+        }
+        if reading.rows() != runs.end - runs.start {
+            return Err(wrong(&path, format!("has {} rows, other than its name says", reading.rows())));
+        }
+        Ok(reading)
+    }
+
+    /// Removes what killed processes left of files; those that are being written stay.
+    fn remove_leftovers(&self) -> Result<(), DirectoryError> {
+        let entries = fs::read_dir(&self.path).map_err(io_of(&self.path))?.flatten();
+        for entry in entries {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let Some(of) = name.strip_suffix(".partial") else { continue };
+            if part::runs(of).is_some() || of == MANIFEST {
+                // What begins a file and drops it removes a leftover; one that is locked is another's at work.
+                drop(Partial::create(&self.path.join(of)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The manifest that is there, if any.
+fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
+    match fs::metadata(place) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(io_of(place)(error)),
+        Ok(there) if !there.is_file() || there.len() > LARGEST => {
+            return Err(wrong(place, "is no manifest of a campaign"));
+        }
+        Ok(_) => {}
+    }
+    let text = fs::read_to_string(place).map_err(io_of(place))?;
+    Manifest::parse(&text).map(Some).map_err(|why| wrong(place, why))
+}
+
+/// The manifest that is there, if this one may be written in its place.
+fn fitting(
+    path: &Path,
+    place: &Path,
+    here: &Manifest,
+    force: bool,
+) -> Result<Option<Manifest>, DirectoryError> {
+    let Some(there) = read(place)? else {
+        return match parts(path)?.first().filter(|_| !force) {
+            Some(runs) => Err(wrong(&path.join(part::name(runs)), "is there, and its campaign is unknown")),
+            None => Ok(None),
+        };
+    };
+    if force {
+        return Ok(Some(there));
+    }
+    match there.difference(here) {
+        Some(difference) => Err(DirectoryError::Other { path: place.to_owned(), difference }),
+        None => Ok(Some(there)),
+    }
+}
+
+fn parts(path: &Path) -> Result<Vec<Range<u64>>, DirectoryError> {
+    let mut parts = Vec::new();
+    for entry in fs::read_dir(path).map_err(io_of(path))? {
+        let name = entry.map_err(io_of(path))?.file_name();
+        parts.extend(part::runs(&name.to_string_lossy()));
+    }
+    parts.sort_by_key(|runs| (runs.start, runs.end));
+    if let Some(pair) = parts.windows(2).find(|pair| pair[0].end > pair[1].start) {
+        let why = format!("has runs that {} has too", part::name(&pair[0]));
+        return Err(wrong(&path.join(part::name(&pair[1])), why));
+    }
+    Ok(parts)
+}
+
+fn lock(path: &Path) -> Result<File, DirectoryError> {
+    let place = path.join(LOCK);
+    let file =
+        File::options().create(true).truncate(false).write(true).open(&place).map_err(io_of(&place))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(DirectoryError::Busy { path: path.to_owned() }),
+        Err(TryLockError::Error(error)) => Err(io_of(&place)(error)),
+    }
+}
+
+#[cfg(all(test, feature = "parquet"))]
+#[path = "directory_tests.rs"]
+mod tests;

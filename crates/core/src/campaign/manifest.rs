@@ -1,0 +1,162 @@
+//! The manifest of a campaign's directory: all that its rows are made from, as TOML.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use super::design::Design;
+use super::{Campaign, part};
+use crate::document::ScenarioError;
+use crate::metrics::Selection;
+use crate::random::fnv1a;
+use crate::record::difference;
+use crate::scenario::Scenario;
+
+/// The form of directories that this version writes.
+const FORMAT: u32 = 1;
+/// How the file begins.
+const MARK: &str = "# A campaign of flexsc: what the parts beside it are made from.\n";
+/// No manifest is larger (bytes).
+pub const LARGEST: u64 = 1 << 30;
+
+/// What a campaign's rows are made from, and which of its runs are wanted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// The form of the directory.
+    pub format: u32,
+    /// The version of flexsc: another one may compute other digits.
+    pub flexsc: String,
+    /// What identifies the campaign: a hash of version, scenario, metrics and design.
+    pub hash: String,
+    /// The first run.
+    pub from: u64,
+    /// The run after the last.
+    pub to: u64,
+    /// How many runs a part has, which begins at a multiple of it.
+    pub part: u64,
+    /// The metrics that the rows have; left out, all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub metrics: Option<Vec<String>>,
+    /// The scenario, which needs no file.
+    pub scenario: String,
+    /// The points.
+    pub design: Design,
+}
+
+/// Why a manifest is none of a campaign, or not of this one.
+pub type Wrong = String;
+
+impl Manifest {
+    /// The manifest of some runs of a campaign.
+    ///
+    /// # Errors
+    /// A campaign that no text can hold.
+    pub fn new(campaign: &Campaign, runs: Range<u64>, selection: &Selection) -> Result<Self, Wrong> {
+        let design = campaign.design().clone();
+        if design.runs().is_some_and(|all| runs.end > all) {
+            let all = design.runs().unwrap_or_default();
+            return Err(format!(
+                "the design has {all} runs, and runs {} to {} are wanted",
+                runs.start, runs.end
+            ));
+        }
+        if campaign.scenario().has_own_parts() {
+            return Err("has parts of a program's own, which no file can hold".to_owned());
+        }
+        let seconds = campaign.cost(1, None)?.seconds;
+        let mut manifest = Self {
+            format: FORMAT,
+            flexsc: env!("CARGO_PKG_VERSION").to_owned(),
+            hash: String::new(),
+            from: runs.start,
+            to: runs.end,
+            part: part::size(runs.end - runs.start, seconds),
+            metrics: selection.names().map(|names| names.iter().map(|&name| name.to_owned()).collect()),
+            scenario: campaign.to_toml(),
+            design,
+        };
+        manifest.hash = manifest.hashed();
+        Ok(manifest)
+    }
+
+    fn hashed(&self) -> String {
+        let design = toml::to_string(&self.design).unwrap_or_default();
+        let metrics = self.metrics.as_ref().map_or(String::new(), |names| names.join(","));
+        let text =
+            [&self.flexsc, &self.scenario, &metrics, &design].map(|text| format!("{}\n{text}", text.len()));
+        format!("{:016x}", fnv1a(&text.concat()))
+    }
+
+    /// The manifest as a text.
+    pub fn to_toml(&self) -> String {
+        // It holds nothing that TOML cannot express.
+        format!("{MARK}{}", toml::to_string(self).unwrap_or_default())
+    }
+
+    /// Reads a manifest.
+    pub fn parse(text: &str) -> Result<Self, Wrong> {
+        #[derive(Deserialize)]
+        struct Form {
+            format: Option<u32>,
+        }
+        if !text.starts_with(MARK.trim_end()) {
+            return Err("is no manifest of a campaign".to_owned());
+        }
+        let wrong = |error: toml::de::Error| format!("is no manifest of a campaign: {}", error.message());
+        let form = toml::from_str::<Form>(text).map_err(wrong)?.format;
+        if form != Some(FORMAT) {
+            let form = form.map_or("none".to_owned(), |form| form.to_string());
+            return Err(format!("has the form {form}, and this version of flexsc reads form {FORMAT}"));
+        }
+        let manifest: Self = toml::from_str(text).map_err(wrong)?;
+        if manifest.hash != manifest.hashed() {
+            return Err("was changed: its hash is another".to_owned());
+        }
+        if manifest.from >= manifest.to || manifest.part == 0 || manifest.part > 1 << 24 {
+            return Err("has no runs".to_owned());
+        }
+        Ok(manifest)
+    }
+
+    /// The runs that are wanted.
+    pub fn runs(&self) -> Range<u64> {
+        self.from..self.to
+    }
+
+    /// In what it is another campaign than this one; nothing if they differ in their runs alone.
+    pub fn difference(&self, here: &Self) -> Option<String> {
+        if self.hash == here.hash {
+            return None;
+        }
+        if self.flexsc != here.flexsc {
+            return Some(format!("flexsc {} there, {} here", self.flexsc, here.flexsc));
+        }
+        let scenario = difference(&self.scenario, &here.scenario);
+        if !scenario.is_empty() {
+            return Some(scenario.trim_start_matches(" (").trim_end_matches(')').to_owned());
+        }
+        if self.metrics != here.metrics {
+            let names = |of: &Self| of.metrics.as_ref().map_or("all".to_owned(), |names| names.join(","));
+            return Some(format!("metrics {} there, {} here", names(self), names(here)));
+        }
+        let told = |of: &Self, other: &Self| {
+            let (of, other) = (of.design.describe(), other.design.describe());
+            let line = of.lines().find(|line| !other.lines().any(|there| there == *line));
+            line.map_or("nothing".to_owned(), |line| line.trim_start_matches("# ").to_owned())
+        };
+        Some(format!("{} there, {} here", told(self, here), told(here, self)))
+    }
+
+    /// The metrics of its rows.
+    pub fn selection(&self) -> Result<Selection, Wrong> {
+        self.metrics.as_ref().map_or(Ok(Selection::ALL), |names| Selection::of(names))
+    }
+
+    /// The campaign. Its errors name the scenario, and no file: they are the same on every machine.
+    pub fn campaign(&self) -> Result<Campaign, ScenarioError> {
+        let scenario = Scenario::parse("scenario", &self.scenario)?;
+        let name = scenario.name.clone();
+        Campaign::of(scenario, &name, self.design.clone())
+    }
+}

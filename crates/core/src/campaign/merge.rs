@@ -1,0 +1,62 @@
+//! Parts of one campaign, made in several directories, in one.
+
+use std::fs;
+use std::ops::Range;
+
+use super::directory::{Directory, DirectoryError, MANIFEST, io_of, wrong};
+use super::part;
+use super::rows::SECONDS;
+use crate::whole;
+
+impl Directory {
+    /// Takes over the parts of another directory of the campaign, and returns how many runs are new.
+    ///
+    /// # Errors
+    /// Another campaign; runs that both have, and that are not the same, or not the same part.
+    pub fn take(&self, other: &Self) -> Result<u64, DirectoryError> {
+        let (here, there) = (&self.work().manifest, &other.work().manifest);
+        if let Some(difference) = there.difference(here) {
+            return Err(DirectoryError::Other { path: other.path().join(MANIFEST), difference });
+        }
+        let own = self.parts()?;
+        let theirs = other.parts()?;
+        // All is checked before anything is written.
+        for runs in &theirs {
+            let meets = |own: &&Range<u64>| own.start < runs.end && runs.start < own.end;
+            match own.iter().find(meets) {
+                None => drop(other.reading(runs)?),
+                Some(own) if own == runs => self.same(other, runs)?,
+                Some(own) => {
+                    let why = format!(
+                        "has runs that {} has too, in another part",
+                        self.path().join(part::name(own)).display()
+                    );
+                    return Err(wrong(&other.path().join(part::name(runs)), why));
+                }
+            }
+        }
+        let mut new = 0;
+        for runs in theirs.iter().filter(|runs| !own.contains(runs)) {
+            let (from, to) = (other.path().join(part::name(runs)), self.path().join(part::name(runs)));
+            let bytes = fs::read(&from).map_err(io_of(&from))?;
+            whole::write_synced(&to, &bytes).map_err(io_of(&to))?;
+            new += runs.end - runs.start;
+        }
+        Ok(new)
+    }
+
+    /// Whether a part has the same rows in both, but for the time they took.
+    fn same(&self, other: &Self, runs: &Range<u64>) -> Result<(), DirectoryError> {
+        let (own, theirs) = (self.reading(runs)?, other.reading(runs)?);
+        let path = other.path().join(part::name(runs));
+        let fields = self.work().fields().iter().filter(|field| field.name != SECONDS);
+        for field in fields {
+            let (own, theirs) = (own.column(&field.name), theirs.column(&field.name));
+            if own.map_err(io_of(&path))? != theirs.map_err(io_of(&path))? {
+                let why = format!("has other values of `{}` than {}", field.name, self.path().display());
+                return Err(wrong(&path, why));
+            }
+        }
+        Ok(())
+    }
+}

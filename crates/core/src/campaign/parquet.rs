@@ -1,0 +1,294 @@
+//! Rows as a Parquet file, and back: one row group, compressed by zstd.
+
+use std::fs::File;
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical, ZstdLevel};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::types::{Type, TypePtr};
+
+use super::rows::{Column, Field, Kind, Rows};
+
+/// How hard it is compressed: more gains nothing for numbers.
+const LEVEL: i32 = 3;
+/// No part has more rows.
+pub const MOST_ROWS: usize = 1 << 24;
+
+fn other(error: ParquetError) -> io::Error {
+    match error {
+        ParquetError::External(error) => match error.downcast::<io::Error>() {
+            Ok(error) => *error,
+            Err(error) => io::Error::new(io::ErrorKind::InvalidData, error.to_string()),
+        },
+        error => io::Error::new(io::ErrorKind::InvalidData, error.to_string()),
+    }
+}
+
+fn field_type(field: &Field) -> Result<TypePtr, ParquetError> {
+    let leaf = |name: &str, kind| {
+        let physical = match kind {
+            Kind::Integers => Physical::INT64,
+            Kind::Numbers | Kind::Lists => Physical::DOUBLE,
+            Kind::Words => Physical::BYTE_ARRAY,
+        };
+        let leaf = Type::primitive_type_builder(name, physical).with_repetition(Repetition::OPTIONAL);
+        let leaf = match kind {
+            Kind::Words => {
+                leaf.with_logical_type(Some(LogicalType::String)).with_converted_type(ConvertedType::UTF8)
+            }
+            _ => leaf,
+        };
+        Ok::<TypePtr, ParquetError>(Arc::new(leaf.build()?))
+    };
+    if field.kind != Kind::Lists {
+        return leaf(&field.name, field.kind);
+    }
+    let element = leaf("element", Kind::Lists)?;
+    let list =
+        Type::group_type_builder("list").with_repetition(Repetition::REPEATED).with_fields(vec![element]);
+    let whole = Type::group_type_builder(&field.name)
+        .with_repetition(Repetition::OPTIONAL)
+        .with_logical_type(Some(LogicalType::List))
+        .with_converted_type(ConvertedType::LIST)
+        .with_fields(vec![Arc::new(list.build()?)]);
+    Ok(Arc::new(whole.build()?))
+}
+
+/// The file, with notes about it by their names.
+pub fn encode(rows: &Rows, notes: &[(&str, String)]) -> io::Result<Vec<u8>> {
+    written(rows, notes).map_err(other)
+}
+
+fn written(rows: &Rows, notes: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
+    let fields = rows.fields.iter().map(field_type).collect::<Result<Vec<_>, _>>()?;
+    let schema = Type::group_type_builder("campaign").with_fields(fields).build()?;
+    let notes = notes.iter().map(|(name, text)| KeyValue::new((*name).to_owned(), text.clone())).collect();
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL)?))
+        .set_created_by(format!("flexsc {}", env!("CARGO_PKG_VERSION")))
+        .set_statistics_enabled(EnabledStatistics::Chunk)
+        .set_key_value_metadata(Some(notes))
+        .build();
+    let mut bytes = Vec::new();
+    let mut writer = SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(properties))?;
+    let mut group = writer.next_row_group()?;
+    for column in &rows.columns {
+        write_column(&mut group, column)?;
+    }
+    group.close()?;
+    writer.close()?;
+    Ok(bytes)
+}
+
+fn write_column<W: io::Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    column: &Column,
+) -> Result<(), ParquetError> {
+    let Some(mut writer) = group.next_column()? else { return Ok(()) };
+    let there = |there: bool| i16::from(there);
+    match column {
+        Column::Integers(cells) => {
+            let values: Vec<i64> = cells.iter().flatten().copied().collect();
+            let levels: Vec<i16> = cells.iter().map(|cell| there(cell.is_some())).collect();
+            writer.typed::<Int64Type>().write_batch(&values, Some(&levels), None)?;
+        }
+        Column::Numbers(cells) => {
+            let values: Vec<f64> = cells.iter().copied().filter(|cell| !cell.is_nan()).collect();
+            let levels: Vec<i16> = cells.iter().map(|cell| there(!cell.is_nan())).collect();
+            writer.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
+        }
+        Column::Words(cells) => {
+            let values: Vec<ByteArray> = cells.iter().flatten().map(|word| word.as_str().into()).collect();
+            let levels: Vec<i16> = cells.iter().map(|cell| there(cell.is_some())).collect();
+            writer.typed::<ByteArrayType>().write_batch(&values, Some(&levels), None)?;
+        }
+        Column::Lists(cells) => {
+            let (mut values, mut levels, mut again) = (Vec::new(), Vec::new(), Vec::new());
+            for cell in cells {
+                let Some(list) = cell.as_ref().filter(|list| !list.is_empty()) else {
+                    levels.push(there(cell.is_some()));
+                    again.push(0);
+                    continue;
+                };
+                for (place, number) in list.iter().enumerate() {
+                    values.extend((!number.is_nan()).then_some(*number));
+                    levels.push(if number.is_nan() { 2 } else { 3 });
+                    again.push(i16::from(place > 0));
+                }
+            }
+            writer.typed::<DoubleType>().write_batch(&values, Some(&levels), Some(&again))?;
+        }
+    }
+    writer.close()
+}
+
+/// A file that is read.
+pub struct Reading(SerializedFileReader<File>);
+
+impl Reading {
+    /// Opens a file, and reads what it holds about itself.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        SerializedFileReader::new(File::open(path)?).map(Self).map_err(other)
+    }
+
+    /// A note about it.
+    pub fn note(&self, name: &str) -> Option<String> {
+        let notes = self.0.metadata().file_metadata().key_value_metadata()?;
+        notes.iter().find(|note| note.key == name)?.value.clone()
+    }
+
+    /// How many rows there are.
+    pub fn rows(&self) -> u64 {
+        u64::try_from(self.0.metadata().file_metadata().num_rows()).unwrap_or(0)
+    }
+
+    /// The columns.
+    pub fn fields(&self) -> Vec<Field> {
+        let schema = self.0.metadata().file_metadata().schema();
+        let kind = |field: &Type| {
+            if field.is_group() {
+                return Kind::Lists;
+            }
+            match field.get_physical_type() {
+                Physical::INT64 => Kind::Integers,
+                Physical::DOUBLE => Kind::Numbers,
+                _ => Kind::Words,
+            }
+        };
+        let field = |of: &TypePtr| Field { name: of.name().to_owned(), unit: "", kind: kind(of) };
+        schema.get_fields().iter().map(field).collect()
+    }
+
+    /// A column; none where it has no such one.
+    pub fn column(&self, name: &str) -> io::Result<Option<Column>> {
+        self.read(name).map_err(other)
+    }
+
+    fn read(&self, name: &str) -> Result<Option<Column>, ParquetError> {
+        let fields = self.fields();
+        // Every field has one leaf.
+        let Some(place) = fields.iter().position(|field| field.name == name) else { return Ok(None) };
+        let rows = usize::try_from(self.rows()).unwrap_or(usize::MAX);
+        if rows > MOST_ROWS {
+            return Err(ParquetError::General(format!("has more than {MOST_ROWS} rows")));
+        }
+        let mut all = Column::of(fields[place].kind);
+        for group in 0..self.0.num_row_groups() {
+            let group = self.0.get_row_group(group)?;
+            let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0).min(rows);
+            let column = match (group.get_column_reader(place)?, fields[place].kind) {
+                (ColumnReader::Int64ColumnReader(reader), Kind::Integers) => {
+                    let (values, levels, _) = read_all(reader, rows)?;
+                    Column::Integers(filled(values.into_iter().map(Some), &levels, || None))
+                }
+                (ColumnReader::DoubleColumnReader(reader), Kind::Numbers) => {
+                    let (values, levels, _) = read_all(reader, rows)?;
+                    Column::Numbers(filled(values.into_iter(), &levels, || f64::NAN))
+                }
+                (ColumnReader::ByteArrayColumnReader(reader), Kind::Words) => {
+                    let (values, levels, _) = read_all(reader, rows)?;
+                    let words =
+                        values.iter().map(|word| Some(String::from_utf8_lossy(word.data()).into_owned()));
+                    Column::Words(filled(words, &levels, || None))
+                }
+                (ColumnReader::DoubleColumnReader(reader), Kind::Lists) => {
+                    let (values, levels, again) = read_all(reader, rows)?;
+                    Column::Lists(lists(&values, &levels, &again))
+                }
+                _ => return Err(ParquetError::General(format!("`{name}` is no column of a campaign"))),
+            };
+            all.append(column);
+        }
+        Ok(Some(all))
+    }
+}
+
+/// Values, and the levels at which they and those that are null stand.
+type Levelled<T> = (Vec<T>, Vec<i16>, Vec<i16>);
+
+fn read_all<D: DataType>(
+    mut reader: ColumnReaderImpl<D>,
+    rows: usize,
+) -> Result<Levelled<D::T>, ParquetError> {
+    let (mut values, mut levels, mut again) = (Vec::new(), Vec::new(), Vec::new());
+    let mut left = rows;
+    while left > 0 {
+        let (read, _, _) = reader.read_records(left, Some(&mut levels), Some(&mut again), &mut values)?;
+        if read == 0 {
+            return Err(ParquetError::EOF("has fewer rows than it says".to_owned()));
+        }
+        left -= read;
+    }
+    Ok((values, levels, again))
+}
+
+fn filled<T>(mut values: impl Iterator<Item = T>, levels: &[i16], nothing: impl Fn() -> T) -> Vec<T> {
+    let cell = |level: &i16| if *level == 1 { values.next() } else { None };
+    levels.iter().map(cell).map(|cell| cell.unwrap_or_else(&nothing)).collect()
+}
+
+fn lists(values: &[f64], levels: &[i16], again: &[i16]) -> Vec<Option<Vec<f64>>> {
+    let (mut lists, mut values): (Vec<Option<Vec<f64>>>, _) = (Vec::new(), values.iter());
+    for (level, again) in levels.iter().zip(again) {
+        if *again == 0 {
+            lists.push((*level > 0).then(Vec::new));
+        }
+        if *level > 1
+            && let Some(Some(list)) = lists.last_mut()
+        {
+            let number = if *level == 3 { values.next() } else { None };
+            list.push(number.copied().unwrap_or(f64::NAN));
+        }
+    }
+    lists
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_come_back_as_they_were() {
+        let field = |name: &str, kind| Field { name: name.to_owned(), unit: "", kind };
+        let fields = [
+            field("run", Kind::Integers),
+            field("x", Kind::Numbers),
+            field("word", Kind::Words),
+            field("list", Kind::Lists),
+            field("nothing", Kind::Words),
+        ];
+        let columns = vec![
+            Column::Integers(vec![Some(1), None, Some(i64::MIN)]),
+            Column::Numbers(vec![0.1, f64::INFINITY, -1e-300]),
+            Column::Words(vec![None, Some("é".to_owned()), Some(String::new())]),
+            Column::Lists(vec![None, Some(vec![]), Some(vec![1.0, 2.5])]),
+            Column::Words(vec![None; 3]),
+        ];
+        let rows = Rows { fields: Arc::new(fields), columns };
+        let file = tempfile(&encode(&rows, &[("a", "b".to_owned())]).expect("encoded"));
+        let reading = Reading::open(&file).expect("a file");
+        assert_eq!((reading.rows(), reading.note("a").as_deref()), (3, Some("b")));
+        assert_eq!(reading.fields(), rows.fields.to_vec());
+        for field in rows.fields.iter() {
+            assert_eq!(reading.column(&field.name).expect("read").as_ref(), rows.column(&field.name));
+        }
+        assert_eq!(reading.column("other").expect("read"), None);
+        std::fs::write(&file, b"PAR1 and no more").expect("written");
+        assert!(Reading::open(&file).is_err());
+        std::fs::remove_file(file).expect("removed");
+    }
+
+    fn tempfile(bytes: &[u8]) -> std::path::PathBuf {
+        let path = std::env::temp_dir().join(format!("flexsc-{}.parquet", std::process::id()));
+        std::fs::write(&path, bytes).expect("written");
+        path
+    }
+}

@@ -1,0 +1,104 @@
+//! Parts of a campaign: where they begin and end, and what their files are called.
+
+use std::ops::Range;
+
+/// Lanes of runs side by side are filled by so many.
+const LANES: u64 = 256;
+/// A part takes about so long on one core (s): what a killed worker loses.
+const WORK_S: f64 = 4.0;
+/// No campaign has many more parts than this.
+const MOST_PARTS: u64 = 4096;
+
+/// How many runs a part has: a power of two, and for short runs a multiple of 256. Parts begin at its multiples, whatever is run
+/// beside them.
+pub fn size(runs: u64, run_s: f64) -> u64 {
+    let wanted = (WORK_S / run_s.max(1e-6)).clamp(1.0, 65_536.0) as u64;
+    // Downwards to a power of two; lanes are worth more than an even size.
+    let by_time = 1 << wanted.max(1).ilog2();
+    let by_time = if (LANES / 4..LANES).contains(&by_time) { LANES } else { by_time };
+    by_time.max(runs.div_ceil(MOST_PARTS).next_power_of_two())
+}
+
+/// The file of a part.
+pub fn name(runs: &Range<u64>) -> String {
+    format!("part-{:010}-{:010}.parquet", runs.start, runs.end)
+}
+
+/// The runs of a part, by the name of its file.
+pub fn runs(name: &str) -> Option<Range<u64>> {
+    let (from, to) = name.strip_prefix("part-")?.strip_suffix(".parquet")?.split_once('-')?;
+    let number = |text: &str| text.parse().ok().filter(|_| text.len() >= 10);
+    let runs = number(from)?..number(to)?;
+    (runs.start < runs.end).then_some(runs)
+}
+
+/// Runs cut into parts of this size, at its multiples.
+pub fn cut(runs: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
+    let size = size.max(1);
+    let mut next = runs.start;
+    std::iter::from_fn(move || {
+        let end = (next / size + 1).saturating_mul(size).min(runs.end);
+        let part = next..end;
+        next = end;
+        (!part.is_empty()).then_some(part)
+    })
+}
+
+/// What is left of runs without those that are there, which are sorted.
+pub fn without(runs: Range<u64>, there: &[Range<u64>]) -> Vec<Range<u64>> {
+    let mut left = Vec::new();
+    let mut next = runs.start;
+    for part in there {
+        if part.start > next {
+            left.push(next..part.start.min(runs.end));
+        }
+        next = next.max(part.end);
+    }
+    left.push(next..runs.end);
+    left.retain(|range| !range.is_empty());
+    left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_have_sizes_by_the_work() {
+        // Runs of 1 ms, 0.1 s, 10 s and 1 µs.
+        for (runs, run_s, exact) in [
+            (1000, 1e-3, 2048),
+            (1000, 0.03, 256),
+            (1000, 0.1, 32),
+            (1000, 10.0, 1),
+            (100_000_000, 1e-9, 65_536),
+        ] {
+            assert_eq!(size(runs, run_s), exact, "{runs} runs of {run_s} s");
+        }
+        assert_eq!(size(100_000_000, 10.0), 32_768);
+    }
+
+    #[test]
+    fn names_and_ranges_belong_together() {
+        assert_eq!(name(&(0..256)), "part-0000000000-0000000256.parquet");
+        assert_eq!(runs(&name(&(5..99_999_999_999))), Some(5..99_999_999_999));
+        for other in [
+            "part-5-7.parquet",
+            "part-0000000005-0000000005.parquet",
+            "part-0000000000-0000000256.parquet.partial",
+        ] {
+            assert_eq!(runs(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    #[expect(clippy::single_range_in_vec_init, reason = "one range is what is left")]
+    fn what_is_missing_is_cut_at_fixed_places() {
+        assert_eq!(cut(3..20, 8).collect::<Vec<_>>(), [3..8, 8..16, 16..20]);
+        assert_eq!(cut(4..4, 8).count(), 0);
+        assert_eq!(without(0..20, &[]), [0..20]);
+        assert_eq!(without(0..20, &[0..8, 16..24]), [8..16]);
+        assert_eq!(without(2..20, &[0..1, 4..6, 5..7]), [2..4, 7..20]);
+        assert_eq!(without(2..5, &[0..8]), []);
+    }
+}

@@ -1,0 +1,248 @@
+//! Rows of a campaign's table, a row a run, held as typed columns.
+
+use std::sync::Arc;
+
+use toml::Value as Drawn;
+
+use super::{Campaign, Outcome};
+use crate::metrics::{Gather, Selection, Value};
+
+/// The column of the numbers of the runs, which every table begins with.
+pub const RUN: &str = "run";
+/// The column of the scenario's seed.
+pub const SEED: &str = "seed";
+/// The column of the time that a run took (s): no two campaigns have the same.
+pub const SECONDS: &str = "seconds";
+/// The column that says why a run failed.
+pub const ERROR: &str = "error";
+
+/// What a column holds. Where a run has nothing, the cell is null.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Integers.
+    Integers,
+    /// Numbers.
+    Numbers,
+    /// Words.
+    Words,
+    /// Lists of numbers.
+    Lists,
+}
+
+/// A column's name, unit and kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// The name: of a key, of a metric, or one of those about the run.
+    pub name: String,
+    /// The unit of a metric.
+    pub unit: &'static str,
+    /// What it holds.
+    pub kind: Kind,
+}
+
+/// The cells of a column. Two are equal where all bits are; nothing equals nothing.
+#[derive(Clone, Debug)]
+pub enum Column {
+    /// Integers.
+    Integers(Vec<Option<i64>>),
+    /// Numbers; NaN for none.
+    Numbers(Vec<f64>),
+    /// Words.
+    Words(Vec<Option<String>>),
+    /// Lists of numbers, in which NaN stands for none.
+    Lists(Vec<Option<Vec<f64>>>),
+}
+
+impl PartialEq for Column {
+    fn eq(&self, other: &Self) -> bool {
+        let bits = |number: &f64| if number.is_nan() { u64::MAX } else { number.to_bits() };
+        let list =
+            |cell: &Option<Vec<f64>>| cell.as_ref().map(|list| list.iter().map(bits).collect::<Vec<_>>());
+        match (self, other) {
+            (Self::Integers(one), Self::Integers(other)) => one == other,
+            (Self::Numbers(one), Self::Numbers(other)) => one.iter().map(bits).eq(other.iter().map(bits)),
+            (Self::Words(one), Self::Words(other)) => one == other,
+            (Self::Lists(one), Self::Lists(other)) => one.iter().map(list).eq(other.iter().map(list)),
+            _ => false,
+        }
+    }
+}
+
+/// Rows of consecutive runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rows {
+    /// The columns' names and kinds.
+    pub fields: Arc<[Field]>,
+    /// Their cells.
+    pub columns: Vec<Column>,
+}
+
+impl Campaign {
+    /// The columns of the campaign's table. They are known before any run, and no run changes them.
+    pub fn fields(&self, selection: &Selection) -> Arc<[Field]> {
+        let about = |name: &str, kind, unit| Field { name: name.to_owned(), unit, kind };
+        let key =
+            |name: &str| about(name, if self.is_integer(name) { Kind::Integers } else { Kind::Numbers }, "");
+        let told = selection.of_run(Gather::new(self.scenario()).finish(self.scenario()));
+        let metric = |(meaning, value): &(&'static crate::metrics::Meaning, Value)| {
+            let kind = match value {
+                Value::Count(_) => Kind::Integers,
+                Value::Number(_) => Kind::Numbers,
+                Value::Word(_) => Kind::Words,
+                Value::Numbers(_) | Value::Quantities(_) => Kind::Lists,
+            };
+            about(meaning.name, kind, meaning.unit)
+        };
+        let mut fields = vec![about(RUN, Kind::Integers, "")];
+        if self.keys().all(|key| key != SEED) {
+            fields.push(about(SEED, Kind::Integers, ""));
+        }
+        fields.extend(self.keys().map(key));
+        fields.extend(told.0.iter().map(metric));
+        fields.extend([about(SECONDS, Kind::Numbers, "s"), about(ERROR, Kind::Words, "")]);
+        fields.into()
+    }
+}
+
+impl Column {
+    /// An empty one.
+    pub fn of(kind: Kind) -> Self {
+        match kind {
+            Kind::Integers => Self::Integers(Vec::new()),
+            Kind::Numbers => Self::Numbers(Vec::new()),
+            Kind::Words => Self::Words(Vec::new()),
+            Kind::Lists => Self::Lists(Vec::new()),
+        }
+    }
+
+    /// How many cells there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Integers(cells) => cells.len(),
+            Self::Numbers(cells) => cells.len(),
+            Self::Words(cells) => cells.len(),
+            Self::Lists(cells) => cells.len(),
+        }
+    }
+
+    /// Whether there is no cell.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// How many cells are not null.
+    pub fn told(&self) -> usize {
+        match self {
+            Self::Integers(cells) => cells.iter().flatten().count(),
+            Self::Numbers(cells) => cells.iter().filter(|cell| !cell.is_nan()).count(),
+            Self::Words(cells) => cells.iter().flatten().count(),
+            Self::Lists(cells) => cells.iter().flatten().count(),
+        }
+    }
+
+    /// The cells as numbers, in their order: of an integer its value, of other words than those of a goal nothing.
+    pub fn numbers(&self) -> Vec<f64> {
+        match self {
+            Self::Integers(cells) => cells.iter().map(|cell| cell.map_or(f64::NAN, |i| i as f64)).collect(),
+            Self::Numbers(cells) => cells.clone(),
+            Self::Words(cells) => {
+                let score =
+                    |cell: &Option<String>| crate::metrics::goal::score(cell.as_deref().unwrap_or(""));
+                cells.iter().map(|cell| score(cell).unwrap_or(f64::NAN)).collect()
+            }
+            Self::Lists(cells) => vec![f64::NAN; cells.len()],
+        }
+    }
+
+    fn push_nothing(&mut self) {
+        match self {
+            Self::Integers(cells) => cells.push(None),
+            Self::Numbers(cells) => cells.push(f64::NAN),
+            Self::Words(cells) => cells.push(None),
+            Self::Lists(cells) => cells.push(None),
+        }
+    }
+
+    fn push_drawn(&mut self, value: &Drawn) {
+        match (self, value) {
+            (Self::Integers(cells), Drawn::Integer(integer)) => cells.push(Some(*integer)),
+            (Self::Numbers(cells), Drawn::Float(number)) => cells.push(*number),
+            (Self::Numbers(cells), Drawn::Integer(integer)) => cells.push(*integer as f64),
+            (column, _) => column.push_nothing(),
+        }
+    }
+
+    fn push(&mut self, value: &Value) {
+        match (self, value) {
+            (Self::Integers(cells), Value::Count(count)) => cells.push(i64::try_from(*count).ok()),
+            (Self::Numbers(cells), Value::Number(number)) => cells.push(*number),
+            (Self::Words(cells), Value::Word(word)) => cells.push(Some((*word).to_owned())),
+            (Self::Lists(cells), Value::Numbers(_) | Value::Quantities(_)) => {
+                cells.push(Some(value.numbers()))
+            }
+            (column, _) => column.push_nothing(),
+        }
+    }
+
+    /// Puts the cells of another one of its kind after its own.
+    pub fn append(&mut self, other: Self) {
+        match (self, other) {
+            (Self::Integers(cells), Self::Integers(mut more)) => cells.append(&mut more),
+            (Self::Numbers(cells), Self::Numbers(mut more)) => cells.append(&mut more),
+            (Self::Words(cells), Self::Words(mut more)) => cells.append(&mut more),
+            (Self::Lists(cells), Self::Lists(mut more)) => cells.append(&mut more),
+            // A column of another kind has nothing for this one.
+            (column, other) => (0..other.len()).for_each(|_| column.push_nothing()),
+        }
+    }
+}
+
+impl Rows {
+    /// No rows yet.
+    pub fn new(fields: Arc<[Field]>) -> Self {
+        let columns = fields.iter().map(|field| Column::of(field.kind)).collect();
+        Self { fields, columns }
+    }
+
+    /// How many rows there are.
+    pub fn len(&self) -> usize {
+        self.columns.first().map_or(0, Column::len)
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A column.
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        let place = self.fields.iter().position(|field| field.name == name)?;
+        self.columns.get(place)
+    }
+
+    /// The row of a run.
+    pub fn push(&mut self, campaign: &Campaign, outcome: &Outcome) {
+        let keys = outcome.drawn.len();
+        let first = self.fields.iter().take_while(|field| [RUN, SEED].contains(&field.name.as_str())).count();
+        // A key may be the seed.
+        let first = if campaign.keys().next() == Some(SEED) { 1 } else { first };
+        let metrics = outcome.metrics.as_ref().ok();
+        for (place, (field, column)) in self.fields.iter().zip(&mut self.columns).enumerate() {
+            match (field.name.as_str(), column) {
+                (RUN, Column::Integers(cells)) => cells.push(i64::try_from(outcome.number).ok()),
+                (SEED, Column::Integers(cells)) if place < first => {
+                    cells.push(i64::try_from(campaign.scenario().seed).ok());
+                }
+                (_, column) if place < first + keys => column.push_drawn(&outcome.drawn[place - first]),
+                (SECONDS, Column::Numbers(cells)) => cells.push(outcome.seconds),
+                (ERROR, Column::Words(cells)) => {
+                    cells.push(outcome.metrics.as_ref().err().map(ToString::to_string));
+                }
+                (name, column) => match metrics.and_then(|metrics| metrics.get(name)) {
+                    Some(value) => column.push(value),
+                    None => column.push_nothing(),
+                },
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Which metrics are wanted: all, or those that are named.
+
+use super::{ALL, Metrics};
+use crate::document::nearest;
+
+/// The metrics that a campaign's table has.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Selection(Option<Vec<&'static str>>);
+
+impl Selection {
+    /// All metrics.
+    pub const ALL: Self = Self(None);
+
+    /// Metrics by their names.
+    ///
+    /// # Errors
+    /// A name that no metric has.
+    pub fn of<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Result<Self, String> {
+        let mut wanted = Vec::new();
+        for name in names {
+            let name = name.as_ref().trim();
+            let Some(meaning) = ALL.iter().find(|meaning| meaning.name == name) else {
+                let names: Vec<&str> = ALL.iter().map(|meaning| meaning.name).collect();
+                let close = nearest(name, &names);
+                let hint = close.map_or_else(
+                    || "`flexsc schema --metrics` lists them".to_owned(),
+                    |close| format!("did you mean `{close}`?"),
+                );
+                return Err(format!("there is no metric `{name}`\n\nhint: {hint}"));
+            };
+            if !wanted.contains(&meaning.name) {
+                wanted.push(meaning.name);
+            }
+        }
+        Ok(Self(Some(wanted)))
+    }
+
+    /// Whether a metric is wanted.
+    pub fn wants(&self, name: &str) -> bool {
+        self.0.as_ref().is_none_or(|names| names.contains(&name))
+    }
+
+    /// The names of those that are wanted, unless all are.
+    pub fn names(&self) -> Option<&[&'static str]> {
+        self.0.as_deref()
+    }
+
+    /// The metrics that are wanted, in the order in which all are reported.
+    #[must_use]
+    pub fn of_run(&self, metrics: Metrics) -> Metrics {
+        match self.0 {
+            None => metrics,
+            Some(_) => {
+                Metrics(metrics.0.into_iter().filter(|(meaning, _)| self.wants(meaning.name)).collect())
+            }
+        }
+    }
+}
