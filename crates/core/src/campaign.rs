@@ -11,6 +11,7 @@ mod parquet;
 mod part;
 mod rows;
 mod sampling;
+mod told;
 
 use std::collections::BTreeMap;
 use std::time::Instant as WallInstant;

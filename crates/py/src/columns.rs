@@ -1,6 +1,5 @@
-//! Rows, metrics and outcomes as Python takes them: numbers as arrays that it owns from then on.
+//! Rows and metrics as Python takes them: numbers as arrays that it owns from then on.
 
-use flexsc_core::campaign::Outcome;
 use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::{Column, Columns};
 use numpy::IntoPyArray;
@@ -49,20 +48,4 @@ pub fn of_metrics<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py
         }
     }
     Ok(dict)
-}
-
-/// Number of a run, what was drawn, its metrics or none, and why it failed.
-pub type Told<'py> = (u64, Vec<Bound<'py, PyAny>>, Option<Bound<'py, PyDict>>, String);
-
-/// What is told of each run.
-pub fn of_outcome<'py>(py: Python<'py>, outcome: &Outcome) -> PyResult<Told<'py>> {
-    let drawn = outcome.drawn.iter().map(|value| match value {
-        toml::Value::Integer(number) => Ok(number.into_pyobject(py)?.into_any()),
-        other => Ok(other.as_float().unwrap_or(f64::NAN).into_pyobject(py)?.into_any()),
-    });
-    let (metrics, error) = match &outcome.metrics {
-        Ok(metrics) => (Some(of_metrics(py, metrics)?), String::new()),
-        Err(error) => (None, error.to_string()),
-    };
-    Ok((outcome.number, drawn.collect::<PyResult<_>>()?, metrics, error))
 }

@@ -6,6 +6,7 @@
 )]
 
 mod aside;
+mod campaign;
 mod columns;
 mod damping;
 mod error;
@@ -21,13 +22,12 @@ use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::body::Planar;
-use flexsc_core::campaign::{Campaign, Grid, Outcome, Run};
+use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::law::Law;
 use flexsc_core::manoeuvre::{Common, Manoeuvre, Plan, Report, Row, compare};
-use flexsc_core::metrics::{self, Metrics};
+use flexsc_core::metrics;
 use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
-use flexsc_core::statistics::{QUANTILES, Statistics, statistics};
 use flexsc_core::{Document, ScenarioError, whole};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -36,11 +36,12 @@ use pyo3::types::PyDict;
 use serde_json::json;
 
 use aside::aside;
-use columns::Told;
 use error::{allowed, log_error, no_file, scenario_error, simulation_error};
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use super::campaign::{Directory, Work};
     #[pymodule_export]
     use super::damping::{
         identify_json, observer_margin_json, observer_region_json, persistence, relay_damping_json,
@@ -51,7 +52,7 @@ mod _native {
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
     #[pymodule_export]
     use super::{
-        Log, Scenario, campaign, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json,
+        Log, Scenario, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json,
         rivals_json, schema_json, simulate, to_mcap, write,
     };
     #[pymodule_export]
@@ -87,9 +88,6 @@ impl Scenario {
         Run { number, scenario: self.inner.clone(), drawn: Vec::new() }
     }
 
-    fn study(&self, grids: impl IntoIterator<Item = Grid>) -> PyResult<Campaign> {
-        Campaign::new(self.inner.clone(), &self.origin, grids).map_err(scenario_error)
-    }
 }
 
 #[pymethods]
@@ -130,7 +128,8 @@ impl Scenario {
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {
-        Self::new(&self.origin, self.study([])?.run(run).map(|run| run.scenario))
+        let study = Campaign::new(self.inner.clone(), &self.origin, []).map_err(scenario_error)?;
+        Self::new(&self.origin, study.run(run).map(|run| run.scenario))
     }
 
     #[getter]
@@ -218,44 +217,6 @@ fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathB
         Ok(file.finish(&metrics, RunEnd::Complete)?)
     })?;
     written.map_err(|error| error::unwritten(&path, scenario.name(), error))
-}
-
-/// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
-type Summary = (&'static str, &'static str, usize, f64, f64, Vec<(f64, f64)>);
-
-#[pyfunction]
-fn campaign<'py>(
-    py: Python<'py>,
-    scenario: &Scenario,
-    runs: (u64, u64),
-    jobs: usize,
-    grids: Vec<(String, Vec<f64>)>,
-    yes: bool,
-) -> PyResult<(Vec<String>, Vec<Told<'py>>, Vec<Summary>)> {
-    let study = Arc::new(scenario.study(grids.into_iter().map(|(key, values)| Grid { key, values }))?);
-    let count = runs.1.saturating_sub(runs.0);
-    let cost = study.cost(count, None).map_err(|why| PyValueError::new_err(format!("runs {why}")))?;
-    allowed(&cost, yes)?;
-    let at_work = study.clone();
-    let outcomes = aside(py, move |stop| {
-        let mut outcomes: Vec<Outcome> = Vec::new();
-        let each = stop.clone();
-        let work = move |run: &Run| Ok(Campaign::simulate(run, each.clone())?);
-        // Asked to stop, `aside` raises what asked for it: the outcomes so far are not used.
-        let _ = at_work.each(runs.0..runs.1, jobs, work, |outcome| {
-            outcomes.extend(outcome);
-            if stop.asked() { Err(()) } else { Ok(()) }
-        });
-        outcomes
-    })?;
-    let told = outcomes.iter().map(|outcome| columns::of_outcome(py, outcome)).collect::<PyResult<_>>()?;
-    let metrics: Vec<Metrics> = outcomes.into_iter().filter_map(|outcome| outcome.metrics.ok()).collect();
-    let summary = |s: Statistics| {
-        let quantiles = QUANTILES.into_iter().zip(s.quantiles).collect();
-        (s.name, s.unit, s.runs, s.mean, s.sd, quantiles)
-    };
-    let keys = study.keys().map(str::to_owned).collect();
-    Ok((keys, told, statistics(&metrics).into_iter().map(summary).collect()))
 }
 
 #[pyfunction]

@@ -6,10 +6,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, Column, Directory, DirectoryError, ERROR, Kind, MANIFEST, Manifest, Outcome, RUN, Rows, Run,
+    Campaign, Column, Directory, DirectoryError, ERROR, MANIFEST, Manifest, Outcome, RUN, Rows, Run,
     RunError,
 };
-use flexsc_core::metrics::{self, Metrics, goal};
+use flexsc_core::metrics::Metrics;
 use flexsc_core::statistics::Statistics;
 
 use super::live::Live;
@@ -177,27 +177,6 @@ pub fn told(directory: &Directory) -> Result<Told, Failure> {
 
 /// The statistics of the metrics that are numbers, some columns at a time.
 pub fn statistics(directory: &Directory, runs: usize) -> Result<Vec<Statistics>, Failure> {
-    let work = directory.work();
-    let keys: Vec<&str> = work.campaign.keys().collect();
-    let meaning = |name: &str| metrics::meaning(name, Some(work.campaign.scenario()));
-    let numeric: Vec<_> = work
-        .fields()
-        .iter()
-        .filter(|field| !keys.contains(&field.name.as_str()))
-        .filter(|field| match field.kind {
-            Kind::Integers | Kind::Numbers => true,
-            Kind::Words => goal::NAMES.contains(&field.name.as_str()),
-            Kind::Lists => false,
-        })
-        .filter_map(|field| Some((field.name.as_str(), meaning(&field.name)?)))
-        .collect();
-    let mut all = Vec::new();
-    for some in numeric.chunks((HELD / runs.max(1)).max(1)) {
-        let names: Vec<&str> = some.iter().map(|(name, _)| *name).collect();
-        let columns = directory.columns(&names).map_err(failure)?;
-        for ((_, meaning), column) in some.iter().zip(columns) {
-            all.push(Statistics::of(meaning, column.map_or_else(Vec::new, |column| column.numbers())));
-        }
-    }
-    Ok(all)
+    let columns = |names: &[&str]| directory.columns(names).map_err(failure);
+    directory.work().statistics(runs, HELD, columns)
 }

@@ -124,6 +124,14 @@ impl Manifest {
         self.from..self.to
     }
 
+    /// The runs that are missing beside these files, part by part. Files that are no parts do not count.
+    pub fn missing<'a>(&self, files: impl IntoIterator<Item = &'a str>) -> Vec<Range<u64>> {
+        let mut there: Vec<_> = files.into_iter().filter_map(part::runs).collect();
+        there.sort_by_key(|runs| (runs.start, runs.end));
+        let gaps = part::without(self.runs(), &there);
+        gaps.into_iter().flat_map(|gap| part::cut(gap, self.part)).collect()
+    }
+
     /// In what it is another campaign than this one; nothing if they differ in their runs alone.
     pub fn difference(&self, here: &Self) -> Option<String> {
         if self.hash == here.hash {

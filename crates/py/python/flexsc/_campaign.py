@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import prod
 from operator import index
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
 from flexsc._scenario import Scenario, run_number
 from flexsc._values import objects
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     import numpy.typing as npt
+
+Sample = Literal["random", "latin-hypercube", "sobol"]
+"""How the `[uncertain]` keys are drawn."""
 
 
 class Table:
@@ -22,36 +28,46 @@ class Table:
     """What the runs were drawn from."""
     keys: list[str]
     """The keys of the scenario that vary."""
-    columns: dict[str, npt.NDArray[Any]]
-    """Columns by name, of shape (runs,): `run`, the keys that vary, the metrics, `error`.
-
-    Metrics are float64 with NaN where there is none, words str, lists an array of arrays. `error` is why a
-    run failed, else empty. `pandas.DataFrame(table.columns)` takes them as they are.
-    """
 
     def __init__(
         self,
-        scenario: Scenario,
-        keys: list[str],
-        columns: dict[str, npt.NDArray[Any]],
-        statistics: dict[str, dict[str, Any]],
+        work: engine.Work,
+        read: Callable[[str], Any],
+        summaries: Callable[[], list[Any]],
     ) -> None:
-        self.scenario = scenario
-        self.keys = keys
-        self.columns = columns
-        self._statistics = statistics
+        self.scenario = Scenario._of(work.scenario)
+        self.keys = work.keys
+        self._names = work.names
+        self._read = read
+        self._summaries = summaries
+        self._columns: dict[str, npt.NDArray[Any]] = {}
+        self._statistics: dict[str, dict[str, Any]] | None = None
+        self._kept: object = None
+
+    @property
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """Columns by name, of shape (runs,): `run`, `seed`, the keys that vary, the metrics, `seconds`, `error`.
+
+        Metrics are float64 with NaN where there is none, words str, lists an array of arrays. `error` is why a
+        run failed, else empty; `seconds` is how long it took, which is no part of what repeats.
+        `pandas.DataFrame(table.columns)` takes them as they are. Those of a directory are read when they are
+        first asked for.
+        """
+        return {name: self[name] for name in self._names}
 
     def __len__(self) -> int:
-        return len(self.columns["run"])
+        return len(self["run"])
 
     def __getitem__(self, column: str) -> npt.NDArray[Any]:
         """A column, of shape (runs,)."""
-        if column not in self.columns:
-            raise KeyError(f"no column {column!r}; there are {', '.join(self.columns)}")
-        return self.columns[column]
+        if column not in self._names:
+            raise KeyError(f"no column {column!r}; there are {', '.join(self._names)}")
+        if column not in self._columns:
+            self._columns[column] = _array(column in ("run", "seed", *self.keys), self._read(column))
+        return self._columns[column]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self.columns)
+        return iter(self._names)
 
     def statistics(self) -> dict[str, dict[str, Any]]:
         """Statistics of each numeric metric over the runs that have a value of it.
@@ -59,6 +75,12 @@ class Table:
         By metric: its `unit`, the number of those `runs`, their `mean`, their standard deviation `sd` (with
         runs - 1; NaN for a single run), and `quantiles`, a dictionary from 0.05, 0.25, 0.5, 0.75 and 0.95.
         """
+        if self._statistics is None:
+            names = ("unit", "runs", "mean", "sd")
+            self._statistics = {
+                name: {**dict(zip(names, numbers, strict=True)), "quantiles": dict(quantiles)}
+                for name, *numbers, quantiles in self._summaries()
+            }
         return self._statistics
 
     def __repr__(self) -> str:
@@ -71,28 +93,64 @@ def campaign(
     jobs: int | None = None,
     seed: int | None = None,
     yes: bool = False,
+    *,
+    metrics: Sequence[str] | None = None,
+    sample: Sample = "random",
+    replicas: int = 1,
+    out: str | os.PathLike[str] | None = None,
+    executor: Executor | None = None,
+    task_s: float = 1.0,
+    force: bool = False,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Table:
     """Simulate many runs of a scenario: its `[uncertain]` keys and its noise drawn anew for each.
 
-    A run does not depend on the other runs of the call: parts such as `range(500, 1000)` make up a whole.
+    A run does not depend on the other runs of the call: parts such as `range(500, 1000)` make up a whole. Nor
+    does it depend on threads, processes or machines.
 
     Args:
         scenario: What the runs are drawn from.
         runs: Their number, or their range (of step 1).
-        jobs: Threads, at most 1024; left out, one for each core.
+        jobs: Threads, at most 1024; left out, one for each core, and in each task of an executor one.
         seed: Seed, instead of the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
+        metrics: The metrics that the table has; left out, all of them.
+        sample: How the `[uncertain]` keys are drawn.
+        replicas: Runs of each point that is drawn, which differ in their noise only.
+        out: The directory that keeps the rows as Parquet files, made if missing, or a place that `fsspec`
+            knows, such as `s3://bucket/study`. The same call goes on where a stopped one ended.
+        executor: Where the runs are made, such as a `concurrent.futures.ProcessPoolExecutor`, or
+            `client.get_executor()` of Dask. Workers write their rows to `out`, which they all must reach; without
+            `out` rows come back through this process.
+        task_s: About how long a task of the executor takes (s).
+        force: Replace another campaign in `out`.
+        progress: Called with the number of runs that are done and that of all, after each task.
 
     Raises:
         ScenarioError: The scenario cannot vary so. A single run that fails is a row with an `error`.
-        ValueError: There are more than 100 000 000 runs, or `yes` is needed.
+        ValueError: There are more than 100 000 000 runs, `yes` is needed, or `out` holds another campaign.
+        OSError: `out` cannot be written, or another process is at work there.
     """
     numbers = runs if isinstance(runs, range) else range(index(runs))
     if numbers.step != 1 or not numbers:
         raise ValueError(
             f"runs must be a number of runs, or a range of step 1 with a run in it, got {runs!r}"
         )
-    return _campaign(scenario, numbers, jobs, seed, [], yes)
+    if not task_s > 0.0:
+        raise ValueError(f"task_s must be a positive number, got {task_s}")
+    if index(replicas) < 1:
+        raise ValueError(f"replicas must be at least 1, got {replicas}")
+    if seed is not None:
+        scenario = scenario.with_("seed", seed)
+    span = (run_number(numbers.start), run_number(numbers.stop))
+    names = None if metrics is None else list(metrics)
+    part_s = None if executor is None else task_s
+    work = engine.Work.of(scenario._native, span, [], sample, replicas, names, part_s, yes)
+    if out is None and executor is None and progress is None:
+        return _made(work, jobs)
+    from flexsc._executor import run
+
+    return run(work, out, executor, _threads(jobs), task_s, force, progress)
 
 
 def sweep(
@@ -102,6 +160,9 @@ def sweep(
     jobs: int | None = None,
     seed: int | None = None,
     yes: bool = False,
+    *,
+    metrics: Sequence[str] | None = None,
+    replicas: int = 1,
 ) -> Table:
     """Simulate a scenario once for each value of a key, or each combination of the values of several.
 
@@ -115,10 +176,12 @@ def sweep(
         jobs: Threads, at most 1024; left out, one for each core.
         seed: Seed, instead of the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
+        metrics: The metrics that the table has; left out, all of them.
+        replicas: Runs of each point, one after another, which differ in their noise only.
 
     Raises:
-        ScenarioError: There is no such key, or it does not accept the first or the last value. Any other
-            value that is not accepted is a row with an `error`.
+        ScenarioError: There is no such key, it does not accept the first or the last value, or a value is not
+            finite. Any other value that is not accepted is a row with an `error`.
     """
     import numpy as np
 
@@ -132,42 +195,57 @@ def sweep(
         grids.append((name, numbers.tolist()))
     if not grids:
         raise ValueError("a sweep needs a key")
-    return _campaign(scenario, range(prod(len(numbers) for _, numbers in grids)), jobs, seed, grids, yes)
+    if index(replicas) < 1:
+        raise ValueError(f"replicas must be at least 1, got {replicas}")
+    if seed is not None:
+        scenario = scenario.with_("seed", seed)
+    runs = replicas * prod(len(numbers) for _, numbers in grids)
+    names = None if metrics is None else list(metrics)
+    work = engine.Work.of(scenario._native, (0, runs), grids, "random", replicas, names, None, yes)
+    return _made(work, jobs)
 
 
-def _campaign(
-    scenario: Scenario,
-    runs: range,
-    jobs: int | None,
-    seed: int | None,
-    grids: list[tuple[str, list[float]]],
-    yes: bool,
-) -> Table:
-    import numpy as np
+def read_campaign(path: str | os.PathLike[str]) -> Table:
+    """Read the directory of a campaign, as `flexsc simulate --runs`, `flexsc sweep` and `campaign` write it.
 
+    Columns are read when they are first asked for. A campaign that is still at work, or was stopped, has the
+    rows of the parts that are whole. `path` may be a place that `fsspec` knows.
+
+    Raises:
+        ValueError: It is no directory of a campaign, or holds what is none of it.
+        OSError: It cannot be read.
+    """
+    from flexsc._executor import place
+
+    return place(path).table()
+
+
+def of_directory(directory: engine.Directory, kept: object = None) -> Table:
+    """Make the table of a directory. `kept` lives as long as the table."""
+    table = Table(directory.work, directory.column, lambda: directory.statistics(len(table)))
+    table._kept = kept
+    return table
+
+
+def _made(work: engine.Work, jobs: int | None) -> Table:
+    columns, summaries = work.make(work.runs, _threads(jobs))
+    return Table(work, columns.__getitem__, lambda: summaries)
+
+
+def _threads(jobs: int | None) -> int:
     jobs = 0 if jobs is None else index(jobs)
     if not (jobs == 0 or 1 <= jobs <= 1024):
         raise ValueError(f"jobs must be from 1 to 1024, got {jobs}")
-    if seed is not None:
-        scenario = scenario.with_("seed", seed)
-    span = (run_number(runs.start), run_number(runs.stop))
-    keys, told, summaries = engine.campaign(scenario._native, span, jobs, grids, yes)
-    columns = {"run": np.array([run for run, *_ in told], dtype=np.int64)}
-    for place, key in enumerate(keys):
-        columns[key] = np.array([drawn[place] for _, drawn, *_ in told])
-    first: dict[str, Any] = next((metrics for *_, metrics, _ in told if metrics), {})
-    for name, kind in first.items():
-        of_runs = [metrics and metrics[name] for *_, metrics, _ in told]
-        if isinstance(kind, str):
-            columns[name] = np.array([word or "" for word in of_runs], dtype=np.str_)
-        elif isinstance(kind, np.ndarray):
-            columns[name] = objects([np.empty(0) if numbers is None else numbers for numbers in of_runs])
-        else:
-            columns[name] = np.array(of_runs, dtype=np.float64)
-    columns["error"] = np.array([error for *_, error in told], dtype=np.str_)
-    names = ("unit", "runs", "mean", "sd")
-    statistics = {
-        name: {**dict(zip(names, numbers, strict=True)), "quantiles": dict(quantiles)}
-        for name, *numbers, quantiles in summaries
-    }
-    return Table(scenario, keys, columns, statistics)
+    return jobs
+
+
+def _array(is_given: bool, column: Any) -> npt.NDArray[Any]:
+    """Give a column its final form: metrics that count are float64, too, as some runs may have none."""
+    import numpy as np
+
+    if isinstance(column, list):
+        if column and not isinstance(column[0], str):
+            return objects(column)
+        return np.array(column, dtype=np.str_)
+    array: npt.NDArray[Any] = column
+    return array if is_given or array.dtype != np.int64 else array.astype(np.float64)

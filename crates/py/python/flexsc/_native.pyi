@@ -8,13 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Directory",
     "Log",
     "LogError",
     "Scenario",
     "ScenarioError",
     "SimulationError",
+    "Work",
     "__version__",
-    "campaign",
     "examples",
     "gain_regions_json",
     "identify_json",
@@ -46,6 +47,8 @@ _Column: TypeAlias = (
     | tuple[npt.NDArray[np.uint8], list[str]]
     | tuple[npt.NDArray[np.uint32], dict[str, _Column]]
 )
+
+_Summary: TypeAlias = tuple[str, str, int, float, float, list[tuple[float, float]]]
 
 class ScenarioError(ValueError):
     """A scenario, or a key of it, that is not accepted."""
@@ -86,6 +89,51 @@ class Scenario:
     __hash__ = None  # type: ignore[assignment]
 
 @final
+class Work:
+    @staticmethod
+    def of(
+        scenario: Scenario,
+        runs: tuple[int, int],
+        grids: list[tuple[str, list[float]]],
+        sampling: str,
+        replicas: int,
+        metrics: list[str] | None,
+        part_s: float | None,
+        yes: bool,
+    ) -> Work: ...
+    @staticmethod
+    def parse(manifest: str) -> Work: ...
+    def difference(self, there: Work) -> str | None: ...
+    @property
+    def manifest(self) -> str: ...
+    @property
+    def hash(self) -> str: ...
+    @property
+    def runs(self) -> tuple[int, int]: ...
+    @property
+    def keys(self) -> list[str]: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def scenario(self) -> Scenario: ...
+    def missing(self, files: list[str]) -> list[tuple[int, int]]: ...
+    def make(self, runs: tuple[int, int], jobs: int) -> tuple[dict[str, Any], list[_Summary]]: ...
+    def part(self, runs: tuple[int, int], jobs: int) -> tuple[str, bytes]: ...
+
+@final
+class Directory:
+    @staticmethod
+    def create(path: str | os.PathLike[str], work: Work, force: bool) -> Directory: ...
+    @staticmethod
+    def open(path: str | os.PathLike[str]) -> Directory: ...
+    @property
+    def work(self) -> Work: ...
+    def missing(self) -> list[tuple[int, int]]: ...
+    def write_part(self, runs: tuple[int, int], jobs: int) -> str: ...
+    def column(self, name: str) -> Any: ...
+    def statistics(self, runs: int) -> list[_Summary]: ...
+
+@final
 class Log:
     @staticmethod
     def open(path: str | os.PathLike[str]) -> Log: ...
@@ -101,13 +149,6 @@ def simulate(
     scenario: Scenario, run: int, log: str, yes: bool
 ) -> tuple[dict[str, Any], dict[str, dict[str, _Column]]]: ...
 def to_mcap(scenario: Scenario, run: int, log: str, path: str | os.PathLike[str]) -> int: ...
-def campaign(
-    scenario: Scenario, runs: tuple[int, int], jobs: int, grids: list[tuple[str, list[float]]], yes: bool
-) -> tuple[
-    list[str],
-    list[tuple[int, list[float], dict[str, Any] | None, str]],
-    list[tuple[str, str, int, float, float, list[tuple[float, float]]]],
-]: ...
 def rigid_cycles_json(scenario: Scenario) -> str: ...
 def plan_json(scenario: Scenario, band: float) -> str: ...
 def plan_torque(scenario: Scenario, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...

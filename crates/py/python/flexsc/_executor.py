@@ -1,0 +1,269 @@
+"""Campaigns on executors: whole parts as tasks, written where they stay; only names go through the head."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import time
+import uuid
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from flexsc import _native as engine
+from flexsc._campaign import Table, of_directory
+
+Span = tuple[int, int]
+"""The first run of a part, and the one after its last."""
+
+# A task that a scheduler gave up, since its workers died, is handed in again so often.
+_AGAIN = 10
+# What schedulers call such an end. Names, so that none of them has to be installed.
+_GIVEN_UP = {"KilledWorker", "FutureCancelledError", "CancelledError", "LostWorkerError"}
+# A task has at most so many parts: what is lost with a worker.
+_MOST_PARTS = 64
+_MANIFEST = "manifest.toml"
+
+
+class Local:
+    """A directory that all workers reach by the same path."""
+
+    def __init__(self, path: str) -> None:
+        self.name = os.path.abspath(path)
+        self._directory: engine.Directory | None = None
+
+    def begin(self, work: engine.Work, force: bool) -> engine.Work:
+        """Make the directory, or go on with the one that is there; it is locked until `end`."""
+        self._directory = engine.Directory.create(self.name, work, force)
+        return self._directory.work
+
+    def missing(self, work: engine.Work) -> list[Span]:
+        """The parts that are not there."""
+        return work.missing(os.listdir(self.name))
+
+    def end(self) -> None:
+        """Let other processes work there."""
+        self._directory = None
+
+    def table(self) -> Table:
+        """The rows that are there."""
+        return of_directory(engine.Directory.open(self.name))
+
+
+class Remote:
+    """A place that fsspec knows, such as a bucket."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def _files(self) -> tuple[Any, str]:
+        return _file_system(self.name)
+
+    def begin(self, work: engine.Work, force: bool) -> engine.Work:
+        """Write the manifest, or go on with the campaign that is there."""
+        files, root = self._files()
+        files.makedirs(root, exist_ok=True)
+        at = f"{root}/{_MANIFEST}"
+        if files.exists(at) and not force:
+            there = engine.Work.parse(files.cat_file(at).decode())
+            difference = work.difference(there)
+            if difference is not None:
+                raise ValueError(f"{self.name}: what is there is of another campaign ({difference})")
+            if there.runs != work.runs:
+                was, now = there.runs, work.runs
+                raise ValueError(f"{self.name}: has runs {was[0]}:{was[1]} of this campaign, not {now[0]}:{now[1]}")
+            return there
+        for name in _names(files, root):
+            if name.startswith("part-"):
+                files.rm_file(f"{root}/{name}")
+        _put(files, at, work.manifest.encode())
+        return work
+
+    def missing(self, work: engine.Work) -> list[Span]:
+        """The parts that are not there."""
+        return work.missing(_names(*self._files()))
+
+    def end(self) -> None:
+        """A bucket has no lock: who writes a part twice writes the same."""
+
+    def table(self) -> Table:
+        """The rows that are there, through a directory of this process."""
+        files, root = self._files()
+        kept = _Temporary()
+        for name in _names(files, root):
+            if name == _MANIFEST or (name.startswith("part-") and name.endswith(".parquet")):
+                files.get_file(f"{root}/{name}", str(kept.path / name))
+        return of_directory(engine.Directory.open(kept.path), kept)
+
+
+class _Temporary:
+    """A directory for as long as this lives."""
+
+    def __init__(self) -> None:
+        self.path = Path(tempfile.mkdtemp(prefix="flexsc-"))
+
+    def __del__(self) -> None:
+        shutil.rmtree(self.path, ignore_errors=True)
+
+
+def place(path: str | os.PathLike[str]) -> Local | Remote:
+    """The place of a campaign, by its path or its URL."""
+    name = os.fspath(path)
+    return Remote(name.rstrip("/")) if "://" in name else Local(name)
+
+
+def run(
+    work: engine.Work,
+    out: str | os.PathLike[str] | None,
+    executor: Executor | None,
+    jobs: int,
+    task_s: float,
+    force: bool,
+    progress: Callable[[int, int], None] | None,
+) -> Table:
+    """Make what is missing of a campaign, and return all of its rows."""
+    kept = _Temporary() if out is None else None
+    store = Local(str(kept.path)) if kept is not None else place(out or "")
+    work = store.begin(work, force)
+    total = work.runs[1] - work.runs[0]
+    missing = store.missing(work)
+    left = sum(end - start for start, end in missing)
+
+    def done(parts: Sequence[Span]) -> None:
+        nonlocal left
+        left -= sum(end - start for start, end in parts)
+        if progress is not None:
+            progress(total - left, total)
+
+    try:
+        if executor is None:
+            for part in missing:
+                _write(store.name, work.hash, [part], jobs)
+                done([part])
+        elif kept is None:
+            _hand_out(executor, missing, task_s, done, lambda parts: (_write, store.name, work.hash, parts, jobs or 1))
+        else:
+
+            def keep(told: list[tuple[str, bytes]]) -> None:
+                for name, data in told:
+                    (kept.path / name).write_bytes(data)
+
+            _hand_out(executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs or 1), keep)
+    finally:
+        store.end()
+    if kept is None:
+        return store.table()
+    return of_directory(engine.Directory.open(kept.path), kept)
+
+
+def _hand_out(
+    executor: Executor,
+    missing: list[Span],
+    task_s: float,
+    done: Callable[[Sequence[Span]], None],
+    task: Callable[[list[Span]], tuple[Any, ...]],
+    keep: Callable[[Any], None] | None = None,
+) -> None:
+    """Hand parts out as tasks, some more than there are workers, and take what they tell."""
+    waiting = missing[::-1]
+    again: list[tuple[list[Span], int]] = []
+    out: dict[Future[Any], tuple[list[Span], int]] = {}
+    workers = getattr(executor, "_max_workers", None) or _threads_of(executor)
+    most = 2 * workers + 2
+    # How long a part takes (s), by those that are done.
+    parts_done, seconds = 0, 0.0
+    while waiting or again or out:
+        while (waiting or again) and len(out) < most:
+            if again:
+                parts, tries = again.pop()
+            else:
+                size = round(task_s * parts_done / seconds) if seconds > 0.0 else 1
+                # At the end workers share what is left.
+                size = min(max(size, 1), _MOST_PARTS, max(len(waiting) // most, 1))
+                parts, tries = [waiting.pop() for _ in range(min(size, len(waiting)))], 0
+            out[executor.submit(*task(parts))] = (parts, tries)
+        for future in wait(out, return_when=FIRST_COMPLETED).done:
+            parts, tries = out.pop(future)
+            try:
+                took, told = future.result()
+            except Exception as error:
+                if type(error).__name__ not in _GIVEN_UP or tries == _AGAIN:
+                    for other in out:
+                        other.cancel()
+                    raise
+                again.append((parts, tries + 1))
+                continue
+            if keep is not None:
+                keep(told)
+            parts_done, seconds = parts_done + len(parts), seconds + took
+            done(parts)
+
+
+def _threads_of(executor: Executor) -> int:
+    """How many tasks an executor of Dask works on at once; of one that does not tell, many."""
+    client = getattr(executor, "_client", None)
+    if client is None:
+        return 64
+    return max(sum(client.nthreads().values()), 1)
+
+
+@lru_cache(maxsize=4)
+def _opened(name: str, _hash: str) -> engine.Directory:
+    return engine.Directory.open(name)
+
+
+@lru_cache(maxsize=4)
+def _parsed(manifest: str) -> engine.Work:
+    return engine.Work.parse(manifest)
+
+
+@lru_cache(maxsize=4)
+def _work_at(name: str, _hash: str) -> engine.Work:
+    files, root = _file_system(name)
+    return engine.Work.parse(files.cat_file(f"{root}/{_MANIFEST}").decode())
+
+
+def _write(name: str, hashed: str, parts: Sequence[Span], jobs: int) -> tuple[float, None]:
+    """Make parts, and write them where the campaign is. The task of a worker: it tells how long it took (s)."""
+    began = time.perf_counter()
+    if "://" not in name:
+        for part in parts:
+            _opened(name, hashed).write_part(part, jobs)
+    else:
+        files, root = _file_system(name)
+        for part in parts:
+            file, data = _work_at(name, hashed).part(part, jobs)
+            _put(files, f"{root}/{file}", data)
+    return time.perf_counter() - began, None
+
+
+def _bytes(manifest: str, parts: Sequence[Span], jobs: int) -> tuple[float, list[tuple[str, bytes]]]:
+    """Make parts, and return their files."""
+    began = time.perf_counter()
+    told = [_parsed(manifest).part(part, jobs) for part in parts]
+    return time.perf_counter() - began, told
+
+
+def _file_system(name: str) -> tuple[Any, str]:
+    try:
+        from fsspec.core import url_to_fs
+    except ImportError:
+        raise ImportError(f"{name}: places other than directories need fsspec: pip install fsspec") from None
+    files, root = url_to_fs(name)
+    return files, str(root).rstrip("/")
+
+
+def _names(files: Any, root: str) -> list[str]:
+    # What other processes wrote is not in a listing that was kept.
+    files.invalidate_cache()
+    return [str(path).rpartition("/")[2] for path in files.ls(root, detail=False)]
+
+
+def _put(files: Any, path: str, data: bytes) -> None:
+    """Write a file, which is whole or not there: written under another name, and renamed."""
+    partial = f"{path}.{uuid.uuid4().hex}.partial"
+    files.pipe_file(partial, data)
+    files.mv(partial, path)

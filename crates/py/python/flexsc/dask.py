@@ -1,0 +1,74 @@
+"""Campaigns on Dask: `flexsc.dask.campaign(client, scenario, ...)`, and `python -m flexsc.dask SCHEDULER DIR`.
+
+Needs `dask[distributed]`, which the extra `flexsc[dask]` installs. flexsc has to be installed on the workers too.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+from flexsc._campaign import Table
+from flexsc._campaign import campaign as _campaign
+from flexsc._executor import Local, run
+from flexsc._scenario import Scenario
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+__all__ = ["campaign"]
+
+
+def campaign(client: Client, scenario: Scenario, runs: int | range = 1000, **options: Any) -> Table:
+    """Simulate many runs of a scenario on the workers of a Dask cluster.
+
+    Workers write their rows to `out`, a directory that all of them reach or a place that `fsspec` knows; without
+    it rows come back through this process. Rows do not depend on the number of workers, nor on the deaths of some:
+    a task whose worker died is done by another one.
+
+    Args:
+        client: The client of a scheduler.
+        scenario: What the runs are drawn from.
+        runs: Their number, or their range (of step 1).
+        options: Those of `flexsc.campaign`, but `executor`.
+
+    Raises:
+        ScenarioError, ValueError, OSError: As `flexsc.campaign`.
+    """
+    return _campaign(scenario, runs, executor=_executor(client), **options)
+
+
+def _executor(client: Client) -> Any:
+    # Tasks are not kept by their arguments: a part that was deleted is made again.
+    return client.get_executor(pure=False, retries=10)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Make what is missing of the campaign in a directory, on the workers of a scheduler."""
+    parser = argparse.ArgumentParser("python -m flexsc.dask", description=main.__doc__)
+    parser.add_argument("scheduler", help="address of the scheduler, such as tcp://10.0.0.1:8786")
+    parser.add_argument("directory", help="directory of a campaign, which all workers reach")
+    given = parser.parse_args(arguments)
+    try:
+        from distributed import Client
+    except ImportError:
+        print("error: a Dask scheduler needs dask: pip install 'flexsc[dask]'", file=sys.stderr)
+        return 2
+    work = engine.Directory.open(given.directory).work
+    began = time.monotonic()
+
+    def progress(done: int, total: int) -> None:
+        took = time.monotonic() - began
+        print(f"\r{done} of {total} runs, {took:.0f} s", end="", file=sys.stderr, flush=True)
+
+    with Client(given.scheduler) as client:
+        run(work, Local(given.directory).name, _executor(client), 0, 1.0, False, progress)
+    print(file=sys.stderr)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

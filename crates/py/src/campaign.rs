@@ -1,0 +1,238 @@
+//! Campaigns for Python: their work as whole parts, on threads here or in other processes, and their directories.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use flexsc_core::campaign::{
+    Campaign, Column, Design, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest, Rows, Sampling,
+    Work as Whole,
+};
+use flexsc_core::metrics::Selection;
+use flexsc_core::statistics::{QUANTILES, Statistics};
+use numpy::IntoPyArray;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyList};
+
+use super::Scenario;
+use super::aside::aside;
+use super::error::{allowed, no_file, scenario_error};
+
+/// No more numbers are held at once for statistics, or a metric's alone.
+const HELD: usize = 1 << 23;
+
+/// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
+type Summary = (&'static str, &'static str, usize, f64, f64, Vec<(f64, f64)>);
+/// First run, and the one after the last.
+type Span = (u64, u64);
+
+fn failed(error: DirectoryError) -> PyErr {
+    match error {
+        DirectoryError::Io { path, source } => no_file(&path)(source),
+        DirectoryError::Busy { .. } => PyOSError::new_err(error.to_string()),
+        DirectoryError::Scenario(error) => scenario_error(error),
+        DirectoryError::Interrupted => PyKeyboardInterrupt::new_err(()),
+        DirectoryError::Other { .. } | DirectoryError::Wrong { .. } => PyValueError::new_err(error.to_string()),
+    }
+}
+
+fn summary(statistics: Statistics) -> Summary {
+    let Statistics { name, unit, runs, mean, sd, quantiles, .. } = statistics;
+    (name, unit, runs, mean, sd, QUANTILES.into_iter().zip(quantiles).collect())
+}
+
+/// A column as numpy has it: integers where none is missing, numbers with NaN, words with empty ones, lists of arrays.
+fn array(py: Python<'_>, column: Column) -> PyResult<Bound<'_, PyAny>> {
+    match column {
+        Column::Integers(cells) => match cells.iter().copied().collect::<Option<Vec<i64>>>() {
+            Some(integers) => Ok(integers.into_pyarray(py).into_any()),
+            None => Ok(Column::Integers(cells).numbers().into_pyarray(py).into_any()),
+        },
+        Column::Numbers(cells) => Ok(cells.into_pyarray(py).into_any()),
+        Column::Words(cells) => {
+            Ok(PyList::new(py, cells.into_iter().map(Option::unwrap_or_default))?.into_any())
+        }
+        Column::Lists(cells) => {
+            let lists = cells.into_iter().map(|cell| cell.unwrap_or_default().into_pyarray(py));
+            Ok(PyList::new(py, lists)?.into_any())
+        }
+    }
+}
+
+/// What makes the rows of a campaign.
+#[pyclass(frozen, module = "flexsc._native")]
+pub struct Work(Arc<Whole>);
+
+#[pymethods]
+impl Work {
+    /// The work of some runs; `part` is the number of runs of a part, in place of about 4 s of work.
+    #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "the arguments of Python's functions")]
+    fn of(
+        scenario: &Scenario,
+        runs: Span,
+        grids: Vec<(String, Vec<f64>)>,
+        sampling: &str,
+        replicas: u64,
+        metrics: Option<Vec<String>>,
+        part_s: Option<f64>,
+        yes: bool,
+    ) -> PyResult<Self> {
+        let wrong = PyValueError::new_err::<String>;
+        let known = Sampling::ALL.into_iter().find(|(name, _)| *name == sampling);
+        let names = Sampling::ALL.map(|(name, _)| format!("'{name}'")).join(", ");
+        let (_, draws) = known.ok_or_else(|| wrong(format!("sample must be one of {names}, got {sampling:?}")))?;
+        let hypercube = if draws == Sampling::LatinHypercube { runs.1.div_ceil(replicas.max(1)) } else { 0 };
+        let design =
+            Design { draws, hypercube, replicas, ..Design::of(grids.into_iter().map(|(key, values)| Grid { key, values }.into())) };
+        let selection = metrics.map_or(Ok(Selection::ALL), Selection::of).map_err(wrong)?;
+        let campaign =
+            Campaign::of(scenario.inner.clone(), &scenario.origin, design).map_err(scenario_error)?;
+        let count = runs.1.saturating_sub(runs.0);
+        let cost = campaign.cost(count, None).map_err(|why| wrong(format!("runs {why}")))?;
+        allowed(&cost, yes)?;
+        let mut manifest = Manifest::new(&campaign, runs.0..runs.1, &selection).map_err(wrong)?;
+        if let Some(part_s) = part_s {
+            // Parts are of 4 s by the estimate.
+            let shorter = (manifest.part as f64 * part_s / 4.0).clamp(1.0, 65_536.0) as u64;
+            manifest.part = shorter.next_power_of_two();
+        }
+        Ok(Self(Arc::new(Whole::of(manifest, MANIFEST.as_ref()).map_err(failed)?)))
+    }
+
+    /// The work that a manifest describes.
+    #[staticmethod]
+    fn parse(manifest: &str) -> PyResult<Self> {
+        let manifest = Manifest::parse(manifest).map_err(|why| PyValueError::new_err(format!("{MANIFEST}: {why}")))?;
+        Ok(Self(Arc::new(Whole::of(manifest, MANIFEST.as_ref()).map_err(failed)?)))
+    }
+
+    /// In what the campaign of another manifest differs.
+    fn difference(&self, there: &Self) -> Option<String> {
+        there.0.manifest.difference(&self.0.manifest)
+    }
+
+    #[getter]
+    fn manifest(&self) -> String {
+        self.0.manifest.to_toml()
+    }
+
+    #[getter]
+    fn hash(&self) -> &str {
+        &self.0.manifest.hash
+    }
+
+    #[getter]
+    fn runs(&self) -> Span {
+        (self.0.manifest.from, self.0.manifest.to)
+    }
+
+    /// The keys that vary.
+    #[getter]
+    fn keys(&self) -> Vec<String> {
+        self.0.campaign.keys().map(str::to_owned).collect()
+    }
+
+    /// Names of the columns.
+    #[getter]
+    fn names(&self) -> Vec<String> {
+        self.0.fields().iter().map(|field| field.name.clone()).collect()
+    }
+
+    #[getter]
+    fn scenario(&self) -> Scenario {
+        let inner = self.0.campaign.scenario().clone();
+        Scenario { origin: inner.name.clone(), inner }
+    }
+
+    /// The parts that are missing beside these files.
+    fn missing(&self, files: Vec<String>) -> Vec<Span> {
+        spans(self.0.manifest.missing(files.iter().map(String::as_str)))
+    }
+
+    /// Makes runs: columns by name, and statistics.
+    fn make<'py>(
+        &self,
+        py: Python<'py>,
+        runs: Span,
+        jobs: usize,
+    ) -> PyResult<(Bound<'py, PyDict>, Vec<Summary>)> {
+        let work = self.0.clone();
+        let (rows, statistics) = aside(py, move |stop| {
+            let rows = work.make(runs.0..runs.1, jobs, stop)?;
+            let columns = |names: &[&str]| -> Result<_, DirectoryError> {
+                Ok(names.iter().map(|name| rows.column(name).cloned()).collect())
+            };
+            let statistics = work.statistics(rows.len(), usize::MAX, columns)?;
+            Ok((rows, statistics))
+        })?
+        .map_err(failed)?;
+        let Rows { fields, columns } = rows;
+        let told = PyDict::new(py);
+        for (field, column) in fields.iter().zip(columns) {
+            told.set_item(&field.name, array(py, column)?)?;
+        }
+        Ok((told, statistics.into_iter().map(summary).collect()))
+    }
+
+    /// Makes a part: the name of its file, and its bytes.
+    fn part<'py>(&self, py: Python<'py>, runs: Span, jobs: usize) -> PyResult<(String, Bound<'py, PyBytes>)> {
+        let work = self.0.clone();
+        let (name, bytes) = aside(py, move |stop| work.part(runs.0..runs.1, jobs, stop))?.map_err(failed)?;
+        Ok((name, PyBytes::new(py, &bytes)))
+    }
+}
+
+fn spans(ranges: Vec<Range<u64>>) -> Vec<Span> {
+    ranges.into_iter().map(|runs| (runs.start, runs.end)).collect()
+}
+
+/// The directory of a campaign.
+#[pyclass(frozen, module = "flexsc._native")]
+pub struct Directory(Arc<Parts>);
+
+#[pymethods]
+impl Directory {
+    /// Begins a directory, or continues one; it is locked as long as this lives.
+    #[staticmethod]
+    fn create(py: Python<'_>, path: PathBuf, work: &Work, force: bool) -> PyResult<Self> {
+        let manifest = work.0.manifest.clone();
+        let made = aside(py, move |_| Parts::create(&path, manifest, force))?;
+        Ok(Self(Arc::new(made.map_err(failed)?)))
+    }
+
+    #[staticmethod]
+    fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        Ok(Self(Arc::new(aside(py, move |_| Parts::open(&path))?.map_err(failed)?)))
+    }
+
+    #[getter]
+    fn work(&self) -> Work {
+        Work(Arc::new(self.0.work().clone()))
+    }
+
+    fn missing(&self) -> PyResult<Vec<Span>> {
+        self.0.missing().map(spans).map_err(failed)
+    }
+
+    fn write_part(&self, py: Python<'_>, runs: Span, jobs: usize) -> PyResult<PathBuf> {
+        let directory = self.0.clone();
+        aside(py, move |stop| directory.write_part(runs.0..runs.1, jobs, stop))?.map_err(failed)
+    }
+
+    /// A column of all rows.
+    fn column<'py>(&self, py: Python<'py>, name: String) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let directory = self.0.clone();
+        let column = aside(py, move |_| directory.column(&name))?.map_err(failed)?;
+        column.map(|column| array(py, column)).transpose()
+    }
+
+    fn statistics(&self, py: Python<'_>, runs: usize) -> PyResult<Vec<Summary>> {
+        let directory = self.0.clone();
+        let told = aside(py, move |_| {
+            directory.work().statistics(runs, HELD, |names: &[&str]| directory.columns(names))
+        })?;
+        Ok(told.map_err(failed)?.into_iter().map(summary).collect())
+    }
+}

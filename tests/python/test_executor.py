@@ -1,0 +1,235 @@
+"""Campaigns on executors, in directories and in buckets: the same rows everywhere, and after any death."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import flexsc
+import numpy as np
+import pytest
+from flexsc import Scenario, Table
+
+
+@pytest.fixture(scope="module")
+def study() -> Scenario:
+    """A relay with an uncertain gain and rate, some milliseconds a run."""
+    return Scenario(
+        {
+            "duration": 800.0,
+            "seed": 7,
+            "body": {
+                "planar": {
+                    "angle": 4.5e-4,
+                    "rate": 2.2e-5,
+                    "modes": [{"frequency": 0.44, "gain": 0.0213, "displacement": 2.75e-6}],
+                }
+            },
+            "law": {
+                "relay": {"dead_zone": 5e-4, "hysteresis": 1e-4, "strong": 4e-5, "weak": 1e-6, "k_t": 0.31}
+            },
+            "estimator": {"envelope": {"window": 100.0}},
+            "uncertain": {
+                "law.relay.k_t": {"uniform": [0.3, 0.32]},
+                "body.planar.rate": {"relative_normal": 0.1},
+            },
+        },
+        "study",
+    )
+
+
+def same(one: Table, other: Table) -> None:
+    """Two tables have the same rows, but for how long they took."""
+    assert list(one) == list(other)
+    assert one.keys == other.keys
+    for name in one:
+        if name == "seconds":
+            continue
+        a, b = one[name], other[name]
+        assert a.dtype == b.dtype, name
+        if a.dtype == object:
+            assert len(a) == len(b)
+            for mine, theirs in zip(a, b, strict=True):
+                np.testing.assert_array_equal(mine, theirs, err_msg=name)
+        else:
+            np.testing.assert_array_equal(a, b, err_msg=name)
+    assert one.statistics().keys() == other.statistics().keys()
+    for name, told in one.statistics().items():
+        if name != "seconds":
+            assert repr(told) == repr(other.statistics()[name])
+
+
+@pytest.fixture(scope="module")
+def whole(study: Scenario) -> Table:
+    """A campaign of 600 runs, in this process."""
+    return flexsc.campaign(study, 600, jobs=1)
+
+
+def processes(count: int) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+
+
+def test_rows_are_the_same_on_any_executor(study: Scenario, whole: Table, tmp_path: Path) -> None:
+    same(whole, flexsc.campaign(study, 600, jobs=8))
+    for count in (1, 2, 8):
+        with ThreadPoolExecutor(count) as pool:
+            out = tmp_path / f"threads-{count}"
+            same(whole, flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.02))
+            same(whole, flexsc.read_campaign(out))
+    with processes(2) as pool:
+        same(whole, flexsc.campaign(study, 600, executor=pool, task_s=0.02))
+        same(whole, flexsc.campaign(study, 600, out=tmp_path / "p", executor=pool, task_s=0.02))
+        # It is all there: nothing is handed in.
+        told: list[tuple[int, int]] = []
+        flexsc.campaign(
+            study, 600, out=tmp_path / "p", executor=pool, progress=lambda *done: told.append(done)
+        )
+        assert told == []
+
+
+def test_a_directory_of_the_command_is_the_same(study: Scenario, whole: Table, tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    command = [sys.executable, "-m", "flexsc", "simulate", "study.toml", "--runs", "600", "-o", "out"]
+    subprocess.run([*command, "--table", "parquet"], cwd=tmp_path, check=True, capture_output=True)
+    table = flexsc.read_campaign(tmp_path / "out")
+    same(whole, table)
+    assert table.scenario.name == "study"
+    # And Python goes on where the command was.
+    parts = sorted((tmp_path / "out").glob("part-*"))
+    before = {path.name: path.read_bytes() for path in parts}
+    assert before
+    parts[0].unlink()
+    same(whole, flexsc.campaign(study, 600, out=tmp_path / "out"))
+    assert {path.name for path in (tmp_path / "out").glob("part-*")} == set(before)
+
+
+def test_tables_of_others_read_the_parts(study: Scenario, whole: Table, tmp_path: Path) -> None:
+    arrow = pytest.importorskip("pyarrow.parquet")
+    flexsc.campaign(study, 600, out=tmp_path / "out")
+    rows = arrow.read_table(tmp_path / "out", filters=[("switchings", ">", 0)])
+    assert rows.num_rows == int((whole["switchings"] > 0).sum())
+    np.testing.assert_array_equal(np.sort(rows["run"].to_numpy()), whole["run"][whole["switchings"] > 0])
+
+
+def test_places_that_fsspec_knows(study: Scenario, whole: Table, tmp_path: Path) -> None:
+    fsspec = pytest.importorskip("fsspec")
+    with ThreadPoolExecutor(2) as pool:
+        out = "memory://bucket/study"
+        same(whole, flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.02))
+        same(whole, flexsc.read_campaign(out))
+        files = fsspec.filesystem("memory")
+        names = [path.rpartition("/")[2] for path in files.ls("/bucket/study", detail=False)]
+        assert not [name for name in names if "partial" in name]
+        files.rm_file("/bucket/study/" + next(name for name in names if name.startswith("part-")))
+        same(whole, flexsc.campaign(study, 600, out=out, executor=pool))
+        with pytest.raises(ValueError, match="another campaign"):
+            flexsc.campaign(study.with_("duration", 700.0), 600, out=out, executor=pool)
+        with pytest.raises(ValueError, match="has runs 0:600"):
+            flexsc.campaign(study, 700, out=out, executor=pool)
+        fewer = flexsc.campaign(study.with_("duration", 700.0), 20, out=out, executor=pool, force=True)
+        assert len(fewer) == 20
+    with processes(2) as pool:
+        same(whole, flexsc.campaign(study, 600, out=f"file://{tmp_path}/out", executor=pool, task_s=0.02))
+
+
+def test_a_broken_pool_is_an_error_and_the_same_call_goes_on(
+    study: Scenario, whole: Table, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    with processes(2) as pool:
+
+        def kill(done: int, total: int) -> None:
+            for pid in pool._processes or {}:
+                os.kill(pid, signal.SIGKILL)
+
+        with pytest.raises(BrokenProcessPool):
+            flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.02, progress=kill)
+    assert 0 < len(flexsc.read_campaign(out)) < 600
+    with processes(2) as pool:
+        same(whole, flexsc.campaign(study, 600, out=out, executor=pool))
+
+
+def test_a_killed_process_leaves_whole_parts(study: Scenario, whole: Table, tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    script = """
+        import flexsc
+        from concurrent.futures import ThreadPoolExecutor
+        with ThreadPoolExecutor(2) as pool:
+            study = flexsc.Scenario.load("study.toml")
+            flexsc.campaign(study, 600, out="out", executor=pool, task_s=0.01)
+    """
+    moments = random.Random(3)
+    for _ in range(5):
+        child = subprocess.Popen([sys.executable, "-c", textwrap.dedent(script)], cwd=tmp_path)
+        time.sleep(moments.uniform(0.1, 0.6))
+        child.kill()
+        child.wait()
+    same(whole, flexsc.campaign(study, 600, out=tmp_path / "out"))
+    assert not list((tmp_path / "out").glob("*.partial"))
+
+
+def test_another_campaign_is_not_replaced(study: Scenario, tmp_path: Path) -> None:
+    flexsc.campaign(study, 20, out=tmp_path)
+    with pytest.raises(ValueError, match="another campaign"):
+        flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path)
+    assert len(flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path, force=True)) == 20
+    with pytest.raises(ValueError, match="is no campaign"):
+        flexsc.read_campaign(tmp_path / "nowhere")
+
+
+def test_some_metrics_and_designs(study: Scenario) -> None:
+    table = flexsc.campaign(study, 64, metrics=["switchings", "goal"], sample="sobol")
+    assert list(table) == ["run", "seed", *table.keys, "switchings", "goal", "seconds", "error"]
+    # A Sobol sequence fills each half of a range with half of the points.
+    assert (table["law.relay.k_t"] < 0.31).sum() == 32
+    twice = flexsc.campaign(study, 10, replicas=2)
+    assert (twice["law.relay.k_t"][::2] == twice["law.relay.k_t"][1::2]).all()
+    with pytest.raises(ValueError, match=r"no metric `switching`[\s\S]*did you mean `switchings`"):
+        flexsc.campaign(study, 2, metrics=["switching"])
+    with pytest.raises(ValueError, match="sample must be one of"):
+        flexsc.campaign(study, 2, sample="halton")  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    """A scheduler and two workers, each a process of its own, over TCP."""
+    distributed = pytest.importorskip("distributed")
+    python = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
+    del python
+    cluster = distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, protocol="tcp://"
+    )
+    with cluster, distributed.Client(cluster) as client:
+        yield client
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_dask_survives_the_deaths_of_workers(
+    cluster: Any, study: Scenario, whole: Table, tmp_path: Path
+) -> None:
+    from flexsc.dask import campaign
+
+    same(whole, campaign(cluster, study, 600, task_s=0.02))
+    moments = random.Random(5)
+
+    def kill(done: int, total: int) -> None:
+        if moments.random() < 0.15:
+            pids = list(cluster.run(os.getpid).values())
+            os.kill(moments.choice(pids), signal.SIGKILL)
+            killed.append(done)
+
+    killed: list[int] = []
+    out = tmp_path / "out"
+    same(whole, campaign(cluster, study, 600, out=out, task_s=0.02, progress=kill))
+    assert killed
