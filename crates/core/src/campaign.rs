@@ -11,6 +11,7 @@ mod parquet;
 mod part;
 mod rows;
 mod sampling;
+mod work;
 
 use std::collections::BTreeMap;
 use std::time::Instant as WallInstant;
@@ -26,10 +27,11 @@ use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
 
 pub use design::{Block, Design, MOST_NUMBERS, MOST_POINTS, Span};
-pub use directory::{Directory, DirectoryError, MANIFEST, Work};
+pub use directory::{Directory, DirectoryError, MANIFEST};
 pub use manifest::Manifest;
 pub use rows::{Column, ERROR, Field, Kind, RUN, Rows, SECONDS, SEED};
 pub use sampling::Sampling;
+pub use work::Work;
 
 /// A run that failed.
 #[derive(Debug, Error)]
