@@ -11,6 +11,7 @@ mod parquet;
 mod part;
 mod rows;
 mod sampling;
+mod summary;
 mod work;
 
 use std::collections::BTreeMap;
@@ -31,6 +32,7 @@ pub use directory::{Directory, DirectoryError, MANIFEST};
 pub use manifest::Manifest;
 pub use rows::{Column, ERROR, Field, Kind, RUN, Rows, SECONDS, SEED};
 pub use sampling::Sampling;
+pub use summary::Summary;
 pub use work::Work;
 
 /// A run that failed.

@@ -6,6 +6,7 @@
 )]
 
 mod aside;
+mod campaign_directory;
 mod columns;
 mod damping;
 mod error;
@@ -41,6 +42,8 @@ use error::{allowed, log_error, no_file, scenario_error, simulation_error};
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use super::campaign_directory::read_campaign;
     #[pymodule_export]
     use super::damping::{
         identify_json, observer_margin_json, observer_region_json, persistence, relay_damping_json,
@@ -250,12 +253,13 @@ fn campaign<'py>(
     })?;
     let told = outcomes.iter().map(|outcome| columns::of_outcome(py, outcome)).collect::<PyResult<_>>()?;
     let metrics: Vec<Metrics> = outcomes.into_iter().filter_map(|outcome| outcome.metrics.ok()).collect();
-    let summary = |s: Statistics| {
-        let quantiles = QUANTILES.into_iter().zip(s.quantiles).collect();
-        (s.name, s.unit, s.runs, s.mean, s.sd, quantiles)
-    };
     let keys = study.keys().map(str::to_owned).collect();
     Ok((keys, told, statistics(&metrics).into_iter().map(summary).collect()))
+}
+
+fn summary(s: Statistics) -> Summary {
+    let quantiles = QUANTILES.into_iter().zip(s.quantiles).collect();
+    (s.name, s.unit, s.runs, s.mean, s.sd, quantiles)
 }
 
 #[pyfunction]

@@ -20,7 +20,7 @@ import os
 from typing import Any
 
 from flexsc import _native as engine
-from flexsc._campaign import Table, campaign, sweep
+from flexsc._campaign import Table, campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
@@ -60,6 +60,7 @@ __all__ = [
     "observer_margin",
     "observer_region",
     "persistence",
+    "read_campaign",
     "read_log",
     "relay_damping",
     "rigid_cycles",

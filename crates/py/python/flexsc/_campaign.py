@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from math import prod
 from operator import index
@@ -135,6 +136,35 @@ def sweep(
     return _campaign(scenario, range(prod(len(numbers) for _, numbers in grids)), jobs, seed, grids, yes)
 
 
+def read_campaign(directory: str | os.PathLike[str]) -> Table:
+    """The rows of a campaign's directory that are there, as `flexsc simulate --runs N -o DIR` leaves it.
+
+    Raises:
+        ValueError: It is no campaign, or has a part of another one.
+        OSError: It cannot be read.
+    """
+    import numpy as np
+
+    native, keys, told, summaries = engine.read_campaign(os.fspath(directory))
+    columns: dict[str, npt.NDArray[Any]] = {}
+    for name, cells in told.items():
+        if isinstance(cells, np.ndarray):
+            columns[name] = cells
+        elif cells and isinstance(cells[0], np.ndarray):
+            columns[name] = objects(cells)
+        else:
+            columns[name] = np.array(cells, dtype=np.str_)
+    return Table(Scenario._of(native), keys, columns, _statistics(summaries))
+
+
+def _statistics(summaries: list[Any]) -> dict[str, dict[str, Any]]:
+    names = ("unit", "runs", "mean", "sd")
+    return {
+        name: {**dict(zip(names, numbers, strict=True)), "quantiles": dict(quantiles)}
+        for name, *numbers, quantiles in summaries
+    }
+
+
 def _campaign(
     scenario: Scenario,
     runs: range,
@@ -165,9 +195,4 @@ def _campaign(
         else:
             columns[name] = np.array(of_runs, dtype=np.float64)
     columns["error"] = np.array([error for *_, error in told], dtype=np.str_)
-    names = ("unit", "runs", "mean", "sd")
-    statistics = {
-        name: {**dict(zip(names, numbers, strict=True)), "quantiles": dict(quantiles)}
-        for name, *numbers, quantiles in summaries
-    }
-    return Table(scenario, keys, columns, statistics)
+    return Table(scenario, keys, columns, _statistics(summaries))

@@ -25,6 +25,7 @@ __all__ = [
     "persistence",
     "plan_json",
     "plan_torque",
+    "read_campaign",
     "relay_damping_json",
     "rigid_cycles_json",
     "rivals_json",
@@ -104,6 +105,14 @@ def campaign(
 ) -> tuple[
     list[str],
     list[tuple[int, list[float], dict[str, Any] | None, str]],
+    list[tuple[str, str, int, float, float, list[tuple[float, float]]]],
+]: ...
+def read_campaign(
+    path: str,
+) -> tuple[
+    Scenario,
+    list[str],
+    dict[str, Any],
     list[tuple[str, str, int, float, float, list[tuple[float, float]]]],
 ]: ...
 def rigid_cycles_json(scenario: Scenario) -> str: ...
