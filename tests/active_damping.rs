@@ -117,7 +117,7 @@ fn whatever_is_wrong_at_the_start_a_turn_excites_less() {
     let errors = "\n[uncertain]\n\"estimator.adaptive.frequency_error\" = { uniform = [-0.3, 0.3] }\n\
                   \"estimator.adaptive.influence_error\" = { uniform = [-0.4, 0.4] }\n";
     dir.write("wrong.toml", dir.text("iss-manoeuvre.toml") + errors);
-    dir.run("simulate wrong.toml --runs 12 -o wrong").exits(0);
+    dir.run("simulate wrong.toml --runs 12 --table csv -o wrong").exits(0);
     let rows = table(&dir, "wrong/runs.csv");
     let sorted = |name: &str| {
         let mut values: Vec<f64> = rows.iter().map(|row| row[name].parse().expect("a number")).collect();

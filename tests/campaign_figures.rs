@@ -29,7 +29,7 @@ fn worst(dir: &Dir, arguments: &str) -> Vec<Json> {
 #[test]
 fn distributions_have_the_quantiles_of_the_table() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    dir.run("simulate u.toml --runs 60 -o out").exits(0);
+    dir.run("simulate u.toml --runs 60 --table csv -o out").exits(0);
     dir.run(
         "plot out -o figures --format svg --metric gain_initial,envelope_late_mean_rad --what distribution",
     )
@@ -73,7 +73,7 @@ fn distributions_have_the_quantiles_of_the_table() {
 #[test]
 fn scatters_show_what_was_drawn_and_fans_what_was_logged() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    dir.run("simulate u.toml --runs 9 -o out --log events").exits(0);
+    dir.run("simulate u.toml --runs 9 --table csv -o out --log events").exits(0);
     let told = dir.run("plot out -o figures --format svg").exits(0).prints(&["u: the worst of 9 runs"]);
     assert!(told.contains("flexsc simulate out/scenario.toml --runs "), "{told}");
     assert!(dir.names("figures").contains(&"u-fan.svg".to_owned()), "{:?}", dir.names("figures"));
@@ -124,7 +124,7 @@ fn sweeps_have_curves_and_maps() {
         near(curve.along(*dot), key, 1e-4);
     }
 
-    dir.run(&format!("{sweep} --vary law.relay.weak=8e-7:1.6e-6:5 -o two")).exits(0);
+    dir.run(&format!("{sweep} --vary law.relay.weak=8e-7:1.6e-6:5 --table csv -o two")).exits(0);
     dir.run("plot two -o two.svg --metric envelope_late_mean_rad").exits(0);
     let map = Drawing::at(&dir, "two.svg");
     map.shows(&["law.relay.k_t", "law.relay.weak", "least", "envelope late mean, µrad"]);
@@ -142,11 +142,12 @@ fn sweeps_have_curves_and_maps() {
 #[test]
 fn the_worst_runs_can_be_repeated() {
     let dir = Dir::with(&["relay-sampled", "rotation-robust", "iss-ringdown", "relay-fixed"]);
-    dir.run("simulate relay-sampled.toml --runs 6 --seed 3 --set duration=2000 -o relay").exits(0);
-    dir.run("simulate rotation-robust.toml --runs 4 -o rotation").exits(0);
-    dir.run("simulate iss-ringdown.toml --runs 3 --set duration=40 -o station").exits(0);
+    dir.run("simulate relay-sampled.toml --runs 6 --seed 3 --set duration=2000 --table csv -o relay")
+        .exits(0);
+    dir.run("simulate rotation-robust.toml --runs 4 --table csv -o rotation").exits(0);
+    dir.run("simulate iss-ringdown.toml --runs 3 --set duration=40 --table csv -o station").exits(0);
     let two = "--vary law.relay.k_t=0.31:0.35:3 --vary body.planar.modes[0].damping=0:0.01:2";
-    dir.run(&format!("sweep relay-fixed.toml --set duration=1500 {two} -o sweep")).exits(0);
+    dir.run(&format!("sweep relay-fixed.toml --set duration=1500 {two} --table csv -o sweep")).exits(0);
     for name in ["relay", "rotation", "station", "sweep"] {
         let found = worst(&dir, &format!("{name} -o {name}.svg --worst 1"));
         assert!(!found.is_empty(), "{name}");
@@ -195,9 +196,9 @@ fn the_worst_runs_can_be_repeated() {
 fn parts_make_up_a_campaign_and_failures_are_listed() {
     let wide = UNCERTAIN.replace("{ uniform = [0.3, 0.32] }", "{ normal = { mean = 0.31, sd = 0.3 } }");
     let dir = Dir::holding("u.toml", wide);
-    dir.run("simulate u.toml --runs 20 -o whole").exits(1);
-    dir.run("simulate u.toml --runs 0:9 -o parts").exits(1);
-    dir.run("simulate u.toml --runs 9:20 -o parts").exits(1);
+    dir.run("simulate u.toml --runs 20 --table csv -o whole").exits(1);
+    dir.run("simulate u.toml --runs 0:9 --table csv -o parts").exits(1);
+    dir.run("simulate u.toml --runs 9:20 --table csv -o parts").exits(1);
     let listed = |name: &str| dir.run(&format!("plot {name} -o {name}.svg")).exits(0).out.replace(name, "");
     assert_eq!(listed("parts"), listed("whole"));
     assert_eq!(dir.text("parts.svg"), dir.text("whole.svg"));
@@ -210,7 +211,7 @@ fn parts_make_up_a_campaign_and_failures_are_listed() {
 #[test]
 fn bad_tables_are_named() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    dir.run("simulate u.toml --runs 3 -o out").exits(0);
+    dir.run("simulate u.toml --runs 3 --table csv -o out").exits(0);
     std::fs::create_dir(dir.path("empty")).expect("made");
     dir.run("plot empty")
         .exits(2)
@@ -242,7 +243,7 @@ fn bad_tables_are_named() {
 #[test]
 fn a_torn_log_is_left_out() {
     let dir = Dir::with(&["relay-sampled"]);
-    dir.run("simulate relay-sampled.toml --runs 3 --log events --set duration=600 -o c").exits(0);
+    dir.run("simulate relay-sampled.toml --runs 3 --log events --set duration=600 --table csv -o c").exits(0);
     dir.write("c/torn.mcap", "no log");
     dir.run("plot c --format svg -o drawn").exits(0).says(&["left out", "torn.mcap"]);
     dir.run("plot c --what fan -o drawn").exits(2).says(&["torn.mcap"]);

@@ -7,7 +7,9 @@ use crate::util::{Dir, UNCERTAIN, table};
 #[test]
 fn a_campaign_writes_tables_and_logs() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    dir.run("simulate u.toml --runs 6 -o out --log events").exits(0).says(&["6 runs", "runs.csv"]);
+    dir.run("simulate u.toml --runs 6 --table csv -o out --log events")
+        .exits(0)
+        .says(&["6 runs", "runs.csv"]);
     let logs = (0..6).map(|run| format!("u-{run}.mcap"));
     let all: Vec<_> =
         ["runs.csv", "scenario.toml", "statistics.csv"].map(str::to_owned).into_iter().chain(logs).collect();
@@ -32,9 +34,9 @@ fn a_campaign_writes_tables_and_logs() {
 #[test]
 fn a_run_alone_is_the_run_of_the_campaign() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    dir.run("simulate u.toml --runs 6 -o out").exits(0);
+    dir.run("simulate u.toml --runs 6 --table csv -o out").exits(0);
     let before = (dir.read("out/runs.csv"), dir.read("out/statistics.csv"));
-    dir.run("simulate u.toml --runs 3:4 -o out --log full").exits(0);
+    dir.run("simulate u.toml --runs 3:4 --table csv -o out --log full").exits(0);
     assert_eq!((dir.read("out/runs.csv"), dir.read("out/statistics.csv")), before);
     let names =
         ["runs-3-4.csv", "runs.csv", "scenario.toml", "statistics-3-4.csv", "statistics.csv", "u-3.mcap"];
@@ -54,8 +56,8 @@ fn a_run_alone_is_the_run_of_the_campaign() {
 #[test]
 fn threads_change_nothing() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    dir.run("simulate u.toml --runs 12 -o one --log full --jobs 1").exits(0);
-    dir.run("simulate u.toml --runs 12 -o eight --log full --jobs 8").exits(0);
+    dir.run("simulate u.toml --runs 12 --table csv -o one --log full --jobs 1").exits(0);
+    dir.run("simulate u.toml --runs 12 --table csv -o eight --log full --jobs 8").exits(0);
     let names = dir.names("one");
     assert_eq!((names.len(), &names), (15, &dir.names("eight")));
     for name in names {
@@ -71,7 +73,7 @@ fn threads_change_nothing() {
 fn invalid_draws_fail_alone() {
     let wide = UNCERTAIN.replace("{ uniform = [0.3, 0.32] }", "{ normal = { mean = 0.31, sd = 0.3 } }");
     let dir = Dir::holding("u.toml", wide);
-    let ran = dir.run("simulate u.toml --runs 20 -o out --log events").exits(1);
+    let ran = dir.run("simulate u.toml --runs 20 --table csv -o out --log events").exits(1);
     let rows = table(&dir, "out/runs.csv");
     let (failed, done): (Vec<_>, Vec<_>) = rows.iter().partition(|row| !row["error"].is_empty());
     assert!(rows.len() == 20 && failed.len() > 1 && done.len() > 1, "{} of {}", failed.len(), rows.len());
@@ -93,7 +95,7 @@ fn invalid_draws_fail_alone() {
 #[test]
 fn a_campaign_of_failures_has_a_table() {
     let dir = Dir::holding("u.toml", UNCERTAIN.replace("[0.3, 0.32]", "[2.0, 3.0]"));
-    dir.run("simulate u.toml --runs 3 -o out").exits(1).says(&["3 of 3 runs failed"]);
+    dir.run("simulate u.toml --runs 3 --table csv -o out").exits(1).says(&["3 of 3 runs failed"]);
     let rows = table(&dir, "out/runs.csv");
     assert_eq!(rows.len(), 3);
     assert!(rows.iter().all(|row| row["error"].contains("law.relay.k_t") && row["seed"] == "7"));
@@ -102,7 +104,7 @@ fn a_campaign_of_failures_has_a_table() {
 #[test]
 fn a_sweep_varies_one_key() {
     let dir = Dir::with(&["relay-fixed"]);
-    let vary = "sweep relay-fixed.toml --set duration=1000 -o out --vary law.relay.k_t";
+    let vary = "sweep relay-fixed.toml --set duration=1000 --table csv -o out --vary law.relay.k_t";
     dir.run(&format!("{vary}=0.3:0.4:5")).exits(0);
     let rows = table(&dir, "out/runs.csv");
     assert_eq!(rows.len(), 5);
@@ -118,7 +120,7 @@ fn a_sweep_varies_one_key() {
 #[test]
 fn sweeps_over_two_keys_combine_all_values() {
     let dir = Dir::with(&["relay-fixed"]);
-    let sweep = "sweep relay-fixed.toml --set duration=500 -o out --vary law.relay.k_t=0.3:0.4:3";
+    let sweep = "sweep relay-fixed.toml --set duration=500 --table csv -o out --vary law.relay.k_t=0.3:0.4:3";
     dir.run(&format!("{sweep} --vary law.relay.weak=1e-6:2e-6:2")).exits(0);
     let rows = table(&dir, "out/runs.csv");
     let number = |row: &std::collections::BTreeMap<String, String>, key: &str| {
@@ -140,34 +142,36 @@ fn sweeps_over_two_keys_combine_all_values() {
 #[test]
 fn the_scenario_beside_the_tables_is_that_of_the_runs() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    dir.run("simulate u.toml --runs 4 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
-    dir.run("simulate out/scenario.toml --runs 4 -o again").exits(0);
+    dir.run("simulate u.toml --runs 4 --seed 9 --set law.relay.weak=2e-6 --table csv -o out").exits(0);
+    dir.run("simulate out/scenario.toml --runs 4 --table csv -o again").exits(0);
     assert_eq!(dir.text("again/runs.csv"), dir.text("out/runs.csv"));
     assert_eq!(dir.text("again/scenario.toml"), dir.text("out/scenario.toml"));
     // Neither another campaign nor a part of one takes its place, unless that is asked for.
     let before = (dir.text("out/runs.csv"), dir.text("out/statistics.csv"), dir.text("out/scenario.toml"));
     for other in ["--runs 2:4 --seed 9", "--runs 4 --seed 9", "--runs 4 --set law.relay.weak=2e-6"] {
-        let ran = dir.run(&format!("simulate u.toml -o out {other}")).exits(2);
+        let ran = dir.run(&format!("simulate u.toml --table csv -o out {other}")).exits(2);
         ran.says(&["out/scenario.toml", "another campaign (`", "another directory", "--force"]);
     }
     let after = (dir.text("out/runs.csv"), dir.text("out/statistics.csv"), dir.text("out/scenario.toml"));
     assert_eq!(after, before);
-    dir.run("simulate u.toml --runs 2:4 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
+    dir.run("simulate u.toml --runs 2:4 --seed 9 --set law.relay.weak=2e-6 --table csv -o out").exits(0);
     // The same again, and more of it; but not less.
-    dir.run("simulate u.toml --runs 4 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
-    dir.run("simulate u.toml --runs 6 --seed 9 --set law.relay.weak=2e-6 -o out").exits(0);
-    let fewer = "simulate u.toml --runs 5 --seed 9 --set law.relay.weak=2e-6 -o out";
+    dir.run("simulate u.toml --runs 4 --seed 9 --set law.relay.weak=2e-6 --table csv -o out").exits(0);
+    dir.run("simulate u.toml --runs 6 --seed 9 --set law.relay.weak=2e-6 --table csv -o out").exits(0);
+    let fewer = "simulate u.toml --runs 5 --seed 9 --set law.relay.weak=2e-6 --table csv -o out";
     dir.run(fewer).exits(2).says(&["out/runs.csv", "holds 6 runs of this campaign, and 5 would", "--force"]);
     assert_eq!(table(&dir, "out/runs.csv").len(), 6);
     dir.run(&format!("{fewer} --force")).exits(0);
     assert_eq!(table(&dir, "out/runs.csv").len(), 5);
     // Replaced, nothing of the other campaign is left beside the new tables.
-    dir.run("simulate u.toml --runs 4 -o out --force").exits(0);
+    dir.run("simulate u.toml --runs 4 --table csv -o out --force").exits(0);
     assert_eq!(dir.names("out"), ["runs.csv", "scenario.toml", "statistics.csv"]);
     // What somebody wrote is never lost.
     dir.write("scenario.toml", UNCERTAIN);
     for force in ["", "--force"] {
-        dir.run(&format!("simulate scenario.toml --runs 4 -o . {force}")).exits(2).says(&["./scenario.toml"]);
+        dir.run(&format!("simulate scenario.toml --runs 4 --table csv -o . {force}"))
+            .exits(2)
+            .says(&["./scenario.toml"]);
     }
     assert_eq!(dir.text("scenario.toml"), UNCERTAIN);
     assert!(!dir.has("runs.csv"));
@@ -176,12 +180,12 @@ fn the_scenario_beside_the_tables_is_that_of_the_runs() {
 #[test]
 fn a_sweep_of_other_values_is_another_one() {
     let dir = Dir::with(&["relay-fixed"]);
-    let vary = "sweep relay-fixed.toml --set duration=100 -o out --vary law.relay.k_t";
+    let vary = "sweep relay-fixed.toml --set duration=100 --table csv -o out --vary law.relay.k_t";
     dir.run(&format!("{vary}=0.3:0.4:5")).exits(0);
     dir.run(&format!("{vary}=0.3:0.4:5")).exits(0);
     for other in [
         format!("{vary}=0.3:0.39:5"),
-        "simulate relay-fixed.toml --set duration=100 --runs 9 -o out".to_owned(),
+        "simulate relay-fixed.toml --set duration=100 --runs 9 --table csv -o out".to_owned(),
     ] {
         let ran = dir.run(&other).exits(2);
         ran.says(&["out/scenario.toml", "another campaign (law.relay.k_t = 0.3 to 0.4, 5 values there"]);
@@ -232,23 +236,26 @@ fn a_log_of_other_settings_is_not_replaced() {
 #[test]
 fn two_processes_do_not_share_a_table() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    let one = dir.start("simulate u.toml --runs 1000000 -o out");
+    let one = dir.start("simulate u.toml --runs 1000000 --table csv -o out");
     dir.wait_for("out/runs.csv.partial", 1000);
     let scenario = dir.text("out/scenario.toml");
     for (other, why) in [
-        ("simulate u.toml --runs 3 -o out", "another process is writing it"),
-        ("simulate u.toml --runs 3 -o out --force", "another process is writing it"),
-        ("simulate u.toml --runs 3 --seed 8 -o out", "another campaign (`seed`: 7 there, 8 here)"),
-        ("simulate u.toml --runs 3:5 --seed 8 -o out", "another campaign"),
-        ("sweep u.toml --vary duration=1:2:3 -o out", "another campaign"),
-        ("sweep u.toml --vary duration=1:2:3 -o out --force", "another process is writing it"),
+        ("simulate u.toml --runs 3 --table csv -o out", "another process is writing it"),
+        ("simulate u.toml --runs 3 --table csv -o out --force", "another process is writing it"),
+        (
+            "simulate u.toml --runs 3 --seed 8 --table csv -o out",
+            "another campaign (`seed`: 7 there, 8 here)",
+        ),
+        ("simulate u.toml --runs 3:5 --seed 8 --table csv -o out", "another campaign"),
+        ("sweep u.toml --vary duration=1:2:3 --table csv -o out", "another campaign"),
+        ("sweep u.toml --vary duration=1:2:3 --table csv -o out --force", "another process is writing it"),
     ] {
         dir.run(other).exits(2).says(&["error: ", why, "hint: "]);
         assert_eq!(dir.names("out"), ["runs.csv.partial", "scenario.toml"], "{other}");
         assert_eq!(dir.text("out/scenario.toml"), scenario);
     }
     // A part of the same campaign has its own table.
-    dir.run("simulate u.toml --runs 3:5 -o out").exits(0);
+    dir.run("simulate u.toml --runs 3:5 --table csv -o out").exits(0);
     one.signal("INT").exits(130).says(&["interrupted at run ", "out/runs-interrupted.csv holds"]);
     let rows = table(&dir, "out/runs-interrupted.csv");
     assert!(rows.iter().enumerate().all(|(number, row)| row["run"] == number.to_string()));
@@ -258,7 +265,7 @@ fn two_processes_do_not_share_a_table() {
     );
     dir.run("plot out -o figures").exits(0);
     // The whole campaign takes the place of what was interrupted.
-    dir.run("simulate u.toml --runs 5 -o out").exits(0);
+    dir.run("simulate u.toml --runs 5 --table csv -o out").exits(0);
     assert!(dir.has("out/runs.csv") && !dir.has("out/runs-interrupted.csv"));
 }
 
@@ -268,8 +275,10 @@ fn two_processes_do_not_share_a_table() {
 fn a_killed_campaign_keeps_its_rows() {
     let dir = Dir::with(&["relay-fixed"]);
     // The runs become longer, the last ones by far.
-    let run = dir.start("sweep relay-fixed.toml --vary duration=1e3:1e10:12 --jobs 2 -o out");
-    let few = dir.start("simulate relay-fixed.toml --set duration=2e6 --runs 100000 -o few --jobs 1 --yes");
+    let run = dir.start("sweep relay-fixed.toml --vary duration=1e3:1e10:12 --jobs 2 --table csv -o out");
+    let few = dir.start(
+        "simulate relay-fixed.toml --set duration=2e6 --runs 100000 --table csv -o few --jobs 1 --yes",
+    );
     dir.wait_for("out/runs.csv.partial", 100);
     dir.wait_for("few/runs.csv.partial", 100);
     run.signal("KILL");
@@ -277,7 +286,7 @@ fn a_killed_campaign_keeps_its_rows() {
     let rows = |name: &str| dir.text(name).lines().count();
     assert!(rows("out/runs.csv.partial") >= 2 && rows("few/runs.csv.partial") >= 2);
     // And they do not hinder the next one.
-    dir.run("simulate relay-fixed.toml --set duration=2e6 --runs 2 -o few").exits(0);
+    dir.run("simulate relay-fixed.toml --set duration=2e6 --runs 2 --table csv -o few").exits(0);
     assert_eq!(dir.names("few"), ["runs.csv", "scenario.toml", "statistics.csv"]);
 }
 
@@ -288,7 +297,7 @@ fn statistics_are_finite_and_tell_what_they_leave_out() {
     let unstable = "duration = 36.0\n[body.planar]\nangle = 0.1\n[law.pd]\nk_p = 1.0\nk_d = 0.0\nperiod = 1.0\n\
                     [uncertain]\n\"law.pd.k_p\" = { choice = [1.0, 1e6] }\n";
     dir.write("unstable.toml", unstable);
-    let ran = dir.run("simulate unstable.toml --runs 12 -o out").exits(0);
+    let ran = dir.run("simulate unstable.toml --runs 12 --table csv -o out").exits(0);
     let statistics = table(&dir, "out/statistics.csv");
     for row in &statistics {
         for cell in ["mean", "sd", "q05", "q25", "q50", "q75", "q95"] {

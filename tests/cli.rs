@@ -224,7 +224,7 @@ fn scenarios_side_by_side_have_logs_of_their_own() {
     let dir = Dir::with(&["relay-fixed", "relay-quiet"]);
     dir.run("simulate relay-fixed.toml relay-quiet.toml -o out").exits(0);
     assert_eq!(dir.names("out"), ["relay-fixed.mcap", "relay-quiet.mcap"]);
-    dir.run("simulate relay-fixed.toml relay-quiet.toml --runs 2 -o both").exits(0);
+    dir.run("simulate relay-fixed.toml relay-quiet.toml --runs 2 --table csv -o both").exits(0);
     let tables = ["relay-fixed-runs.csv", "relay-fixed-scenario.toml", "relay-fixed-statistics.csv"];
     assert_eq!(dir.names("both")[..3], tables);
     std::fs::create_dir(dir.path("other")).expect("a directory");

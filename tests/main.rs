@@ -59,6 +59,10 @@ mod manoeuvres;
 mod newcomers;
 mod outside;
 mod own_parts;
+#[cfg(feature = "parquet")]
+mod parts;
+#[cfg(all(unix, feature = "parquet"))]
+mod parts_killed;
 mod plan;
 mod plan_figures;
 mod plants;

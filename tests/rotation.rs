@@ -222,7 +222,7 @@ fn a_campaign_plans_for_the_body_as_it_is_written() {
 #[test]
 fn the_command_runs_campaigns_of_rotations() {
     let dir = Dir::with(&["rotation-robust"]);
-    let said = "simulate rotation-robust.toml --set duration=20 --runs 12 -o";
+    let said = "simulate rotation-robust.toml --set duration=20 --runs 12 --table csv -o";
     dir.run(&format!("{said} one --jobs 1")).exits(0);
     dir.run(&format!("{said} two --jobs 8")).exits(0);
     assert_eq!(dir.read("one/runs.csv"), dir.read("two/runs.csv"));

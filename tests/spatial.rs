@@ -231,9 +231,9 @@ fn keys_of_modes_in_a_file_may_be_uncertain_and_swept() {
     dir.write("free.toml", format!("{}{uncertain}", dir.text("free.toml")));
     dir.write("table.toml", format!("{FREE}{uncertain}"));
     for name in ["free", "table"] {
-        dir.run(&format!("simulate {name}.toml --runs 3 -o {name}")).exits(0);
+        dir.run(&format!("simulate {name}.toml --runs 3 --table csv -o {name}")).exits(0);
         let vary = "body.spatial.modes[0].frequency=1:2:3";
-        dir.run(&format!("sweep {name}.toml --vary {vary} -o {name}-sweep")).exits(0);
+        dir.run(&format!("sweep {name}.toml --vary {vary} --table csv -o {name}-sweep")).exits(0);
     }
     assert_eq!(dir.text("free/runs.csv"), dir.text("table/runs.csv"));
     let drawn = crate::util::table(&dir, "free/runs.csv");

@@ -251,7 +251,10 @@ fn campaigns_are_the_same_on_any_number_of_threads() {
         format!("{text}\n[uncertain]\n\"body.spatial.modes[3].frequency\" = {{ relative_uniform = 0.2 }}\n"),
     );
     for jobs in ["1", "3"] {
-        dir.run(&format!("simulate study.toml --runs 6 --set duration=120 --jobs {jobs} -o {jobs}")).exits(0);
+        dir.run(&format!(
+            "simulate study.toml --runs 6 --set duration=120 --jobs {jobs} --table csv -o {jobs}"
+        ))
+        .exits(0);
     }
     assert_eq!(dir.text("1/runs.csv"), dir.text("3/runs.csv"));
     let rows = table(&dir, "1/runs.csv");

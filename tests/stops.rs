@@ -17,7 +17,9 @@ fn a_directory_that_cannot_be_made_is_named() {
         let ran = dir.run(&format!("simulate relay-fixed.toml -o file/sub {arguments}")).exits(1);
         ran.says(&["error: cannot write file/sub: "]);
     }
-    dir.run("sweep relay-fixed.toml --vary law.relay.k_t=0.3:0.4:5 -o file/sub").exits(1).says(&["file/sub"]);
+    dir.run("sweep relay-fixed.toml --vary law.relay.k_t=0.3:0.4:5 --table csv -o file/sub")
+        .exits(1)
+        .says(&["file/sub"]);
     std::fs::create_dir(dir.path("relay-fixed.mcap")).expect("a directory");
     dir.run("simulate relay-fixed.toml --set duration=10")
         .exits(1)
@@ -41,18 +43,18 @@ fn a_full_disk_leaves_nothing() {
     full(100, "relay-fixed.mcap", "simulate relay-fixed.toml -o out");
     full(10, "relay-fixed.mcap", "simulate relay-fixed.toml -o out --set duration=10");
     assert!(dir.names("out").is_empty());
-    full(10, "run 1", "simulate u.toml --runs 1:2 -o out --log events");
+    full(10, "run 1", "simulate u.toml --runs 1:2 --table csv -o out --log events");
     assert_eq!(dir.names("out"), ["scenario.toml"]);
     // The rows that were written are kept, and no part of one.
-    full(100, "runs.csv", "simulate u.toml --runs 2000 --set duration=1 -o out --force");
+    full(100, "runs.csv", "simulate u.toml --runs 2000 --set duration=1 --table csv -o out --force");
     assert_eq!(dir.names("out"), ["runs-interrupted.csv", "scenario.toml"]);
-    dir.run("simulate u.toml --runs 2000 --set duration=1 -o whole").exits(0);
+    dir.run("simulate u.toml --runs 2000 --set duration=1 --table csv -o whole").exits(0);
     let (kept, whole) = (dir.text("out/runs-interrupted.csv"), dir.text("whole/runs.csv"));
     assert!(whole.starts_with(&kept) && kept.ends_with('\n'));
     assert!((10..2000).contains(&kept.lines().count()), "{} lines", kept.lines().count());
     // Full before any row is written.
     std::fs::remove_dir_all(dir.path("out")).expect("removed");
-    full(2, "runs.csv", "simulate u.toml --runs 20 --set duration=1 -o out");
+    full(2, "runs.csv", "simulate u.toml --runs 20 --set duration=1 --table csv -o out");
     assert_eq!(dir.names("out"), ["scenario.toml"]);
     dir.run("simulate relay-fixed.toml -o whole").exits(0);
     dir.run("log recover whole/relay-fixed.mcap -o /dev/full").exits(1).says(&["cannot write /dev/full"]);
@@ -103,7 +105,7 @@ fn what_is_told_to_ignore_signals_ends_well_by_others() {
 #[test]
 fn an_interrupted_campaign_keeps_whole_files_only() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    let run = dir.start("simulate u.toml --runs 100000 -o out --log events");
+    let run = dir.start("simulate u.toml --runs 100000 --table csv -o out --log events");
     dir.wait_for("out/u-300.mcap", 1);
     run.signal("INT").exits(130).says(&["interrupted at run "]);
     let names = dir.names("out");
@@ -279,10 +281,13 @@ fn links_and_pipes_in_the_way_are_left_alone() {
     dir.write("victim", "mine");
     for (name, arguments) in [
         ("out/relay-fixed.mcap", "simulate relay-fixed.toml --set duration=10 -o out"),
-        ("out/runs.csv", "simulate u.toml --runs 2 -o out"),
-        ("out/scenario.toml", "simulate u.toml --runs 2 -o out"),
-        ("out/statistics.csv", "simulate u.toml --runs 2 -o out"),
-        ("out/runs.csv", "sweep relay-fixed.toml --set duration=10 --vary law.relay.k_t=0.3:0.4:2 -o out"),
+        ("out/runs.csv", "simulate u.toml --runs 2 --table csv -o out"),
+        ("out/scenario.toml", "simulate u.toml --runs 2 --table csv -o out"),
+        ("out/statistics.csv", "simulate u.toml --runs 2 --table csv -o out"),
+        (
+            "out/runs.csv",
+            "sweep relay-fixed.toml --set duration=10 --vary law.relay.k_t=0.3:0.4:2 --table csv -o out",
+        ),
         ("out/a.csv", "export log/relay-fixed.mcap --topic /command -o out/a.csv"),
         ("out/layout.json", "layout relay-fixed.toml -o out/layout.json"),
         ("out/saved.mcap", "log recover log/relay-fixed.mcap -o out/saved.mcap"),

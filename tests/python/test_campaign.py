@@ -34,6 +34,24 @@ def test_a_table_has_a_row_for_each_run(sampled: Scenario, table: Table) -> None
         table["mass"]
 
 
+def test_a_directory_is_the_same_table(sampled: Scenario, table: Table, command: Command, tmp_path: Path) -> None:
+    path, out = SCENARIOS / "relay-sampled.toml", tmp_path / "out"
+    seconds = str(sampled.to_dict()["duration"])
+    command("simulate", path, "--set", f"duration={seconds}", "--runs", "40", "-o", out)
+    read = flexsc.read_campaign(out)
+    assert read.keys == table.keys
+    assert list(read.columns) == ["run", "seed", *table.columns][: len(read.columns)]
+    for name, column in table.columns.items():
+        if column.dtype == object:
+            assert all(np.array_equal(*pair) for pair in zip(read[name], column, strict=True))
+        else:
+            np.testing.assert_array_equal(read[name], column)
+    assert read.statistics()["duty"] == table.statistics()["duty"]
+    assert read.scenario.name == "relay-sampled"
+    with pytest.raises(ValueError, match="is no campaign"):
+        flexsc.read_campaign(tmp_path)
+
+
 def test_runs_are_the_commands(table: Table, command: Command) -> None:
     path = SCENARIOS / "relay-sampled.toml"
     told = json_lines(command("simulate", path, "--set", "duration=1000.0", "--runs", "3:6", "--json"))

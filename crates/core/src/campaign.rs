@@ -11,7 +11,8 @@ mod parquet;
 mod part;
 mod rows;
 mod sampling;
-mod told;
+mod summary;
+mod work;
 
 use std::collections::BTreeMap;
 use std::time::Instant as WallInstant;
@@ -27,10 +28,12 @@ use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
 
 pub use design::{Block, Design, MOST_NUMBERS, MOST_POINTS, Span};
-pub use directory::{Directory, DirectoryError, MANIFEST, Work};
+pub use directory::{Directory, DirectoryError, MANIFEST};
 pub use manifest::Manifest;
 pub use rows::{Column, ERROR, Field, Kind, RUN, Rows, SECONDS, SEED};
 pub use sampling::Sampling;
+pub use summary::Summary;
+pub use work::Work;
 
 /// A run that failed.
 #[derive(Debug, Error)]

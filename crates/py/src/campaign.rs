@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, Column, Design, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest, Rows, Sampling,
-    Work as Whole,
+    Campaign, Column, Design, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest, Rows, SECONDS,
+    Sampling, Work as Whole,
 };
 use flexsc_core::metrics::Selection;
 use flexsc_core::statistics::{QUANTILES, Statistics};
@@ -18,9 +18,6 @@ use pyo3::types::{PyBytes, PyDict, PyList};
 use super::Scenario;
 use super::aside::aside;
 use super::error::{allowed, no_file, scenario_error};
-
-/// No more numbers are held at once for statistics, or a metric's alone.
-const HELD: usize = 1 << 23;
 
 /// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
 type Summary = (&'static str, &'static str, usize, f64, f64, Vec<(f64, f64)>);
@@ -136,8 +133,10 @@ impl Work {
 
     /// Names of the columns.
     #[getter]
-    fn names(&self) -> Vec<String> {
-        self.0.fields().iter().map(|field| field.name.clone()).collect()
+    fn names(&self) -> Vec<&str> {
+        let names = self.0.fields().iter().map(|field| field.name.as_str());
+        // No two campaigns take the same time.
+        names.filter(|name| *name != SECONDS).collect()
     }
 
     #[getter]
@@ -164,7 +163,7 @@ impl Work {
             let columns = |names: &[&str]| -> Result<_, DirectoryError> {
                 Ok(names.iter().map(|name| rows.column(name).cloned()).collect())
             };
-            let statistics = work.statistics(rows.len(), usize::MAX, columns)?;
+            let statistics = work.statistics(rows.len(), columns)?;
             Ok((rows, statistics))
         })?
         .map_err(failed)?;
@@ -228,11 +227,9 @@ impl Directory {
         column.map(|column| array(py, column)).transpose()
     }
 
-    fn statistics(&self, py: Python<'_>, runs: usize) -> PyResult<Vec<Summary>> {
+    fn statistics(&self, py: Python<'_>) -> PyResult<Vec<Summary>> {
         let directory = self.0.clone();
-        let told = aside(py, move |_| {
-            directory.work().statistics(runs, HELD, |names: &[&str]| directory.columns(names))
-        })?;
-        Ok(told.map_err(failed)?.into_iter().map(summary).collect())
+        let told = aside(py, move |_| directory.summary())?.map_err(failed)?;
+        Ok(told.statistics.into_iter().map(summary).collect())
     }
 }

@@ -6,11 +6,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, Column, Directory, DirectoryError, ERROR, MANIFEST, Manifest, Outcome, RUN, Rows, Run,
-    RunError,
+    Campaign, Directory, DirectoryError, MANIFEST, Manifest, Outcome, Rows, Run, RunError, Summary,
 };
 use flexsc_core::metrics::Metrics;
-use flexsc_core::statistics::Statistics;
 
 use super::live::Live;
 use super::{Job, Told, interruption, object, write_statistics};
@@ -20,9 +18,6 @@ use crate::{say, stop};
 
 /// What helps where another campaign is in the way.
 const HINT: &str = "hint: give another directory with -o, or --force to replace what is there";
-/// No more numbers of the rows are held at once for the statistics, or a metric's alone (64 MB).
-const HELD: usize = 1 << 23;
-
 /// A failure of a directory, for people.
 pub fn failure(error: DirectoryError) -> Failure {
     match error {
@@ -160,23 +155,7 @@ impl Making<'_> {
 
 /// What the rows of a directory come to, with the table of its statistics.
 pub fn told(directory: &Directory) -> Result<Told, Failure> {
-    let column = |name| directory.column(name).map_err(failure);
-    let (mut runs, mut failed) = (0, None);
-    if let (Some(Column::Integers(numbers)), Some(Column::Words(errors))) = (column(RUN)?, column(ERROR)?) {
-        runs = numbers.len();
-        for (number, error) in numbers.into_iter().zip(errors) {
-            let (Some(number), Some(error)) = (number, error) else { continue };
-            let (count, first, why) = failed.unwrap_or_else(|| (0, number.cast_unsigned(), error));
-            failed = Some((count + 1, first, why));
-        }
-    }
-    let statistics = statistics(directory, runs)?;
+    let Summary { runs, failed, statistics } = directory.summary().map_err(failure)?;
     write_statistics(&directory.path().join("statistics.csv"), &statistics)?;
     Ok(Told { runs, statistics, failed, only: None, table: Some(directory.path().to_owned()) })
-}
-
-/// The statistics of the metrics that are numbers, some columns at a time.
-pub fn statistics(directory: &Directory, runs: usize) -> Result<Vec<Statistics>, Failure> {
-    let columns = |names: &[&str]| directory.columns(names).map_err(failure);
-    directory.work().statistics(runs, HELD, columns)
 }

@@ -2,9 +2,9 @@
 //! of it, on any number of machines; the rows are the same.
 //!
 //! ```text
-//! manifest.toml                          Manifest: version, scenario, design, runs, hash
-//! part-0000000000-0000002048.parquet     a row a run; each written beside its place, synced and renamed
-//! .lock                                  held by the command at work there, released by the kernel on its death
+//! manifest.toml                               Manifest: version, scenario, design, runs, hash
+//! runs/part-0000000000-0000002048.parquet     a row a run; each written beside its place, synced and renamed
+//! .lock                                       held by the command at work there, released by the kernel on its death
 //! ```
 //!
 //! What a worker needs, such as a process of Dask:
@@ -23,29 +23,24 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use thiserror::Error;
 
 use super::manifest::{LARGEST, Manifest};
-use super::parquet::{Reading, encode};
-use super::rows::{Column, Field, Rows};
-use super::{Campaign, Outcome, Run, RunError, part};
+use super::parquet::Reading;
+use super::part;
+use super::rows::{Column, Rows};
+use super::work::{NOTE, Work};
 use crate::document::ScenarioError;
-use crate::metrics::{Metrics, Selection};
-use crate::record::{Record, RecordError};
-use crate::sim::SimulationError;
+use crate::record::Record;
 use crate::whole::{self, Partial};
 
 /// The manifest's file.
 pub const MANIFEST: &str = "manifest.toml";
+/// The directory of the parts.
+pub const RUNS: &str = "runs";
 /// The file whose lock the command at work holds.
 const LOCK: &str = ".lock";
-/// The note of a part that says which campaign it is of.
-const NOTE: &str = "flexsc.campaign";
-/// The note that has the units of its columns.
-const UNITS: &str = "flexsc.units";
-
 /// Why a directory cannot be used.
 #[derive(Debug, Error)]
 pub enum DirectoryError {
@@ -98,90 +93,6 @@ pub(super) fn io_of(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '
     }
 }
 
-/// What makes the rows of a campaign: its manifest, and what that comes to.
-#[derive(Clone, Debug)]
-pub struct Work {
-    /// The manifest.
-    pub manifest: Manifest,
-    /// The campaign.
-    pub campaign: Arc<Campaign>,
-    /// The metrics of its rows.
-    pub selection: Selection,
-    fields: Arc<[Field]>,
-}
-
-impl Work {
-    /// The work that a manifest describes; `origin` is what errors call it.
-    pub fn of(manifest: Manifest, origin: &Path) -> Result<Self, DirectoryError> {
-        let selection = manifest.selection().map_err(|why| wrong(origin, why))?;
-        let campaign = Arc::new(manifest.campaign()?);
-        let fields = campaign.fields(&selection);
-        Ok(Self { manifest, campaign, selection, fields })
-    }
-
-    /// No rows yet.
-    pub fn rows(&self) -> Rows {
-        Rows::new(self.fields.clone())
-    }
-
-    /// The columns of the rows.
-    pub fn fields(&self) -> &[Field] {
-        &self.fields
-    }
-
-    /// Rows as the bytes of a part.
-    pub fn encode(&self, rows: &Rows) -> io::Result<Vec<u8>> {
-        let units = self.fields.iter().filter(|field| !field.unit.is_empty());
-        let units: serde_json::Map<_, _> =
-            units.map(|field| (field.name.clone(), field.unit.into())).collect();
-        let units = serde_json::Value::Object(units).to_string();
-        encode(rows, &[(NOTE, self.manifest.hash.clone()), (UNITS, units)])
-    }
-
-    /// Makes some runs on so many threads, or with 0 on one for each core; `poll` is asked again and again whether to stop.
-    pub fn make(
-        &self,
-        runs: Range<u64>,
-        threads: usize,
-        poll: impl Record + Clone + Send + Sync + 'static,
-    ) -> Result<Rows, DirectoryError> {
-        let mut rows = self.rows();
-        let (selection, record) = (self.selection.clone(), poll.clone());
-        let work = move |run: &Run| -> Result<Metrics, RunError> {
-            Ok(Campaign::simulate_for(run, &selection, record.clone())?)
-        };
-        let mut poll = poll;
-        self.campaign.each(runs, threads, work, |outcome: Option<Outcome>| {
-            poll.poll().map_err(|_| DirectoryError::Interrupted)?;
-            if let Some(outcome) = outcome {
-                let stopped = matches!(
-                    outcome.metrics,
-                    Err(RunError::Simulation(SimulationError::Record(RecordError::Interrupted)))
-                );
-                if stopped {
-                    return Err(DirectoryError::Interrupted);
-                }
-                rows.push(&self.campaign, &outcome);
-            }
-            Ok(())
-        })?;
-        Ok(rows)
-    }
-
-    /// A part as the name of its file and its bytes.
-    pub fn part(
-        &self,
-        runs: Range<u64>,
-        threads: usize,
-        poll: impl Record + Clone + Send + Sync + 'static,
-    ) -> Result<(String, Vec<u8>), DirectoryError> {
-        let name = part::name(&runs);
-        let rows = self.make(runs, threads, poll)?;
-        let bytes = self.encode(&rows).map_err(io_of(Path::new(&name)))?;
-        Ok((name, bytes))
-    }
-}
-
 /// The directory of a campaign.
 #[derive(Debug)]
 pub struct Directory {
@@ -211,7 +122,8 @@ impl Directory {
     /// # Errors
     /// Another campaign, which is not to be replaced; another process at work.
     pub fn create(path: &Path, mut manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
-        fs::create_dir_all(path).map_err(io_of(path))?;
+        let within = path.join(RUNS);
+        fs::create_dir_all(&within).map_err(io_of(&within))?;
         let place = path.join(MANIFEST);
         // Before anything is touched, and again by the only one that may.
         fitting(path, &place, &manifest, force)?;
@@ -219,7 +131,7 @@ impl Directory {
         let there = fitting(path, &place, &manifest, force)?;
         let fits = there.as_ref().is_some_and(|there| there.difference(&manifest).is_none());
         if !fits {
-            for file in parts(path)?.iter().map(|runs| path.join(part::name(runs))) {
+            for file in parts(path)?.iter().map(|runs| path.join(RUNS).join(part::name(runs))) {
                 fs::remove_file(&file).map_err(io_of(&file))?;
             }
         }
@@ -309,7 +221,7 @@ impl Directory {
     /// Several columns, each part opened once.
     pub fn columns(&self, names: &[&str]) -> Result<Vec<Option<Column>>, DirectoryError> {
         let kind =
-            |name: &str| self.work.fields.iter().find(|field| field.name == name).map(|field| field.kind);
+            |name: &str| self.work.fields().iter().find(|field| field.name == name).map(|field| field.kind);
         let mut all: Vec<Option<Column>> = names.iter().map(|name| kind(name).map(Column::of)).collect();
         let known: Vec<&str> = names.iter().copied().filter(|name| kind(name).is_some()).collect();
         for runs in self.parts()? {
@@ -333,7 +245,7 @@ impl Directory {
 
     /// The file of a part.
     pub fn file(&self, runs: &Range<u64>) -> PathBuf {
-        self.path.join(part::name(runs))
+        self.path.join(RUNS).join(part::name(runs))
     }
 
     /// Opens a part, which must be one of this campaign.
@@ -351,13 +263,12 @@ impl Directory {
 
     /// Removes what killed processes left of files; those that are being written stay.
     fn remove_leftovers(&self) -> Result<(), DirectoryError> {
-        let entries = fs::read_dir(&self.path).map_err(io_of(&self.path))?.flatten();
-        for entry in entries {
+        let within = self.path.join(RUNS);
+        for entry in fs::read_dir(&within).map_err(io_of(&within))?.flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
-            let Some(of) = name.strip_suffix(".partial") else { continue };
-            if part::runs(of).is_some() || of == MANIFEST {
+            if let Some(part) = name.strip_suffix(".partial").filter(|name| part::runs(name).is_some()) {
                 // What begins a file and drops it removes a leftover; one that is locked is another's at work.
-                drop(Partial::create(&self.path.join(of)));
+                drop(Partial::create(&within.join(part)));
             }
         }
         Ok(())
@@ -387,7 +298,9 @@ fn fitting(
 ) -> Result<Option<Manifest>, DirectoryError> {
     let Some(there) = read(place)? else {
         return match parts(path)?.first().filter(|_| !force) {
-            Some(runs) => Err(wrong(&path.join(part::name(runs)), "is there, and its campaign is unknown")),
+            Some(runs) => {
+                Err(wrong(&path.join(RUNS).join(part::name(runs)), "is there, and its campaign is unknown"))
+            }
             None => Ok(None),
         };
     };
@@ -402,6 +315,7 @@ fn fitting(
 
 fn parts(path: &Path) -> Result<Vec<Range<u64>>, DirectoryError> {
     let mut parts = Vec::new();
+    let path = &path.join(RUNS);
     for entry in fs::read_dir(path).map_err(io_of(path))? {
         let name = entry.map_err(io_of(path))?.file_name();
         parts.extend(part::runs(&name.to_string_lossy()));

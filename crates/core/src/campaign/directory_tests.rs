@@ -1,7 +1,9 @@
 //! Directories: parts by any workers in any order, manifests that fit or not, locks.
 
 use super::*;
+use crate::campaign::Campaign;
 use crate::campaign::design::{Block, Design};
+use crate::metrics::Selection;
 
 const SCENARIO: &str = r#"
 name = "u"
@@ -146,10 +148,10 @@ fn what_does_not_fit_is_refused() {
     seeded.scenario = seeded.scenario.replace("seed = 7", "seed = 8");
     assert!(Manifest::parse(&seeded.to_toml()).expect_err("changed").contains("its hash is another"));
     // A part of another campaign under the name of one.
-    let part = fs::read(here.0.join("part-0000000000-0000000008.parquet")).expect("there");
+    let part = fs::read(here.0.join("runs/part-0000000000-0000000008.parquet")).expect("there");
     drop(Directory::create(&here.0, other, true).expect("replaced"));
-    assert!(!here.0.join("part-0000000000-0000000008.parquet").exists());
-    fs::write(here.0.join("part-0000000000-0000000002.parquet"), part).expect("written");
+    assert!(!here.0.join("runs/part-0000000000-0000000008.parquet").exists());
+    fs::write(here.0.join("runs/part-0000000000-0000000002.parquet"), part).expect("written");
     let refused = Directory::open(&here.0).expect("there").column("run").expect_err("foreign").to_string();
     assert!(refused.contains("is no part of the campaign"), "{refused}");
 }

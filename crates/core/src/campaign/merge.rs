@@ -4,7 +4,6 @@ use std::fs;
 use std::ops::Range;
 
 use super::directory::{Directory, DirectoryError, MANIFEST, io_of, wrong};
-use super::part;
 use super::rows::SECONDS;
 use crate::whole;
 
@@ -27,17 +26,14 @@ impl Directory {
                 None => drop(other.reading(runs)?),
                 Some(own) if own == runs => self.same(other, runs)?,
                 Some(own) => {
-                    let why = format!(
-                        "has runs that {} has too, in another part",
-                        self.path().join(part::name(own)).display()
-                    );
-                    return Err(wrong(&other.path().join(part::name(runs)), why));
+                    let why = format!("has runs that {} has too, in another part", self.file(own).display());
+                    return Err(wrong(&other.file(runs), why));
                 }
             }
         }
         let mut new = 0;
         for runs in theirs.iter().filter(|runs| !own.contains(runs)) {
-            let (from, to) = (other.path().join(part::name(runs)), self.path().join(part::name(runs)));
+            let (from, to) = (other.file(runs), self.file(runs));
             let bytes = fs::read(&from).map_err(io_of(&from))?;
             whole::write_synced(&to, &bytes).map_err(io_of(&to))?;
             new += runs.end - runs.start;
@@ -48,7 +44,7 @@ impl Directory {
     /// Whether a part has the same rows in both, but for the time they took.
     fn same(&self, other: &Self, runs: &Range<u64>) -> Result<(), DirectoryError> {
         let (own, theirs) = (self.reading(runs)?, other.reading(runs)?);
-        let path = other.path().join(part::name(runs));
+        let path = other.file(runs);
         let fields = self.work().fields().iter().filter(|field| field.name != SECONDS);
         for field in fields {
             let (own, theirs) = (own.column(&field.name), theirs.column(&field.name));

@@ -6,8 +6,10 @@ use std::ops::Range;
 const LANES: u64 = 256;
 /// A part takes about so long on one core (s): what a killed worker loses.
 const WORK_S: f64 = 4.0;
-/// No campaign has many more parts than this.
+/// No campaign has many more parts than this ...
 const MOST_PARTS: u64 = 4096;
+/// ... and one of many runs has some of them, so that several workers have work.
+const FEW_PARTS: u64 = 16;
 
 /// How many runs a part has: a power of two, and for short runs a multiple of 256. Parts begin at its multiples, whatever is run
 /// beside them.
@@ -16,7 +18,8 @@ pub fn size(runs: u64, run_s: f64) -> u64 {
     // Downwards to a power of two; lanes are worth more than an even size.
     let by_time = 1 << wanted.max(1).ilog2();
     let by_time = if (LANES / 4..LANES).contains(&by_time) { LANES } else { by_time };
-    by_time.max(runs.div_ceil(MOST_PARTS).next_power_of_two())
+    let for_all = (runs / FEW_PARTS).next_power_of_two().max(LANES);
+    by_time.min(for_all).max(runs.div_ceil(MOST_PARTS).next_power_of_two())
 }
 
 /// The file of a part.
@@ -65,9 +68,10 @@ mod tests {
 
     #[test]
     fn parts_have_sizes_by_the_work() {
-        // Runs of 1 ms, 0.1 s, 10 s and 1 µs.
         for (runs, run_s, exact) in [
-            (1000, 1e-3, 2048),
+            (1000, 1e-3, 256),
+            (10_000, 1e-3, 1024),
+            (1_000_000, 1e-3, 2048),
             (1000, 0.03, 256),
             (1000, 0.1, 32),
             (1000, 10.0, 1),

@@ -133,7 +133,7 @@ mod tests {
         assert!(why(&[&[1.0, 0.5], &[0.4, 1.0]]).contains("symmetric"));
         assert!(why(&[&[1.0, 1.5], &[1.5, 1.0]]).contains("from -1 to 1"));
         assert!(why(&[&[1.0, 0.5], &[0.5, 0.9]]).contains("diagonal"));
-        assert!(why(&[&[1.0, 0.5]]).contains("as many as keys"));
+        assert!(why(&[&[1.0, 0.5], &[0.5]]).contains("as many as keys"));
         let impossible: [&[f64]; 3] = [&[1.0, 0.9, -0.9], &[0.9, 1.0, 0.9], &[-0.9, 0.9, 1.0]];
         assert!(why(&impossible).contains("negative eigenvalue"));
         // Keys that are one and the same number.

@@ -46,12 +46,11 @@ class Table:
 
     @property
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """Columns by name, of shape (runs,): `run`, `seed`, the keys that vary, the metrics, `seconds`, `error`.
+        """Columns by name, of shape (runs,): `run`, `seed`, the keys that vary, the metrics, `error`.
 
         Metrics are float64 with NaN where there is none, words str, lists an array of arrays. `error` is why a
-        run failed, else empty; `seconds` is how long it took, which is no part of what repeats.
-        `pandas.DataFrame(table.columns)` takes them as they are. Those of a directory are read when they are
-        first asked for.
+        run failed, else empty. `pandas.DataFrame(table.columns)` takes them as they are. Those of a directory
+        are read when they are first asked for.
         """
         return {name: self[name] for name in self._names}
 
@@ -222,7 +221,7 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
 
 def of_directory(directory: engine.Directory, kept: object = None) -> Table:
     """Make the table of a directory. `kept` lives as long as the table."""
-    table = Table(directory.work, directory.column, lambda: directory.statistics(len(table)))
+    table = Table(directory.work, directory.column, directory.statistics)
     table._kept = kept
     return table
 

@@ -26,6 +26,8 @@ _GIVEN_UP = {"KilledWorker", "FutureCancelledError", "CancelledError", "LostWork
 # A task has at most so many parts: what is lost with a worker.
 _MOST_PARTS = 64
 _MANIFEST = "manifest.toml"
+# Where the parts are.
+_RUNS = "runs"
 
 
 class Local:
@@ -42,7 +44,7 @@ class Local:
 
     def missing(self, work: engine.Work) -> list[Span]:
         """The parts that are not there."""
-        return work.missing(os.listdir(self.name))
+        return work.missing(os.listdir(os.path.join(self.name, _RUNS)))
 
     def end(self) -> None:
         """Let other processes work there."""
@@ -65,7 +67,7 @@ class Remote:
     def begin(self, work: engine.Work, force: bool) -> engine.Work:
         """Write the manifest, or go on with the campaign that is there."""
         files, root = self._files()
-        files.makedirs(root, exist_ok=True)
+        files.makedirs(f"{root}/{_RUNS}", exist_ok=True)
         at = f"{root}/{_MANIFEST}"
         if files.exists(at) and not force:
             there = engine.Work.parse(files.cat_file(at).decode())
@@ -76,15 +78,15 @@ class Remote:
                 was, now = there.runs, work.runs
                 raise ValueError(f"{self.name}: has runs {was[0]}:{was[1]} of this campaign, not {now[0]}:{now[1]}")
             return there
-        for name in _names(files, root):
-            if name.startswith("part-"):
-                files.rm_file(f"{root}/{name}")
+        for name in _names(files, f"{root}/{_RUNS}"):
+            files.rm_file(f"{root}/{_RUNS}/{name}")
         _put(files, at, work.manifest.encode())
         return work
 
     def missing(self, work: engine.Work) -> list[Span]:
         """The parts that are not there."""
-        return work.missing(_names(*self._files()))
+        files, root = self._files()
+        return work.missing(_names(files, f"{root}/{_RUNS}"))
 
     def end(self) -> None:
         """A bucket has no lock: who writes a part twice writes the same."""
@@ -93,9 +95,11 @@ class Remote:
         """The rows that are there, through a directory of this process."""
         files, root = self._files()
         kept = _Temporary()
-        for name in _names(files, root):
-            if name == _MANIFEST or (name.startswith("part-") and name.endswith(".parquet")):
-                files.get_file(f"{root}/{name}", str(kept.path / name))
+        (kept.path / _RUNS).mkdir()
+        files.get_file(f"{root}/{_MANIFEST}", str(kept.path / _MANIFEST))
+        for name in _names(files, f"{root}/{_RUNS}"):
+            if name.endswith(".parquet"):
+                files.get_file(f"{root}/{_RUNS}/{name}", str(kept.path / _RUNS / name))
         return of_directory(engine.Directory.open(kept.path), kept)
 
 
@@ -149,7 +153,7 @@ def run(
 
             def keep(told: list[tuple[str, bytes]]) -> None:
                 for name, data in told:
-                    (kept.path / name).write_bytes(data)
+                    (kept.path / _RUNS / name).write_bytes(data)
 
             _hand_out(executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs or 1), keep)
     finally:
@@ -236,7 +240,7 @@ def _write(name: str, hashed: str, parts: Sequence[Span], jobs: int) -> tuple[fl
         files, root = _file_system(name)
         for part in parts:
             file, data = _work_at(name, hashed).part(part, jobs)
-            _put(files, f"{root}/{file}", data)
+            _put(files, f"{root}/{_RUNS}/{file}", data)
     return time.perf_counter() - began, None
 
 
@@ -257,8 +261,10 @@ def _file_system(name: str) -> tuple[Any, str]:
 
 
 def _names(files: Any, root: str) -> list[str]:
-    # What other processes wrote is not in a listing that was kept.
+    # What other processes wrote is not in a listing that was kept; a bucket has no empty directories.
     files.invalidate_cache()
+    if not files.exists(root):
+        return []
     return [str(path).rpartition("/")[2] for path in files.ls(root, detail=False)]
 
 

@@ -1,0 +1,69 @@
+//! What the rows of a campaign come to: failures, and the statistics of every metric that is a number.
+
+use super::directory::{Directory, DirectoryError};
+use super::work::Work;
+use super::rows::{Column, ERROR, Kind, RUN};
+use crate::metrics::{self, goal};
+use crate::statistics::Statistics;
+
+/// No more numbers of the rows are held at once, or those of one metric (64 MB).
+const HELD: usize = 1 << 23;
+
+/// What rows come to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Summary {
+    /// How many there are.
+    pub runs: usize,
+    /// How many runs failed, the first of them, and why.
+    pub failed: Option<(u64, u64, String)>,
+    /// The statistics of each metric.
+    pub statistics: Vec<Statistics>,
+}
+
+impl Directory {
+    /// What the rows that are there come to.
+    pub fn summary(&self) -> Result<Summary, DirectoryError> {
+        let (mut runs, mut failed) = (0, None);
+        let about = (self.column(RUN)?, self.column(ERROR)?);
+        if let (Some(Column::Integers(numbers)), Some(Column::Words(errors))) = about {
+            runs = numbers.len();
+            for (number, error) in numbers.into_iter().zip(errors) {
+                let (Some(number), Some(error)) = (number, error) else { continue };
+                let (count, first, why) = failed.unwrap_or_else(|| (0, number.cast_unsigned(), error));
+                failed = Some((count + 1, first, why));
+            }
+        }
+        Ok(Summary { runs, failed, statistics: self.work().statistics(runs, |names| self.columns(names))? })
+    }
+}
+
+impl Work {
+    /// The statistics of the metrics that are numbers, some at a time; `columns` gives columns by their names, nothing for one
+    /// that is not there.
+    pub fn statistics<E>(
+        &self,
+        runs: usize,
+        columns: impl Fn(&[&str]) -> Result<Vec<Option<Column>>, E>,
+    ) -> Result<Vec<Statistics>, E> {
+        let keys: Vec<&str> = self.campaign.keys().collect();
+        let counts = |kind: Kind, name: &str| match kind {
+            Kind::Integers | Kind::Numbers => true,
+            Kind::Words => goal::NAMES.contains(&name),
+            Kind::Lists => false,
+        };
+        let meaning = |name: &str| metrics::meaning(name, Some(self.campaign.scenario()));
+        let metrics = self.fields().iter().filter(|field| !keys.contains(&field.name.as_str()));
+        let numeric: Vec<_> = metrics
+            .filter(|field| counts(field.kind, &field.name))
+            .filter_map(|field| Some((field.name.as_str(), meaning(&field.name)?)))
+            .collect();
+        let mut all = Vec::new();
+        for some in numeric.chunks((HELD / runs.max(1)).max(1)) {
+            let names: Vec<&str> = some.iter().map(|(name, _)| *name).collect();
+            for ((_, meaning), column) in some.iter().zip(columns(&names)?) {
+                all.push(Statistics::of(meaning, column.map_or_else(Vec::new, |column| column.numbers())));
+            }
+        }
+        Ok(all)
+    }
+}
