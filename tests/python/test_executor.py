@@ -79,14 +79,14 @@ def processes(count: int) -> ProcessPoolExecutor:
 
 def test_rows_are_the_same_on_any_executor(study: Scenario, whole: Table, tmp_path: Path) -> None:
     same(whole, flexsc.campaign(study, 600, jobs=8))
-    for count in (1, 2, 8):
+    for count in (1, 8):
         with ThreadPoolExecutor(count) as pool:
             out = tmp_path / f"threads-{count}"
-            same(whole, flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.02))
+            same(whole, flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.1))
             same(whole, flexsc.read_campaign(out))
     with processes(2) as pool:
-        same(whole, flexsc.campaign(study, 600, executor=pool, task_s=0.02))
-        same(whole, flexsc.campaign(study, 600, out=tmp_path / "p", executor=pool, task_s=0.02))
+        same(whole, flexsc.campaign(study, 600, executor=pool, task_s=0.1))
+        same(whole, flexsc.campaign(study, 600, out=tmp_path / "p", executor=pool, task_s=0.1))
         # It is all there: nothing is handed in.
         told: list[tuple[int, int]] = []
         flexsc.campaign(
@@ -123,7 +123,7 @@ def test_places_that_fsspec_knows(study: Scenario, whole: Table, tmp_path: Path)
     fsspec = pytest.importorskip("fsspec")
     with ThreadPoolExecutor(2) as pool:
         out = "memory://bucket/study"
-        same(whole, flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.02))
+        same(whole, flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.1))
         same(whole, flexsc.read_campaign(out))
         files = fsspec.filesystem("memory")
         names = [path.rpartition("/")[2] for path in files.ls("/bucket/study/runs", detail=False)]
@@ -137,7 +137,7 @@ def test_places_that_fsspec_knows(study: Scenario, whole: Table, tmp_path: Path)
         fewer = flexsc.campaign(study.with_("duration", 700.0), 20, out=out, executor=pool, force=True)
         assert len(fewer) == 20
     with processes(2) as pool:
-        same(whole, flexsc.campaign(study, 600, out=f"file://{tmp_path}/out", executor=pool, task_s=0.02))
+        same(whole, flexsc.campaign(study, 600, out=f"file://{tmp_path}/out", executor=pool, task_s=0.1))
 
 
 def test_a_broken_pool_is_an_error_and_the_same_call_goes_on(
@@ -164,7 +164,7 @@ def test_a_killed_process_leaves_whole_parts(study: Scenario, whole: Table, tmp_
         from concurrent.futures import ThreadPoolExecutor
         with ThreadPoolExecutor(2) as pool:
             study = flexsc.Scenario.load("study.toml")
-            flexsc.campaign(study, 600, out="out", executor=pool, task_s=0.01)
+            flexsc.campaign(study, 600, out="out", executor=pool, task_s=0.05)
     """
     moments = random.Random(3)
     for _ in range(5):
@@ -215,12 +215,13 @@ def test_dask_survives_the_deaths_of_workers(
 ) -> None:
     from flexsc.dask import campaign
 
-    same(whole, campaign(cluster, study, 600, task_s=0.02))
+    same(whole, campaign(cluster, study, 600, task_s=0.1))
     moments = random.Random(5)
 
     def kill(done: int, total: int) -> None:
-        if moments.random() < 0.15:
-            pids = list(cluster.run(os.getpid).values())
+        # A worker that begins anew has no process yet.
+        pids = [nanny.pid for nanny in cluster.cluster.workers.values() if nanny.pid]
+        if len(pids) == 2 and len(killed) < 4 and moments.random() < 0.3:
             os.kill(moments.choice(pids), signal.SIGKILL)
             killed.append(done)
 

@@ -4,6 +4,7 @@ mod kept;
 mod live;
 pub mod options;
 pub mod parts;
+mod scheduler;
 
 use std::io::Write;
 use std::ops::Range;
@@ -80,6 +81,8 @@ pub struct Job<'a> {
     pub jobs: Option<u16>,
     /// Whether each run is printed as JSON.
     pub json: bool,
+    /// The scheduler that makes the runs, if one does.
+    pub scheduler: Option<&'a str>,
 }
 
 /// What a campaign came to.

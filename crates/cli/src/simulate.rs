@@ -122,7 +122,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let selection = args.options.selection()?;
     if args.runs.is_none() && !args.options.are_default() {
-        let why = "--table, --metrics, --fail-fast, --sample and --replicas are of campaigns, by --runs";
+        let why = "--table, --metrics, --fail-fast, --sample, --replicas and --scheduler are of campaigns, by --runs";
         return Err(Failure::Arguments(why.to_owned()));
     }
     #[cfg(feature = "live")]
@@ -246,6 +246,7 @@ fn several(
         force: args.force,
         jobs: args.jobs,
         json: args.json,
+        scheduler: args.options.scheduler(args.log.is_some_and(|log| log != LogDetail::None), args.json)?,
     };
     let detail = args.log.unwrap_or(LogDetail::None).detail();
     let directory = args.out.clone().unwrap_or_default();

@@ -168,6 +168,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         force: args.force,
         jobs: args.jobs,
         json: args.json,
+        scheduler: args.options.scheduler(false, args.json)?,
     };
     campaign::run(&Arc::new(study), &job, move |run| {
         if stop::asked() {

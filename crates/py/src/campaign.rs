@@ -30,7 +30,9 @@ fn failed(error: DirectoryError) -> PyErr {
         DirectoryError::Busy { .. } => PyOSError::new_err(error.to_string()),
         DirectoryError::Scenario(error) => scenario_error(error),
         DirectoryError::Interrupted => PyKeyboardInterrupt::new_err(()),
-        DirectoryError::Other { .. } | DirectoryError::Wrong { .. } => PyValueError::new_err(error.to_string()),
+        DirectoryError::Other { .. } | DirectoryError::Wrong { .. } => {
+            PyValueError::new_err(error.to_string())
+        }
     }
 }
 
@@ -79,10 +81,15 @@ impl Work {
         let wrong = PyValueError::new_err::<String>;
         let known = Sampling::ALL.into_iter().find(|(name, _)| *name == sampling);
         let names = Sampling::ALL.map(|(name, _)| format!("'{name}'")).join(", ");
-        let (_, draws) = known.ok_or_else(|| wrong(format!("sample must be one of {names}, got {sampling:?}")))?;
+        let (_, draws) =
+            known.ok_or_else(|| wrong(format!("sample must be one of {names}, got {sampling:?}")))?;
         let hypercube = if draws == Sampling::LatinHypercube { runs.1.div_ceil(replicas.max(1)) } else { 0 };
-        let design =
-            Design { draws, hypercube, replicas, ..Design::of(grids.into_iter().map(|(key, values)| Grid { key, values }.into())) };
+        let design = Design {
+            draws,
+            hypercube,
+            replicas,
+            ..Design::of(grids.into_iter().map(|(key, values)| Grid { key, values }.into()))
+        };
         let selection = metrics.map_or(Ok(Selection::ALL), Selection::of).map_err(wrong)?;
         let campaign =
             Campaign::of(scenario.inner.clone(), &scenario.origin, design).map_err(scenario_error)?;
@@ -91,9 +98,7 @@ impl Work {
         allowed(&cost, yes)?;
         let mut manifest = Manifest::new(&campaign, runs.0..runs.1, &selection).map_err(wrong)?;
         if let Some(part_s) = part_s {
-            // Parts are of 4 s by the estimate.
-            let shorter = (manifest.part as f64 * part_s / 4.0).clamp(1.0, 65_536.0) as u64;
-            manifest.part = shorter.next_power_of_two();
+            manifest.shorten(part_s);
         }
         Ok(Self(Arc::new(Whole::of(manifest, MANIFEST.as_ref()).map_err(failed)?)))
     }
@@ -101,7 +106,8 @@ impl Work {
     /// The work that a manifest describes.
     #[staticmethod]
     fn parse(manifest: &str) -> PyResult<Self> {
-        let manifest = Manifest::parse(manifest).map_err(|why| PyValueError::new_err(format!("{MANIFEST}: {why}")))?;
+        let manifest =
+            Manifest::parse(manifest).map_err(|why| PyValueError::new_err(format!("{MANIFEST}: {why}")))?;
         Ok(Self(Arc::new(Whole::of(manifest, MANIFEST.as_ref()).map_err(failed)?)))
     }
 

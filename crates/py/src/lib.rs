@@ -52,8 +52,8 @@ mod _native {
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
     #[pymodule_export]
     use super::{
-        Log, Scenario, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json,
-        rivals_json, schema_json, simulate, to_mcap, write,
+        Log, Scenario, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,
+        schema_json, simulate, to_mcap, write,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -87,7 +87,6 @@ impl Scenario {
     fn run(&self, number: u64) -> Run {
         Run { number, scenario: self.inner.clone(), drawn: Vec::new() }
     }
-
 }
 
 #[pymethods]

@@ -24,6 +24,9 @@ pub struct Options {
     /// How values are spread over the [uncertain] keys, and over ranges of a sweep: random, latin-hypercube or sobol
     #[arg(long, value_name = "METHOD[:POINTS]", value_parser = sample)]
     sample: Option<Sample>,
+    /// Make the runs on the workers of a Dask scheduler, which reach DIR by the same path; needs `pip install flexsc[dask]`
+    #[arg(long, value_name = "ADDRESS", requires = "out")]
+    pub scheduler: Option<String>,
     /// Make so many runs of each point, which differ in their noise only
     #[arg(long, value_name = "R", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=MOST_REPLICAS))]
     pub replicas: u64,
@@ -60,13 +63,37 @@ fn sample(text: &str) -> Result<Sample, String> {
 impl Options {
     /// Whether none is given.
     pub fn are_default(&self) -> bool {
-        let Self { table, metrics, fail_fast, sample, replicas } = self;
-        table.is_none() && metrics.is_none() && !fail_fast && sample.is_none() && *replicas == 1
+        let Self { table, metrics, fail_fast, sample, replicas, scheduler } = self;
+        table.is_none()
+            && metrics.is_none()
+            && !fail_fast
+            && sample.is_none()
+            && *replicas == 1
+            && scheduler.is_none()
     }
 
     /// The form of the rows.
     pub fn table(&self) -> Kind {
         self.table.unwrap_or(if cfg!(feature = "parquet") { Kind::Parquet } else { Kind::Csv })
+    }
+
+    /// The scheduler that makes the runs, if one does.
+    ///
+    /// # Errors
+    /// What only this process could do is asked for too.
+    pub fn scheduler(&self, log: bool, json: bool) -> Result<Option<&str>, Failure> {
+        let other = [
+            ("--table csv", self.table() == Kind::Csv),
+            ("--log", log),
+            ("--json", json),
+            ("--fail-fast", self.fail_fast),
+        ];
+        match (&self.scheduler, other.into_iter().find(|(_, given)| *given)) {
+            (Some(address), Some((option, _))) => Err(Failure::Arguments(format!(
+                "--scheduler {address}: its workers write Parquet files alone, without {option}"
+            ))),
+            (address, _) => Ok(address.as_deref()),
+        }
     }
 
     /// The metrics that are wanted.

@@ -11,7 +11,7 @@ use flexsc_core::campaign::{
 use flexsc_core::metrics::Metrics;
 
 use super::live::Live;
-use super::{Job, Told, interruption, object, write_statistics};
+use super::{Job, Told, interruption, object, scheduler, write_statistics};
 use crate::failure::Failure;
 use crate::results::print_lines;
 use crate::{say, stop};
@@ -53,14 +53,23 @@ pub fn run(
     path: &Path,
     work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
 ) -> Result<Told, Failure> {
-    let manifest = Manifest::new(study, job.range.clone(), &job.selection)
+    let mut manifest = Manifest::new(study, job.range.clone(), &job.selection)
         .map_err(|why| Failure::Arguments(format!("{}: {why}", study.scenario().name)))?;
+    if job.scheduler.is_some() {
+        manifest.shorten(scheduler::TASK_S);
+    }
     let directory = create(path, manifest, job)?;
     let missing = directory.missing_of(job.range.clone()).map_err(failure)?;
     let count = |ranges: &[Range<u64>]| ranges.iter().map(|runs| runs.end - runs.start).sum::<u64>();
     let (all, left) = (job.range.end - job.range.start, count(&missing));
     if left < all && !job.json {
         say!("{}: {} of {all} runs are there", path.display(), all - left);
+    }
+    if let Some(address) = job.scheduler {
+        // The lock is of who hands out the runs.
+        drop(directory);
+        scheduler::make(path, address)?;
+        return told(&Directory::open(path).map_err(failure)?);
     }
     let work = Arc::new(work);
     let mut making =

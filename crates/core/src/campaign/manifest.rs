@@ -119,6 +119,12 @@ impl Manifest {
         Ok(manifest)
     }
 
+    /// Makes parts of about so much work (s), for schedulers; those that are there stay.
+    pub fn shorten(&mut self, seconds: f64) {
+        let part = (self.part as f64 * seconds / part::WORK_S).clamp(1.0, 65_536.0) as u64;
+        self.part = part.next_power_of_two();
+    }
+
     /// The runs that are wanted.
     pub fn runs(&self) -> Range<u64> {
         self.from..self.to

@@ -5,7 +5,7 @@ use std::ops::Range;
 /// Lanes of runs side by side are filled by so many.
 const LANES: u64 = 256;
 /// A part takes about so long on one core (s): what a killed worker loses.
-const WORK_S: f64 = 4.0;
+pub(super) const WORK_S: f64 = 4.0;
 /// No campaign has many more parts than this ...
 const MOST_PARTS: u64 = 4096;
 /// ... and one of many runs has some of them, so that several workers have work.

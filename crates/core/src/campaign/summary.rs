@@ -1,8 +1,8 @@
 //! What the rows of a campaign come to: failures, and the statistics of every metric that is a number.
 
 use super::directory::{Directory, DirectoryError};
-use super::work::Work;
 use super::rows::{Column, ERROR, Kind, RUN};
+use super::work::Work;
 use crate::metrics::{self, goal};
 use crate::statistics::Statistics;
 

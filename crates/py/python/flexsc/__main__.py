@@ -1,5 +1,6 @@
 """The command `flexsc`: the engine's own, called from Python."""
 
+import os
 import signal
 import sys
 
@@ -10,6 +11,8 @@ def main() -> int:
     """Run the command with the arguments of this process; its exit code is returned."""
     # Python's own handler would keep Ctrl-C to itself until the engine returns.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # `--scheduler` starts Python again.
+    os.environ.setdefault("FLEXSC_PYTHON", sys.executable)
     return _native.main(["flexsc", *sys.argv[1:]])
 
 

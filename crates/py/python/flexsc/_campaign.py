@@ -48,9 +48,9 @@ class Table:
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         """Columns by name, of shape (runs,): `run`, `seed`, the keys that vary, the metrics, `error`.
 
-        Metrics are float64 with NaN where there is none, words str, lists an array of arrays. `error` is why a
-        run failed, else empty. `pandas.DataFrame(table.columns)` takes them as they are. Those of a directory
-        are read when they are first asked for.
+        Metrics are float64 with NaN where there is none, words str, lists an array of arrays. `error` is
+        why a run failed, else empty. `pandas.DataFrame(table.columns)` takes them as they are. Those of a
+        directory are read when they are first asked for.
         """
         return {name: self[name] for name in self._names}
 
@@ -119,8 +119,8 @@ def campaign(
         out: The directory that keeps the rows as Parquet files, made if missing, or a place that `fsspec`
             knows, such as `s3://bucket/study`. The same call goes on where a stopped one ended.
         executor: Where the runs are made, such as a `concurrent.futures.ProcessPoolExecutor`, or
-            `client.get_executor()` of Dask. Workers write their rows to `out`, which they all must reach; without
-            `out` rows come back through this process.
+            Dask's through `flexsc.dask.campaign`. Workers write their rows to `out`, which they all must
+            reach; without `out` rows come back through this process.
         task_s: About how long a task of the executor takes (s).
         force: Replace another campaign in `out`.
         progress: Called with the number of runs that are done and that of all, after each task.

@@ -10,6 +10,7 @@ import uuid
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from functools import lru_cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +77,9 @@ class Remote:
                 raise ValueError(f"{self.name}: what is there is of another campaign ({difference})")
             if there.runs != work.runs:
                 was, now = there.runs, work.runs
-                raise ValueError(f"{self.name}: has runs {was[0]}:{was[1]} of this campaign, not {now[0]}:{now[1]}")
+                raise ValueError(
+                    f"{self.name}: has runs {was[0]}:{was[1]} of this campaign, not {now[0]}:{now[1]}"
+                )
             return there
         for name in _names(files, f"{root}/{_RUNS}"):
             files.rm_file(f"{root}/{_RUNS}/{name}")
@@ -148,14 +151,22 @@ def run(
                 _write(store.name, work.hash, [part], jobs)
                 done([part])
         elif kept is None:
-            _hand_out(executor, missing, task_s, done, lambda parts: (_write, store.name, work.hash, parts, jobs or 1))
+            _hand_out(
+                executor,
+                missing,
+                task_s,
+                done,
+                lambda parts: (_write, store.name, work.hash, parts, jobs or 1),
+            )
         else:
 
             def keep(told: list[tuple[str, bytes]]) -> None:
                 for name, data in told:
                     (kept.path / _RUNS / name).write_bytes(data)
 
-            _hand_out(executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs or 1), keep)
+            _hand_out(
+                executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs or 1), keep
+            )
     finally:
         store.end()
     if kept is None:
@@ -211,7 +222,7 @@ def _threads_of(executor: Executor) -> int:
     client = getattr(executor, "_client", None)
     if client is None:
         return 64
-    return max(sum(client.nthreads().values()), 1)
+    return max(sum(int(threads) for threads in client.nthreads().values()), 1)
 
 
 @lru_cache(maxsize=4)
@@ -231,7 +242,7 @@ def _work_at(name: str, _hash: str) -> engine.Work:
 
 
 def _write(name: str, hashed: str, parts: Sequence[Span], jobs: int) -> tuple[float, None]:
-    """Make parts, and write them where the campaign is. The task of a worker: it tells how long it took (s)."""
+    """Make parts, and write them where the campaign is: a worker's task. It tells how long it took (s)."""
     began = time.perf_counter()
     if "://" not in name:
         for part in parts:
@@ -253,10 +264,10 @@ def _bytes(manifest: str, parts: Sequence[Span], jobs: int) -> tuple[float, list
 
 def _file_system(name: str) -> tuple[Any, str]:
     try:
-        from fsspec.core import url_to_fs
+        core = import_module("fsspec.core")
     except ImportError:
         raise ImportError(f"{name}: places other than directories need fsspec: pip install fsspec") from None
-    files, root = url_to_fs(name)
+    files, root = core.url_to_fs(name)
     return files, str(root).rstrip("/")
 
 

@@ -1,6 +1,6 @@
-"""Campaigns on Dask: `flexsc.dask.campaign(client, scenario, ...)`, and `python -m flexsc.dask SCHEDULER DIR`.
+"""Campaigns on Dask: `flexsc.dask.campaign(client, ...)`, and `python -m flexsc.dask SCHEDULER DIR`.
 
-Needs `dask[distributed]`, which the extra `flexsc[dask]` installs. flexsc has to be installed on the workers too.
+The extra `flexsc[dask]` installs what it needs. flexsc has to be installed on the workers too.
 """
 
 from __future__ import annotations
@@ -8,6 +8,9 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
@@ -25,9 +28,9 @@ __all__ = ["campaign"]
 def campaign(client: Client, scenario: Scenario, runs: int | range = 1000, **options: Any) -> Table:
     """Simulate many runs of a scenario on the workers of a Dask cluster.
 
-    Workers write their rows to `out`, a directory that all of them reach or a place that `fsspec` knows; without
-    it rows come back through this process. Rows do not depend on the number of workers, nor on the deaths of some:
-    a task whose worker died is done by another one.
+    Workers write their rows to `out`, a directory that all of them reach or a place that `fsspec` knows;
+    without it rows come back through this process. Rows do not depend on the number of workers, nor on the
+    deaths of some: a task whose worker died is done by another one.
 
     Args:
         client: The client of a scheduler.
@@ -38,12 +41,38 @@ def campaign(client: Client, scenario: Scenario, runs: int | range = 1000, **opt
     Raises:
         ScenarioError, ValueError, OSError: As `flexsc.campaign`.
     """
-    return _campaign(scenario, runs, executor=_executor(client), **options)
+    return _campaign(scenario, runs, executor=_Executor(client), **options)
 
 
-def _executor(client: Client) -> Any:
-    # Tasks are not kept by their arguments: a part that was deleted is made again.
-    return client.get_executor(pure=False, retries=10)
+class _Executor(Executor):
+    """Tasks on the workers of a client. A task whose workers died ends with an error."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        # A task that nobody keeps is given up by its scheduler.
+        self._kept: dict[Any, Future[Any]] = {}
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Hand a task in. A part that was deleted is made again: tasks are not known by their arguments."""
+        told: Future[Any] = Future()
+        task = self._client.submit(fn, *args, **kwargs, pure=False, retries=10)
+        self._kept[task] = told
+
+        def done(task: Any) -> None:
+            try:
+                told.set_result(task.result())
+            except BaseException as error:
+                told.set_exception(error)
+            finally:
+                self._kept.pop(task, None)
+
+        task.add_done_callback(done)
+        return told
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Give up what is not done; the client stays."""
+        for task in list(self._kept):
+            task.cancel()
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -53,7 +82,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("directory", help="directory of a campaign, which all workers reach")
     given = parser.parse_args(arguments)
     try:
-        from distributed import Client
+        distributed: Any = import_module("distributed")
     except ImportError:
         print("error: a Dask scheduler needs dask: pip install 'flexsc[dask]'", file=sys.stderr)
         return 2
@@ -64,8 +93,8 @@ def main(arguments: list[str] | None = None) -> int:
         took = time.monotonic() - began
         print(f"\r{done} of {total} runs, {took:.0f} s", end="", file=sys.stderr, flush=True)
 
-    with Client(given.scheduler) as client:
-        run(work, Local(given.directory).name, _executor(client), 0, 1.0, False, progress)
+    with distributed.Client(given.scheduler) as client:
+        run(work, Local(given.directory).name, _Executor(client), 0, 1.0, False, progress)
     print(file=sys.stderr)
     return 0
 

@@ -1,0 +1,29 @@
+//! A campaign's runs on the workers of a Dask scheduler, by the Python package of flexsc.
+
+use std::ffi::OsString;
+use std::io;
+use std::path::Path;
+use std::process::Command;
+
+use crate::failure::Failure;
+use crate::stop;
+
+/// A task takes about so long (s): much more than a scheduler needs to hand it out.
+pub const TASK_S: f64 = 1.0;
+
+/// Makes what is missing in a directory, which all workers reach, and waits for it.
+pub fn make(directory: &Path, address: &str) -> Result<(), Failure> {
+    // The wheel's own command says which Python it is of.
+    let python = std::env::var_os("FLEXSC_PYTHON").unwrap_or_else(|| OsString::from("python3"));
+    let told = python.to_string_lossy().into_owned();
+    let status = Command::new(&python).args(["-m", "flexsc.dask", address]).arg(directory).status();
+    let why = match status {
+        Ok(status) if status.success() => return Ok(()),
+        Ok(_) if stop::asked() => return Err(Failure::Interrupted(String::new())),
+        Ok(status) => format!("`{told} -m flexsc.dask` ended with {status}"),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => format!("there is no `{told}`"),
+        Err(error) => format!("`{told}` cannot be started: {error}"),
+    };
+    let hint = "hint: it needs Python with `pip install flexsc[dask]`; FLEXSC_PYTHON names another Python";
+    Err(Failure::Arguments(format!("--scheduler {address}: {why}\n\n{hint}")))
+}
