@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import signal
@@ -19,6 +20,7 @@ from typing import Any
 import flexsc
 import numpy as np
 import pytest
+from conftest import command_path
 from flexsc import Scenario, Table
 
 
@@ -229,3 +231,47 @@ def test_dask_survives_the_deaths_of_workers(
     out = tmp_path / "out"
     same(whole, campaign(cluster, study, 600, out=out, task_s=0.02, progress=kill))
     assert killed
+
+
+def test_the_command_hands_a_campaign_to_a_scheduler(study: Scenario, whole: Table, tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    told = tmp_path / "scheduler.json"
+    begun: list[subprocess.Popen[bytes]] = []
+
+    def start(*arguments: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", "dask", *arguments, "--scheduler-file", str(told), "--no-dashboard"]
+        process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL)
+        begun.append(process)
+        return process
+
+    worker = ("worker", "--no-nanny", "--nthreads", "1")
+    try:
+        start("scheduler", "--host", "127.0.0.1", "--port", "0")
+        deadline = time.monotonic() + 60.0
+        while not told.exists() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        address = json.loads(told.read_text())["address"]
+        first = start(*worker)
+        start(*worker)
+        command = [command_path(), "simulate", "study.toml", "--runs", "600", "-o", "out"]
+        handed = subprocess.Popen(
+            [*command, "--scheduler", address], cwd=tmp_path, stderr=subprocess.PIPE, env=dict(os.environ)
+        )
+        while not list((tmp_path / "out").glob("runs/*.parquet")) and handed.poll() is None:
+            time.sleep(0.02)
+        first.kill()
+        start(*worker)
+        _, errors = handed.communicate(timeout=120)
+        assert handed.returncode == 0, errors.decode()
+        assert "600 runs" in errors.decode()
+    finally:
+        for process in begun:
+            process.kill()
+            process.wait()
+    same(whole, flexsc.read_campaign(tmp_path / "out"))
+    ran = subprocess.run(
+        [*command, "--scheduler", address, "--json"], cwd=tmp_path, capture_output=True, check=False
+    )
+    assert ran.returncode == 2
+    assert b"without --json" in ran.stderr
