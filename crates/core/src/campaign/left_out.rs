@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::rows::{Column, Field, Rows};
+use super::rows::{Column, Rows};
 
 const WHY: &str = "Parquet files need the feature `parquet`, which this build left out\n\n\
                    hint: `cargo build --release --features full` has it, and `--table csv` needs none";
@@ -34,11 +34,6 @@ impl Reading {
     /// How many rows there are.
     pub fn rows(&self) -> u64 {
         0
-    }
-
-    /// The columns.
-    pub fn fields(&self) -> Vec<Field> {
-        Vec::new()
     }
 
     /// A column.

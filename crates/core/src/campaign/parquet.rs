@@ -151,7 +151,7 @@ impl Reading {
     }
 
     /// The columns.
-    pub fn fields(&self) -> Vec<Field> {
+    fn fields(&self) -> Vec<Field> {
         let schema = self.0.metadata().file_metadata().schema();
         let kind = |field: &Type| {
             if field.is_group() {
