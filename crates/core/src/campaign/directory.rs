@@ -336,9 +336,11 @@ fn parts(path: &Path) -> Result<Vec<Range<u64>>, DirectoryError> {
         parts.extend(part::runs(&name.to_string_lossy()));
     }
     parts.sort_by_key(|runs| (runs.start, runs.end));
-    if let Some(pair) = parts.windows(2).find(|pair| pair[0].end > pair[1].start) {
-        let why = format!("has runs that {} has too", part::name(&pair[0]));
-        return Err(wrong(&path.join(part::name(&pair[1])), why));
+    for (one, next) in parts.iter().zip(parts.iter().skip(1)) {
+        if one.end > next.start {
+            let why = format!("has runs that {} has too", part::name(one));
+            return Err(wrong(&path.join(part::name(next)), why));
+        }
     }
     Ok(parts)
 }
