@@ -34,7 +34,9 @@ def test_a_table_has_a_row_for_each_run(sampled: Scenario, table: Table) -> None
         table["mass"]
 
 
-def test_a_directory_is_the_same_table(sampled: Scenario, table: Table, command: Command, tmp_path: Path) -> None:
+def test_a_directory_is_the_same_table(
+    sampled: Scenario, table: Table, command: Command, tmp_path: Path
+) -> None:
     path, out = SCENARIOS / "relay-sampled.toml", tmp_path / "out"
     seconds = str(sampled.to_dict()["duration"])
     command("simulate", path, "--set", f"duration={seconds}", "--runs", "40", "-o", out)

@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::manifest::{LARGEST, Manifest};
-use super::parquet::Reading;
+use super::parquet::{Reading, parquet_is_built_in};
 use super::part;
 use super::rows::{Column, Rows};
 use super::work::{NOTE, Work};
@@ -111,6 +111,7 @@ pub struct Directory {
 impl Directory {
     /// Opens a directory, to read it or to write parts.
     pub fn open(path: &Path) -> Result<Self, DirectoryError> {
+        parquet_is_built_in().map_err(unread(path))?;
         let place = path.join(MANIFEST);
         let manifest =
             read(&place)?.ok_or_else(|| wrong(path, format!("is no campaign: it has no {MANIFEST}")))?;
@@ -128,6 +129,7 @@ impl Directory {
     /// # Errors
     /// Another campaign, which is not to be replaced; another process at work.
     pub fn create(path: &Path, mut manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
+        parquet_is_built_in().map_err(unread(path))?;
         let within = path.join(RUNS);
         fs::create_dir_all(&within).map_err(io_of(&within))?;
         let place = path.join(MANIFEST);

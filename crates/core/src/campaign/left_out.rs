@@ -12,6 +12,14 @@ fn left_out() -> io::Error {
     io::Error::new(io::ErrorKind::Unsupported, WHY)
 }
 
+/// Whether this build reads and writes Parquet files.
+///
+/// # Errors
+/// It does not, and what does.
+pub fn parquet_is_built_in() -> io::Result<()> {
+    Err(left_out())
+}
+
 /// The file, with notes about it by their names.
 pub fn encode(_: &Rows, _: &[(&str, String)]) -> io::Result<Vec<u8>> {
     Err(left_out())
