@@ -109,7 +109,7 @@ fn scatters_show_what_was_drawn_and_fans_what_was_logged() {
 fn sweeps_have_curves_and_maps() {
     let dir = Dir::with(&["relay-fixed"]);
     let sweep = "sweep relay-fixed.toml --set duration=1500 --vary law.relay.k_t=0.30:0.36:7";
-    dir.run(&format!("{sweep} -o one")).exits(0);
+    dir.run(&format!("{sweep} --table csv -o one")).exits(0);
     dir.run("plot one -o figures/one.svg --metric torque_impulse_per_hour_nm_s").exits(1).says(&["figures"]);
     dir.run("plot one -o one.svg --metric torque_impulse_per_hour_nm_s").exits(0);
     let curve = Drawing::at(&dir, "one.svg");

@@ -151,7 +151,7 @@ fn long_work_needs_a_yes() {
     );
     dir.write("c.toml", UNCERTAIN);
     refused(
-        dir.run_bounded("simulate c.toml --runs 100000000 -o out"),
+        dir.run_bounded("simulate c.toml --runs 100000000 --table csv -o out"),
         &["in each of 1.0e8 runs", "200 GB of memory"],
     );
     assert!(!dir.has("out"));

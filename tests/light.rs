@@ -68,3 +68,14 @@ fn large_matrices_and_archives_are_left_out() {
         };
     }
 }
+
+#[cfg(not(feature = "parquet"))]
+#[test]
+fn parquet_files_are_left_out() {
+    use crate::util::UNCERTAIN;
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 2 --table parquet -o out")
+        .exits(2)
+        .says(&["the feature `parquet`", HINT]);
+    dir.run("simulate u.toml --runs 2 -o out").exits(0).says(&["runs.csv"]);
+}

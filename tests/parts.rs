@@ -150,6 +150,7 @@ fn any_row_is_run_again_with_its_log() {
     assert!(rates.windows(2).filter(|pair| pair[0] != pair[1]).count() == 9);
     dir.run("simulate --from out --row 30").exits(2).says(&["out: has runs 0 to 29, not 30"]);
     dir.run("simulate --from u.toml --row 3").exits(2).says(&["u.toml: is no campaign"]);
+    dir.run("simulate --from missing --row 3").exits(2).says(&["missing: is no campaign"]);
     dir.run("simulate u.toml --from out --row 3").exits(2);
     // What the figures of it list.
     let drawn = dir.run("plot out -o figures").exits(0).out;

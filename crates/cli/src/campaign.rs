@@ -60,6 +60,7 @@ pub const MAIN: [&str; 23] = [
 ];
 
 /// What of a campaign is run, and what is made of it.
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of the command")]
 pub struct Job<'a> {
     /// The runs.
     pub range: Range<u64>,

@@ -224,7 +224,9 @@ impl Args {
             return Ok(study.scenario().cost(self.log.unwrap_or(LogDetail::Events).detail(), false));
         };
         let log = self.log.unwrap_or(LogDetail::None).detail();
-        study.cost(range.end - range.start, log).map_err(|why| Failure::Arguments(format!("--runs {why}")))
+        let cost = study.cost(range.end - range.start, log);
+        let cost = cost.map_err(|why| Failure::Arguments(format!("--runs {why}")))?;
+        Ok(self.options.cost(cost, self.out.is_some()))
     }
 }
 

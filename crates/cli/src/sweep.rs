@@ -145,7 +145,7 @@ impl Args {
         let study = Campaign::of(scenario, origin, design)?;
         let runs = range.end - range.start;
         let cost = study.cost(runs, None).map_err(|why| Failure::Arguments(format!("--vary: {why}")))?;
-        self.consent.to(&cost)?;
+        self.consent.to(&self.options.cost(cost, self.out.is_some()))?;
         Ok((study, range))
     }
 }

@@ -30,6 +30,7 @@ use crate::sim::{Simulation, SimulationError};
 pub use design::{Block, Design, MOST_NUMBERS, MOST_POINTS, Span};
 pub use directory::{Directory, DirectoryError, MANIFEST};
 pub use manifest::Manifest;
+pub use parquet::parquet_is_built_in;
 pub use rows::{Column, ERROR, Field, Kind, RUN, Rows, SECONDS, SEED};
 pub use sampling::Sampling;
 pub use summary::Summary;

@@ -89,7 +89,9 @@ impl Statistics {
 /// The statistics of every metric that is a number, over runs of one scenario.
 pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
     let mut gathered = Gathered::default();
-    runs.iter().for_each(|run| gathered.add(run));
+    for run in runs {
+        gathered.add(run);
+    }
     gathered.finish()
 }
 

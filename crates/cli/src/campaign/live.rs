@@ -152,7 +152,9 @@ mod tests {
     fn running_statistics_are_those_of_all() {
         let mut running = Running::default();
         // Python: statistics.fmean and statistics.stdev of [1, 2, 4, 8].
-        [1.0, 2.0, f64::NAN, 4.0, 8.0].into_iter().for_each(|value| running.add(value));
+        for value in [1.0, 2.0, f64::NAN, 4.0, 8.0] {
+            running.add(value);
+        }
         assert_eq!((running.count, running.mean, running.least, running.most), (4, 3.75, 1.0, 8.0));
         assert!((running.sd() - 3.095_695_936_834_452).abs() < 1e-15);
         let lines = table(&[("goal", running), ("duty", Running::default())]);

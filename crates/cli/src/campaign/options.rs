@@ -1,11 +1,16 @@
 //! What campaigns and sweeps have in common on the command line.
 
 use clap::ValueEnum;
-use flexsc_core::campaign::{Design, Sampling};
+use flexsc_core::campaign::{Design, Sampling, parquet_is_built_in};
 use flexsc_core::metrics::Selection;
+use flexsc_core::scenario::Cost;
 
 use crate::failure::Failure;
 
+/// What is held of a campaign in parts (bytes), ...
+const HELD: f64 = 2e8;
+/// ... and for each of its runs.
+const HELD_OF_RUN: f64 = 32.0;
 /// No point is run more often.
 const MOST_REPLICAS: u64 = 1_000_000;
 
@@ -98,8 +103,19 @@ impl Options {
 
     /// The metrics that are wanted.
     pub fn selection(&self) -> Result<Selection, Failure> {
+        if self.table == Some(Kind::Parquet) {
+            parquet_is_built_in().map_err(|error| Failure::Arguments(format!("--table: {error}")))?;
+        }
         let Some(names) = &self.metrics else { return Ok(Selection::ALL) };
         Selection::of(names).map_err(|why| Failure::Arguments(format!("--metrics: {why}")))
+    }
+
+    /// The cost of a campaign: of the rows in parts, little is held in memory.
+    pub fn cost(&self, cost: Cost, in_directory: bool) -> Cost {
+        match self.table() {
+            Kind::Parquet if in_directory => Cost { memory: HELD + cost.runs * HELD_OF_RUN, ..cost },
+            _ => cost,
+        }
     }
 
     /// How points are spread.

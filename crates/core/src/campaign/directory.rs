@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::manifest::{LARGEST, Manifest};
-use super::parquet::Reading;
+use super::parquet::{Reading, parquet_is_built_in};
 use super::part;
 use super::rows::{Column, Rows};
 use super::work::{NOTE, Work};
@@ -66,7 +66,7 @@ pub enum DirectoryError {
         /// The directory.
         path: PathBuf,
     },
-    /// A file cannot be read or written.
+    /// A file cannot be written.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file.
@@ -86,6 +86,12 @@ pub(super) fn wrong(path: &Path, why: impl Into<String>) -> DirectoryError {
     DirectoryError::Wrong { path: path.to_owned(), why: why.into() }
 }
 
+/// A file that cannot be read.
+pub(super) fn unread(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
+    |source| wrong(path, source.to_string())
+}
+
+/// A file that cannot be written.
 pub(super) fn io_of(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
     |source| match source.kind() {
         io::ErrorKind::InvalidData | io::ErrorKind::Unsupported => wrong(path, source.to_string()),
@@ -105,6 +111,7 @@ pub struct Directory {
 impl Directory {
     /// Opens a directory, to read it or to write parts.
     pub fn open(path: &Path) -> Result<Self, DirectoryError> {
+        parquet_is_built_in().map_err(unread(path))?;
         let place = path.join(MANIFEST);
         let manifest =
             read(&place)?.ok_or_else(|| wrong(path, format!("is no campaign: it has no {MANIFEST}")))?;
@@ -122,6 +129,7 @@ impl Directory {
     /// # Errors
     /// Another campaign, which is not to be replaced; another process at work.
     pub fn create(path: &Path, mut manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
+        parquet_is_built_in().map_err(unread(path))?;
         let within = path.join(RUNS);
         fs::create_dir_all(&within).map_err(io_of(&within))?;
         let place = path.join(MANIFEST);
@@ -237,7 +245,7 @@ impl Directory {
         let path = self.file(runs);
         let reading = self.reading(runs)?;
         let column = |name: &&str| {
-            let column = reading.column(name).map_err(io_of(&path))?;
+            let column = reading.column(name).map_err(unread(&path))?;
             column.ok_or_else(|| wrong(&path, format!("has no column `{name}`")))
         };
         names.iter().map(column).collect()
@@ -251,7 +259,7 @@ impl Directory {
     /// Opens a part, which must be one of this campaign.
     pub(super) fn reading(&self, runs: &Range<u64>) -> Result<Reading, DirectoryError> {
         let path = self.file(runs);
-        let reading = Reading::open(&path).map_err(io_of(&path))?;
+        let reading = Reading::open(&path).map_err(unread(&path))?;
         if reading.note(NOTE).as_deref() != Some(self.work.manifest.hash.as_str()) {
             return Err(wrong(&path, format!("is no part of the campaign of {MANIFEST}")));
         }
@@ -278,14 +286,14 @@ impl Directory {
 /// The manifest that is there, if any.
 fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
     match fs::metadata(place) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(io_of(place)(error)),
+        Err(error) if is_none(&error) => return Ok(None),
+        Err(error) => return Err(unread(place)(error)),
         Ok(there) if !there.is_file() || there.len() > LARGEST => {
             return Err(wrong(place, "is no manifest of a campaign"));
         }
         Ok(_) => {}
     }
-    let text = fs::read_to_string(place).map_err(io_of(place))?;
+    let text = fs::read_to_string(place).map_err(unread(place))?;
     Manifest::parse(&text).map(Some).map_err(|why| wrong(place, why))
 }
 
@@ -313,17 +321,28 @@ fn fitting(
     }
 }
 
+/// Whether there is no such file.
+fn is_none(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory)
+}
+
 fn parts(path: &Path) -> Result<Vec<Range<u64>>, DirectoryError> {
     let mut parts = Vec::new();
     let path = &path.join(RUNS);
-    for entry in fs::read_dir(path).map_err(io_of(path))? {
-        let name = entry.map_err(io_of(path))?.file_name();
+    let entries = match fs::read_dir(path) {
+        Err(error) if is_none(&error) => return Ok(parts),
+        entries => entries.map_err(unread(path))?,
+    };
+    for entry in entries {
+        let name = entry.map_err(unread(path))?.file_name();
         parts.extend(part::runs(&name.to_string_lossy()));
     }
     parts.sort_by_key(|runs| (runs.start, runs.end));
-    if let Some(pair) = parts.windows(2).find(|pair| pair[0].end > pair[1].start) {
-        let why = format!("has runs that {} has too", part::name(&pair[0]));
-        return Err(wrong(&path.join(part::name(&pair[1])), why));
+    for (one, next) in parts.iter().zip(parts.iter().skip(1)) {
+        if one.end > next.start {
+            let why = format!("has runs that {} has too", part::name(one));
+            return Err(wrong(&path.join(part::name(next)), why));
+        }
     }
     Ok(parts)
 }

@@ -3,13 +3,21 @@
 use std::io;
 use std::path::Path;
 
-use super::rows::{Column, Field, Rows};
+use super::rows::{Column, Rows};
 
 const WHY: &str = "Parquet files need the feature `parquet`, which this build left out\n\n\
                    hint: `cargo build --release --features full` has it, and `--table csv` needs none";
 
 fn left_out() -> io::Error {
     io::Error::new(io::ErrorKind::Unsupported, WHY)
+}
+
+/// Whether this build reads and writes Parquet files.
+///
+/// # Errors
+/// It does not, and what does.
+pub fn parquet_is_built_in() -> io::Result<()> {
+    Err(left_out())
 }
 
 /// The file, with notes about it by their names.
@@ -34,11 +42,6 @@ impl Reading {
     /// How many rows there are.
     pub fn rows(&self) -> u64 {
         0
-    }
-
-    /// The columns.
-    pub fn fields(&self) -> Vec<Field> {
-        Vec::new()
     }
 
     /// A column.

@@ -164,7 +164,7 @@ impl Manifest {
 
     /// The metrics of its rows.
     pub fn selection(&self) -> Result<Selection, Wrong> {
-        self.metrics.as_ref().map_or(Ok(Selection::ALL), |names| Selection::of(names))
+        self.metrics.as_ref().map_or(Ok(Selection::ALL), Selection::of)
     }
 
     /// The campaign. Its errors name the scenario, and no file: they are the same on every machine.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::ops::Range;
 
-use super::directory::{Directory, DirectoryError, MANIFEST, io_of, wrong};
+use super::directory::{Directory, DirectoryError, MANIFEST, io_of, unread, wrong};
 use super::rows::SECONDS;
 use crate::whole;
 
@@ -34,7 +34,7 @@ impl Directory {
         let mut new = 0;
         for runs in theirs.iter().filter(|runs| !own.contains(runs)) {
             let (from, to) = (other.file(runs), self.file(runs));
-            let bytes = fs::read(&from).map_err(io_of(&from))?;
+            let bytes = fs::read(&from).map_err(unread(&from))?;
             whole::write_synced(&to, &bytes).map_err(io_of(&to))?;
             new += runs.end - runs.start;
         }
@@ -48,7 +48,7 @@ impl Directory {
         let fields = self.work().fields().iter().filter(|field| field.name != SECONDS);
         for field in fields {
             let (own, theirs) = (own.column(&field.name), theirs.column(&field.name));
-            if own.map_err(io_of(&path))? != theirs.map_err(io_of(&path))? {
+            if own.map_err(unread(&path))? != theirs.map_err(unread(&path))? {
                 let why = format!("has other values of `{}` than {}", field.name, self.path().display());
                 return Err(wrong(&path, why));
             }

@@ -178,7 +178,7 @@ impl Column {
             (Self::Numbers(cells), Value::Number(number)) => cells.push(*number),
             (Self::Words(cells), Value::Word(word)) => cells.push(Some((*word).to_owned())),
             (Self::Lists(cells), Value::Numbers(_) | Value::Quantities(_)) => {
-                cells.push(Some(value.numbers()))
+                cells.push(Some(value.numbers()));
             }
             (column, _) => column.push_nothing(),
         }

@@ -79,7 +79,7 @@ fn command(runs: &Runs, directory: &Path, scenario: &Path, index: usize) -> Stri
     let own: PathBuf = directory.join(format!("run-{number}"));
     let _ = write!(
         command,
-        " --runs {number}:{} --log full -o {}",
+        " --runs {number}:{} --log full --table csv -o {}",
         number + 1,
         quoted(&own.display().to_string())
     );
