@@ -88,8 +88,7 @@ impl EnvelopeMonitor {
         let t = now.seconds();
         self.now = now;
         for (index, track) in self.tracks.iter_mut().enumerate() {
-            self.integral += track.integral(h);
-            let from = track.axis;
+            let (from, deviation) = (track.axis, track.deviation);
             track.axis = polar(1.0, track.damped * t);
             let shrink = if track.decay > 0.0 { libm::exp(-track.decay * h) } else { 1.0 };
             match self.form {
@@ -108,6 +107,7 @@ impl EnvelopeMonitor {
                     track.deviation = z - track.equilibrium;
                 }
             }
+            self.integral += track.integral(deviation, h);
         }
     }
 
@@ -164,13 +164,13 @@ impl Track {
         Complex { re: displacement, im: (rate + self.decay * displacement) / self.damped }
     }
 
-    /// Integral of the mode's envelope over the next `h` seconds.
-    fn integral(&self, h: f64) -> f64 {
-        if self.decay > 0.0 {
-            let Self { equilibrium, deviation, decay, damped, .. } = *self;
-            swing_integral::damped(equilibrium, deviation, decay, damped, h)
+    /// Integral of the mode's envelope over the last `h` seconds, in which its deviation was this at first.
+    fn integral(&self, from: Phasor, h: f64) -> f64 {
+        let Self { equilibrium, deviation, decay, damped, frequency, .. } = *self;
+        if decay > 0.0 {
+            swing_integral::damped(equilibrium, from, decay, damped, h)
         } else {
-            swing_integral::undamped(self.equilibrium.re, self.deviation, self.frequency, h)
+            swing_integral::undamped(equilibrium.re, [from, deviation], frequency, h)
         }
     }
 }

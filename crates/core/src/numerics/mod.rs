@@ -13,3 +13,5 @@ pub(crate) mod quadrature;
 pub(crate) mod simplex;
 pub(crate) mod stumpff;
 pub mod swing_integral;
+pub(crate) mod swing_series;
+pub(crate) mod trig;
