@@ -7,6 +7,8 @@ mod damping;
 mod drift;
 mod drifting;
 mod forced;
+#[cfg(test)]
+mod guess_tests;
 mod hub;
 mod matrices;
 mod mode;

@@ -11,6 +11,7 @@ use crate::body::Mode;
 use crate::motion::State;
 use crate::numerics::phasor::{Complex, Phasor, abs, polar};
 use crate::numerics::swing_integral;
+use crate::numerics::trig::sincos_any;
 use crate::time::{Instant, Span};
 
 /// An envelope monitor as a scenario describes it.
@@ -89,7 +90,8 @@ impl EnvelopeMonitor {
         self.now = now;
         for (index, track) in self.tracks.iter_mut().enumerate() {
             let (from, deviation) = (track.axis, track.deviation);
-            track.axis = polar(1.0, track.damped * t);
+            let (sin, cos) = sincos_any(track.damped * t);
+            track.axis = Complex { re: cos, im: sin };
             let shrink = if track.decay > 0.0 { libm::exp(-track.decay * h) } else { 1.0 };
             match self.form {
                 Form::Dynamic => {
@@ -170,7 +172,12 @@ impl Track {
         if decay > 0.0 {
             swing_integral::damped(equilibrium, from, decay, damped, h)
         } else {
-            swing_integral::undamped(equilibrium.re, [from, deviation], frequency, h)
+            swing_integral::undamped(
+                equilibrium.re,
+                [[from.re, from.im], [deviation.re, deviation.im]],
+                frequency,
+                h,
+            )
         }
     }
 }

@@ -6,7 +6,7 @@
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
-use crate::lanes::Real;
+use crate::lanes::{Mask, Real};
 use crate::numerics::trig::{FARTHEST, sincos, sincos_short};
 
 /// Femtoseconds in a second.
@@ -79,9 +79,9 @@ impl<R: Real> Oscillator<R> {
 
     /// A bound of the distance from equilibrium, at most 8 % above it: an octagon's.
     #[inline(always)]
-    fn reach(&self) -> R {
+    pub fn reach(&self) -> R {
         let (x, y) = (self.displacement.abs(), self.quadrature.abs());
-        let flat = x.splat(std::f64::consts::SQRT_2 - 1.0);
+        let flat = x.of(std::f64::consts::SQRT_2 - 1.0);
         R::select(x.lt(y), y + flat * x, x + flat * y)
     }
 }
@@ -90,16 +90,16 @@ impl<R: Real> Oscillator<R> {
 #[inline(always)]
 fn tiny<R: Real>(x: R) -> (R, R) {
     let z = x * x;
-    let (sixth, half) = (x.splat(1.0 / 6.0), x.splat(0.5));
-    let sin = x - x * z * (sixth - z * x.splat(1.0 / 120.0));
-    (sin, x.splat(1.0) - z * (half - z * x.splat(1.0 / 24.0)))
+    let (sixth, half) = (x.of(1.0 / 6.0), x.of(0.5));
+    let sin = x - x * z * (sixth - z * x.of(1.0 / 120.0));
+    (sin, x.of(1.0) - z * (half - z * x.of(1.0 / 24.0)))
 }
 
 /// The angle and its derivatives `t` seconds after departure, where the modes are.
 #[inline(always)]
 fn derivatives<R: Real>(from: &Departure<R>, t: R, modes: &[Oscillator<R>]) -> [R; 5] {
-    let zero = t.splat(0.0);
-    let mut angle = from.angle + t * (from.rate + t.splat(0.5) * from.moment * t);
+    let zero = t.of(0.0);
+    let mut angle = from.angle + t * (from.rate + t.of(0.5) * from.moment * t);
     let mut rate = from.rate + from.moment * t;
     let (mut acceleration, mut jerk, mut snap) = (from.moment, zero, zero);
     for mode in modes {
@@ -118,35 +118,35 @@ fn derivatives<R: Real>(from: &Departure<R>, t: R, modes: &[Oscillator<R>]) -> [
 /// The time to a level of the angle, by the reverted series of order 4.
 #[inline(always)]
 fn step<R: Real>(level: R, [angle, rate, acceleration, jerk, snap]: [R; 5]) -> R {
-    let inverse = rate.splat(1.0) / rate;
+    let inverse = rate.of(1.0) / rate;
     let e = (level - angle) * inverse;
-    let a = rate.splat(0.5) * acceleration * inverse;
-    let b = rate.splat(1.0 / 6.0) * jerk * inverse;
-    let c = rate.splat(1.0 / 24.0) * snap * inverse;
+    let a = rate.of(0.5) * acceleration * inverse;
+    let b = rate.of(1.0 / 6.0) * jerk * inverse;
+    let c = rate.of(1.0 / 24.0) * snap * inverse;
     let square = a * a;
     let third = (square + square) - b;
-    let fourth = rate.splat(5.0) * a * (b - square) - c;
+    let fourth = rate.of(5.0) * a * (b - square) - c;
     e + e * e * (e * (third + e * fourth) - a)
 }
 
 /// The time at which the rigid parabola reaches a level (s), with the modes at rest; endless if it does not.
 #[inline(always)]
 fn parabola<R: Real>(gap: R, speed: R, acceleration: R) -> R {
-    let zero = gap.splat(0.0);
+    let zero = gap.of(0.0);
     let square = speed * speed + (gap + gap) * acceleration;
     let root = R::select(zero.lt(square), square, zero).sqrt();
     let below = speed + root;
     let reached = zero.le(square) & zero.lt(below) & zero.lt(gap);
-    R::select(reached, (gap + gap) / below, gap.splat(f64::INFINITY))
+    R::select(reached, (gap + gap) / below, gap.of(f64::INFINITY))
 }
 
 /// The next integer from a number that is not negative.
 #[inline(always)]
 fn above<R: Real>(x: R) -> R {
     // From 2^52 on all numbers are integers.
-    let all = x.splat(4_503_599_627_370_496.0);
+    let all = x.of(4_503_599_627_370_496.0);
     let near = (x + all) - all;
-    let up = R::select(near.lt(x), near + x.splat(1.0), near);
+    let up = R::select(near.lt(x), near + x.of(1.0), near);
     R::select(x.lt(all), up, x)
 }
 
@@ -157,8 +157,8 @@ pub fn locate<R: Real, const LEVELS: usize>(
     levels: &[Level<R>; LEVELS],
     modes: &mut [Oscillator<R>],
 ) -> Found<R> {
-    let zero = from.angle.splat(0.0);
-    let one = from.angle.splat(1.0);
+    let zero = from.angle.of(0.0);
+    let one = from.angle.of(1.0);
     let (mut centre, mut reach, mut curvature) = (zero, zero, from.moment.abs());
     let (mut angle, mut rate) = (from.angle, from.rate);
     for mode in modes.iter() {
@@ -189,7 +189,7 @@ pub fn locate<R: Real, const LEVELS: usize>(
     }
     let mut change = step(level, derivatives(from, t, modes));
     // No turn by more than the polynomials take.
-    let most = zero.splat(0.75) / from.fastest;
+    let most = zero.of(0.75) / from.fastest;
     let mut goes_on = zero.le(one);
     for _ in 0..ROUNDS {
         change = R::select(change.lt(-most), -most, R::select(most.lt(change), most, change));
@@ -201,13 +201,13 @@ pub fn locate<R: Real, const LEVELS: usize>(
             mode.turn(sincos_short(mode.frequency * turned));
         }
         change = step(level, derivatives(from, t, modes));
-        goes_on = zero.splat(TINY).lt((from.fastest * change).abs());
-        if !R::any(goes_on) {
+        goes_on = zero.of(TINY).lt((from.fastest * change).abs());
+        if !goes_on.any() {
             break;
         }
     }
-    let ticks = above((t + change) * zero.splat(TICKS));
-    let after = ticks / zero.splat(TICKS);
+    let ticks = above((t + change) * zero.of(TICKS));
+    let after = ticks / zero.of(TICKS);
     let turned = after - t;
     for mode in modes.iter_mut() {
         mode.turn(tiny(mode.frequency * turned));
@@ -215,11 +215,11 @@ pub fn locate<R: Real, const LEVELS: usize>(
     let seen = derivatives(from, after, modes);
     // The trip is polished if nothing but rounding is left.
     let speed = seen[1].abs();
-    let rounding = zero.splat(1e-15) * (level.abs() + reach) + speed * (zero.splat(4e-15) + zero.splat(4e-16) * after);
+    let rounding = zero.of(1e-15) * (level.abs() + reach) + speed * (zero.of(4e-15) + zero.of(4e-16) * after);
     let mut certain = (level - seen[0]).abs().le(rounding)
-        & (from.fastest * turned).abs().lt(zero.splat(TINY + 1e-9))
-        & after.lt(zero.splat(LONGEST))
-        & (from.fastest * guess).lt(zero.splat(FARTHEST))
+        & (from.fastest * turned).abs().lt(zero.of(TINY + 1e-9))
+        & after.lt(zero.of(LONGEST))
+        & (from.fastest * guess).lt(zero.of(FARTHEST))
         & zero.le(ticks);
     // Both sides of each inequality are multiplied by the bound of |x''|, or its square.
     for (index, of) in levels.iter().enumerate() {
@@ -227,7 +227,7 @@ pub fn locate<R: Real, const LEVELS: usize>(
         let closing = of.towards * seen[1];
         let until = curvature * after - R::select(is_it, closing + closing, zero);
         let until = R::select(zero.lt(until), until, zero);
-        let half = zero.splat(0.5) * until;
+        let half = zero.of(0.5) * until;
         let gap = of.towards * (of.angle - (from.angle + centre)) - reach;
         let (speed, acceleration) = (of.towards * from.rate, of.towards * from.moment);
         let end = curvature * (gap * curvature - speed * until) - acceleration * until * half;

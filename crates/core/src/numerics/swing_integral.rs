@@ -3,7 +3,8 @@
 //! There the mode's phasor is Z(h) = c + W exp(-(s + i w) h), and the integrand abs(Z).
 
 use super::elliptic::second_kind;
-use super::swing_series::{LARGE, MIDDLE, SMALL, Swing};
+use super::swing_series::{Circle, LARGE, MIDDLE, SMALL};
+use crate::lanes::{Mask, Real};
 use crate::numerics::phasor::{Phasor, abs, arg, polar};
 
 /// Integral over [0, h] of abs(c + W exp(-i w t)): an undamped mode, in closed form (the envelope's mean of
@@ -11,17 +12,33 @@ use crate::numerics::phasor::{Phasor, abs, arg, polar};
 ///
 /// What is smaller of |c| and |W|, relative to the other, is the modulus of a series ([`super::swing_series`]); within 0.002 of 1 the
 /// integral is left to Carlson's duplication. Error 1e-13 of h times the larger of both.
-pub fn undamped(centre: f64, [from, to]: [Phasor; 2], frequency: f64, h: f64) -> f64 {
-    let swing = Swing::new(centre, [[from.re, from.im], [to.re, to.im]], frequency * h);
-    let swept = if swing.modulus < SMALL {
-        swing.alone()
-    } else if swing.modulus < MIDDLE {
-        swing.landen::<true>().landen::<false>().after()
-    } else if swing.modulus < LARGE {
-        swing.landen::<true>().landen::<true>().landen::<false>().after()
-    } else {
-        elliptic(centre, from, frequency * h)
-    };
+#[allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+#[inline(always)]
+pub fn undamped<R: Real>(centre: R, [from, to]: [[R; 2]; 2], frequency: R, h: R) -> R {
+    let angle = frequency * h;
+    let circle = Circle::new(centre, [from, to], angle);
+    let below = circle.modulus.lt(angle.of(SMALL));
+    let mut swept = angle;
+    if below.any() {
+        swept = circle.alone();
+    }
+    if !below.all() {
+        let once = circle.landen::<true>();
+        swept = R::select(below, swept, once.landen::<false>().after());
+        let below = circle.modulus.lt(angle.of(MIDDLE));
+        if !below.all() {
+            swept = R::select(below, swept, once.landen::<true>().landen::<false>().after());
+        }
+        if !circle.modulus.lt(angle.of(LARGE)).all() {
+            for lane in 0..R::LANES {
+                if circle.modulus.lane(lane) >= LARGE {
+                    let deviation = Phasor { re: from[0].lane(lane), im: from[1].lane(lane) };
+                    let value = elliptic(centre.lane(lane), deviation, angle.lane(lane));
+                    swept = swept.with_lane(lane, value);
+                }
+            }
+        }
+    }
     swept / frequency
 }
 
@@ -82,7 +99,8 @@ mod tests {
 
     /// The integral, with W turned to its other end.
     fn over(c: f64, from: Phasor, w: f64, h: f64) -> f64 {
-        undamped(c, [from, from * polar(1.0, -w * h)], w, h)
+        let to = from * polar(1.0, -w * h);
+        undamped(c, [[from.re, from.im], [to.re, to.im]], w, h)
     }
 
     #[test]

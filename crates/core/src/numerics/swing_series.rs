@@ -70,7 +70,7 @@ macro_rules! each {
 
 /// A motion of z on a circle.
 #[derive(Copy, Clone)]
-pub struct Swing<R> {
+pub struct Circle<R> {
     /// What |1 + z| is to be multiplied by.
     pub scale: R,
     /// The circle's radius k, at most 1.
@@ -85,11 +85,11 @@ pub struct Swing<R> {
     sum: R,
 }
 
-impl<R: Real> Swing<R> {
+impl<R: Real> Circle<R> {
     /// The motion of c + W e^(-i t) over an angle (rad), by the centre c and W at both ends.
     #[inline(always)]
     pub fn new(centre: R, [from, to]: [[R; 2]; 2], angle: R) -> Self {
-        let (zero, one) = (centre.splat(0.0), centre.splat(1.0));
+        let (zero, one) = (centre.of(0.0), centre.of(1.0));
         let square = from[0] * from[0] + from[1] * from[1];
         let (radius, distance) = (square.sqrt(), centre.abs());
         // |c + W| = |c| |1 + W*/c| = |W| |1 + c/W|.
@@ -111,7 +111,7 @@ impl<R: Real> Swing<R> {
     #[inline(always)]
     pub fn landen<const WIDE: bool>(&self) -> Self {
         let k = self.modulus;
-        let (one, two, half) = (k.splat(1.0), k.splat(2.0), k.splat(0.5));
+        let (one, two, half) = (k.of(1.0), k.of(2.0), k.of(0.5));
         let complement = ((one - k) * (one + k)).sqrt();
         let root = k / (one + complement);
         let modulus = root * root;
@@ -131,7 +131,7 @@ impl<R: Real> Swing<R> {
         let part = if WIDE {
             let along = along + (along * along + square_across).sqrt();
             let along = along + (along * along + square_across).sqrt();
-            k.splat(8.0) * arc(across / along)
+            k.of(8.0) * arc(across / along)
         } else {
             two * arc(across / along)
         };
@@ -186,9 +186,9 @@ impl<R: Real> Swing<R> {
 /// So many terms of a polynomial.
 #[inline(always)]
 fn polynomial<R: Real, const TERMS: usize>(coefficients: &[f64; POWERS], x: R) -> R {
-    let mut sum = x.splat(coefficients[TERMS - 1]);
+    let mut sum = x.of(coefficients[TERMS - 1]);
     for k in (0..TERMS - 1).rev() {
-        sum = x.splat(coefficients[k]) + x * sum;
+        sum = x.of(coefficients[k]) + x * sum;
     }
     sum
 }
@@ -206,7 +206,7 @@ struct Clenshaw<R> {
 impl<R: Real> Clenshaw<R> {
     #[inline(always)]
     fn new([re, im]: [R; 2], square: R) -> Self {
-        let zero = re.splat(0.0);
+        let zero = re.of(0.0);
         Self { twice: re + re, imaginary: im, square, last: zero, before: zero }
     }
 

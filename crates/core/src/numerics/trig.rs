@@ -49,28 +49,34 @@ const ARC: [f64; 11] = [
 /// The integer nearest to a number below 2^51.
 #[inline(always)]
 pub fn nearest<R: Real>(x: R) -> R {
-    let rounder = x.splat(ROUNDER);
+    let rounder = x.of(ROUNDER);
     (x + rounder) - rounder
 }
 
 /// Sine and cosine of an angle (rad) up to [`FARTHEST`]; within 1 unit in the last place.
 #[inline(always)]
 pub fn sincos<R: Real>(x: R) -> (R, R) {
-    let turns = nearest(x * x.splat(TWO_OVER_PI));
+    let turns = nearest(x * x.of(TWO_OVER_PI));
     // The products of the first two parts, and the first difference, are exact.
-    let first = x - turns * x.splat(HALF_PI[0]);
-    let second = turns * x.splat(HALF_PI[1]);
+    let first = x - turns * x.of(HALF_PI[0]);
+    let second = turns * x.of(HALF_PI[1]);
     let high = first - second;
     let back = first - high;
     let low = (first - (high + back)) + (back - second);
-    let rest = turns * x.splat(HALF_PI[2]) - low;
+    let rest = turns * x.of(HALF_PI[2]) - low;
     let angle = high - rest;
     let (sin, cos) = within(angle, (high - angle) - rest);
     // Quarter turns modulo 4, -2 to 2, turn the pair: no product but by 1, 0 or -1, and so exact.
-    let quarters = turns - x.splat(4.0) * nearest(turns * x.splat(0.25));
+    let quarters = turns - x.of(4.0) * nearest(turns * x.of(0.25));
     let size = quarters.abs();
-    let (along, across) = (x.splat(1.0) - size, quarters * (x.splat(2.0) - size));
+    let (along, across) = (x.of(1.0) - size, quarters * (x.of(2.0) - size));
     (along * sin + across * cos, along * cos - across * sin)
+}
+
+/// Sine and cosine of any angle (rad): those of [`sincos`] up to [`FARTHEST`].
+#[inline]
+pub fn sincos_any(x: f64) -> (f64, f64) {
+    if x.abs() < FARTHEST { sincos(x) } else { libm::sincos(x) }
 }
 
 /// Sine and cosine of an angle (rad) that is at most pi/4.
@@ -78,14 +84,14 @@ pub fn sincos<R: Real>(x: R) -> (R, R) {
 pub fn sincos_short<R: Real>(x: R) -> (R, R) {
     let z = x * x;
     let w = z * z;
-    let sines = x.splat(SINE[1])
-        + z * (x.splat(SINE[2]) + z * x.splat(SINE[3]))
-        + z * w * (x.splat(SINE[4]) + z * x.splat(SINE[5]));
-    let sin = x + z * x * (x.splat(SINE[0]) + z * sines);
-    let cosines = z * (x.splat(COSINE[0]) + z * (x.splat(COSINE[1]) + z * x.splat(COSINE[2])))
-        + w * w * (x.splat(COSINE[3]) + z * (x.splat(COSINE[4]) + z * x.splat(COSINE[5])));
-    let one = x.splat(1.0);
-    let half = x.splat(0.5) * z;
+    let sines = x.of(SINE[1])
+        + z * (x.of(SINE[2]) + z * x.of(SINE[3]))
+        + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
+    let sin = x + z * x * (x.of(SINE[0]) + z * sines);
+    let cosines = z * (x.of(COSINE[0]) + z * (x.of(COSINE[1]) + z * x.of(COSINE[2])))
+        + w * w * (x.of(COSINE[3]) + z * (x.of(COSINE[4]) + z * x.of(COSINE[5])));
+    let one = x.of(1.0);
+    let half = x.of(0.5) * z;
     let near = one - half;
     (sin, near + (((one - near) - half) + z * cosines))
 }
@@ -95,14 +101,14 @@ pub fn sincos_short<R: Real>(x: R) -> (R, R) {
 fn within<R: Real>(x: R, y: R) -> (R, R) {
     let z = x * x;
     let w = z * z;
-    let (one, half) = (x.splat(1.0), x.splat(0.5));
-    let sines = x.splat(SINE[1])
-        + z * (x.splat(SINE[2]) + z * x.splat(SINE[3]))
-        + z * w * (x.splat(SINE[4]) + z * x.splat(SINE[5]));
+    let (one, half) = (x.of(1.0), x.of(0.5));
+    let sines = x.of(SINE[1])
+        + z * (x.of(SINE[2]) + z * x.of(SINE[3]))
+        + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
     let v = z * x;
-    let sin = x - ((z * (half * y - v * sines) - y) - v * x.splat(SINE[0]));
-    let cosines = z * (x.splat(COSINE[0]) + z * (x.splat(COSINE[1]) + z * x.splat(COSINE[2])))
-        + w * w * (x.splat(COSINE[3]) + z * (x.splat(COSINE[4]) + z * x.splat(COSINE[5])));
+    let sin = x - ((z * (half * y - v * sines) - y) - v * x.of(SINE[0]));
+    let cosines = z * (x.of(COSINE[0]) + z * (x.of(COSINE[1]) + z * x.of(COSINE[2])))
+        + w * w * (x.of(COSINE[3]) + z * (x.of(COSINE[4]) + z * x.of(COSINE[5])));
     let hz = half * z;
     let near = one - hz;
     (sin, near + (((one - near) - hz) + (z * cosines - x * y)))
@@ -113,12 +119,12 @@ fn within<R: Real>(x: R, y: R) -> (R, R) {
 pub fn arc<R: Real>(t: R) -> R {
     let z = t * t;
     let w = z * z;
-    let (mut odd, mut even) = (t.splat(ARC[10]), t.splat(ARC[9]));
+    let (mut odd, mut even) = (t.of(ARC[10]), t.of(ARC[9]));
     for i in [8, 6, 4, 2, 0] {
-        odd = t.splat(ARC[i]) + w * odd;
+        odd = t.of(ARC[i]) + w * odd;
     }
     for i in [7, 5, 3, 1] {
-        even = t.splat(ARC[i]) + w * even;
+        even = t.of(ARC[i]) + w * even;
     }
     t - t * (z * odd + w * even)
 }

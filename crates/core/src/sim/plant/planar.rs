@@ -247,7 +247,10 @@ impl PlanarPlant {
             // No law with guards acts on a body without a closed form.
             Motion::Chain(_) => return Ok(None),
         };
-        let trip = locate(arc, guards, horizon, &mut self.ahead.0, || record.poll())?;
+        let trip = match arc.guess(guards, horizon, &mut self.ahead.0) {
+            Some(trip) => trip,
+            None => locate(arc, guards, horizon, &mut self.ahead.0, || record.poll())?,
+        };
         Ok(trip.map(|trip| {
             let at = departed + trip.after;
             (self.ahead.1, self.ahead.2) = (trip.sight, at);
