@@ -52,6 +52,7 @@ pub mod environment;
 pub mod estimator;
 pub mod guard;
 mod label;
+pub mod lanes;
 pub mod law;
 pub mod layout;
 pub mod manoeuvre;
