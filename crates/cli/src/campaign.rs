@@ -41,6 +41,8 @@ pub struct Job<'a> {
     pub jobs: Option<u16>,
     /// Whether each run is printed as JSON.
     pub json: bool,
+    /// Whether a run is nothing but simulated: many then go side by side.
+    pub plain: bool,
 }
 
 /// Runs a campaign; `work` simulates one run.
@@ -65,10 +67,15 @@ pub fn run(
     let next = job.range.start;
     let mut telling =
         Telling { study, json: job.json, table: table.as_mut(), all: Vec::new(), next, failed: None };
-    let done = study.each(job.range.clone(), threads, work, |outcome| {
+    let tell = |outcome: Option<Outcome>| {
         bar.inc(u64::from(outcome.is_some()));
         telling.tell(outcome)
-    });
+    };
+    let done = if job.plain {
+        study.each_beside(job.range.clone(), threads, work, tell)
+    } else {
+        study.each(job.range.clone(), threads, work, tell)
+    };
     bar.finish_and_clear();
     let Telling { all, failed, .. } = telling;
     if let Err(failure) = done {

@@ -181,6 +181,7 @@ fn several(study: &Arc<Campaign>, args: &Args, runs: &Runs, prefixed: bool) -> R
         force: args.force,
         jobs: args.jobs,
         json: args.json,
+        plain: args.log.unwrap_or(LogDetail::None).detail().is_none(),
     };
     let detail = args.log.unwrap_or(LogDetail::None).detail();
     let directory = args.out.clone().unwrap_or_default();

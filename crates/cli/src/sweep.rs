@@ -99,6 +99,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         force: args.force,
         jobs: args.jobs,
         json: args.json,
+        plain: true,
     };
     campaign::run(&Arc::new(study), &job, |run| Ok(Campaign::simulate(run, Stop)?))
 }

@@ -43,6 +43,7 @@ pub mod adaptation;
 pub mod analysis;
 pub mod attitude;
 pub mod axes;
+pub mod batch;
 pub mod belief;
 pub mod body;
 pub mod campaign;

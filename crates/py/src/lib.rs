@@ -242,7 +242,7 @@ fn campaign<'py>(
         let each = stop.clone();
         let work = move |run: &Run| Ok(Campaign::simulate(run, each.clone())?);
         // Asked to stop, `aside` raises what asked for it: the outcomes so far are not used.
-        let _ = at_work.each(runs.0..runs.1, jobs, work, |outcome| {
+        let _ = at_work.each_beside(runs.0..runs.1, jobs, work, |outcome| {
             outcomes.extend(outcome);
             if stop.asked() { Err(()) } else { Ok(()) }
         });

@@ -69,7 +69,7 @@ fn single(study: &Campaign) -> Result<Json, Failure> {
 fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, Failure> {
     let runs = range.end - range.start;
     let mut objects = Vec::new();
-    study.each(
+    study.each_beside(
         range,
         0,
         |run| Ok(Campaign::simulate(run, Stop)?),

@@ -8,12 +8,15 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::{Campaign, Outcome, Run, RunError};
+use crate::batch::{self, Job};
 use crate::metrics::Metrics;
 
 /// No run begins that is so many runs ahead of the one reported next: those between wait in memory.
 const AHEAD: u64 = 4096;
 /// The longest time without a report.
 const LOOK: Duration = Duration::from_millis(20);
+/// So many runs are begun at once where they go side by side.
+const BESIDE: u64 = 16;
 /// How long a campaign that was stopped waits for the runs under way, which are stopped too.
 const PATIENCE: Duration = Duration::from_millis(500);
 
@@ -35,16 +38,15 @@ impl Crew {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The number of the next run, which is waited for.
-    fn take(&self) -> Option<u64> {
+    /// The numbers of the next runs, at most so many, which are waited for; none at the end.
+    fn take(&self, most: u64) -> Range<u64> {
         let mut state = self.state();
         while state.next < state.end && state.next - state.due >= AHEAD {
             state = self.told.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
-        (state.next < state.end).then(|| {
-            state.next += 1;
-            state.next - 1
-        })
+        let first = state.next.min(state.end);
+        state.next = state.end.min(first + most);
+        first..state.next
     }
 
     fn tell(&self, due: u64) {
@@ -83,6 +85,30 @@ impl Campaign {
         runs: Range<u64>,
         threads: usize,
         work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+        tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.go(runs, threads, 1, work, tell)
+    }
+
+    /// The same where `work` does nothing but simulate: runs of one structure then go side by side where they can, and come to
+    /// the same.
+    pub fn each_beside<E>(
+        self: &Arc<Self>,
+        runs: Range<u64>,
+        threads: usize,
+        work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+        tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let most = if batch::takes(self.scenario()) { BESIDE } else { 1 };
+        self.go(runs, threads, most, work, tell)
+    }
+
+    fn go<E>(
+        self: &Arc<Self>,
+        runs: Range<u64>,
+        threads: usize,
+        most: u64,
+        work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
         mut tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
     ) -> Result<(), E> {
         let state = State { next: runs.start, due: runs.start, end: runs.end };
@@ -92,10 +118,12 @@ impl Campaign {
         let count = runs.end.saturating_sub(runs.start);
         let cores = || thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { cores() } else { threads };
+        // No thread is left without work for the sake of another's neighbours.
+        let most = most.min(count / threads as u64).max(1);
         for _ in 0..threads.min(usize::try_from(count).unwrap_or(usize::MAX)) {
             let (study, worker, outcomes) = (self.clone(), Worker(crew.clone()), outcomes.clone());
             let work = work.clone();
-            thread::spawn(move || study.work_through(&worker, &outcomes, &*work));
+            thread::spawn(move || study.work_through(&worker, most, &outcomes, &*work));
         }
         drop(outcomes);
         let told = tell_in_order(&crew, runs, &ended, &mut tell);
@@ -114,14 +142,43 @@ impl Campaign {
     fn work_through(
         &self,
         worker: &Worker,
+        most: u64,
         outcomes: &Sender<Outcome>,
         work: &impl Fn(&Run) -> Result<Metrics, RunError>,
     ) {
-        while let Some(number) = worker.0.take() {
-            if outcomes.send(self.outcome(number, work)).is_err() {
+        loop {
+            let numbers = worker.0.take(most);
+            if numbers.is_empty() {
                 return;
             }
+            let some = if numbers.end - numbers.start > 1 {
+                self.beside(numbers, work)
+            } else {
+                vec![self.outcome(numbers.start, work)]
+            };
+            for outcome in some {
+                if outcomes.send(outcome).is_err() {
+                    return;
+                }
+            }
         }
+    }
+
+    /// What runs come to, side by side where they can go so; `work` simulates the others.
+    fn beside(&self, numbers: Range<u64>, work: &impl Fn(&Run) -> Result<Metrics, RunError>) -> Vec<Outcome> {
+        let runs: Vec<_> = numbers.map(|number| (number, self.run(number))).collect();
+        let whole = || runs.iter().filter_map(|(_, run)| run.as_ref().ok());
+        let jobs: Vec<Job<'_>> =
+            whole().map(|run| Job { number: run.number, scenario: &run.scenario }).collect();
+        let mut found = batch::simulate(&jobs).into_iter();
+        let outcome = |(number, run): (u64, Result<Run, _>)| match run {
+            Ok(run) => {
+                let metrics = found.next().flatten().map_or_else(|| work(&run), Ok);
+                Outcome { number, metrics, drawn: run.drawn }
+            }
+            Err(error) => Outcome { number, drawn: self.draw(number), metrics: Err(RunError::from(error)) },
+        };
+        runs.into_iter().map(outcome).collect()
     }
 }
 

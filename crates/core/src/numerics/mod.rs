@@ -9,6 +9,7 @@ pub(crate) mod gauss_legendre;
 pub mod phasor;
 pub(crate) mod phi;
 pub(crate) mod polynomial;
+pub(crate) mod polynomials;
 pub(crate) mod quadrature;
 pub(crate) mod simplex;
 pub(crate) mod stumpff;
