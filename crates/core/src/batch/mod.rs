@@ -4,6 +4,7 @@
 //! no batch for it.
 
 mod drifting;
+mod relay;
 
 use crate::lanes::Processor;
 use crate::metrics::Metrics;
@@ -31,7 +32,7 @@ pub trait Batch: Sync {
 }
 
 /// All there are, in the order in which they are asked.
-const ALL: &[&dyn Batch] = &[&drifting::Side];
+const ALL: &[&dyn Batch] = &[&drifting::Side, &relay::Side];
 
 /// Whether runs of a scenario may go side by side on this machine.
 pub fn takes(scenario: &Scenario) -> bool {

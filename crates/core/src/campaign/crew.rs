@@ -16,7 +16,7 @@ const AHEAD: u64 = 4096;
 /// The longest time without a report.
 const LOOK: Duration = Duration::from_millis(20);
 /// So many runs are begun at once where they go side by side.
-const BESIDE: u64 = 16;
+const BESIDE: u64 = 64;
 /// How long a campaign that was stopped waits for the runs under way, which are stopped too.
 const PATIENCE: Duration = Duration::from_millis(500);
 

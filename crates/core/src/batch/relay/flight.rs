@@ -77,9 +77,7 @@ pub struct Searched {
     pub ticks: f64,
     /// Whether it is the right boundary, out of the mirror, or the only level.
     pub right: bool,
-    /// What is there.
-    pub angle: f64,
-    pub rate: f64,
+    /// Displacement from 0 and quadrature of each mode there.
     pub modes: Vec<[f64; 2]>,
 }
 
