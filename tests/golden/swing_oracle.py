@@ -1,4 +1,4 @@
-"""Integrals of |c + W exp(-i w t)| over [0, h] by quadrature in 30 digits: an independent check of the series.
+"""Integrals of |c + W exp(-i w t)| over [0, h] by quadrature in 30 digits: a check of the series.
 
 python3 tests/golden/swing_oracle.py > tests/golden/swing.csv     # needs mpmath
 """

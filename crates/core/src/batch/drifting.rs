@@ -101,7 +101,9 @@ impl Work for Rounds<'_> {
     fn run<R: Real>(self, kind: R) {
         let Self { runs, gathers } = self;
         let springs: Vec<&Springs<f64>> = runs.iter().map(|run| run.motion.springs()).collect();
-        let (Some(springs), ratios) = (Springs::beside(kind, &springs), runs[0].motion.ratios()) else { return };
+        let (Some(springs), ratios) = (Springs::beside(kind, &springs), runs[0].motion.ratios()) else {
+            return;
+        };
         let count = springs.count();
         if runs.iter().any(|run| run.motion.ratios() != ratios || run.motion.springs().count() != count) {
             return;

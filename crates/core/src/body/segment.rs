@@ -228,8 +228,7 @@ impl Segment {
             displacement: swing.from.displacement,
             quadrature: swing.from.quadrature,
         }));
-        let from =
-            Departure { angle: self.angle, rate: self.rate, moment: self.moment, fastest: *fastest };
+        let from = Departure { angle: self.angle, rate: self.rate, moment: self.moment, fastest: *fastest };
         let level = |guard: &Guard| Level { angle: guard.level, towards: guard.side.sign() };
         let found = match guards {
             [one] => guess::locate(&from, &[level(one)], modes),

@@ -84,9 +84,8 @@ pub fn sincos_any(x: f64) -> (f64, f64) {
 pub fn sincos_short<R: Real>(x: R) -> (R, R) {
     let z = x * x;
     let w = z * z;
-    let sines = x.of(SINE[1])
-        + z * (x.of(SINE[2]) + z * x.of(SINE[3]))
-        + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
+    let sines =
+        x.of(SINE[1]) + z * (x.of(SINE[2]) + z * x.of(SINE[3])) + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
     let sin = x + z * x * (x.of(SINE[0]) + z * sines);
     let cosines = z * (x.of(COSINE[0]) + z * (x.of(COSINE[1]) + z * x.of(COSINE[2])))
         + w * w * (x.of(COSINE[3]) + z * (x.of(COSINE[4]) + z * x.of(COSINE[5])));
@@ -102,9 +101,8 @@ fn within<R: Real>(x: R, y: R) -> (R, R) {
     let z = x * x;
     let w = z * z;
     let (one, half) = (x.of(1.0), x.of(0.5));
-    let sines = x.of(SINE[1])
-        + z * (x.of(SINE[2]) + z * x.of(SINE[3]))
-        + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
+    let sines =
+        x.of(SINE[1]) + z * (x.of(SINE[2]) + z * x.of(SINE[3])) + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
     let v = z * x;
     let sin = x - ((z * (half * y - v * sines) - y) - v * x.of(SINE[0]));
     let cosines = z * (x.of(COSINE[0]) + z * (x.of(COSINE[1]) + z * x.of(COSINE[2])))

@@ -73,10 +73,7 @@ impl<R: Real> Clock<R> {
     /// One or the other.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
-        Self {
-            whole: R::select(mask, yes.whole, no.whole),
-            part: R::select(mask, yes.part, no.part),
-        }
+        Self { whole: R::select(mask, yes.whole, no.whole), part: R::select(mask, yes.part, no.part) }
     }
 
     /// In one lane, as whole numbers.
@@ -88,10 +85,7 @@ impl<R: Real> Clock<R> {
     /// Other than before in one lane.
     #[inline(always)]
     pub fn with_lane(self, lane: usize, (whole, part): (u64, u64)) -> Self {
-        Self {
-            whole: self.whole.with_lane(lane, whole as f64),
-            part: self.part.with_lane(lane, part as f64),
-        }
+        Self { whole: self.whole.with_lane(lane, whole as f64), part: self.part.with_lane(lane, part as f64) }
     }
 }
 

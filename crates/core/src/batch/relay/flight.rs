@@ -73,8 +73,8 @@ pub struct Sight {
 /// A trip that was searched.
 #[derive(Clone, Debug, Default)]
 pub struct Searched {
-    /// Femtoseconds since departure.
-    pub ticks: f64,
+    /// The span since departure: whole seconds and femtoseconds, and all of it in seconds.
+    pub after: ((u64, u64), f64),
     /// Whether it is the right boundary, out of the mirror, or the only level.
     pub right: bool,
     /// Displacement from 0 and quadrature of each mode there.
@@ -283,16 +283,17 @@ impl<R: Real> Flight<R> {
         if place == Place::Push {
             self.pushed = self.now;
         }
-        let (mut ticks, mut after, mut right) = (one, one, one.le(one));
+        let mut span = (self.now, one);
+        let mut right = one.le(one);
         if place == Place::Brake {
-            self.brake(crew, &mut ticks, &mut after);
+            span = self.brake(crew);
         } else {
             // No push leads to the level that is far away.
             let far = if place == Place::Coast { -self.edge } else { one.of(FAR) };
             let levels = [Level { angle: level, towards }, Level { angle: far, towards: -towards }];
-            self.guarded(crew, place, moment, &levels, (&mut ticks, &mut after, &mut right));
+            (span, right) = self.guarded(crew, place, moment, &levels);
         }
-        self.arrive(crew, place, moment, ticks, after);
+        self.arrive(crew, place, moment, span);
         if place == Place::Coast {
             self.mirror(R::select(right, one, -one));
         }
@@ -328,7 +329,7 @@ impl<R: Real> Flight<R> {
 
     /// The brake, which lasts as long as the law says.
     #[inline(always)]
-    fn brake<C: Crew>(&mut self, crew: &mut C, ticks: &mut R, after: &mut R) {
+    fn brake<C: Crew>(&mut self, crew: &mut C) -> (Clock<R>, R) {
         let nearest = nearest_ticks(self.k_t * self.now.since(self.pushed).seconds());
         // So long a brake is for a run alone.
         let fits = nearest.lt(nearest.of(SHORT * 1e15));
@@ -340,12 +341,13 @@ impl<R: Real> Flight<R> {
                 }
             }
         }
-        *ticks = R::select(fits, nearest, nearest.of(0.0));
-        *after = *ticks / ticks.of(1e15);
+        let ticks = R::select(fits, nearest, nearest.of(0.0));
+        let after = ticks / ticks.of(1e15);
         for index in 0..self.modes.len() {
             let mode = &mut self.moved[index];
-            mode.turn(sincos(mode.frequency * *after));
+            mode.turn(sincos(mode.frequency * after));
         }
+        (Clock::of_ticks(ticks), after)
     }
 
     /// The modes turn about equilibria of this moment from now on.
@@ -369,23 +371,21 @@ impl<R: Real> Flight<R> {
         place: Place,
         moment: R,
         levels: &[Level<R>; 2],
-        (ticks, after, right): (&mut R, &mut R, &mut R::Mask),
-    ) {
+    ) -> ((Clock<R>, R), R::Mask) {
         let (zero, one) = (moment.of(0.0), moment.of(1.0));
         let from = Departure { angle: self.angle, rate: self.rate, moment, fastest: self.fastest };
         let found: Found<R> = locate(&from, levels, &mut self.moved);
         let certain = found.certain;
-        (*ticks, *after, *right) = (found.ticks, found.after, found.first);
         if certain.all() {
-            return;
+            return ((Clock::of_ticks(found.ticks), found.after), found.first);
         }
         // Lanes without a run stay where they are.
         for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
             moved.displacement = R::select(certain, moved.displacement, mode.displacement);
             moved.quadrature = R::select(certain, moved.quadrature, mode.quadrature);
         }
-        *ticks = R::select(certain, found.ticks, zero);
-        *after = R::select(certain, found.after, zero);
+        let mut span = Clock::of_ticks(R::select(certain, found.ticks, zero));
+        let mut after = R::select(certain, found.after, zero);
         let mut first = R::select(found.first | !certain, one, -one);
         let known = R::select(certain, one, zero);
         self.write();
@@ -396,17 +396,18 @@ impl<R: Real> Flight<R> {
             self.look(lane);
             let side = self.sight.side;
             let Some(found) = crew.search(lane, place, &self.sight) else {
-                // Nothing within the run: its end is before any trip that lies so far ahead.
-                *ticks = ticks.with_lane(lane, f64::INFINITY);
+                // Nothing within the run, whose end is before any trip that lies so far ahead.
+                span = span.with_lane(lane, (NEVER as u64, 0));
                 continue;
             };
-            if !(found.ticks >= 1.0 && found.ticks < SHORT * 1e15) {
+            let (parts, seconds) = found.after;
+            if !(seconds > 0.0 && seconds < SHORT) {
                 crew.give_up(lane);
                 self.active[lane] = false;
                 continue;
             }
-            *ticks = ticks.with_lane(lane, found.ticks);
-            *after = after.with_lane(lane, found.ticks / 1e15);
+            span = span.with_lane(lane, parts);
+            after = after.with_lane(lane, seconds);
             if place == Place::Coast {
                 first = first.with_lane(lane, if found.right == (side > 0.0) { 1.0 } else { -1.0 });
             }
@@ -416,19 +417,15 @@ impl<R: Real> Flight<R> {
                 moved.quadrature = moved.quadrature.with_lane(lane, side * y);
             }
         }
-        *right = zero.lt(first);
+        ((span, after), zero.lt(first))
     }
 
-    /// Ends the motion that departed last, so many femtoseconds and seconds after its departure: windows close on the way, and runs
+    /// Ends the motion that departed last, such a span after its departure: windows close on the way, and runs
     /// that end do so.
     #[inline(always)]
-    fn arrive<C: Crew>(&mut self, crew: &mut C, place: Place, moment: R, ticks: R, h: R) {
+    fn arrive<C: Crew>(&mut self, crew: &mut C, place: Place, moment: R, (span, h): (Clock<R>, R)) {
         let zero = h.of(0.0);
-        // A run without another trip ends before this.
-        let endless = h.of(SHORT * 1e15).le(ticks);
-        let span = Clock::of_ticks(R::select(endless, zero, ticks));
-        let mut until = self.now.plus(span);
-        until.whole = R::select(endless, h.of(NEVER), until.whole);
+        let until = self.now.plus(span);
         let ends = !until.not_after(self.end);
         let until = Clock::select(ends, self.end, until);
         if C::LISTENS {

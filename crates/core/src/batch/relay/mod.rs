@@ -73,18 +73,16 @@ fn suits(scenario: &Scenario, law: &Relay) -> bool {
         && scenario.study.sampling.is_none()
         && scenario.actuator.is_ideal()
         && scenario.sensor.iter().all(|sensor| matches!(sensor, Sensor::Continuous));
-    let observes = scenario.estimator.as_ref().is_none_or(|estimator| {
-        estimator.envelope().is_some_and(|envelope| envelope.form == Form::Dynamic)
-    });
-    let learns = scenario
-        .adaptation
+    let observes = scenario
+        .estimator
         .as_ref()
-        .is_none_or(|Adaptation::RandomSearch(search)| search.tunes == "k_t");
+        .is_none_or(|estimator| estimator.envelope().is_some_and(|envelope| envelope.form == Form::Dynamic));
+    let learns =
+        scenario.adaptation.as_ref().is_none_or(|Adaptation::RandomSearch(search)| search.tunes == "k_t");
     let duration = scenario.duration.seconds();
     let modes = model.modes.iter().chain(watched(scenario));
-    let are_exact = modes
-        .clone()
-        .all(|mode| mode.damping.get() == 0.0 && mode.frequency.get() * duration < FARTHEST);
+    let are_exact =
+        modes.clone().all(|mode| mode.damping.get() == 0.0 && mode.frequency.get() * duration < FARTHEST);
     let begins = model.start().angle().abs() < law.dead_zone.get();
     let has_band = scenario.promise().band(f64::NAN) > 0.0;
     is_simple && observes && learns && are_exact && begins && has_band && law.sides == Sides::Two
@@ -215,7 +213,7 @@ impl Crew for Runs<'_> {
         let trip = trip.ok().flatten()?;
         let modes = lane.state.modes.iter().map(|phase| [phase.displacement, phase.quadrature]);
         Some(Searched {
-            ticks: trip.after.leading_femtoseconds() as f64,
+            after: ((Instant::START + trip.after).parts(), trip.after.seconds()),
             right: trip.guard == 0,
             modes: modes.collect(),
         })
