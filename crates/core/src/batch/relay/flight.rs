@@ -6,7 +6,11 @@
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
+mod fill;
+mod look;
+
 use super::clock::{Clock, nearest_ticks};
+use super::crew::{Crew, Place, Sight};
 use super::track::Track;
 use crate::lanes::{Mask, Real};
 use crate::motion::guess::{Departure, Found, Level, Oscillator, locate};
@@ -22,85 +26,6 @@ const SHORT: f64 = 9_000.0;
 const ROWS: usize = 6;
 /// An angle (rad) that no motion of a run in lanes reaches.
 const FAR: f64 = 1e9;
-
-/// One run at its start, as plain numbers. A mode: frequency, excitability, displacement and quadrature.
-#[derive(Clone, Debug, Default)]
-pub struct Setup {
-    /// Rigid angle and rate.
-    pub angle: f64,
-    pub rate: f64,
-    /// Modes of the body, and of the envelope's model.
-    pub modes: Vec<[f64; 4]>,
-    pub tracks: Vec<[f64; 4]>,
-    /// Half the width of the dead zone, and where the brake begins.
-    pub edge: f64,
-    pub back: f64,
-    /// Strong and weak moment (rad/s²), and braking gain.
-    pub strong: f64,
-    pub weak: f64,
-    pub k_t: f64,
-    /// The end, and the length of a window: whole seconds and femtoseconds.
-    pub end: (u64, u64),
-    pub window: Option<(u64, u64)>,
-}
-
-/// A place of the cycle.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In the dead zone, under the weak torque.
-    Coast,
-    /// Back from the right boundary.
-    Push,
-    /// Against the push.
-    Brake,
-}
-
-/// One lane at one instant, out of the mirror. Displacements are from 0, not from an equilibrium.
-#[derive(Clone, Debug, Default)]
-pub struct Sight {
-    /// Whole seconds and femtoseconds.
-    pub at: (u64, u64),
-    pub angle: f64,
-    pub rate: f64,
-    /// Displacement and quadrature of each mode.
-    pub modes: Vec<[f64; 2]>,
-    /// 1, or -1 in the mirror.
-    pub side: f64,
-    /// Braking gain.
-    pub gain: f64,
-}
-
-/// A trip that was searched.
-#[derive(Clone, Debug, Default)]
-pub struct Searched {
-    /// The span since departure: whole seconds and femtoseconds, and all of it in seconds.
-    pub after: ((u64, u64), f64),
-    /// Whether it is the right boundary, out of the mirror, or the only level.
-    pub right: bool,
-    /// Displacement from 0 and quadrature of each mode there.
-    pub modes: Vec<[f64; 2]>,
-}
-
-/// Who has the runs.
-pub trait Crew {
-    /// Whether it wants switchings, and to know where bounds do not keep the angle within the band.
-    const LISTENS: bool;
-
-    /// The next run for a lane, whose last run has ended.
-    fn next(&mut self, lane: usize) -> Option<Setup>;
-    /// Looks for the first trip of a lane that departs here at this place; nothing within the run.
-    fn search(&mut self, lane: usize, place: Place, from: &Sight) -> Option<Searched>;
-    /// A lane cannot go on here: its run has to be made alone.
-    fn give_up(&mut self, lane: usize);
-    /// The law has switched to a place.
-    fn switched(&mut self, lane: usize, to: Place, now: &Sight);
-    /// A window has closed, with this integral of the envelope; answers the braking gain from now on.
-    fn closed(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64;
-    /// On the motion that departed here, at this place, and ends at an instant, the angle may leave the band (rad).
-    fn strays(&mut self, lane: usize, place: Place, from: &Sight, until: (u64, u64));
-    /// Half the width of the band about the goal (rad).
-    fn band(&self, lane: usize) -> f64;
-}
 
 /// Runs side by side.
 pub struct Flight<R: Real> {
@@ -124,6 +49,8 @@ pub struct Flight<R: Real> {
     /// When the push began.
     pushed: Clock<R>,
     tracks: Vec<Track<R>>,
+    /// Whether any run has windows.
+    watches: bool,
     /// When the envelope was followed last, its integral, and when and after how long windows close.
     seen: Clock<R>,
     integral: R,
@@ -137,59 +64,6 @@ pub struct Flight<R: Real> {
 }
 
 impl<R: Real> Flight<R> {
-    /// Lanes without runs, of bodies and envelopes with so many modes.
-    #[inline(always)]
-    fn new(kind: R, modes: usize, tracks: usize) -> Self {
-        let (zero, one) = (kind.of(0.0), kind.of(1.0));
-        let (start, never) = (Clock { whole: zero, part: zero }, Clock { whole: kind.of(NEVER), part: zero });
-        let still = Oscillator { frequency: one, equilibrium: zero, displacement: zero, quadrature: zero };
-        let track = Track {
-            frequency: one,
-            excitability: zero,
-            frame: [zero; 2],
-            axis: [one, zero],
-            equilibrium: zero,
-            deviation: [zero; 2],
-        };
-        let mut flight = Self {
-            now: start,
-            end: start,
-            side: one,
-            angle: zero,
-            rate: zero,
-            totals: Vec::with_capacity(modes),
-            modes: Vec::with_capacity(modes),
-            moved: Vec::with_capacity(modes),
-            excitabilities: Vec::with_capacity(modes),
-            fastest: one,
-            edge: one,
-            back: one,
-            strong: one,
-            weak: one,
-            k_t: zero,
-            band: one,
-            pushed: start,
-            tracks: Vec::with_capacity(tracks),
-            seen: start,
-            integral: zero,
-            closes: never,
-            window: never,
-            active: [false; MOST],
-            rows: vec![[0.0; MOST]; ROWS + 2 * modes],
-            sight: Sight::default(),
-        };
-        for _ in 0..modes {
-            flight.totals.push(zero);
-            flight.modes.push(still);
-            flight.moved.push(still);
-            flight.excitabilities.push(zero);
-        }
-        for _ in 0..tracks {
-            flight.tracks.push(track);
-        }
-        flight
-    }
-
     /// Makes all runs of a crew, of bodies and envelopes with so many modes.
     #[inline(always)]
     pub fn fly<C: Crew>(kind: R, modes: usize, tracks: usize, crew: &mut C) {
@@ -211,62 +85,6 @@ impl<R: Real> Flight<R> {
         }
     }
 
-    /// Gives lanes that have none the next runs; tells whether any has one.
-    fn fill<C: Crew>(&mut self, crew: &mut C) -> bool {
-        let mut any = false;
-        for lane in 0..R::LANES {
-            if !self.active[lane] {
-                if let Some(setup) = crew.next(lane) {
-                    self.begin(lane, &setup, crew.band(lane));
-                }
-            }
-            any |= self.active[lane];
-        }
-        any
-    }
-
-    /// Puts a run into a lane.
-    fn begin(&mut self, lane: usize, setup: &Setup, band: f64) {
-        let put = |of: &mut R, value: f64| *of = of.with_lane(lane, value);
-        self.active[lane] = true;
-        self.now = self.now.with_lane(lane, (0, 0));
-        self.seen = self.seen.with_lane(lane, (0, 0));
-        self.end = self.end.with_lane(lane, setup.end);
-        let window = setup.window.unwrap_or((NEVER as u64, 0));
-        self.window = self.window.with_lane(lane, window);
-        self.closes = self.closes.with_lane(lane, window);
-        put(&mut self.side, 1.0);
-        put(&mut self.angle, setup.angle);
-        put(&mut self.rate, setup.rate);
-        put(&mut self.edge, setup.edge);
-        put(&mut self.back, setup.back);
-        put(&mut self.strong, setup.strong);
-        put(&mut self.weak, setup.weak);
-        put(&mut self.k_t, setup.k_t);
-        put(&mut self.band, band);
-        put(&mut self.integral, 0.0);
-        let mut fastest = 0.0_f64;
-        for (index, [frequency, k, x, y]) in setup.modes.iter().copied().enumerate() {
-            fastest = fastest.max(frequency);
-            put(&mut self.modes[index].frequency, frequency);
-            put(&mut self.modes[index].quadrature, y);
-            put(&mut self.excitabilities[index], k);
-            put(&mut self.totals[index], x);
-        }
-        put(&mut self.fastest, fastest);
-        for (track, of) in self.tracks.iter_mut().zip(&setup.tracks) {
-            let [frequency, k, x, y] = *of;
-            put(&mut track.frequency, frequency);
-            put(&mut track.excitability, k);
-            put(&mut track.equilibrium, 0.0);
-            for (part, value) in [x, y].into_iter().enumerate() {
-                put(&mut track.frame[part], value);
-                put(&mut track.deviation[part], value);
-                put(&mut track.axis[part], [1.0, 0.0][part]);
-            }
-        }
-    }
-
     /// The motion of one place, and the switching at its end.
     #[inline(always)]
     fn go<C: Crew>(&mut self, crew: &mut C, place: Place) {
@@ -283,16 +101,14 @@ impl<R: Real> Flight<R> {
         if place == Place::Push {
             self.pushed = self.now;
         }
-        let mut span = (self.now, one);
-        let mut right = one.le(one);
-        if place == Place::Brake {
-            span = self.brake(crew);
+        let (span, right) = if place == Place::Brake {
+            (self.brake(crew), one.le(one))
         } else {
             // No push leads to the level that is far away.
             let far = if place == Place::Coast { -self.edge } else { one.of(FAR) };
             let levels = [Level { angle: level, towards }, Level { angle: far, towards: -towards }];
-            (span, right) = self.guarded(crew, place, moment, &levels);
-        }
+            self.guarded(crew, place, moment, &levels)
+        };
         self.arrive(crew, place, moment, span);
         if place == Place::Coast {
             self.mirror(R::select(right, one, -one));
@@ -456,7 +272,7 @@ impl<R: Real> Flight<R> {
     /// Follows the envelope to an instant of each lane, by the windows that close on the way.
     #[inline(always)]
     fn follow<C: Crew>(&mut self, crew: &mut C, until: Clock<R>) {
-        if self.tracks.is_empty() {
+        if !self.watches {
             return;
         }
         let zero = self.angle.of(0.0);
@@ -490,80 +306,6 @@ impl<R: Real> Flight<R> {
                 let gain = crew.closed(lane, self.seen.lane(lane), integral, gain);
                 self.k_t = self.k_t.with_lane(lane, gain);
             }
-        }
-    }
-
-    /// Where bounds do not keep the angle within the band on the motion that ends, the crew has to see for itself.
-    #[inline(always)]
-    fn stray<C: Crew>(&mut self, crew: &mut C, place: Place, moment: R, span: R, until: Clock<R>) {
-        let zero = span.of(0.0);
-        let (mut centre, mut reach) = (zero, zero);
-        for mode in &self.modes {
-            centre = centre + mode.equilibrium;
-            reach = reach + mode.reach();
-        }
-        let end = self.angle + span * (self.rate + span.of(0.5) * moment * span);
-        let (mut low, mut high) = (self.angle.min(end), self.angle.max(end));
-        // The crest of the parabola, if it is on the way.
-        let crest = self.angle - span.of(0.5) * self.rate * (self.rate / moment);
-        let turns = (self.rate * (self.rate + moment * span)).le(zero);
-        low = R::select(turns, low.min(crest), low);
-        high = R::select(turns, high.max(crest), high);
-        let within = (high + centre + reach).le(self.band) & (-self.band).le(low + centre - reach);
-        if within.all() {
-            return;
-        }
-        let strays = R::select(within, zero, span.of(1.0));
-        self.write();
-        for lane in 0..R::LANES {
-            if self.active[lane] && strays.lane(lane) > 0.0 {
-                self.look(lane);
-                crew.strays(lane, place, &self.sight, until.lane(lane));
-            }
-        }
-    }
-
-    /// Tells a switching of each lane.
-    #[inline(always)]
-    fn tell<C: Crew>(&mut self, crew: &mut C, to: Place) {
-        if !C::LISTENS {
-            return;
-        }
-        self.write();
-        for lane in 0..R::LANES {
-            if self.active[lane] {
-                self.look(lane);
-                crew.switched(lane, to, &self.sight);
-            }
-        }
-    }
-
-    /// Writes down what there is to look at.
-    #[inline(always)]
-    fn write(&mut self) {
-        let [whole, part, side, k_t, angle, rate, rest @ ..] = &mut self.rows[..] else { return };
-        self.now.whole.store(whole);
-        self.now.part.store(part);
-        self.side.store(side);
-        self.k_t.store(k_t);
-        (self.side * self.angle).store(angle);
-        (self.side * self.rate).store(rate);
-        for index in 0..self.modes.len() {
-            (self.side * self.totals[index]).store(&mut rest[2 * index]);
-            (self.side * self.modes[index].quadrature).store(&mut rest[2 * index + 1]);
-        }
-    }
-
-    /// Looks at a lane of what was written down.
-    fn look(&mut self, lane: usize) {
-        let [whole, part, side, k_t, angle, rate, rest @ ..] = &self.rows[..] else { return };
-        let sight = &mut self.sight;
-        sight.at = (whole[lane] as u64, part[lane] as u64);
-        (sight.side, sight.gain) = (side[lane], k_t[lane]);
-        (sight.angle, sight.rate) = (angle[lane], rate[lane]);
-        sight.modes.clear();
-        for pair in rest.chunks_exact(2) {
-            sight.modes.push([pair[0][lane], pair[1][lane]]);
         }
     }
 }

@@ -2,6 +2,7 @@
 //! one.
 
 mod clock;
+mod crew;
 mod flight;
 mod track;
 
@@ -25,7 +26,8 @@ use crate::scenario::Scenario;
 use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
 
-use flight::{Crew, Flight, Place, Searched, Setup, Sight};
+use crew::{Crew, Place, Searched, Setup, Sight};
+use flight::Flight;
 
 /// Runs that share the lanes of one flight, one after the other.
 const RUNS: usize = 64;
