@@ -151,34 +151,51 @@ impl Campaign {
             if numbers.is_empty() {
                 return;
             }
-            let some = if numbers.end - numbers.start > 1 {
-                self.beside(numbers, work)
+            let mut tell = |outcome| outcomes.send(outcome).is_ok();
+            let goes_on = if numbers.end - numbers.start > 1 {
+                self.beside(numbers, work, &mut tell)
             } else {
-                vec![self.outcome(numbers.start, work)]
+                tell(self.outcome(numbers.start, work))
             };
-            for outcome in some {
-                if outcomes.send(outcome).is_err() {
-                    return;
-                }
+            if !goes_on {
+                return;
             }
         }
     }
 
-    /// What runs come to, side by side where they can go so; `work` simulates the others.
-    fn beside(&self, numbers: Range<u64>, work: &impl Fn(&Run) -> Result<Metrics, RunError>) -> Vec<Outcome> {
+    /// What runs come to, side by side where they can go so, and each as soon as it is known; `work` simulates the others. Tells
+    /// whether `tell` wants more.
+    fn beside(
+        &self,
+        numbers: Range<u64>,
+        work: &impl Fn(&Run) -> Result<Metrics, RunError>,
+        tell: &mut impl FnMut(Outcome) -> bool,
+    ) -> bool {
         let runs: Vec<_> = numbers.map(|number| (number, self.run(number))).collect();
         let whole = || runs.iter().filter_map(|(_, run)| run.as_ref().ok());
         let jobs: Vec<Job<'_>> =
             whole().map(|run| Job { number: run.number, scenario: &run.scenario }).collect();
         let mut found = batch::simulate(&jobs).into_iter();
-        let outcome = |(number, run): (u64, Result<Run, _>)| match run {
-            Ok(run) => {
-                let metrics = found.next().flatten().map_or_else(|| work(&run), Ok);
-                Outcome { number, metrics, drawn: run.drawn }
+        let mut alone = Vec::new();
+        for (number, run) in runs {
+            let (drawn, metrics) = match run {
+                Ok(run) => match found.next().flatten() {
+                    Some(metrics) => (run.drawn, Ok(metrics)),
+                    None => {
+                        alone.push(run);
+                        continue;
+                    }
+                },
+                Err(error) => (self.draw(number), Err(RunError::from(error))),
+            };
+            if !tell(Outcome { number, drawn, metrics }) {
+                return false;
             }
-            Err(error) => Outcome { number, drawn: self.draw(number), metrics: Err(RunError::from(error)) },
-        };
-        runs.into_iter().map(outcome).collect()
+        }
+        alone.into_iter().all(|run| {
+            let metrics = work(&run);
+            tell(Outcome { number: run.number, metrics, drawn: run.drawn })
+        })
     }
 }
 

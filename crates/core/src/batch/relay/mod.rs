@@ -31,6 +31,8 @@ use flight::Flight;
 
 /// Runs that share the lanes of one flight, one after the other.
 const RUNS: usize = 64;
+/// Longer runs (s) go alone: nothing is told of a flight before its end.
+const LONGEST: f64 = 2e5;
 
 /// The batch.
 pub struct Side;
@@ -87,7 +89,8 @@ fn suits(scenario: &Scenario, law: &Relay) -> bool {
         modes.clone().all(|mode| mode.damping.get() == 0.0 && mode.frequency.get() * duration < FARTHEST);
     let begins = model.start().angle().abs() < law.dead_zone.get();
     let has_band = scenario.promise().band(f64::NAN) > 0.0;
-    is_simple && observes && learns && are_exact && begins && has_band && law.sides == Sides::Two
+    let is_short = duration <= LONGEST;
+    is_simple && is_short && observes && learns && are_exact && begins && has_band && law.sides == Sides::Two
 }
 
 /// Some runs, and what is known of those in the lanes.
