@@ -10,8 +10,10 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use flexsc_core::analysis::sampled_loop::{Held, Loop, Scaling, Window, map};
+use flexsc_core::batch::{Job, simulate_on};
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::estimator::kalman::{FrequencyTracking, Prediction, Setting};
+use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Metrics;
 use flexsc_core::random::Seed;
 use flexsc_core::record::{Detail, McapLog, Record, RunEnd, Trace};
@@ -93,6 +95,30 @@ fn run(c: &mut Criterion) {
     let mut group = c.benchmark_group("fixed step, 200 s");
     group.sample_size(10).measurement_time(Duration::from_secs(2));
     group.bench_function("RK4 at 1e-4 s", |b| b.iter(|| reference::rk4(black_box(0.3389), 200.0, 1e-4)));
+    group.finish();
+}
+
+/// Runs of many gains, one by one and side by side, all metrics included.
+fn lanes(c: &mut Criterion) {
+    let mut group = c.benchmark_group("64 runs of 20000 s");
+    group.sample_size(10).measurement_time(Duration::from_secs(3));
+    let gains = even(0.28, 0.4, 64);
+    let of = |k_t: &f64| scenario(&format!("{EVENTS}{WINDOWS}").replace("0.3389", &k_t.to_string()));
+    let scenarios: Vec<Scenario> = gains.iter().map(of).collect();
+    group.bench_function("yardstick", |b| {
+        b.iter(|| gains.iter().map(|k_t| reference::exact(black_box(*k_t), 20_000.0).0).sum::<u32>());
+    });
+    let runs: Vec<Run> = scenarios
+        .iter()
+        .map(|scenario| Run { number: 0, scenario: scenario.clone(), drawn: Vec::new() })
+        .collect();
+    group.bench_function("one by one", |b| {
+        b.iter(|| runs.iter().map(|run| Campaign::simulate(run, ()).expect("a run")).collect::<Vec<_>>());
+    });
+    let jobs: Vec<Job<'_>> = scenarios.iter().map(|scenario| Job { number: 0, scenario }).collect();
+    for processor in Processor::all() {
+        group.bench_function(processor.name(), |b| b.iter(|| simulate_on(processor, black_box(&jobs))));
+    }
     group.finish();
 }
 
@@ -245,6 +271,6 @@ fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    targets = run, modes, filters, log, structure, sampled_loop, station
+    targets = run, lanes, modes, filters, log, structure, sampled_loop, station
 }
 criterion_main!(benches);

@@ -179,6 +179,28 @@ def filtered(name):
     return criterion("filter", name)
 
 
+def side_by_side():
+    """The rows of runs in lanes, on processors that have them."""
+    group, many = "64 runs of 20000 s", 64
+    yardstick = criterion(group, "yardstick") / many
+    lines = [
+        "",
+        "| one of 64 runs with k_t from 0.28 to 0.40, all metrics | time | to the yardstick |",
+        "|---|---|---|",
+    ]
+    rows = [("hand-written yardstick, events only", "yardstick"), ("flexsc, one by one", "one by one")]
+    rows += [(f"flexsc, side by side, {name}", name) for name in ("AVX2", "AVX-512", "NEON")]
+    for text, name in rows:
+        if (
+            name in ("AVX2", "AVX-512", "NEON")
+            and not (ROOT / "target" / "criterion" / group / name).is_dir()
+        ):
+            continue
+        time = criterion(group, name) / many
+        lines.append(f"| {text} | {duration(time)} | {time / yardstick:.3g} |")
+    return lines
+
+
 def table():
     subprocess.run(["cargo", "build", "--release"], cwd=ROOT, check=True)
     subprocess.run(["cargo", "bench", "-p", "flexsc-bench", "--bench", "engine"], cwd=ROOT, check=True)
@@ -196,6 +218,7 @@ def table():
     ]
     lines = ["| 20 000 s of relay-quiet: 2526 switchings | time | ratio to events only |", "|---|---|---|"]
     lines += [f"| {name} | {duration(t)} | {t / events:.3g} |" for name, t in rows]
+    lines += side_by_side()
     lines += ["", "| modes | time of a run | per mode, relative to 200 |", "|---|---|---|"]
     per_mode = criterion("modes", "200") / 200
     for count in (2, 20, 50, 100, 200):

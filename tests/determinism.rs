@@ -17,8 +17,8 @@ fn runs_repeat_to_the_last_bit() {
     // (scenario, topic, fingerprint): undamped with adaptation; coupled modes; damped with noise, quadrature and drawn numbers;
     // wheels with friction, tachometers and an attitude filter; a filter with modes; panels that turn; three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
     let runs = [
-        ("relay-adaptive", "", "/command", 0xfed5_1b8d_2885_31dd),
-        ("relay-adaptive", "", "/adaptation", 0x6fc9_7027_b350_262f),
+        ("relay-adaptive", "", "/command", 0x4886_7bcb_5000_12ea),
+        ("relay-adaptive", "", "/adaptation", 0xb22e_04cb_1fc7_5d23),
         ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),

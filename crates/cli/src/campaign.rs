@@ -84,6 +84,8 @@ pub struct Job<'a> {
     pub json: bool,
     /// The scheduler that makes the runs, if one does.
     pub scheduler: Option<&'a str>,
+    /// Whether a run is nothing but simulated: many then go side by side.
+    pub plain: bool,
 }
 
 /// What a campaign came to.
@@ -171,7 +173,13 @@ fn table(
         next: job.range.start,
         failed: None,
     };
-    let done = study.each(job.range.clone(), job.threads(), work, |outcome| telling.tell(outcome));
+    let (range, threads) = (job.range.clone(), job.threads());
+    let tell = |outcome| telling.tell(outcome);
+    let done = if job.plain {
+        study.each_beside(range, threads, &job.selection, work, tell)
+    } else {
+        study.each(range, threads, work, tell)
+    };
     let Telling { all, only, failed, .. } = telling;
     if let Err(failure) = done {
         return Err(match (&failure, table) {

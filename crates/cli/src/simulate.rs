@@ -249,6 +249,7 @@ fn several(
         jobs: args.jobs,
         json: args.json,
         scheduler: args.options.scheduler(args.log.is_some_and(|log| log != LogDetail::None), args.json)?,
+        plain: args.log.unwrap_or(LogDetail::None).detail().is_none(),
     };
     let detail = args.log.unwrap_or(LogDetail::None).detail();
     let directory = args.out.clone().unwrap_or_default();

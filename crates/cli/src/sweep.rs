@@ -169,6 +169,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         jobs: args.jobs,
         json: args.json,
         scheduler: args.options.scheduler(false, args.json)?,
+        plain: true,
     };
     campaign::run(&Arc::new(study), &job, move |run| {
         if stop::asked() {

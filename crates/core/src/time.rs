@@ -82,6 +82,11 @@ impl Instant {
         self.0.seconds()
     }
 
+    /// The instant of whole seconds and femtoseconds past them, less than a second.
+    pub(crate) fn of_parts(whole: u64, part: u64) -> Self {
+        Self(Ticks { whole: whole as i64, part: part as i64 })
+    }
+
     /// Whole seconds, and the femtoseconds past them: the instant without rounding.
     pub fn parts(self) -> (u64, u64) {
         (self.0.whole as u64, self.0.part as u64)

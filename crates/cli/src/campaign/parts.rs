@@ -80,12 +80,14 @@ pub fn run(
         let work = work.clone();
         // What the manifest holds is what is run, here as on any other machine.
         let campaign = &directory.work().campaign;
-        let done = campaign.each(
-            gap.clone(),
-            job.threads(),
-            move |run| work(run),
-            |outcome| making.take(outcome, &mut parts),
-        );
+        let (range, threads) = (gap.clone(), job.threads());
+        let work = move |run: &Run| work(run);
+        let tell = |outcome| making.take(outcome, &mut parts);
+        let done = if job.plain {
+            campaign.each_beside(range, threads, &job.selection, work, tell)
+        } else {
+            campaign.each(range, threads, work, tell)
+        };
         if let Err(failure) = done {
             let made = all - left + making.made;
             drop(making);

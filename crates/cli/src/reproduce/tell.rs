@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{Campaign, Outcome};
+use flexsc_core::metrics::Selection;
 use serde_json::{Map, Value as Json, json};
 
 use super::command::{Command, analysed};
@@ -69,9 +70,10 @@ fn single(study: &Campaign) -> Result<Json, Failure> {
 fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, Failure> {
     let runs = range.end - range.start;
     let mut objects = Vec::new();
-    study.each(
+    study.each_beside(
         range,
         0,
+        &Selection::ALL,
         |run| Ok(Campaign::simulate(run, Stop)?),
         |outcome| {
             let Some(Outcome { number, drawn, metrics, .. }) = outcome else { return Ok(()) };

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::motion::{Phase, Sensed};
 use crate::numerics::phasor::Phasor;
+use crate::numerics::trig::sincos_any;
 use crate::quantity::{Finite, Frequency, NonNegative};
 
 /// An elastic mode as a scenario describes it (\[Silaev\], equation (1), with damping added).
@@ -147,7 +148,7 @@ impl Flow {
     pub fn transition(&self, h: f64) -> [f64; 4] {
         let (decay, (c, s)) = match self.regime {
             Regime::Undamped => {
-                let (sin, cos) = libm::sincos(self.frequency * h);
+                let (sin, cos) = sincos_any(self.frequency * h);
                 return [cos, sin, -sin, cos];
             }
             Regime::Under(decay, damped) => (decay, spiral(decay, damped, h)),

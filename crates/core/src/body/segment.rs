@@ -6,7 +6,8 @@ use super::forced::{Forced, Input, Response};
 use super::mode::Flow;
 use super::{Drive, Planar};
 use crate::guard::Guard;
-use crate::motion::crossing::{Approach, first_root};
+use crate::motion::crossing::{Approach, Trip, first_root};
+use crate::motion::guess::{self, Departure, Level, Oscillator};
 use crate::motion::stretch::{Expansion, REACH};
 use crate::motion::{Phase, Sensed, State};
 use crate::numerics::polynomial::TERMS;
@@ -30,6 +31,15 @@ pub struct Segment {
     curvature: f64,
     /// No |x'''| on the segment is larger (rad/s³).
     jerk: f64,
+    /// Room for a guess of the next trip, where no mode is damped.
+    guess: Option<Guess>,
+}
+
+/// The highest frequency (rad/s), and room for the modes on their way.
+#[derive(Clone, Debug)]
+struct Guess {
+    fastest: f64,
+    modes: Vec<Oscillator<f64>>,
 }
 
 /// One mode on a segment: its equilibrium, and the deviation in which the segment began.
@@ -44,9 +54,15 @@ impl Segment {
     /// The segment of a body, not yet departed.
     pub fn new(body: &Planar) -> Self {
         let swing = |mode| ModeSegment { flow: Flow::new(mode), equilibrium: 0.0, from: Phase::default() };
+        let visible = body.drive == Drive::Torque;
+        let undamped = body.modes.iter().all(|mode| mode.damping.get() == 0.0);
+        let guess = || Guess {
+            fastest: body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max),
+            modes: Vec::with_capacity(body.modes.len()),
+        };
         Self {
             mobility: 1.0 / body.commanded_inertia(),
-            visible: body.drive == Drive::Torque,
+            visible,
             forced: None,
             moment: 0.0,
             angle: 0.0,
@@ -56,6 +72,7 @@ impl Segment {
             reach: 0.0,
             curvature: 0.0,
             jerk: 0.0,
+            guess: (visible && undamped).then(guess),
         }
     }
 
@@ -198,6 +215,43 @@ impl Segment {
             sensed.acceleration += swing.flow.gain * forced;
         }
         sensed
+    }
+
+    /// The first trip of one or two guards within a span, as it is guessed, polished and certified without a search; the state
+    /// there is put into `state`. Nothing if it is not certain.
+    pub fn guess(&mut self, guards: &[Guard], horizon: Span, state: &mut State) -> Option<Option<Trip>> {
+        let Guess { fastest, modes } = self.guess.as_mut().filter(|_| self.forced.is_none())?;
+        modes.clear();
+        modes.extend(self.modes.iter().map(|swing| Oscillator {
+            frequency: swing.flow.frequency,
+            equilibrium: swing.equilibrium,
+            displacement: swing.from.displacement,
+            quadrature: swing.from.quadrature,
+        }));
+        let from = Departure { angle: self.angle, rate: self.rate, moment: self.moment, fastest: *fastest };
+        let level = |guard: &Guard| Level { angle: guard.level, towards: guard.side.sign() };
+        let found = match guards {
+            [one] => guess::locate(&from, &[level(one)], modes),
+            [one, other] => guess::locate(&from, &[level(one), level(other)], modes),
+            _ => return None,
+        };
+        if !found.certain {
+            return None;
+        }
+        let after = Span::from_femtoseconds(found.ticks as i64);
+        if after > horizon {
+            return Some(None);
+        }
+        let h = found.after;
+        state.rigid_angle = self.angle + h * (self.rate + 0.5 * self.moment * h);
+        state.rigid_rate = self.rate + self.moment * h;
+        for (mode, phase) in modes.iter().zip(&mut state.modes) {
+            phase.displacement = mode.equilibrium + mode.displacement;
+            phase.quadrature = mode.quadrature;
+        }
+        let [angle, rate, acceleration] = found.seen;
+        let guard = usize::from(!found.first);
+        Some(Some(Trip { after, guard, sight: Sensed { angle, rate, acceleration } }))
     }
 
     /// A time after departure (s) before which the guard cannot trip: until then the rigid parabola with

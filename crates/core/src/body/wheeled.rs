@@ -133,6 +133,11 @@ impl Coupling {
         }
     }
 
+    /// The motion of drifting modes, and what a unit of torque accelerates (1/(kg m²)).
+    pub fn drifting(&self) -> Option<(&Drifting, f64)> {
+        if let Flow::Drifting(drifting) = &self.flow { Some((drifting, self.mobility)) } else { None }
+    }
+
     /// Takes some steps towards `h` seconds after departure; whether no more are needed.
     pub fn approach(&mut self, h: f64) -> bool {
         match &mut self.flow {
@@ -187,16 +192,16 @@ impl Coupling {
 
 /// A motion that is taken apart from its departure on.
 #[derive(Clone, Debug)]
-pub enum Unfolding {
+pub enum Unfolding<'a> {
     /// At constant frequencies.
     Linear(stretch::Linear),
-    /// With drifting ones.
-    Drifting(Box<Drifting>),
+    /// With drifting ones: as it is known from its departure on, and on its way beyond.
+    Drifting(Option<&'a Drifting>, &'a Drifting, Option<Box<Drifting>>),
 }
 
 impl Coupling {
     /// The motion from its departure on.
-    pub fn unfold(&self) -> Unfolding {
+    pub fn unfold(&self) -> Unfolding<'_> {
         match &self.flow {
             Flow::Constant(constant) => {
                 let push = &constant.system.input * constant.moment;
@@ -212,15 +217,15 @@ impl Coupling {
                 let fastest = poles.flow.poles().into_iter().map(abs).fold(0.0, f64::max);
                 Unfolding::Linear(stretch::Linear::new(&poles.system.system, push, &poles.from, fastest))
             }
-            Flow::Drifting(drifting) => Unfolding::Drifting(Box::new(drifting.from_departure())),
+            Flow::Drifting(drifting) => Unfolding::Drifting(drifting.fresh(), drifting, None),
         }
     }
 }
 
-impl Unfolding {
+impl Unfolding<'_> {
     /// Finds the series of all coordinates `h` seconds after departure, not before an earlier time, and returns how far they
-    /// reach (s).
-    pub fn expand(&mut self, h: f64, into: &mut Expansion) -> f64 {
+    /// reach (s): infinitely, if they do so for what is left of a span.
+    pub fn expand(&mut self, h: f64, span: f64, into: &mut Expansion) -> f64 {
         match self {
             Self::Linear(linear) => {
                 let reach = linear.expand(h);
@@ -230,7 +235,12 @@ impl Unfolding {
                 }
                 reach
             }
-            Self::Drifting(drifting) => drifting.unfold(h, &mut into.coordinates),
+            Self::Drifting(Some(known), ..) if h == 0.0 => known.tell(span, &mut into.coordinates),
+            Self::Drifting(_, motion, again) => {
+                let again = again.get_or_insert_with(|| Box::new(motion.from_departure()));
+                again.unfold(h);
+                again.tell(span - h, &mut into.coordinates)
+            }
         }
     }
 }

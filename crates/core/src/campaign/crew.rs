@@ -8,12 +8,15 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::{Campaign, Outcome, Run, RunError};
-use crate::metrics::Metrics;
+use crate::batch::{self, Job};
+use crate::metrics::{Metrics, Selection};
 
 /// No run begins that is so many runs ahead of the one reported next: those between wait in memory.
 const AHEAD: u64 = 4096;
 /// The longest time without a report.
 const LOOK: Duration = Duration::from_millis(20);
+/// So many runs are begun at once where they go side by side.
+const BESIDE: u64 = 64;
 /// How long a campaign that was stopped waits for the runs under way, which are stopped too.
 const PATIENCE: Duration = Duration::from_millis(500);
 
@@ -35,16 +38,15 @@ impl Crew {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The number of the next run, which is waited for.
-    fn take(&self) -> Option<u64> {
+    /// The numbers of the next runs, at most so many, which are waited for; none at the end.
+    fn take(&self, most: u64) -> Range<u64> {
         let mut state = self.state();
         while state.next < state.end && state.next - state.due >= AHEAD {
             state = self.told.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
-        (state.next < state.end).then(|| {
-            state.next += 1;
-            state.next - 1
-        })
+        let first = state.next.min(state.end);
+        state.next = state.end.min(first + most);
+        first..state.next
     }
 
     fn tell(&self, due: u64) {
@@ -83,6 +85,31 @@ impl Campaign {
         runs: Range<u64>,
         threads: usize,
         work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+        tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.go(runs, threads, (1, Selection::ALL), work, tell)
+    }
+
+    /// The same where `work` does nothing but simulate, for the selected metrics: runs of one structure then go side by side where
+    /// they can, and come to the same.
+    pub fn each_beside<E>(
+        self: &Arc<Self>,
+        runs: Range<u64>,
+        threads: usize,
+        selection: &Selection,
+        work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+        tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let most = if batch::takes(self.scenario()) { BESIDE } else { 1 };
+        self.go(runs, threads, (most, selection.clone()), work, tell)
+    }
+
+    fn go<E>(
+        self: &Arc<Self>,
+        runs: Range<u64>,
+        threads: usize,
+        (most, selection): (u64, Selection),
+        work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
         mut tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
     ) -> Result<(), E> {
         let state = State { next: runs.start, due: runs.start, end: runs.end };
@@ -92,10 +119,12 @@ impl Campaign {
         let count = runs.end.saturating_sub(runs.start);
         let cores = || thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { cores() } else { threads };
+        // No thread is left without work for the sake of another's neighbours.
+        let most = most.min(count / threads as u64).max(1);
         for _ in 0..threads.min(usize::try_from(count).unwrap_or(usize::MAX)) {
             let (study, worker, outcomes) = (self.clone(), Worker(crew.clone()), outcomes.clone());
-            let work = work.clone();
-            thread::spawn(move || study.work_through(&worker, &outcomes, &*work));
+            let (work, selection) = (work.clone(), selection.clone());
+            thread::spawn(move || study.work_through(&worker, (most, &selection), &outcomes, &*work));
         }
         drop(outcomes);
         let told = tell_in_order(&crew, runs, &ended, &mut tell);
@@ -114,14 +143,66 @@ impl Campaign {
     fn work_through(
         &self,
         worker: &Worker,
+        (most, selection): (u64, &Selection),
         outcomes: &Sender<Outcome>,
         work: &impl Fn(&Run) -> Result<Metrics, RunError>,
     ) {
-        while let Some(number) = worker.0.take() {
-            if outcomes.send(self.outcome(number, work)).is_err() {
+        loop {
+            let numbers = worker.0.take(most);
+            if numbers.is_empty() {
+                return;
+            }
+            let mut tell = |outcome| outcomes.send(outcome).is_ok();
+            let goes_on = if numbers.end - numbers.start > 1 {
+                self.beside(numbers, selection, work, &mut tell)
+            } else {
+                tell(self.outcome(numbers.start, work))
+            };
+            if !goes_on {
                 return;
             }
         }
+    }
+
+    /// What runs come to, side by side where they can go so, and each as soon as it is known; `work` simulates the others. Tells
+    /// whether `tell` wants more.
+    fn beside(
+        &self,
+        numbers: Range<u64>,
+        selection: &Selection,
+        work: &impl Fn(&Run) -> Result<Metrics, RunError>,
+        tell: &mut impl FnMut(Outcome) -> bool,
+    ) -> bool {
+        let began = Instant::now();
+        let runs: Vec<_> = numbers.map(|number| (number, self.run(number))).collect();
+        let whole = || runs.iter().filter_map(|(_, run)| run.as_ref().ok());
+        let jobs: Vec<Job<'_>> =
+            whole().map(|run| Job { number: run.number, scenario: &run.scenario }).collect();
+        let mut found = batch::simulate(&jobs).into_iter();
+        // What they took together is told of each alike.
+        let seconds = began.elapsed().as_secs_f64() / runs.len().max(1) as f64;
+        let mut alone = Vec::new();
+        for (number, run) in runs {
+            let (drawn, metrics) = match run {
+                Ok(run) => match found.next().flatten() {
+                    Some(metrics) => (run.drawn, Ok(selection.of_run(metrics))),
+                    None => {
+                        alone.push(run);
+                        continue;
+                    }
+                },
+                Err(error) => (self.draw(number), Err(RunError::from(error))),
+            };
+            if !tell(Outcome { number, drawn, metrics, seconds }) {
+                return false;
+            }
+        }
+        alone.into_iter().all(|run| {
+            let began = Instant::now();
+            let metrics = work(&run);
+            let seconds = began.elapsed().as_secs_f64();
+            tell(Outcome { number: run.number, metrics, drawn: run.drawn, seconds })
+        })
     }
 }
 

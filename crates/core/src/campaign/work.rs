@@ -72,7 +72,7 @@ impl Work {
             Ok(Campaign::simulate_for(run, &selection, record.clone())?)
         };
         let mut poll = poll;
-        self.campaign.each(runs, threads, work, |outcome: Option<Outcome>| {
+        self.campaign.each_beside(runs, threads, &self.selection, work, |outcome: Option<Outcome>| {
             poll.poll().map_err(|_| DirectoryError::Interrupted)?;
             if let Some(outcome) = outcome {
                 let stopped = matches!(

@@ -11,6 +11,7 @@ use crate::body::Mode;
 use crate::motion::State;
 use crate::numerics::phasor::{Complex, Phasor, abs, polar};
 use crate::numerics::swing_integral;
+use crate::numerics::trig::sincos_any;
 use crate::time::{Instant, Span};
 
 /// An envelope monitor as a scenario describes it.
@@ -88,9 +89,9 @@ impl EnvelopeMonitor {
         let t = now.seconds();
         self.now = now;
         for (index, track) in self.tracks.iter_mut().enumerate() {
-            self.integral += track.integral(h);
-            let from = track.axis;
-            track.axis = polar(1.0, track.damped * t);
+            let (from, deviation) = (track.axis, track.deviation);
+            let (sin, cos) = sincos_any(track.damped * t);
+            track.axis = Complex { re: cos, im: sin };
             let shrink = if track.decay > 0.0 { libm::exp(-track.decay * h) } else { 1.0 };
             match self.form {
                 Form::Dynamic => {
@@ -108,6 +109,7 @@ impl EnvelopeMonitor {
                     track.deviation = z - track.equilibrium;
                 }
             }
+            self.integral += track.integral(deviation, h);
         }
     }
 
@@ -164,13 +166,18 @@ impl Track {
         Complex { re: displacement, im: (rate + self.decay * displacement) / self.damped }
     }
 
-    /// Integral of the mode's envelope over the next `h` seconds.
-    fn integral(&self, h: f64) -> f64 {
-        if self.decay > 0.0 {
-            let Self { equilibrium, deviation, decay, damped, .. } = *self;
-            swing_integral::damped(equilibrium, deviation, decay, damped, h)
+    /// Integral of the mode's envelope over the last `h` seconds, in which its deviation was this at first.
+    fn integral(&self, from: Phasor, h: f64) -> f64 {
+        let Self { equilibrium, deviation, decay, damped, frequency, .. } = *self;
+        if decay > 0.0 {
+            swing_integral::damped(equilibrium, from, decay, damped, h)
         } else {
-            swing_integral::undamped(self.equilibrium.re, self.deviation, self.frequency, h)
+            swing_integral::undamped(
+                equilibrium.re,
+                [[from.re, from.im], [deviation.re, deviation.im]],
+                frequency,
+                h,
+            )
         }
     }
 }

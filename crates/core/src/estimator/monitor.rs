@@ -75,7 +75,13 @@ impl Monitor {
     /// Closes the window that ends now, while the law had this tunable number, and lets the adaptation learn.
     pub fn close(&mut self, now: Instant, state: &State, gain: f64) -> Closed {
         self.observer.advance(now, state);
-        self.mean = self.observer.close_window() / self.window.seconds();
+        let integral = self.observer.close_window();
+        self.conclude(now, integral, gain)
+    }
+
+    /// The same with the integral of the envelope over the window (rad s).
+    pub fn conclude(&mut self, now: Instant, integral: f64, gain: f64) -> Closed {
+        self.mean = integral / self.window.seconds();
         let mean = WindowMean {
             window: self.index,
             from_s: self.opened.seconds(),

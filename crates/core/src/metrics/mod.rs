@@ -21,6 +21,7 @@ pub use selection::Selection;
 use attitude::Known;
 use filter::Filter;
 use rotation::Rotation;
+pub use rotation::{Courses, Passed};
 use spatial::Spatial;
 use switchings::Switchings;
 use tracking::Tracked;
@@ -219,6 +220,14 @@ impl Gather {
             filter: Filter::new(scenario),
             known: Known::new(scenario),
             tracked: Tracked::new(scenario),
+        }
+    }
+
+    /// The rotation of which nothing but the angle is seen, towards 0 from the start on.
+    pub fn rotation(&mut self) -> Option<&mut Rotation> {
+        match &mut self.kind {
+            Kind::Rotation(rotation) if rotation.is_plain() => Some(rotation),
+            _ => None,
         }
     }
 

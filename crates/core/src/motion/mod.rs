@@ -1,6 +1,7 @@
 //! How a body moves between events.
 
 pub mod crossing;
+pub(crate) mod guess;
 pub mod linear;
 mod state;
 pub mod stretch;

@@ -11,13 +11,18 @@ pub type Series = [f64; TERMS];
 /// What is halved so often is a point.
 const DEPTH: u32 = 48;
 /// Rounding of a value, relative to the sum of the absolute coefficients.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The sum of `c[n] s^n`, for s from 0 to 1.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Polynomial([f64; TERMS]);
 
 impl Polynomial {
+    /// Of these coefficients.
+    pub fn new(terms: [f64; TERMS]) -> Self {
+        Self(terms)
+    }
+
     /// A Taylor series in a time, over the time from 0 to `length`.
     pub fn of(series: &Series, length: f64) -> Self {
         let mut power = 1.0;

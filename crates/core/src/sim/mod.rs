@@ -6,6 +6,7 @@
 
 mod accelerometers;
 mod arrival;
+mod beside;
 mod drive;
 mod events;
 mod failing;
@@ -32,7 +33,9 @@ use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 
 use drive::Drive;
-use plant::{Exerted, Plant};
+pub(crate) use plant::Exerted;
+
+use plant::Plant;
 use reference::Reference;
 use sensing::Sensing;
 use telling::Telling;

@@ -1,5 +1,6 @@
 //! The body on its way: one angle in closed form wherever there is one, or three axes.
 
+mod lent;
 mod planar;
 mod spatial;
 mod two_way;

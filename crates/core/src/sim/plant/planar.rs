@@ -1,6 +1,7 @@
 //! A body with one angle on its way: its motion since the last event, and what is seen of it now.
 
-use crate::body::{Coupling, Flight, Flown, Input, Output, Segment, Unfolding, Wrench};
+use super::lent::Lent;
+use crate::body::{Coupling, Drifting, Flight, Flown, Input, Output, Segment, Unfolding, Wrench};
 use crate::guard::Guard;
 use crate::motion::crossing::locate;
 use crate::motion::{Expansion, Sensed, State, Stretch};
@@ -33,6 +34,8 @@ enum Motion {
     Chain(Box<Flight>),
     /// Of coupled or drifting modes.
     Coupled(Box<Coupling>),
+    /// Of drifting modes, computed elsewhere.
+    Lent(Lent),
 }
 
 /// The torques of one motion, as metrics take them.
@@ -50,7 +53,7 @@ pub struct Exerted {
 enum Unfolded<'a> {
     Planar(&'a Segment, State),
     Chain(Flown<'a>),
-    Coupled(Unfolding),
+    Coupled(Unfolding<'a>),
 }
 
 impl PlanarPlant {
@@ -89,7 +92,7 @@ impl PlanarPlant {
         let h = now.since(self.departed).seconds();
         loop {
             let is_there = match &mut self.motion {
-                Motion::Planar(_) => true,
+                Motion::Planar(_) | Motion::Lent(_) => true,
                 Motion::Chain(flight) => flight.approach(h),
                 Motion::Coupled(coupling) => coupling.approach(h),
             };
@@ -114,6 +117,8 @@ impl PlanarPlant {
                     Motion::Planar(arc) => arc.at(h, &mut self.state),
                     Motion::Chain(flight) => flight.at(h, &mut self.state),
                     Motion::Coupled(coupling) => coupling.at(h, &mut self.state),
+                    // Whoever computes it has brought the body here.
+                    Motion::Lent(_) => self.sight,
                 };
             }
         }
@@ -139,6 +144,35 @@ impl PlanarPlant {
                 && locate(arc, &guards, span, &mut self.state.clone(), || record.poll())?.is_none())
     }
 
+    /// Lets someone else compute the motion from now on; none but that of drifting modes.
+    pub fn lend(&mut self) -> Option<Drifting> {
+        let Motion::Coupled(coupling) = &self.motion else { return None };
+        let (motion, mobility) = coupling.drifting()?;
+        let motion = motion.clone();
+        self.motion = Motion::Lent(Lent::new(mobility));
+        Some(motion)
+    }
+
+    /// Brings the body, whose motion is computed elsewhere, to an instant: angle and rate of each coordinate.
+    pub fn bring(&mut self, now: Instant, motion: impl Iterator<Item = [f64; 2]>) {
+        (self.seen, self.sight) = (now, Sensed::default());
+        for (index, [angle, rate]) in motion.enumerate() {
+            if index == 0 {
+                (self.state.rigid_angle, self.state.rigid_rate) = (angle, rate);
+            } else {
+                let mode = &mut self.state.modes[index - 1];
+                (mode.displacement, mode.quadrature) = (angle, rate / self.frequencies[index - 1]);
+            }
+            self.sight.angle += angle;
+            self.sight.rate += rate;
+        }
+    }
+
+    /// When a motion that is computed elsewhere began anew, and its reduced moment (rad/s²); none since this was asked last.
+    pub fn departed(&mut self) -> Option<(Instant, f64)> {
+        if let Motion::Lent(lent) = &mut self.motion { lent.departed() } else { None }
+    }
+
     /// Takes the motion apart, from its departure to an instant.
     pub fn walk(
         &self,
@@ -151,10 +185,11 @@ impl PlanarPlant {
             Motion::Planar(arc) => Unfolded::Planar(arc, self.state.clone()),
             Motion::Chain(flight) => Unfolded::Chain(flight.unfold()),
             Motion::Coupled(coupling) => Unfolded::Coupled(coupling.unfold()),
+            Motion::Lent(_) => return Ok(()),
         };
         let coordinates = match &self.motion {
             Motion::Chain(flight) => flight.coordinates(),
-            Motion::Planar(_) | Motion::Coupled(_) => self.state.modes.len() + 1,
+            Motion::Planar(_) | Motion::Coupled(_) | Motion::Lent(_) => self.state.modes.len() + 1,
         };
         let mut series = Expansion::new(coordinates);
         let mut h = 0.0;
@@ -162,7 +197,7 @@ impl PlanarPlant {
             let reach = match &mut unfolded {
                 Unfolded::Planar(arc, state) => arc.expand(h, 0.5 * span, state, &mut series),
                 Unfolded::Chain(flown) => flown.expand(h, 0.5 * span, &mut series),
-                Unfolded::Coupled(unfolding) => unfolding.expand(h, &mut series),
+                Unfolded::Coupled(unfolding) => unfolding.expand(h, span, &mut series),
             };
             // What does not move, or is no number, is one stretch.
             let next = if reach > 0.0 && h + reach > h { span.min(h + reach) } else { span };
@@ -181,7 +216,7 @@ impl PlanarPlant {
         let mut angle = coordinates[0];
         let shows = match &self.motion {
             Motion::Planar(arc) => arc.shows_modes(),
-            Motion::Coupled(_) => true,
+            Motion::Coupled(_) | Motion::Lent(_) => true,
             Motion::Chain(_) => false,
         };
         if shows {
@@ -226,6 +261,7 @@ impl PlanarPlant {
             Motion::Planar(arc) => arc.depart(&self.state, &input),
             Motion::Chain(flight) => flight.depart(&input),
             Motion::Coupled(coupling) => coupling.depart(self.seen.seconds(), input.constant),
+            Motion::Lent(lent) => lent.depart(self.seen, input.constant),
         }
         self.departed = self.seen;
     }
@@ -245,9 +281,12 @@ impl PlanarPlant {
                 return Ok(trip.map(|trip| (departed + trip.after, trip.guard)));
             }
             // No law with guards acts on a body without a closed form.
-            Motion::Chain(_) => return Ok(None),
+            Motion::Chain(_) | Motion::Lent(_) => return Ok(None),
         };
-        let trip = locate(arc, guards, horizon, &mut self.ahead.0, || record.poll())?;
+        let trip = match arc.guess(guards, horizon, &mut self.ahead.0) {
+            Some(trip) => trip,
+            None => locate(arc, guards, horizon, &mut self.ahead.0, || record.poll())?,
+        };
         Ok(trip.map(|trip| {
             let at = departed + trip.after;
             (self.ahead.1, self.ahead.2) = (trip.sight, at);
@@ -282,7 +321,7 @@ impl PlanarPlant {
     pub fn outputs(&self) -> Option<Outputs> {
         let motion = |(value, rate)| OutputMotion { value, rate };
         let outputs: Vec<_> = match &self.motion {
-            Motion::Planar(_) | Motion::Coupled(_) => {
+            Motion::Planar(_) | Motion::Coupled(_) | Motion::Lent(_) => {
                 let of = |output: &Output| {
                     (output.of(&self.state), output.rate_of(&self.state, &self.frequencies))
                 };

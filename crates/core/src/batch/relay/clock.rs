@@ -1,0 +1,101 @@
+//! Instants in lanes: whole seconds, and femtoseconds past them, both as whole numbers that doubles hold exactly.
+
+#![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+
+use crate::lanes::Real;
+
+/// Femtoseconds in a second.
+const FEMTOSECONDS: f64 = 1e15;
+/// Spans below so many seconds are counted in femtoseconds.
+const SHORT: f64 = 9_000.0;
+
+/// An instant, or a span that is not negative.
+#[derive(Copy, Clone, Debug)]
+pub struct Clock<R> {
+    /// Whole seconds.
+    pub whole: R,
+    /// Femtoseconds past them, less than a second.
+    pub part: R,
+}
+
+impl<R: Real> Clock<R> {
+    /// A span of femtoseconds below 9000 s.
+    #[inline(always)]
+    pub fn of_ticks(ticks: R) -> Self {
+        let whole = (ticks / ticks.of(FEMTOSECONDS)).round();
+        let part = ticks - whole * FEMTOSECONDS;
+        let below = part.lt(ticks.of(0.0));
+        Self {
+            whole: R::select(below, whole - 1.0, whole),
+            part: R::select(below, part + FEMTOSECONDS, part),
+        }
+    }
+
+    /// The instant a span later.
+    #[inline(always)]
+    pub fn plus(self, span: Self) -> Self {
+        let part = self.part + span.part;
+        let carries = part.of(FEMTOSECONDS).le(part);
+        let whole = self.whole + span.whole;
+        Self {
+            whole: R::select(carries, whole + 1.0, whole),
+            part: R::select(carries, part - FEMTOSECONDS, part),
+        }
+    }
+
+    /// The span since an instant that is not later.
+    #[inline(always)]
+    pub fn since(self, earlier: Self) -> Self {
+        let part = self.part - earlier.part;
+        let borrows = part.lt(part.of(0.0));
+        let whole = self.whole - earlier.whole;
+        Self {
+            whole: R::select(borrows, whole - 1.0, whole),
+            part: R::select(borrows, part + FEMTOSECONDS, part),
+        }
+    }
+
+    /// In seconds, as a span or an instant rounds them.
+    #[inline(always)]
+    pub fn seconds(self) -> R {
+        let short = self.whole.lt(self.whole.of(SHORT));
+        let ticks = R::select(short, self.whole * FEMTOSECONDS + self.part, self.part);
+        R::select(short, self.whole.of(0.0), self.whole) + ticks / ticks.of(FEMTOSECONDS)
+    }
+
+    /// Where it is not later than another.
+    #[inline(always)]
+    pub fn not_after(self, other: Self) -> R::Mask {
+        let same = self.whole.le(other.whole) & other.whole.le(self.whole);
+        self.whole.lt(other.whole) | (same & self.part.le(other.part))
+    }
+
+    /// One or the other.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self { whole: R::select(mask, yes.whole, no.whole), part: R::select(mask, yes.part, no.part) }
+    }
+
+    /// In one lane, as whole numbers.
+    #[inline(always)]
+    pub fn lane(self, lane: usize) -> (u64, u64) {
+        (self.whole.lane(lane) as u64, self.part.lane(lane) as u64)
+    }
+
+    /// Other than before in one lane.
+    #[inline(always)]
+    pub fn with_lane(self, lane: usize, (whole, part): (u64, u64)) -> Self {
+        Self { whole: self.whole.with_lane(lane, whole as f64), part: self.part.with_lane(lane, part as f64) }
+    }
+}
+
+/// The femtoseconds nearest to a time (s) that is not negative, of two the later one.
+#[inline(always)]
+pub fn nearest_ticks<R: Real>(seconds: R) -> R {
+    let ticks = seconds * FEMTOSECONDS;
+    // From 2^52 on all numbers are integers.
+    let all = ticks.of(4_503_599_627_370_496.0);
+    let even = (ticks + all) - all;
+    let rounded = R::select((ticks - even).lt(ticks.of(0.5)), even, even + 1.0);
+    R::select(ticks.lt(all), rounded, ticks)
+}

@@ -1,0 +1,80 @@
+//! What a flight of runs asks of who has them, and what it tells: plain numbers of one lane.
+
+/// One run at its start, as plain numbers. A mode: frequency, excitability, displacement and quadrature.
+#[derive(Clone, Debug, Default)]
+pub struct Setup {
+    /// Rigid angle and rate.
+    pub angle: f64,
+    pub rate: f64,
+    /// Modes of the body, and of the envelope's model.
+    pub modes: Vec<[f64; 4]>,
+    pub tracks: Vec<[f64; 4]>,
+    /// Half the width of the dead zone, and where the brake begins.
+    pub edge: f64,
+    pub back: f64,
+    /// Strong and weak moment (rad/s²), and braking gain.
+    pub strong: f64,
+    pub weak: f64,
+    pub k_t: f64,
+    /// The end, and the length of a window: whole seconds and femtoseconds.
+    pub end: (u64, u64),
+    pub window: Option<(u64, u64)>,
+}
+
+/// A place of the cycle.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the dead zone, under the weak torque.
+    Coast,
+    /// Back from the right boundary.
+    Push,
+    /// Against the push.
+    Brake,
+}
+
+/// One lane at one instant, out of the mirror. Displacements are from 0, not from an equilibrium.
+#[derive(Clone, Debug, Default)]
+pub struct Sight {
+    /// Whole seconds and femtoseconds.
+    pub at: (u64, u64),
+    pub angle: f64,
+    pub rate: f64,
+    /// Displacement and quadrature of each mode.
+    pub modes: Vec<[f64; 2]>,
+    /// 1, or -1 in the mirror.
+    pub side: f64,
+    /// Braking gain.
+    pub gain: f64,
+}
+
+/// A trip that was searched.
+#[derive(Clone, Debug, Default)]
+pub struct Searched {
+    /// The span since departure: whole seconds and femtoseconds, and all of it in seconds.
+    pub after: ((u64, u64), f64),
+    /// Whether it is the right boundary, out of the mirror, or the only level.
+    pub right: bool,
+    /// Displacement from 0 and quadrature of each mode there.
+    pub modes: Vec<[f64; 2]>,
+}
+
+/// Who has the runs.
+pub trait Crew {
+    /// Whether it wants switchings, and to know where bounds do not keep the angle within the band.
+    const LISTENS: bool;
+
+    /// The next run for a lane, whose last run has ended.
+    fn next(&mut self, lane: usize) -> Option<Setup>;
+    /// Looks for the first trip of a lane that departs here at this place; nothing within the run.
+    fn search(&mut self, lane: usize, place: Place, from: &Sight) -> Option<Searched>;
+    /// A lane cannot go on here: its run has to be made alone.
+    fn give_up(&mut self, lane: usize);
+    /// The law has switched to a place.
+    fn switched(&mut self, lane: usize, to: Place, now: &Sight);
+    /// A window has closed, with this integral of the envelope; answers the braking gain from now on.
+    fn closed(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64;
+    /// On the motion that departed here, at this place, and ends at an instant, the angle may leave the band (rad).
+    fn strays(&mut self, lane: usize, place: Place, from: &Sight, until: (u64, u64));
+    /// Half the width of the band about the goal (rad).
+    fn band(&self, lane: usize) -> f64;
+}

@@ -1,0 +1,311 @@
+//! Runs of the relay law side by side: in phase, each with a clock of its own.
+//!
+//! The law's cycle is coast, push and brake in every run. The lanes of a [`Flight`] are at the same place of it, each at its
+//! own time; seen in a mirror wherever the left boundary is reached, all push back from the right. A run that ends gives its
+//! lane to the next one at the cycle's end. What a lane does depends on no other.
+
+#![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+
+mod fill;
+mod look;
+
+use super::clock::{Clock, nearest_ticks};
+use super::crew::{Crew, Place, Sight};
+use super::track::Track;
+use crate::lanes::{Mask, Real};
+use crate::motion::guess::{Departure, Found, Level, Oscillator, locate};
+use crate::numerics::trig::sincos;
+
+/// Most lanes.
+pub const MOST: usize = 16;
+/// Beyond every run (s).
+const NEVER: f64 = 1e17;
+/// Spans below so many seconds fit 64 bits of femtoseconds.
+const SHORT: f64 = 9_000.0;
+/// What is written of a lane beside its modes.
+const ROWS: usize = 6;
+/// An angle (rad) that no motion of a run in lanes reaches.
+const FAR: f64 = 1e9;
+
+/// Runs side by side.
+pub struct Flight<R: Real> {
+    now: Clock<R>,
+    end: Clock<R>,
+    side: R,
+    angle: R,
+    rate: R,
+    /// Displacements from 0; the modes about their equilibria at departure, and at the end of the motion.
+    totals: Vec<R>,
+    modes: Vec<Oscillator<R>>,
+    moved: Vec<Oscillator<R>>,
+    excitabilities: Vec<R>,
+    fastest: R,
+    edge: R,
+    back: R,
+    strong: R,
+    weak: R,
+    k_t: R,
+    band: R,
+    /// When the push began.
+    pushed: Clock<R>,
+    tracks: Vec<Track<R>>,
+    /// Whether any run has windows.
+    watches: bool,
+    /// When the envelope was followed last, its integral, and when and after how long windows close.
+    seen: Clock<R>,
+    integral: R,
+    closes: Clock<R>,
+    window: Clock<R>,
+    /// Which lanes have a run that goes on.
+    active: [bool; MOST],
+    /// All lanes as plain numbers, and one of them.
+    rows: Vec<[f64; MOST]>,
+    sight: Sight,
+}
+
+impl<R: Real> Flight<R> {
+    /// Makes all runs of a crew, of bodies and envelopes with so many modes.
+    #[inline(always)]
+    pub fn fly<C: Crew>(kind: R, modes: usize, tracks: usize, crew: &mut C) {
+        let mut flight = Self::new(kind, modes, tracks);
+        let mut place = Place::Brake;
+        // One place at a time, whose code is here once.
+        loop {
+            place = match place {
+                Place::Coast => Place::Push,
+                Place::Push => Place::Brake,
+                Place::Brake => {
+                    if !flight.fill(crew) {
+                        return;
+                    }
+                    Place::Coast
+                }
+            };
+            flight.go(crew, place);
+        }
+    }
+
+    /// The motion of one place, and the switching at its end.
+    #[inline(always)]
+    fn go<C: Crew>(&mut self, crew: &mut C, place: Place) {
+        let one = self.angle.of(1.0);
+        let (moment, towards, level) = match place {
+            Place::Coast => (self.weak, one, self.edge),
+            Place::Push => (-self.strong, -one, self.back),
+            Place::Brake => (self.strong, one, self.edge),
+        };
+        self.depart(moment);
+        for index in 0..self.modes.len() {
+            self.moved[index] = self.modes[index];
+        }
+        if place == Place::Push {
+            self.pushed = self.now;
+        }
+        let (span, right) = if place == Place::Brake {
+            (self.brake(crew), one.le(one))
+        } else {
+            // No push leads to the level that is far away.
+            let far = if place == Place::Coast { -self.edge } else { one.of(FAR) };
+            let levels = [Level { angle: level, towards }, Level { angle: far, towards: -towards }];
+            self.guarded(crew, place, moment, &levels)
+        };
+        self.arrive(crew, place, moment, span);
+        if place == Place::Coast {
+            self.mirror(R::select(right, one, -one));
+        }
+        self.tell(
+            crew,
+            match place {
+                Place::Coast => Place::Push,
+                Place::Push => Place::Brake,
+                Place::Brake => Place::Coast,
+            },
+        );
+    }
+
+    /// Seen in the mirror, what reaches the left boundary reaches the right one.
+    #[inline(always)]
+    fn mirror(&mut self, mirror: R) {
+        self.side = mirror * self.side;
+        self.angle = mirror * self.angle;
+        self.rate = mirror * self.rate;
+        for index in 0..self.modes.len() {
+            self.totals[index] = mirror * self.totals[index];
+            self.modes[index].quadrature = mirror * self.modes[index].quadrature;
+        }
+        for index in 0..self.tracks.len() {
+            let track = &mut self.tracks[index];
+            track.equilibrium = mirror * track.equilibrium;
+            for part in 0..2 {
+                track.frame[part] = mirror * track.frame[part];
+                track.deviation[part] = mirror * track.deviation[part];
+            }
+        }
+    }
+
+    /// The brake, which lasts as long as the law says.
+    #[inline(always)]
+    fn brake<C: Crew>(&mut self, crew: &mut C) -> (Clock<R>, R) {
+        let nearest = nearest_ticks(self.k_t * self.now.since(self.pushed).seconds());
+        // So long a brake is for a run alone.
+        let fits = nearest.lt(nearest.of(SHORT * 1e15));
+        if !fits.all() {
+            for lane in 0..R::LANES {
+                if self.active[lane] && nearest.lane(lane) >= SHORT * 1e15 {
+                    crew.give_up(lane);
+                    self.active[lane] = false;
+                }
+            }
+        }
+        let ticks = R::select(fits, nearest, nearest.of(0.0));
+        let after = ticks / ticks.of(1e15);
+        for index in 0..self.modes.len() {
+            let mode = &mut self.moved[index];
+            mode.turn(sincos(mode.frequency * after));
+        }
+        (Clock::of_ticks(ticks), after)
+    }
+
+    /// The modes turn about equilibria of this moment from now on.
+    #[inline(always)]
+    fn depart(&mut self, moment: R) {
+        for index in 0..self.modes.len() {
+            let mode = &mut self.modes[index];
+            mode.equilibrium = self.excitabilities[index] * moment;
+            mode.displacement = self.totals[index] - mode.equilibrium;
+        }
+        for track in &mut self.tracks {
+            track.command(moment);
+        }
+    }
+
+    /// Finds the first trip: after how long, and of which level.
+    #[inline(always)]
+    fn guarded<C: Crew>(
+        &mut self,
+        crew: &mut C,
+        place: Place,
+        moment: R,
+        levels: &[Level<R>; 2],
+    ) -> ((Clock<R>, R), R::Mask) {
+        let (zero, one) = (moment.of(0.0), moment.of(1.0));
+        let from = Departure { angle: self.angle, rate: self.rate, moment, fastest: self.fastest };
+        let found: Found<R> = locate(&from, levels, &mut self.moved);
+        let certain = found.certain;
+        if certain.all() {
+            return ((Clock::of_ticks(found.ticks), found.after), found.first);
+        }
+        // Lanes without a run stay where they are.
+        for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
+            moved.displacement = R::select(certain, moved.displacement, mode.displacement);
+            moved.quadrature = R::select(certain, moved.quadrature, mode.quadrature);
+        }
+        let mut span = Clock::of_ticks(R::select(certain, found.ticks, zero));
+        let mut after = R::select(certain, found.after, zero);
+        let mut first = R::select(found.first | !certain, one, -one);
+        let known = R::select(certain, one, zero);
+        self.write();
+        for lane in 0..R::LANES {
+            if !self.active[lane] || known.lane(lane) > 0.0 {
+                continue;
+            }
+            self.look(lane);
+            let side = self.sight.side;
+            let Some(found) = crew.search(lane, place, &self.sight) else {
+                // Nothing within the run, whose end is before any trip that lies so far ahead.
+                span = span.with_lane(lane, (NEVER as u64, 0));
+                continue;
+            };
+            let (parts, seconds) = found.after;
+            if !(seconds > 0.0 && seconds < SHORT) {
+                crew.give_up(lane);
+                self.active[lane] = false;
+                continue;
+            }
+            span = span.with_lane(lane, parts);
+            after = after.with_lane(lane, seconds);
+            if place == Place::Coast {
+                first = first.with_lane(lane, if found.right == (side > 0.0) { 1.0 } else { -1.0 });
+            }
+            for (moved, [x, y]) in self.moved.iter_mut().zip(&found.modes) {
+                moved.equilibrium = moved.equilibrium.with_lane(lane, 0.0);
+                moved.displacement = moved.displacement.with_lane(lane, side * x);
+                moved.quadrature = moved.quadrature.with_lane(lane, side * y);
+            }
+        }
+        ((span, after), zero.lt(first))
+    }
+
+    /// Ends the motion that departed last, such a span after its departure: windows close on the way, and runs
+    /// that end do so.
+    #[inline(always)]
+    fn arrive<C: Crew>(&mut self, crew: &mut C, place: Place, moment: R, (span, h): (Clock<R>, R)) {
+        let zero = h.of(0.0);
+        let until = self.now.plus(span);
+        let ends = !until.not_after(self.end);
+        let until = Clock::select(ends, self.end, until);
+        if C::LISTENS {
+            let span = until.since(self.now).seconds();
+            self.stray(crew, place, moment, span, until);
+        }
+        self.follow(crew, until);
+        self.now = until;
+        self.angle = self.angle + h * (self.rate + h.of(0.5) * moment * h);
+        self.rate = self.rate + moment * h;
+        for index in 0..self.modes.len() {
+            let moved = self.moved[index];
+            self.totals[index] = moved.equilibrium + moved.displacement;
+            self.modes[index].quadrature = moved.quadrature;
+        }
+        if ends.any() {
+            let ended = R::select(ends, h.of(1.0), zero);
+            for lane in 0..R::LANES {
+                if ended.lane(lane) > 0.0 {
+                    self.active[lane] = false;
+                    // What is in the lane until another run comes moves without end or number.
+                    self.closes = self.closes.with_lane(lane, (NEVER as u64, 0));
+                }
+            }
+        }
+    }
+
+    /// Follows the envelope to an instant of each lane, by the windows that close on the way.
+    #[inline(always)]
+    fn follow<C: Crew>(&mut self, crew: &mut C, until: Clock<R>) {
+        if !self.watches {
+            return;
+        }
+        let zero = self.angle.of(0.0);
+        let mut goes_on = zero.le(zero);
+        loop {
+            let due = goes_on & self.closes.not_after(until);
+            let at = Clock::select(due, self.closes, until);
+            let (time, span) = (at.seconds(), at.since(self.seen).seconds());
+            for index in 0..self.tracks.len() {
+                let mut advanced = self.tracks[index];
+                let integral = advanced.advance(time, span);
+                self.integral = self.integral + R::select(goes_on, integral, zero);
+                self.tracks[index] = Track::select(goes_on, &advanced, &self.tracks[index]);
+            }
+            self.seen = Clock::select(goes_on, at, self.seen);
+            if !due.any() {
+                return;
+            }
+            self.close(crew, R::select(due, zero.of(1.0), zero));
+            self.integral = R::select(due, zero, self.integral);
+            self.closes = Clock::select(due, self.closes.plus(self.window), self.closes);
+            goes_on = due;
+        }
+    }
+
+    /// Windows close now in the lanes that have a 1.
+    fn close<C: Crew>(&mut self, crew: &mut C, closing: R) {
+        for lane in 0..R::LANES {
+            if closing.lane(lane) > 0.0 {
+                let (integral, gain) = (self.integral.lane(lane), self.k_t.lane(lane));
+                let gain = crew.closed(lane, self.seen.lane(lane), integral, gain);
+                self.k_t = self.k_t.with_lane(lane, gain);
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Runs come into the lanes of a flight.
+
+#![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+
+use super::{Flight, MOST, NEVER, ROWS};
+use crate::batch::relay::clock::Clock;
+use crate::batch::relay::crew::{Crew, Setup, Sight};
+use crate::batch::relay::track::Track;
+use crate::lanes::Real;
+use crate::motion::guess::Oscillator;
+
+impl<R: Real> Flight<R> {
+    /// Lanes without runs, of bodies and envelopes with so many modes.
+    #[inline(always)]
+    pub(super) fn new(kind: R, modes: usize, tracks: usize) -> Self {
+        let (zero, one) = (kind.of(0.0), kind.of(1.0));
+        let (start, never) = (Clock { whole: zero, part: zero }, Clock { whole: kind.of(NEVER), part: zero });
+        let still = Oscillator { frequency: one, equilibrium: zero, displacement: zero, quadrature: zero };
+        let track = Track {
+            frequency: one,
+            excitability: zero,
+            frame: [zero; 2],
+            axis: [one, zero],
+            equilibrium: zero,
+            deviation: [zero; 2],
+        };
+        let mut flight = Self {
+            now: start,
+            end: start,
+            side: one,
+            angle: zero,
+            rate: zero,
+            totals: Vec::with_capacity(modes),
+            modes: Vec::with_capacity(modes),
+            moved: Vec::with_capacity(modes),
+            excitabilities: Vec::with_capacity(modes),
+            fastest: one,
+            edge: one,
+            back: one,
+            strong: one,
+            weak: one,
+            k_t: zero,
+            band: one,
+            pushed: start,
+            tracks: Vec::with_capacity(tracks),
+            watches: false,
+            seen: start,
+            integral: zero,
+            closes: never,
+            window: never,
+            active: [false; MOST],
+            rows: vec![[0.0; MOST]; ROWS + 2 * modes],
+            sight: Sight::default(),
+        };
+        for _ in 0..modes {
+            flight.totals.push(zero);
+            flight.modes.push(still);
+            flight.moved.push(still);
+            flight.excitabilities.push(zero);
+        }
+        for _ in 0..tracks {
+            flight.tracks.push(track);
+        }
+        flight
+    }
+
+    /// Gives lanes that have none the next runs; tells whether any has one.
+    pub(super) fn fill<C: Crew>(&mut self, crew: &mut C) -> bool {
+        let mut any = false;
+        for lane in 0..R::LANES {
+            if !self.active[lane] {
+                if let Some(setup) = crew.next(lane) {
+                    self.begin(lane, &setup, crew.band(lane));
+                }
+            }
+            any |= self.active[lane];
+        }
+        any
+    }
+
+    /// Puts a run into a lane.
+    fn begin(&mut self, lane: usize, setup: &Setup, band: f64) {
+        let put = |of: &mut R, value: f64| *of = of.with_lane(lane, value);
+        self.active[lane] = true;
+        self.now = self.now.with_lane(lane, (0, 0));
+        self.seen = self.seen.with_lane(lane, (0, 0));
+        self.end = self.end.with_lane(lane, setup.end);
+        self.watches |= setup.window.is_some();
+        let window = setup.window.unwrap_or((NEVER as u64, 0));
+        self.window = self.window.with_lane(lane, window);
+        self.closes = self.closes.with_lane(lane, window);
+        put(&mut self.side, 1.0);
+        put(&mut self.angle, setup.angle);
+        put(&mut self.rate, setup.rate);
+        put(&mut self.edge, setup.edge);
+        put(&mut self.back, setup.back);
+        put(&mut self.strong, setup.strong);
+        put(&mut self.weak, setup.weak);
+        put(&mut self.k_t, setup.k_t);
+        put(&mut self.band, band);
+        put(&mut self.integral, 0.0);
+        let mut fastest = 0.0_f64;
+        for (index, [frequency, k, x, y]) in setup.modes.iter().copied().enumerate() {
+            fastest = fastest.max(frequency);
+            put(&mut self.modes[index].frequency, frequency);
+            put(&mut self.modes[index].quadrature, y);
+            put(&mut self.excitabilities[index], k);
+            put(&mut self.totals[index], x);
+        }
+        put(&mut self.fastest, fastest);
+        for (track, of) in self.tracks.iter_mut().zip(&setup.tracks) {
+            let [frequency, k, x, y] = *of;
+            put(&mut track.frequency, frequency);
+            put(&mut track.excitability, k);
+            put(&mut track.equilibrium, 0.0);
+            for (part, value) in [x, y].into_iter().enumerate() {
+                put(&mut track.frame[part], value);
+                put(&mut track.deviation[part], value);
+                put(&mut track.axis[part], [1.0, 0.0][part]);
+            }
+        }
+    }
+}

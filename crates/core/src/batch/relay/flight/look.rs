@@ -1,0 +1,84 @@
+//! What is seen of the lanes of a flight, one by one.
+
+#![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+
+use super::Flight;
+use crate::batch::relay::clock::Clock;
+use crate::batch::relay::crew::{Crew, Place};
+use crate::lanes::{Mask, Real};
+
+impl<R: Real> Flight<R> {
+    /// Where bounds do not keep the angle within the band on the motion that ends, the crew has to see for itself.
+    #[inline(always)]
+    pub(super) fn stray<C: Crew>(&mut self, crew: &mut C, place: Place, moment: R, span: R, until: Clock<R>) {
+        let zero = span.of(0.0);
+        let (mut centre, mut reach) = (zero, zero);
+        for mode in &self.modes {
+            centre = centre + mode.equilibrium;
+            reach = reach + mode.reach();
+        }
+        let end = self.angle + span * (self.rate + span.of(0.5) * moment * span);
+        let (mut low, mut high) = (self.angle.min(end), self.angle.max(end));
+        // The crest of the parabola, if it is on the way.
+        let crest = self.angle - span.of(0.5) * self.rate * (self.rate / moment);
+        let turns = (self.rate * (self.rate + moment * span)).le(zero);
+        low = R::select(turns, low.min(crest), low);
+        high = R::select(turns, high.max(crest), high);
+        let within = (high + centre + reach).le(self.band) & (-self.band).le(low + centre - reach);
+        if within.all() {
+            return;
+        }
+        let strays = R::select(within, zero, span.of(1.0));
+        self.write();
+        for lane in 0..R::LANES {
+            if self.active[lane] && strays.lane(lane) > 0.0 {
+                self.look(lane);
+                crew.strays(lane, place, &self.sight, until.lane(lane));
+            }
+        }
+    }
+
+    /// Tells a switching of each lane.
+    #[inline(always)]
+    pub(super) fn tell<C: Crew>(&mut self, crew: &mut C, to: Place) {
+        if !C::LISTENS {
+            return;
+        }
+        self.write();
+        for lane in 0..R::LANES {
+            if self.active[lane] {
+                self.look(lane);
+                crew.switched(lane, to, &self.sight);
+            }
+        }
+    }
+
+    /// Writes down what there is to look at.
+    #[inline(always)]
+    pub(super) fn write(&mut self) {
+        let [whole, part, side, k_t, angle, rate, rest @ ..] = &mut self.rows[..] else { return };
+        self.now.whole.store(whole);
+        self.now.part.store(part);
+        self.side.store(side);
+        self.k_t.store(k_t);
+        (self.side * self.angle).store(angle);
+        (self.side * self.rate).store(rate);
+        for index in 0..self.modes.len() {
+            (self.side * self.totals[index]).store(&mut rest[2 * index]);
+            (self.side * self.modes[index].quadrature).store(&mut rest[2 * index + 1]);
+        }
+    }
+
+    /// Looks at a lane of what was written down.
+    pub(super) fn look(&mut self, lane: usize) {
+        let [whole, part, side, k_t, angle, rate, rest @ ..] = &self.rows[..] else { return };
+        let sight = &mut self.sight;
+        sight.at = (whole[lane] as u64, part[lane] as u64);
+        (sight.side, sight.gain) = (side[lane], k_t[lane]);
+        (sight.angle, sight.rate) = (angle[lane], rate[lane]);
+        sight.modes.clear();
+        for pair in rest.chunks_exact(2) {
+            sight.modes.push([pair[0][lane], pair[1][lane]]);
+        }
+    }
+}

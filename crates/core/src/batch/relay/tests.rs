@@ -1,0 +1,77 @@
+//! Runs of the relay law in lanes come to what each comes to alone, to the bit.
+
+use std::path::Path;
+
+use super::Side;
+use crate::Scenario;
+use crate::batch::{Batch, Job};
+use crate::campaign::{Campaign, Run};
+use crate::lanes::Processor;
+
+fn shipped(name: &str, changes: &[(&str, String)]) -> Scenario {
+    let path = format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut document = crate::Document::load(Path::new(&path)).expect("shipped");
+    for (key, value) in changes {
+        document.set_text(key, value).expect("a key");
+    }
+    Scenario::from_document(&document).expect("valid")
+}
+
+/// Metrics as text, whose digits are those of all bits.
+fn alone(number: u64, scenario: &Scenario) -> String {
+    let run = Run { number, scenario: scenario.clone(), drawn: Vec::new() };
+    Campaign::simulate(&run, ()).expect("a run").to_json().to_string()
+}
+
+fn compare(scenarios: &[Scenario], least: usize) {
+    let jobs: Vec<Job<'_>> =
+        scenarios.iter().zip(7..).map(|(scenario, number)| Job { number, scenario }).collect();
+    assert!(scenarios.iter().all(|scenario| Side.takes(scenario)));
+    let expected: Vec<String> = jobs.iter().map(|job| alone(job.number, job.scenario)).collect();
+    for processor in Processor::all() {
+        let found = Side.simulate(processor, &jobs);
+        let whole = found.iter().flatten().count();
+        assert!(whole >= least, "{}: {whole} of {}", processor.name(), jobs.len());
+        for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            if let Some(found) = found {
+                assert_eq!(&found.to_json().to_string(), expected, "{}, run {index}", processor.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn runs_of_many_gains_come_to_the_same() {
+    let of = |index: u32| {
+        let k_t = 0.28 + 0.12 * f64::from(index) / 40.0;
+        shipped("relay-fixed", &[("law.relay.k_t", k_t.to_string())])
+    };
+    let scenarios: Vec<Scenario> = (0..40).map(of).collect();
+    compare(&scenarios, 40);
+}
+
+#[test]
+fn shipped_scenarios_and_others_come_to_the_same() {
+    for name in ["relay-fixed", "relay-quiet", "relay-adaptive", "relay-no-freeze"] {
+        let of = |gain: &str| shipped(name, &[("law.relay.k_t", gain.to_owned())]);
+        compare(&["0.31", "0.3389", "0.35", "0.29", "0.33"].map(of), 5);
+    }
+    let text = |modes: &str, rest: &str| {
+        let text = format!(
+            "duration = 1234.5678\n[body.planar]\nangle = 4.5e-4\nrate = 2.2e-5\ninertia = 3.7\nmodes = [{modes}]\n\
+             [law.relay]\ndead_zone = 5e-4\nhysteresis = 1e-4\nstrong = 14e-5\nweak = 3e-6\nk_t = 0.31\n{rest}"
+        );
+        Scenario::parse("relay", &text).expect("valid")
+    };
+    let modes = [
+        "",
+        "{ frequency = 0.44, gain = 0.02 }",
+        "{ frequency = 0.3, gain = 0.02, rate = 1e-6 }, { frequency = 0.8, gain = 0.03 }, { frequency = 2.2, gain = 0.1 }",
+        "{ frequency = 0.9, gain = 0.2 }, { frequency = 5.0, gain = 0.4 }",
+    ];
+    for modes in modes {
+        for rest in ["", "[estimator.envelope]\nwindow = 77.0\n", "[reference]\nband = 5.1e-4\n"] {
+            compare(&[text(modes, rest), text(modes, rest), text(modes, rest)], 0);
+        }
+    }
+}

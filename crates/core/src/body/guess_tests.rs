@@ -1,0 +1,152 @@
+//! Every trip that is guessed and certified is the one that the certified search finds.
+
+use super::{Input, Mode, Planar, Segment};
+use crate::guard::Guard;
+use crate::motion::State;
+use crate::motion::crossing::locate;
+use crate::quantity::{Finite, Frequency, NonNegative};
+use crate::time::Span;
+
+/// Eps, gamma and the strong and weak torque of the relay study.
+const LAW: [f64; 4] = [5e-4, 1e-4, 4e-5, 1e-6];
+
+fn body(modes: &[(f64, f64)]) -> Planar {
+    let mode = |&(frequency, gain): &(f64, f64)| {
+        let gain = Finite::new(gain).expect("finite");
+        Mode::at_rest(Frequency::new(frequency).expect("in range"), gain, NonNegative::default())
+    };
+    Planar { modes: modes.iter().map(mode).collect(), ..Planar::default() }
+}
+
+/// What both ways to find a trip were found to do.
+#[derive(Default)]
+struct Seen {
+    arcs: usize,
+    certain: usize,
+    trips: usize,
+    /// How far they are apart (rad).
+    worst: f64,
+}
+
+impl Seen {
+    /// The trip of the search, with the state there; the guess must agree where it is certain.
+    fn compare(
+        &mut self,
+        arc: &mut Segment,
+        guards: &[Guard],
+        horizon: Span,
+        state: &mut State,
+    ) -> Option<(Span, usize)> {
+        let mut guessed = state.clone();
+        let guess = arc.guess(guards, horizon, &mut guessed);
+        let found = locate(arc, guards, horizon, state, || Ok::<(), ()>(())).expect("no limit");
+        self.arcs += 1;
+        if let Some(guess) = guess {
+            self.certain += 1;
+            assert_eq!(guess.map(|trip| trip.guard), found.map(|trip| trip.guard));
+            if let (Some(guess), Some(found)) = (guess, found) {
+                let apart = guess
+                    .after
+                    .minus(found.after)
+                    .seconds()
+                    .abs()
+                    .min(found.after.minus(guess.after).seconds().abs());
+                let (angle, rate) = (found.sight.angle, found.sight.rate);
+                self.worst = self.worst.max(apart * rate.abs());
+                self.trips += 1;
+                let (a, b) = (guess.sight, found.sight);
+                assert!((a.rate - b.rate).abs() <= 1e-14 * a.rate.abs() + 1e-17);
+                assert!((guessed.angle() - guess.sight.angle).abs() <= 4e-16 * angle.abs());
+                state.clone_from(&guessed);
+            }
+        }
+        found.map(|trip| (trip.after, trip.guard))
+    }
+}
+
+/// So many cycles of the relay law.
+fn study(seen: &mut Seen, modes: &[(f64, f64)], k_t: f64, cycles: usize) {
+    let [eps, gamma, strong, weak] = LAW;
+    let body = body(modes);
+    let mut arc = Segment::new(&body);
+    let mut state = body.start();
+    (state.rigid_angle, state.rigid_rate) = (4.5e-4, 2.2e-5);
+    let forever = Span::from_seconds(2e4);
+    let depart = |arc: &mut Segment, state: &State, torque| {
+        arc.depart(state, &Input { constant: torque, waveform: None });
+    };
+    let mut torque = weak;
+    for _ in 0..cycles {
+        depart(&mut arc, &state, torque);
+        let both = [Guard::at_least(eps), Guard::at_most(-eps)];
+        let (_, guard) = seen.compare(&mut arc, &both, forever, &mut state).expect("a boundary");
+        let (side, back) = if guard == 0 {
+            (1.0, Guard::at_most(eps - gamma))
+        } else {
+            (-1.0, Guard::at_least(gamma - eps))
+        };
+        depart(&mut arc, &state, -side * strong);
+        let (push, _) = seen.compare(&mut arc, &[back], forever, &mut state).expect("back");
+        depart(&mut arc, &state, side * strong);
+        arc.at(k_t * push.seconds(), &mut state);
+        torque = side * weak;
+    }
+}
+
+#[test]
+fn certain_trips_are_those_of_the_certified_search() {
+    let mut seen = Seen::default();
+    for index in 0..240 {
+        let k_t = 0.28 + 0.12 * f64::from(index) / 240.0;
+        study(&mut seen, &[(0.44, 0.0213), (0.755, 0.0216)], k_t, 60);
+    }
+    assert!(seen.worst < 4e-18, "{:e}", seen.worst);
+    assert!(
+        seen.arcs == 240 * 120 && seen.certain > seen.arcs * 95 / 100,
+        "{} of {}",
+        seen.certain,
+        seen.arcs
+    );
+    // One, three and no modes; modes that move much and fast.
+    for modes in
+        [&[(0.44, 0.0213)][..], &[(0.3, 0.02), (0.755, 0.03), (2.2, 0.1)], &[], &[(0.9, 0.2), (5.0, 0.4)]]
+    {
+        let mut seen = Seen::default();
+        study(&mut seen, modes, 0.33, 300);
+        assert!(seen.worst < 1e-17 && seen.trips > 50, "{modes:?}: {:e}, {}", seen.worst, seen.trips);
+    }
+}
+
+#[test]
+fn motions_of_all_kinds_have_no_other_first_trip() {
+    // A linear congruential generator: uniform numbers of [-1, 1).
+    let mut bits = 15_u64;
+    let mut draw = || {
+        bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let mut seen = Seen::default();
+    for _ in 0..40_000 {
+        let body = body(&[(0.3 + 0.2 * draw(), 0.02), (1.0 + 0.5 * draw(), 0.02)]);
+        let mut state = body.start();
+        (state.rigid_angle, state.rigid_rate) = (1e-3 * draw(), 4e-5 * draw());
+        let size = libm::exp(-8.0 + 4.0 * draw()) * 1e-2;
+        for phase in &mut state.modes {
+            (phase.displacement, phase.quadrature) = (size * draw(), size * draw());
+        }
+        let mut arc = Segment::new(&body);
+        arc.depart(&state, &Input { constant: 4e-6 * draw() * draw(), waveform: None });
+        let guards = [Guard::at_least(1.2e-3 * draw()), Guard::at_most(1.2e-3 * draw())];
+        let guards = if draw() < 0.0 { &guards[..1] } else { &guards };
+        let horizon = Span::from_seconds(100.0 + 99.0 * draw());
+        seen.compare(&mut arc, guards, horizon, &mut state);
+    }
+    assert!(seen.worst < 1e-17, "{:e}", seen.worst);
+    assert!(
+        seen.certain > seen.arcs / 10 && seen.trips > 3000,
+        "{} {} {}",
+        seen.certain,
+        seen.trips,
+        seen.arcs
+    );
+}

@@ -1,0 +1,223 @@
+//! The Taylor series of a body whose frequencies drift, for one run or for runs side by side.
+//!
+//! x_r'' = p, x_i'' + 2 zeta_i w_i r_i(t) x_i' + w_i² r_i(t)² x_i = k_i p with p = m - a x' and the ratios r_i given as series
+//! themselves: each coefficient follows from those before it. The series have order 20, and the step keeps what they leave
+//! out at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
+
+use super::{Drift, Planar, SERIES};
+use crate::lanes::Real;
+
+/// e²: the step over the radius of convergence at which the series of this order leaves out the last bit of a double.
+pub const SAFETY: f64 = 7.389_056_098_930_65;
+/// A step so little shorter than the reach is within it, however the reach is rounded.
+const SURE: f64 = 1.000_001;
+
+/// What moves the coordinates: the rigid angle first, then the modes.
+#[derive(Clone, Debug)]
+pub struct Springs<R> {
+    gain: Vec<R>,
+    /// w² and 2 zeta w at a ratio of 1; of the rigid one nothing.
+    stiffness: Vec<R>,
+    drag: Vec<R>,
+    damped: Vec<bool>,
+    back_emf: R,
+    /// The rates of so many coordinates are opposed by the back-EMF.
+    felt: usize,
+    /// A time in which the fastest mode turns by a radian (s).
+    unit: R,
+}
+
+/// The ratio of some modes over a step, and its square: their series, and how many terms are not 0.
+#[derive(Clone, Debug)]
+pub struct Ratio<R> {
+    itself: [R; SERIES],
+    square: [R; SERIES],
+    terms: (usize, usize),
+}
+
+impl<R: Real> Ratio<R> {
+    /// Before it is expanded.
+    pub fn new(kind: R) -> Self {
+        let zero = kind.of(0.0);
+        Self { itself: [zero; SERIES], square: [zero; SERIES], terms: (1, 1) }
+    }
+
+    /// The ones at an index of runs side by side; terms that one of them lacks are 0.
+    #[inline(always)]
+    pub fn put(&mut self, all: &[Vec<Ratio<f64>>], index: usize) {
+        self.terms = (1, 1);
+        for one in all {
+            let one = &one[index];
+            self.terms = (self.terms.0.max(one.terms.0), self.terms.1.max(one.terms.1));
+        }
+        let mut each = [[0.0; 16]; 2];
+        for n in 0..self.terms.1 {
+            for (lane, one) in all.iter().enumerate() {
+                let one = &one[index];
+                each[0][lane] = if n < one.terms.0 { one.itself[n] } else { 0.0 };
+                each[1][lane] = if n < one.terms.1 { one.square[n] } else { 0.0 };
+            }
+            (self.itself[n], self.square[n]) = (self.itself[0].load(&each[0]), self.itself[0].load(&each[1]));
+        }
+    }
+}
+
+impl Ratio<f64> {
+    /// Expands the profile of a mode at a time (s).
+    pub fn expand(&mut self, drift: &Drift, mode: usize, t: f64) {
+        let terms = drift.series(mode, t, &mut self.itself);
+        let last = (2 * terms - 1).min(SERIES);
+        for n in 0..last {
+            let parts = n.saturating_sub(terms - 1)..=n.min(terms - 1);
+            self.square[n] = parts.map(|j| self.itself[j] * self.itself[n - j]).sum();
+        }
+        self.terms = (terms, last);
+    }
+}
+
+impl Springs<f64> {
+    /// Those of a body. A wheel takes back-EMF a (1/s) from the total rate, or from the rigid one.
+    pub fn new(body: &Planar, back_emf: f64, total: bool) -> Self {
+        let frequencies = || body.modes.iter().map(|mode| mode.frequency.get());
+        let with = |rigid: f64, of: &dyn Fn(&super::Mode) -> f64| {
+            std::iter::once(rigid).chain(body.modes.iter().map(of)).collect::<Vec<f64>>()
+        };
+        let drag = with(0.0, &|mode| 2.0 * mode.damping.get() * mode.frequency.get());
+        Self {
+            gain: with(1.0, &|mode| mode.gain.get()),
+            stiffness: with(0.0, &|mode| mode.frequency.get() * mode.frequency.get()),
+            damped: drag.iter().map(|drag| *drag > 0.0).collect(),
+            drag,
+            back_emf,
+            felt: if total { 1 + body.modes.len() } else { 1 },
+            unit: 1.0 / frequencies().fold(1e-9, f64::max),
+        }
+    }
+
+    /// Those of bodies side by side; none unless they are of one structure.
+    pub fn beside<R: Real>(kind: R, all: &[&Self]) -> Option<Springs<R>> {
+        let [first, rest @ ..] = all else { return None };
+        if rest.iter().any(|other| other.damped != first.damped || other.felt != first.felt) {
+            return None;
+        }
+        let beside = |of: &dyn Fn(&Self) -> f64| {
+            let each: Vec<f64> = (0..R::LANES).map(|lane| of(all[lane.min(all.len() - 1)])).collect();
+            kind.load(&each)
+        };
+        let list = |of: fn(&Self) -> &[f64]| (0..first.gain.len()).map(|at| beside(&|s| of(s)[at])).collect();
+        Some(Springs {
+            gain: list(|springs| &springs.gain),
+            stiffness: list(|springs| &springs.stiffness),
+            drag: list(|springs| &springs.drag),
+            damped: first.damped.clone(),
+            back_emf: beside(&|springs| springs.back_emf),
+            felt: first.felt,
+            unit: beside(&|springs| springs.unit),
+        })
+    }
+
+    /// The radius of convergence by the last two terms (s); infinite of a body at rest.
+    pub fn radius(&self, series: &[f64]) -> f64 {
+        let size = self.size(series);
+        let of = |n: usize| match self.largest(series, n) {
+            0.0 => f64::INFINITY,
+            term => libm::pow(size / term, 1.0 / n as f64),
+        };
+        let radius = of(SERIES - 1).min(of(SERIES - 2));
+        // What is no number ends the run where it is seen.
+        if radius > 0.0 { radius } else { f64::INFINITY }
+    }
+}
+
+impl<R: Real> Springs<R> {
+    /// How many coordinates there are.
+    #[inline(always)]
+    pub fn count(&self) -> usize {
+        self.gain.len()
+    }
+
+    /// Finds all series from their first two terms, the n-th terms of all coordinates side by side, under a constant reduced
+    /// moment (rad/s²).
+    #[inline(always)]
+    pub fn fill(&self, ratios: &[Ratio<R>], moment: R, series: &mut [R]) {
+        let count = self.gain.len();
+        let series = &mut series[..SERIES * count];
+        for n in 0..SERIES - 2 {
+            let term = (n + 1) as f64;
+            let (known, new) = series.split_at_mut((n + 2) * count);
+            let rates = &known[(n + 1) * count..];
+            let mut felt = rates[0];
+            for index in 1..self.felt {
+                felt = felt + rates[index];
+            }
+            let outer = if n == 0 { moment } else { moment.of(0.0) };
+            let push = outer - self.back_emf * term * felt;
+            let divisor = moment.of(term * (term + 1.0));
+            for index in 0..count {
+                let mut acceleration = self.gain[index] * push;
+                if index > 0 {
+                    let ratio = &ratios[(index - 1).min(ratios.len() - 1)];
+                    let mut spring = known[n * count + index] * ratio.square[0];
+                    for j in 1..ratio.terms.1.min(n + 1) {
+                        spring = spring + known[(n - j) * count + index] * ratio.square[j];
+                    }
+                    acceleration = acceleration - self.stiffness[index] * spring;
+                    if self.damped[index] {
+                        let mut slowing = rates[index] * term * ratio.itself[0];
+                        for j in 1..ratio.terms.0.min(n + 1) {
+                            let rate = known[(n - j + 1) * count + index] * (n - j + 1) as f64;
+                            slowing = slowing + rate * ratio.itself[j];
+                        }
+                        acceleration = acceleration - self.drag[index] * slowing;
+                    }
+                }
+                new[index] = acceleration / divisor;
+            }
+        }
+    }
+
+    /// Where series are certain to reach so far (s).
+    #[inline(always)]
+    pub fn surely_reach(&self, series: &[R], h: R) -> R::Mask {
+        let size = self.size(series);
+        let step = h * SAFETY * SURE;
+        let (square, mut power) = (step * step, step);
+        for _ in 0..9 {
+            power = power * square;
+        }
+        let (last, before) = (self.largest(series, SERIES - 1), self.largest(series, SERIES - 2));
+        (last * power * step).le(size) & (before * power).le(size)
+    }
+
+    /// The largest of the n-th terms.
+    #[inline(always)]
+    fn largest(&self, series: &[R], n: usize) -> R {
+        let count = self.gain.len();
+        let mut largest = series[n * count].abs();
+        for index in 1..count {
+            largest = series[n * count + index].abs().max(largest);
+        }
+        largest
+    }
+
+    /// The size of the motion, in the unit of its angles (rad).
+    #[inline(always)]
+    fn size(&self, series: &[R]) -> R {
+        let (angle, rate, half) = (self.largest(series, 0), self.largest(series, 1), self.largest(series, 2));
+        angle.max(self.unit * rate).max(self.unit * self.unit * half)
+    }
+
+    /// Angle, rate and acceleration of a coordinate `h` seconds after the series begin.
+    #[inline(always)]
+    pub fn at(&self, series: &[R], index: usize, h: R) -> [R; 3] {
+        let count = self.gain.len();
+        let mut x = h.of(0.0);
+        let (mut v, mut half) = (x, x);
+        for n in (0..SERIES).rev() {
+            half = half * h + v;
+            v = v * h + x;
+            x = x * h + series[n * count + index];
+        }
+        [x, v, half * 2.0]
+    }
+}

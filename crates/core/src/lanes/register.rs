@@ -1,0 +1,244 @@
+//! Numbers in the lanes of registers.
+
+use std::fmt::{self, Debug, Formatter};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+use pulp::{Simd, WithSimd};
+
+use super::real::{Mask, Real, WHOLE, Work};
+
+/// The digit of a number's sign.
+const SIGN: u64 = 1 << 63;
+
+/// Numbers in the lanes of N registers of a processor.
+#[derive(Copy, Clone)]
+pub struct Lanes<S: Simd, const N: usize> {
+    simd: S,
+    registers: [S::f64s; N],
+}
+
+/// Yes or no in each of these lanes.
+#[derive(Copy, Clone)]
+pub struct LaneMask<S: Simd, const N: usize> {
+    simd: S,
+    registers: [S::m64s; N],
+}
+
+impl<S: Simd, const N: usize> Lanes<S, N> {
+    /// No number in every lane.
+    #[inline(always)]
+    pub(super) fn new(simd: S) -> Self {
+        Self { simd, registers: [simd.splat_f64s(f64::NAN); N] }
+    }
+}
+
+/// New registers, each from the same one of the operands. No closure: it would lack the processor's instructions.
+macro_rules! each {
+    ($lanes:expr, $($operand:ident = $of:expr),+ => $result:expr) => {{
+        let mut lanes = $lanes;
+        for index in 0..N {
+            $(let $operand = $of.registers[index];)+
+            lanes.registers[index] = $result;
+        }
+        lanes
+    }};
+}
+
+/// An operator between lanes, and between lanes and a number.
+macro_rules! operator {
+    ($trait:ident, $name:ident, $operation:ident) => {
+        impl<S: Simd, const N: usize> $trait for Lanes<S, N> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                let simd = self.simd;
+                each!(self, a = self, b = other => simd.$operation(a, b))
+            }
+        }
+
+        impl<S: Simd, const N: usize> $trait<f64> for Lanes<S, N> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, other: f64) -> Self {
+                $trait::$name(self, self.of(other))
+            }
+        }
+    };
+}
+
+operator!(Add, add, add_f64s);
+operator!(Sub, sub, sub_f64s);
+operator!(Mul, mul, mul_f64s);
+operator!(Div, div, div_f64s);
+
+impl<S: Simd, const N: usize> Neg for Lanes<S, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        let simd = self.simd;
+        let sign = simd.splat_u64s(SIGN);
+        each!(self, a = self => {
+            simd.transmute_f64s_u64s(simd.xor_u64s(simd.transmute_u64s_f64s(a), sign))
+        })
+    }
+}
+
+impl<S: Simd, const N: usize> Real for Lanes<S, N> {
+    type Mask = LaneMask<S, N>;
+    const LANES: usize = N * S::F64_LANES;
+
+    #[inline(always)]
+    fn of(self, value: f64) -> Self {
+        Self { simd: self.simd, registers: [self.simd.splat_f64s(value); N] }
+    }
+
+    #[inline(always)]
+    fn load(self, from: &[f64]) -> Self {
+        let all = S::as_simd_f64s(&from[..Self::LANES]).0;
+        let mut lanes = self;
+        for index in 0..N {
+            lanes.registers[index] = all[index];
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        let all = S::as_mut_simd_f64s(&mut to[..Self::LANES]).0;
+        for index in 0..N {
+            all[index] = self.registers[index];
+        }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let simd = self.simd;
+        each!(self, a = self => simd.sqrt_f64s(a))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let simd = self.simd;
+        let rest = simd.splat_u64s(!SIGN);
+        each!(self, a = self => {
+            simd.transmute_f64s_u64s(simd.and_u64s(simd.transmute_u64s_f64s(a), rest))
+        })
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> Self::Mask {
+        let simd = self.simd;
+        each!(LaneMask::new(simd), a = self, b = other => simd.less_than_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> Self::Mask {
+        let simd = self.simd;
+        each!(LaneMask::new(simd), a = self, b = other => simd.less_than_or_equal_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        let simd = yes.simd;
+        each!(yes, is = mask, a = yes, b = no => {
+            let (a, b) = (simd.transmute_u64s_f64s(a), simd.transmute_u64s_f64s(b));
+            simd.transmute_f64s_u64s(simd.select_u64s(is, a, b))
+        })
+    }
+
+    #[inline(always)]
+    fn quadrant(self) -> (Self, Self::Mask, Self::Mask) {
+        let simd = self.simd;
+        let shifted = self + WHOLE;
+        let (one, two) = (simd.splat_u64s(1), simd.splat_u64s(2));
+        let odd = each!(LaneMask::new(simd), a = shifted => {
+            simd.equal_u64s(simd.and_u64s(simd.transmute_u64s_f64s(a), one), one)
+        });
+        let second = each!(LaneMask::new(simd), a = shifted => {
+            simd.equal_u64s(simd.and_u64s(simd.transmute_u64s_f64s(a), two), two)
+        });
+        (shifted - WHOLE, odd, second)
+    }
+
+    #[inline(always)]
+    fn apart<W: Work>(self, work: W) -> W::Output {
+        self.simd.vectorize(Vectorized::<W, N>(work))
+    }
+}
+
+impl<S: Simd, const N: usize> LaneMask<S, N> {
+    /// Nowhere.
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let zero = simd.splat_f64s(0.0);
+        Self { simd, registers: [simd.less_than_f64s(zero, zero); N] }
+    }
+}
+
+impl<S: Simd, const N: usize> BitAnd for LaneMask<S, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        let simd = self.simd;
+        each!(self, a = self, b = other => simd.and_m64s(a, b))
+    }
+}
+
+impl<S: Simd, const N: usize> BitOr for LaneMask<S, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        let simd = self.simd;
+        each!(self, a = self, b = other => simd.or_m64s(a, b))
+    }
+}
+
+impl<S: Simd, const N: usize> Not for LaneMask<S, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        let simd = self.simd;
+        each!(self, a = self => simd.not_m64s(a))
+    }
+}
+
+impl<S: Simd, const N: usize> Mask for LaneMask<S, N> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        let mut first = S::F64_LANES;
+        for index in 0..N {
+            first = first.min(self.simd.first_true_m64s(self.registers[index]));
+        }
+        first < S::F64_LANES
+    }
+}
+
+/// Work that a processor's instructions are chosen for.
+pub(super) struct Vectorized<W, const N: usize>(pub W);
+
+impl<W: Work, const N: usize> WithSimd for Vectorized<W, N> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> W::Output {
+        self.0.run(Lanes::<S, N>::new(simd))
+    }
+}
+
+impl<S: Simd, const N: usize> Debug for Lanes<S, N> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.registers.fmt(f)
+    }
+}
+
+impl<S: Simd, const N: usize> Debug for LaneMask<S, N> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.registers.fmt(f)
+    }
+}

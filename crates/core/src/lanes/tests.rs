@@ -1,0 +1,167 @@
+//! Every operation in every lane of every width is that of f64, to the bit.
+
+use super::register::Lanes;
+use super::{Mask, Processor, Real, Work};
+
+/// What arithmetic stumbles over.
+const ODD: [f64; 28] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    -0.5,
+    1.5,
+    2.5,
+    -2.5,
+    -3.5,
+    0.499_999_999_999_999_94,
+    -0.499_999_999_999_999_94,
+    1e15,
+    -1_125_899_906_842_623.5,
+    5e-324,
+    -5e-324,
+    2.2e-308,
+    -1.1e-308,
+    f64::MIN_POSITIVE,
+    f64::MAX,
+    f64::MIN,
+    f64::EPSILON,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::NAN,
+    0.1,
+    1e200,
+    -3.3e-200,
+];
+
+/// All results of all operations on two numbers.
+fn results<R: Real>(a: R, b: R) -> Vec<R> {
+    let yes = |mask: R::Mask| R::select(mask, a.of(1.0), a.of(0.0));
+    // Beyond 2^51 there is no nearest integer.
+    let small = R::select(a.abs().lt(a.of(2_251_799_813_685_248.0)), a, a.of(7.0));
+    let (whole, odd, second) = small.quadrant();
+    vec![
+        a + b,
+        a - b,
+        a * b,
+        a / b,
+        -a,
+        a + 0.1,
+        a - 0.1,
+        a * 0.1,
+        a.sqrt(),
+        a.abs(),
+        a.min(b),
+        a.max(b),
+        yes(a.lt(b)),
+        yes(a.le(b)),
+        yes(a.gt(b)),
+        yes(a.ge(b)),
+        yes(!a.lt(b) & (a.le(b) | b.lt(a))),
+        R::select(a.lt(b), a, b),
+        whole,
+        yes(odd),
+        yes(second),
+        // No product is fused with a sum.
+        a * b + a,
+        a * a - b * b,
+    ]
+}
+
+struct Pairs;
+
+impl Work for Pairs {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<R: Real>(self, kind: R) -> usize {
+        let lanes = R::LANES;
+        for from in 0..ODD.len() {
+            for with in 0..ODD.len() {
+                // Each lane another pair.
+                let a: Vec<f64> = (0..lanes).map(|lane| ODD[(from + lane) % ODD.len()]).collect();
+                let b: Vec<f64> = (0..lanes).map(|lane| ODD[(with + 3 * lane) % ODD.len()]).collect();
+                for (index, all) in results(kind.load(&a), kind.load(&b)).into_iter().enumerate() {
+                    for lane in 0..lanes {
+                        let (got, alone) = (all.lane(lane), results(a[lane], b[lane])[index]);
+                        let same = got.to_bits() == alone.to_bits() || got.is_nan() && alone.is_nan();
+                        assert!(same, "operation {index} of {} and {}: {got} for {alone}", a[lane], b[lane]);
+                    }
+                }
+            }
+        }
+        lanes
+    }
+}
+
+#[test]
+fn a_lane_is_a_number_to_the_bit() {
+    for processor in Processor::all() {
+        assert_eq!(processor.run::<1, _>(Pairs), processor.lanes(1), "{}", processor.name());
+        assert_eq!(processor.run::<2, _>(Pairs), processor.lanes(2), "{}", processor.name());
+    }
+    assert_eq!(Pairs.run(f64::NAN), 1);
+}
+
+#[test]
+fn integers_and_quarters_are_as_arithmetic_has_them() {
+    for (x, whole, odd, second) in [
+        (0.5, 0.0, false, false),
+        (1.5, 2.0, false, true),
+        (2.5, 2.0, false, true),
+        (-0.5, 0.0, false, false),
+        (-1.2, -1.0, true, true),
+        (-2.0, -2.0, false, true),
+        (3.0, 3.0, true, true),
+        (1e15 + 1.0, 1e15 + 1.0, true, false),
+        (-1e15 - 1.0, -1e15 - 1.0, true, true),
+    ] {
+        assert_eq!(Real::quadrant(x), (whole, odd, second), "{x}");
+    }
+    assert_eq!((Real::min(1.0, f64::NAN)).to_bits(), f64::NAN.to_bits());
+    assert_eq!(Real::min(f64::NAN, 1.0), 1.0);
+    assert_eq!(Real::max(0.0, -0.0).to_bits(), (-0.0_f64).to_bits());
+}
+
+struct Chosen;
+
+impl Work for Chosen {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self, kind: R) {
+        let (none, rising) = (kind.of(0.0), kind.load(&ODD).with_lane(R::LANES - 1, 7.0));
+        assert_eq!(rising.lane(R::LANES - 1), 7.0);
+        assert!(!rising.lt(none.of(f64::NEG_INFINITY)).any());
+        // One lane alone is any, and not all, where there are several.
+        let one = rising.gt(none.of(6.0)) & rising.lt(none.of(8.0));
+        assert!(one.any());
+        assert_eq!(one.all(), R::LANES == 1);
+        assert!((one | !one).all());
+        let apart = kind.apart(Lane(R::LANES - 1));
+        assert_eq!(apart, 7.0);
+    }
+}
+
+/// The number in a lane, by a function of its own.
+struct Lane(usize);
+
+impl Work for Lane {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<R: Real>(self, kind: R) -> f64 {
+        kind.of(1.0).with_lane(self.0, 7.0).lane(self.0)
+    }
+}
+
+#[test]
+fn masks_and_lanes_are_told_apart() {
+    Chosen.run(f64::NAN);
+    for processor in Processor::all() {
+        processor.run::<1, _>(Chosen);
+        processor.run::<2, _>(Chosen);
+    }
+    assert!(format!("{:?}", Lanes::<pulp::Scalar, 2>::new(pulp::Scalar)).contains("NaN"));
+}

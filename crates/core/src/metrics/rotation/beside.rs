@@ -1,0 +1,144 @@
+//! What rotations that run side by side come to: as each alone, with what bounds decide found for all of them at once.
+
+use super::{Rotation, integral};
+use crate::lanes::{Mask, Real};
+use crate::metrics::Gather;
+use crate::numerics::polynomial::TERMS;
+use crate::numerics::polynomials::Polynomials;
+
+/// A motion in each lane that has ended: one stretch of each.
+#[derive(Debug)]
+pub struct Passed<'a, R> {
+    /// When it began, and how long it was (s).
+    pub from: R,
+    /// See `from`.
+    pub length: R,
+    /// The series of its coordinates, the n-th terms of all of them side by side, and how many coordinates there are.
+    pub series: &'a [R],
+    /// See `series`.
+    pub count: usize,
+    /// The actuator's torque beside the back-EMF (N m).
+    pub constant: R,
+    /// Back-EMF for each unit of the rate (N m s), and whether it is that of the elastic body.
+    pub back_emf: (R, bool),
+    /// What the law asks for (N m).
+    pub feedback: R,
+    /// The lanes whose motion counts.
+    pub counts: &'a [bool],
+}
+
+/// Gathers motions of runs towards angle 0 from their start on.
+#[derive(Clone, Debug)]
+pub struct Courses<R> {
+    torque: R,
+    feedback: R,
+    error: R,
+    itae: (R, R),
+}
+
+impl<R: Real> Courses<R> {
+    /// Nothing seen.
+    #[inline(always)]
+    pub fn new(kind: R) -> Self {
+        let zero = kind.of(0.0);
+        Self { torque: zero, feedback: zero, error: zero, itae: (zero, zero) }
+    }
+
+    /// Takes a motion of each run.
+    #[inline(always)]
+    pub fn see(&mut self, runs: &mut [Gather], passed: &Passed<'_, R>) {
+        let Passed { from, length, series, count, .. } = *passed;
+        let zero = from.of(0.0);
+        let mut flags = [0.0; 16];
+        for lane in 0..R::LANES {
+            flags[lane] = f64::from(u8::from(passed.counts[lane]));
+        }
+        let counts = zero.lt(zero.load(&flags));
+        let (mut angle, mut rigid) = ([zero; TERMS], [zero; TERMS]);
+        for n in 0..series.len() / count {
+            rigid[n] = series[n * count];
+            angle[n] = rigid[n];
+            for index in 1..count {
+                angle[n] = angle[n] + series[n * count + index];
+            }
+        }
+        let mut applied = [zero; TERMS];
+        applied[0] = passed.constant;
+        let (back_emf, total) = passed.back_emf;
+        for n in 0..TERMS - 1 {
+            let felt = if total { angle[n + 1] } else { rigid[n + 1] };
+            applied[n] = applied[n] - back_emf * (n + 1) as f64 * felt;
+        }
+        let applied = Polynomials::of(&applied, length);
+        self.torque = peak(&applied, self.torque, counts);
+        self.feedback = R::select(counts, passed.feedback.abs().max(self.feedback), self.feedback);
+        let error = Polynomials::of(&angle, length);
+        self.error = peak(&error, self.error, counts);
+        let [plain, weighted] = error.integrals();
+        let mut area = (length * (from * plain + length * weighted)).abs();
+        let ((low, high), middle) = (error.bounds(), error.at(0.5));
+        for lane in 0..R::LANES {
+            if !passed.counts[lane] {
+                continue;
+            }
+            let Some(run) = runs[lane].rotation() else { continue };
+            let (begins, lasts) = (from.lane(lane), length.lane(lane));
+            let (low, high) = (low.lane(lane), high.lane(lane));
+            if low < 0.0 && high > 0.0 {
+                area = area.with_lane(lane, integral(&error.lane(lane), begins, lasts));
+            }
+            let verdict = run.judge(angle[0].lane(lane));
+            let band = verdict.band();
+            if low > band || high < -band {
+                if middle.lane(lane).abs() > band {
+                    verdict.outside(begins + lasts * 0.0, begins + lasts * 1.0);
+                }
+            } else if !(low >= -band && high <= band) {
+                verdict.see(begins, lasts, &error.lane(lane));
+            }
+            let late = (run.late - begins) / lasts;
+            if late < 1.0 {
+                let late_error = error.lane(lane);
+                let part = if late > 0.0 { late_error.part(late, 1.0) } else { late_error };
+                run.error.1 = part.magnitude(run.error.1.max(0.0));
+            }
+        }
+        let more = area - self.itae.1;
+        let total = self.itae.0 + more;
+        let lost = (total - self.itae.0) - more;
+        self.itae = (R::select(counts, total, self.itae.0), R::select(counts, lost, self.itae.1));
+    }
+
+    /// Lets each run have what was found.
+    pub fn finish(self, runs: &mut [Gather]) {
+        for (lane, run) in runs.iter_mut().enumerate() {
+            if let Some(run) = run.rotation() {
+                run.torque = (self.torque.lane(lane), self.feedback.lane(lane));
+                run.error.0 = self.error.lane(lane);
+                run.itae = (self.itae.0.lane(lane), self.itae.1.lane(lane));
+            }
+        }
+    }
+}
+
+/// The largest absolute values, where they count: one by one where bounds do not tell.
+#[inline(always)]
+fn peak<R: Real>(of: &Polynomials<R>, floor: R, counts: R::Mask) -> R {
+    let (mut best, certain) = of.magnitude(floor);
+    if !(certain | !counts).all() {
+        let doubtful = R::select(certain | !counts, floor.of(0.0), floor.of(1.0));
+        for lane in 0..R::LANES {
+            if doubtful.lane(lane) > 0.0 {
+                best = best.with_lane(lane, of.lane(lane).magnitude(floor.lane(lane)));
+            }
+        }
+    }
+    R::select(counts, best, floor)
+}
+
+impl Rotation {
+    /// Whether its goal is angle 0 from the start on, and nothing but the angle is seen.
+    pub fn is_plain(&self) -> bool {
+        self.outputs.is_empty() && !self.planned && self.goal == crate::law::Goal::default()
+    }
+}

@@ -1,0 +1,128 @@
+//! Sine, cosine and arc tangent without a branch, of one number or of several in lanes: the polynomials of fdlibm.
+
+#![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+#![allow(clippy::excessive_precision, reason = "as fdlibm has them")]
+
+use crate::lanes::Real;
+
+/// Beyond this (rad) the reduction by pi/2 in three parts is not exact.
+pub const FARTHEST: f64 = 1e6;
+
+const TWO_OVER_PI: f64 = 6.366_197_723_675_813_8e-1;
+/// The first 33 bits of pi/2, the next 33, and the rest.
+const HALF_PI: [f64; 3] =
+    [1.570_796_326_734_125_614_17, 6.077_100_506_303_965_976_60e-11, 2.022_266_248_795_950_631_54e-21];
+/// 1.5 2^52: added and taken away again, it rounds to an integer.
+const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
+const SINE: [f64; 6] = [
+    -1.666_666_666_666_663_243_48e-1,
+    8.333_333_333_322_489_461_24e-3,
+    -1.984_126_982_985_794_931_34e-4,
+    2.755_731_370_707_006_767_89e-6,
+    -2.505_076_025_340_686_341_95e-8,
+    1.589_690_995_211_550_102_21e-10,
+];
+const COSINE: [f64; 6] = [
+    4.166_666_666_666_660_190_37e-2,
+    -1.388_888_888_887_410_957_49e-3,
+    2.480_158_728_947_672_941_78e-5,
+    -2.755_731_435_139_066_330_35e-7,
+    2.087_572_321_298_174_827_90e-9,
+    -1.135_964_755_778_819_482_65e-11,
+];
+/// The arc tangent.
+const ARC: [f64; 11] = [
+    3.333_333_333_333_293_180_27e-1,
+    -1.999_999_999_987_648_324_76e-1,
+    1.428_571_427_250_346_637_11e-1,
+    -1.111_111_040_546_235_578_80e-1,
+    9.090_887_133_436_506_561_96e-2,
+    -7.691_876_205_044_829_994_95e-2,
+    6.661_073_137_387_531_206_69e-2,
+    -5.833_570_133_790_573_486_45e-2,
+    4.976_877_994_615_932_360_17e-2,
+    -3.653_157_274_421_691_552_70e-2,
+    1.628_582_011_536_578_236_23e-2,
+];
+
+/// The integer nearest to a number below 2^51.
+#[inline(always)]
+pub fn nearest<R: Real>(x: R) -> R {
+    let rounder = x.of(ROUNDER);
+    (x + rounder) - rounder
+}
+
+/// Sine and cosine of an angle (rad) up to [`FARTHEST`]; within 1 unit in the last place.
+#[inline(always)]
+pub fn sincos<R: Real>(x: R) -> (R, R) {
+    let turns = nearest(x * x.of(TWO_OVER_PI));
+    // The products of the first two parts, and the first difference, are exact.
+    let first = x - turns * x.of(HALF_PI[0]);
+    let second = turns * x.of(HALF_PI[1]);
+    let high = first - second;
+    let back = first - high;
+    let low = (first - (high + back)) + (back - second);
+    let rest = turns * x.of(HALF_PI[2]) - low;
+    let angle = high - rest;
+    let (sin, cos) = within(angle, (high - angle) - rest);
+    // Quarter turns modulo 4, -2 to 2, turn the pair: no product but by 1, 0 or -1, and so exact.
+    let quarters = turns - x.of(4.0) * nearest(turns * x.of(0.25));
+    let size = quarters.abs();
+    let (along, across) = (x.of(1.0) - size, quarters * (x.of(2.0) - size));
+    (along * sin + across * cos, along * cos - across * sin)
+}
+
+/// Sine and cosine of any angle (rad): those of [`sincos`] up to [`FARTHEST`].
+#[inline]
+pub fn sincos_any(x: f64) -> (f64, f64) {
+    if x.abs() < FARTHEST { sincos(x) } else { libm::sincos(x) }
+}
+
+/// Sine and cosine of an angle (rad) that is at most pi/4.
+#[inline(always)]
+pub fn sincos_short<R: Real>(x: R) -> (R, R) {
+    let z = x * x;
+    let w = z * z;
+    let sines =
+        x.of(SINE[1]) + z * (x.of(SINE[2]) + z * x.of(SINE[3])) + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
+    let sin = x + z * x * (x.of(SINE[0]) + z * sines);
+    let cosines = z * (x.of(COSINE[0]) + z * (x.of(COSINE[1]) + z * x.of(COSINE[2])))
+        + w * w * (x.of(COSINE[3]) + z * (x.of(COSINE[4]) + z * x.of(COSINE[5])));
+    let one = x.of(1.0);
+    let half = x.of(0.5) * z;
+    let near = one - half;
+    (sin, near + (((one - near) - half) + z * cosines))
+}
+
+/// The same of a sum of two parts.
+#[inline(always)]
+fn within<R: Real>(x: R, y: R) -> (R, R) {
+    let z = x * x;
+    let w = z * z;
+    let (one, half) = (x.of(1.0), x.of(0.5));
+    let sines =
+        x.of(SINE[1]) + z * (x.of(SINE[2]) + z * x.of(SINE[3])) + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
+    let v = z * x;
+    let sin = x - ((z * (half * y - v * sines) - y) - v * x.of(SINE[0]));
+    let cosines = z * (x.of(COSINE[0]) + z * (x.of(COSINE[1]) + z * x.of(COSINE[2])))
+        + w * w * (x.of(COSINE[3]) + z * (x.of(COSINE[4]) + z * x.of(COSINE[5])));
+    let hz = half * z;
+    let near = one - hz;
+    (sin, near + (((one - near) - hz) + (z * cosines - x * y)))
+}
+
+/// The arc tangent of a number up to 0.4375; within 1 unit in the last place.
+#[inline(always)]
+pub fn arc<R: Real>(t: R) -> R {
+    let z = t * t;
+    let w = z * z;
+    let (mut odd, mut even) = (t.of(ARC[10]), t.of(ARC[9]));
+    for i in [8, 6, 4, 2, 0] {
+        odd = t.of(ARC[i]) + w * odd;
+    }
+    for i in [7, 5, 3, 1] {
+        even = t.of(ARC[i]) + w * even;
+    }
+    t - t * (z * odd + w * even)
+}
