@@ -3,7 +3,7 @@
 //! A batch takes what it can, and declines a run at any time: that one is then simulated alone, as every run is where there is
 //! no batch for it.
 
-mod drifting;
+mod sampled;
 
 use crate::lanes::Processor;
 use crate::metrics::Metrics;
@@ -31,7 +31,7 @@ pub trait Batch: Sync {
 }
 
 /// All there are, in the order in which they are asked.
-const ALL: &[&dyn Batch] = &[&drifting::Side];
+const ALL: &[&dyn Batch] = &[&sampled::Side];
 
 /// Whether runs of a scenario may go side by side on this machine.
 pub fn takes(scenario: &Scenario) -> bool {

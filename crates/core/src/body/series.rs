@@ -203,8 +203,7 @@ impl<R: Real> Springs<R> {
     /// The size of the motion, in the unit of its angles (rad).
     #[inline(always)]
     fn size(&self, series: &[R]) -> R {
-        let (angle, rate, half) =
-            (self.largest(series, 0), self.largest(series, 1), self.largest(series, 2));
+        let (angle, rate, half) = (self.largest(series, 0), self.largest(series, 1), self.largest(series, 2));
         angle.max(self.unit * rate).max(self.unit * self.unit * half)
     }
 

@@ -50,9 +50,41 @@ struct Poles {
     levels: Vec<Level>,
 }
 
+/// A motion that someone else computes, before its first departure.
+#[derive(Clone, Debug)]
+pub enum Lent {
+    /// Of drifting frequencies.
+    Drifting(Box<Drifting>),
+    /// Of constant ones.
+    Constant(Box<Constant>),
+}
+
+impl Lent {
+    /// The angles of all coordinates at departure, and then their rates.
+    pub fn start(&self) -> Vec<f64> {
+        match self {
+            Self::Drifting(drifting) => drifting.start().to_vec(),
+            Self::Constant(constant) => {
+                let of = |first: usize| constant.from.iter().skip(first).step_by(2);
+                of(0).chain(of(1)).copied().collect()
+            }
+        }
+    }
+
+    /// The motion of drifting frequencies.
+    pub fn drifting(&self) -> Option<&Drifting> {
+        if let Self::Drifting(drifting) = self { Some(drifting) } else { None }
+    }
+
+    /// The motion of constant frequencies.
+    pub fn constant(&self) -> Option<&Constant> {
+        if let Self::Constant(constant) = self { Some(constant) } else { None }
+    }
+}
+
 /// A motion at constant frequencies, from transition to transition.
 #[derive(Clone, Debug)]
-struct Constant {
+pub struct Constant {
     system: Coupled,
     /// The acceleration of the angle is this times z, and so much for each unit of the moment.
     acceleration: (RowDVector<f64>, f64),
@@ -133,9 +165,14 @@ impl Coupling {
         }
     }
 
-    /// The motion of drifting modes, and what a unit of torque accelerates (1/(kg m²)).
-    pub fn drifting(&self) -> Option<(&Drifting, f64)> {
-        if let Flow::Drifting(drifting) = &self.flow { Some((drifting, self.mobility)) } else { None }
+    /// The motion, for someone else to compute, and what a unit of torque accelerates (1/(kg m²)); none of one by its poles.
+    pub fn lent(&self) -> Option<(Lent, f64)> {
+        let lent = match &self.flow {
+            Flow::Drifting(drifting) => Lent::Drifting(Box::new(drifting.clone())),
+            Flow::Constant(constant) => Lent::Constant(Box::new(constant.clone())),
+            Flow::Linear(_) => return None,
+        };
+        Some((lent, self.mobility))
     }
 
     /// Takes some steps towards `h` seconds after departure; whether no more are needed.
@@ -246,6 +283,16 @@ impl Unfolding<'_> {
 }
 
 impl Constant {
+    /// Its matrices.
+    pub fn system(&self) -> &Coupled {
+        &self.system
+    }
+
+    /// No part of the motion changes faster (rad/s).
+    pub fn fastest(&self) -> f64 {
+        self.fastest
+    }
+
     /// Moves by the transition over `h` seconds.
     fn go(&mut self, h: f64, here: &mut DVector<f64>) -> Sensed {
         let kept = self.transitions.iter().position(|(span, ..)| *span == h);

@@ -15,16 +15,14 @@ struct Arc {
 }
 
 fn arc(system: &DMatrix<f64>, push: DVector<f64>, z: &[f64], output: &[f64], end: f64, band: f64) -> Arc {
-    let fastest =
-        system.row_iter().map(|row| row.iter().map(|a| a.abs()).sum::<f64>()).fold(0.0, f64::max);
+    let fastest = system.row_iter().map(|row| row.iter().map(|a| a.abs()).sum::<f64>()).fold(0.0, f64::max);
     let mut linear = Linear::new(system, push, &DVector::from_column_slice(z), fastest);
     let output = RowDVector::from_row_slice(output);
     let mut verdict = Verdict::new(0.0, band);
     let (mut range, mut sums, mut zeros, mut h) = (Range::EMPTY, (0.0, 0.0), Vec::new(), 0.0);
     while h < end {
         let length = linear.expand(h).min(end - h);
-        let series =
-            std::array::from_fn(|n| output.iter().zip(linear.series()).map(|(c, z)| c * z[n]).sum());
+        let series = std::array::from_fn(|n| output.iter().zip(linear.series()).map(|(c, z)| c * z[n]).sum());
         let y = Polynomial::of(&series, length);
         range.widen(&y);
         y.roots(0.0, &mut zeros);
