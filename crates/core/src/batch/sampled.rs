@@ -115,7 +115,10 @@ impl Work for Rounds<'_> {
         for (run, gather) in runs.iter_mut().zip(gathers.iter_mut()) {
             run.begin(gather);
         }
-        let Some(mut filters) = filters::of(kind, runs) else { return };
+        if !filters::agree(runs) {
+            return;
+        }
+        let mut filters = filters::of(kind, runs);
         let mut courses = Courses::new(kind);
         // Where the bodies are: angles and rates of all coordinates.
         let mut here = vec![zero; 2 * count];

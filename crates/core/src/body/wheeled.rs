@@ -232,8 +232,8 @@ impl Coupling {
 pub enum Unfolding<'a> {
     /// At constant frequencies.
     Linear(stretch::Linear),
-    /// With drifting ones: as it is known from its departure on, and on its way beyond.
-    Drifting(Option<&'a Drifting>, &'a Drifting, Option<Box<Drifting>>),
+    /// With drifting ones: as it is known, and on its way beyond.
+    Drifting(&'a Drifting, Option<Box<Drifting>>),
 }
 
 impl Coupling {
@@ -254,7 +254,7 @@ impl Coupling {
                 let fastest = poles.flow.poles().into_iter().map(abs).fold(0.0, f64::max);
                 Unfolding::Linear(stretch::Linear::new(&poles.system.system, push, &poles.from, fastest))
             }
-            Flow::Drifting(drifting) => Unfolding::Drifting(drifting.fresh(), drifting, None),
+            Flow::Drifting(drifting) => Unfolding::Drifting(drifting, None),
         }
     }
 }
@@ -272,8 +272,10 @@ impl Unfolding<'_> {
                 }
                 reach
             }
-            Self::Drifting(Some(known), ..) if h == 0.0 => known.tell(span, &mut into.coordinates),
-            Self::Drifting(_, motion, again) => {
+            Self::Drifting(motion, _) if h == 0.0 && motion.is_fresh() => {
+                motion.tell(span, &mut into.coordinates)
+            }
+            Self::Drifting(motion, again) => {
                 let again = again.get_or_insert_with(|| Box::new(motion.from_departure()));
                 again.unfold(h);
                 again.tell(span - h, &mut into.coordinates)

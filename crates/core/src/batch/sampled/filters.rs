@@ -5,16 +5,15 @@ use crate::estimator::kalman::{Filter, Filters};
 use crate::lanes::Real;
 use crate::metrics::Gather;
 
-/// The filters that go side by side, if there are any; none of filters that differ in structure.
-pub fn of<R: Real>(kind: R, runs: &mut [Run]) -> Option<Option<Filters<R>>> {
+/// Whether all runs have filters, or none has.
+pub fn agree(runs: &mut [Run]) -> bool {
     let count = runs.len();
-    let mut all: Vec<&mut Filter> = all(runs);
-    match all.len() {
-        0 => Some(None),
-        // Filters of another kind act one by one.
-        some if some == count => Some(Filters::new(kind, &mut all)),
-        _ => None,
-    }
+    [0, count].contains(&all(runs).len())
+}
+
+/// The filters that go side by side; filters of another kind act one by one.
+pub fn of<R: Real>(kind: R, runs: &mut [Run]) -> Option<Filters<R>> {
+    Filters::new(kind, &mut all(runs))
 }
 
 fn all(runs: &mut [Run]) -> Vec<&mut Filter> {
@@ -43,14 +42,12 @@ pub fn sample<R: Real>(
         }
         let angle = run.simulation.read_ahead().ok().flatten();
         let moment = run.simulation.filter().and_then(|(_, moment)| moment);
-        match angle.zip(moment).filter(|(_, moment)| moment.is_finite()) {
-            Some(of) => (measured[lane], moments[lane]) = of,
-            None => {
-                run.goes_on = false;
-                continue;
-            }
+        if let Some(of) = angle.zip(moment).filter(|(_, moment)| moment.is_finite()) {
+            (measured[lane], moments[lane]) = of;
+            (takes[lane], flags[lane]) = (true, 1.0);
+        } else {
+            run.goes_on = false;
         }
-        (takes[lane], flags[lane]) = (true, 1.0);
     }
     if !takes.contains(&true) {
         return;

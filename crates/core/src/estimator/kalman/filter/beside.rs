@@ -83,7 +83,9 @@ impl<R: Real> Filters<R> {
             angle_noise: beside(&|filter| filter.tuning.angle_noise),
             turns: vec![[zero; 4]; modes],
         };
-        filters.iter_mut().for_each(|filter| filter.beside.lent = true);
+        for filter in filters {
+            filter.beside.lent = true;
+        }
         Some(all)
     }
 

@@ -42,9 +42,7 @@ impl<R: Real> Filters<R> {
         let order = self.order;
         let zero = self.angle_noise.of(0.0);
         let root = &mut self.room;
-        for at in 0..order * order {
-            root[at] = self.covariance[at];
-        }
+        root.copy_from_slice(&self.covariance);
         for j in 0..order {
             for k in 0..j {
                 let factor = -root[k * order + j];
