@@ -11,6 +11,7 @@ mod bad_scenarios;
 mod bad_spatial;
 mod bad_structures;
 mod bearings;
+mod beside;
 mod calculix;
 mod campaign_figures;
 mod campaigns;

@@ -179,7 +179,9 @@ impl Campaign {
             let model = Value::try_from(model).unwrap_or_else(|_| Value::Table(Table::new()));
             keys.push(("manoeuvre.model", model));
         }
-        Ok(Run { number, scenario: self.scenario_with(&keys)?, drawn })
+        // A plan's body is more than numbers.
+        let scenario = if self.plans_first() { self.scenario_with(&keys)? } else { self.drawn_with(&keys)? };
+        Ok(Run { number, scenario, drawn })
     }
 
     /// Whether the manoeuvre is planned for the body before its keys are drawn.
@@ -261,10 +263,19 @@ impl Campaign {
     }
 
     fn scenario_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {
+        Scenario::from_document_like(&self.document_with(keys)?, &self.scenario)
+    }
+
+    /// The same where the keys hold numbers already.
+    fn drawn_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {
+        Scenario::from_numbers_like(&self.document_with(keys)?, &self.scenario)
+    }
+
+    fn document_with(&self, keys: &[(&str, Value)]) -> Result<Document, ScenarioError> {
         let mut document = Document::from_table(&self.origin, self.table.clone());
         for (key, value) in keys {
             document.set(key, value.clone())?;
         }
-        Scenario::from_document_like(&document, &self.scenario)
+        Ok(document)
     }
 }

@@ -3,8 +3,8 @@
 //! A batch takes what it can, and declines a run at any time: that one is then simulated alone, as every run is where there is
 //! no batch for it.
 
-mod drifting;
 mod relay;
+mod sampled;
 
 use crate::lanes::Processor;
 use crate::metrics::Metrics;
@@ -32,7 +32,7 @@ pub trait Batch: Sync {
 }
 
 /// All there are, in the order in which they are asked.
-const ALL: &[&dyn Batch] = &[&drifting::Side, &relay::Side];
+const ALL: &[&dyn Batch] = &[&relay::Side, &sampled::Side];
 
 /// Whether runs of a scenario may go side by side on this machine.
 pub fn takes(scenario: &Scenario) -> bool {

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 use super::Planar;
 use crate::motion::linear::{Linear, System};
 use crate::motion::{Phase, State};
-use crate::numerics::exponential::exponential;
+use crate::numerics::exponential::{exponential, exponentials};
 
 /// The matrices of a body at constant frequencies.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,16 +66,32 @@ impl Coupled {
 
     /// The transition over `h` seconds and what a constant unit of the reduced moment adds to it.
     pub fn discrete(&self, h: f64) -> (DMatrix<f64>, DVector<f64>) {
+        apart(&exponential(&self.whole(h)))
+    }
+
+    /// The same of several systems of one order, each over a span of its own (s).
+    pub fn several(all: &[(&Self, f64)]) -> Vec<(DMatrix<f64>, DVector<f64>)> {
+        let wholes: Vec<_> = all.iter().map(|(system, h)| system.whole(*h)).collect();
+        exponentials(&wholes).iter().map(apart).collect()
+    }
+
+    /// The generator over `h` seconds, beside what the input adds.
+    fn whole(&self, h: f64) -> DMatrix<f64> {
         let order = self.system.nrows();
         let mut whole = DMatrix::zeros(order + 1, order + 1);
         whole.view_mut((0, 0), (order, order)).copy_from(&(&self.system * h));
         whole.view_mut((0, order), (order, 1)).copy_from(&(&self.input * h));
-        let whole = exponential(&whole);
-        (
-            whole.view((0, 0), (order, order)).into_owned(),
-            whole.view((0, order), (order, 1)).column(0).into_owned(),
-        )
+        whole
     }
+}
+
+/// A transition, and what a unit of the input adds.
+fn apart(whole: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let order = whole.nrows() - 1;
+    (
+        whole.view((0, 0), (order, order)).into_owned(),
+        whole.view((0, order), (order, 1)).column(0).into_owned(),
+    )
 }
 
 impl State {

@@ -82,9 +82,9 @@ impl Drifting {
         self.ratios.len()
     }
 
-    /// The series from departure on, if they are there.
-    pub fn fresh(&self) -> Option<&Self> {
-        (self.begins == 0.0 && !self.raw).then_some(self)
+    /// Whether the series are those from departure on.
+    pub fn is_fresh(&self) -> bool {
+        self.begins == 0.0 && !self.raw
     }
 
     /// The same motion, back at its departure.

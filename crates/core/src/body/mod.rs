@@ -48,7 +48,7 @@ pub use segment::Segment;
 pub use series::{Ratio, Springs};
 pub use spatial::Spatial;
 pub use weights::Weights;
-pub use wheeled::{Coupling, Unfolding};
+pub use wheeled::{Constant, Coupling, Lent, Unfolding};
 
 /// The kinds of body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

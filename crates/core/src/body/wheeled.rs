@@ -50,9 +50,41 @@ struct Poles {
     levels: Vec<Level>,
 }
 
+/// A motion that someone else computes, before its first departure.
+#[derive(Clone, Debug)]
+pub enum Lent {
+    /// Of drifting frequencies.
+    Drifting(Box<Drifting>),
+    /// Of constant ones.
+    Constant(Box<Constant>),
+}
+
+impl Lent {
+    /// The angles of all coordinates at departure, and then their rates.
+    pub fn start(&self) -> Vec<f64> {
+        match self {
+            Self::Drifting(drifting) => drifting.start().to_vec(),
+            Self::Constant(constant) => {
+                let of = |first: usize| constant.from.iter().skip(first).step_by(2);
+                of(0).chain(of(1)).copied().collect()
+            }
+        }
+    }
+
+    /// The motion of drifting frequencies.
+    pub fn drifting(&self) -> Option<&Drifting> {
+        if let Self::Drifting(drifting) = self { Some(drifting) } else { None }
+    }
+
+    /// The motion of constant frequencies.
+    pub fn constant(&self) -> Option<&Constant> {
+        if let Self::Constant(constant) = self { Some(constant) } else { None }
+    }
+}
+
 /// A motion at constant frequencies, from transition to transition.
 #[derive(Clone, Debug)]
-struct Constant {
+pub struct Constant {
     system: Coupled,
     /// The acceleration of the angle is this times z, and so much for each unit of the moment.
     acceleration: (RowDVector<f64>, f64),
@@ -133,9 +165,14 @@ impl Coupling {
         }
     }
 
-    /// The motion of drifting modes, and what a unit of torque accelerates (1/(kg m²)).
-    pub fn drifting(&self) -> Option<(&Drifting, f64)> {
-        if let Flow::Drifting(drifting) = &self.flow { Some((drifting, self.mobility)) } else { None }
+    /// The motion, for someone else to compute, and what a unit of torque accelerates (1/(kg m²)); none of one by its poles.
+    pub fn lent(&self) -> Option<(Lent, f64)> {
+        let lent = match &self.flow {
+            Flow::Drifting(drifting) => Lent::Drifting(Box::new(drifting.clone())),
+            Flow::Constant(constant) => Lent::Constant(Box::new(constant.clone())),
+            Flow::Linear(_) => return None,
+        };
+        Some((lent, self.mobility))
     }
 
     /// Takes some steps towards `h` seconds after departure; whether no more are needed.
@@ -195,8 +232,8 @@ impl Coupling {
 pub enum Unfolding<'a> {
     /// At constant frequencies.
     Linear(stretch::Linear),
-    /// With drifting ones: as it is known from its departure on, and on its way beyond.
-    Drifting(Option<&'a Drifting>, &'a Drifting, Option<Box<Drifting>>),
+    /// With drifting ones: as it is known, and on its way beyond.
+    Drifting(&'a Drifting, Option<Box<Drifting>>),
 }
 
 impl Coupling {
@@ -217,7 +254,7 @@ impl Coupling {
                 let fastest = poles.flow.poles().into_iter().map(abs).fold(0.0, f64::max);
                 Unfolding::Linear(stretch::Linear::new(&poles.system.system, push, &poles.from, fastest))
             }
-            Flow::Drifting(drifting) => Unfolding::Drifting(drifting.fresh(), drifting, None),
+            Flow::Drifting(drifting) => Unfolding::Drifting(drifting, None),
         }
     }
 }
@@ -235,8 +272,10 @@ impl Unfolding<'_> {
                 }
                 reach
             }
-            Self::Drifting(Some(known), ..) if h == 0.0 => known.tell(span, &mut into.coordinates),
-            Self::Drifting(_, motion, again) => {
+            Self::Drifting(motion, _) if h == 0.0 && motion.is_fresh() => {
+                motion.tell(span, &mut into.coordinates)
+            }
+            Self::Drifting(motion, again) => {
                 let again = again.get_or_insert_with(|| Box::new(motion.from_departure()));
                 again.unfold(h);
                 again.tell(span - h, &mut into.coordinates)
@@ -246,6 +285,16 @@ impl Unfolding<'_> {
 }
 
 impl Constant {
+    /// Its matrices.
+    pub fn system(&self) -> &Coupled {
+        &self.system
+    }
+
+    /// No part of the motion changes faster (rad/s).
+    pub fn fastest(&self) -> f64 {
+        self.fastest
+    }
+
     /// Moves by the transition over `h` seconds.
     fn go(&mut self, h: f64, here: &mut DVector<f64>) -> Sensed {
         let kept = self.transitions.iter().position(|(span, ..)| *span == h);

@@ -164,6 +164,17 @@ pub trait Estimate: fmt::Debug + Send + Sync {
         None
     }
 
+    /// The filter of a body with one angle, and the mean reduced moment (rad/s²) since its last sample, if now is one; none before
+    /// the first.
+    fn filter(&mut self, _now: Instant) -> Option<(&mut kalman::Filter, Option<f64>)> {
+        None
+    }
+
+    /// The true state of that filter's components.
+    fn true_state(&self, _now: Instant, _truth: &State) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// A copy in the same state.
     fn copy(&self) -> Box<dyn Estimate>;
 }

@@ -85,6 +85,22 @@ impl Estimate for AtSamples {
         self.0[axis].row(now.seconds(), truth)
     }
 
+    fn filter(&mut self, now: Instant) -> Option<(&mut Filter, Option<f64>)> {
+        let [track] = &mut self.0[..] else { return None };
+        let impulse = track.impulse + track.moment * now.since(track.since).seconds();
+        let Eye::Filter(filter) = &mut track.eye else { return None };
+        Some((filter, track.sampled.map(|sampled| impulse / now.since(sampled).seconds())))
+    }
+
+    fn true_state(&self, now: Instant, truth: &State) -> Vec<f64> {
+        let track = &self.0[0];
+        if let Eye::Filter(filter) = &track.eye {
+            track.truth(now.seconds(), truth, filter)
+        } else {
+            Vec::new()
+        }
+    }
+
     fn copy(&self) -> Box<dyn Estimate> {
         Box::new(self.clone())
     }
@@ -163,10 +179,12 @@ impl Track {
                 }
             }
             Eye::Filter(filter) => {
-                if let Some(period) = period {
-                    filter.predict(impulse / period);
-                }
-                self.told = filter.update(taken.measured.map(|measured| measured[axis].into()));
+                self.told = filter.told_beside().unwrap_or_else(|| {
+                    if let Some(period) = period {
+                        filter.predict(impulse / period);
+                    }
+                    filter.update(taken.measured.map(|measured| measured[axis].into()))
+                });
                 belief.dominant = filter.dominant();
                 let mean = filter.mean();
                 match self.feeds {
@@ -185,7 +203,13 @@ impl Track {
 
     /// What an ideal observer knows.
     fn ideal(&self, t: f64, state: &State) -> Dominant {
-        let ratio = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+        let all = match &self.drift {
+            None => Some(1.0),
+            Some(Drift::Common(profile)) => Some(profile.ratio(t)),
+            Some(Drift::Each(_)) => None,
+        };
+        let own = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+        let ratio = |mode: usize| all.unwrap_or_else(|| own(mode));
         let value = |mode: usize| self.excitability[mode] / (ratio(mode) * ratio(mode));
         let modes = 1..self.frequencies.len();
         let mode = modes.fold(0, |best, mode| if value(mode) > value(best) { mode } else { best });
@@ -196,10 +220,8 @@ impl Track {
         }
     }
 
-    /// What is logged of a filter.
-    fn row(&self, t: f64, state: &State) -> Option<record::Estimate> {
-        let Eye::Filter(filter) = &self.eye else { return None };
-        let told = self.told;
+    /// The true state of a filter's components.
+    fn truth(&self, t: f64, state: &State, filter: &Filter) -> Vec<f64> {
         let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
         let ratio = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         let slope = |mode: usize| self.drift.as_ref().map_or(0.0, |drift| drift.slope(mode, t));
@@ -212,6 +234,17 @@ impl Track {
             let own = self.frequencies[of] * mean[at] / model.frequency(of, mean.as_slice());
             truth.extend([own * ratio(of), own * slope(of)]);
         }
+        truth
+    }
+
+    /// What is logged of a filter.
+    fn row(&self, t: f64, state: &State) -> Option<record::Estimate> {
+        let Eye::Filter(filter) = &self.eye else { return None };
+        let told = self.told;
+        let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
+        let true_ratio = self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+        // Beside others its covariance is not here, and nothing but the metrics looks.
+        let lent = filter.is_lent();
         let known = model.ratio_of(mode);
         let value = |offset: usize| known.map_or(1.0 - offset as f64, |at| mean[at + offset]);
         let sd = |offset: usize| {
@@ -231,17 +264,17 @@ impl Track {
             dominant: mode as u64,
             frequency_rad_s: filter.dominant().frequency,
             frequency_sd_rad_s: filter.frequency(mode).1,
-            true_frequency_rad_s: self.frequencies[mode] * ratio(mode),
+            true_frequency_rad_s: self.frequencies[mode] * true_ratio,
             displacement_rad: filter.dominant().displacement,
             ratio: value(0),
             ratio_sd: sd(0),
             ratio_rate_1_s: value(1),
             ratio_rate_sd_1_s: sd(1),
-            modes: modes.collect(),
+            modes: if lent { Vec::new() } else { modes.collect() },
             innovation_rad: told.innovation,
             nis: told.nis.unwrap_or(0.0),
             measured: told.nis.is_some().into(),
-            nees: filter.nees(&truth),
+            nees: if lent { filter.nees_beside() } else { filter.nees(&self.truth(t, state, filter)) },
             gated: filter.is_gated().into(),
             lock: (!filter.is_lost()).into(),
         })

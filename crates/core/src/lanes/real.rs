@@ -25,12 +25,14 @@ pub trait Real:
     const LANES: usize;
 
     /// The same number in every lane; `self` only says of which kind.
+    #[must_use]
     fn of(self, value: f64) -> Self;
 
     /// Numbers from the beginning of a slice, one for each lane; `self` only says of which kind.
     ///
     /// # Panics
     /// If the slice is shorter than the lanes.
+    #[must_use]
     fn load(self, from: &[f64]) -> Self;
 
     /// Writes the lanes to the beginning of a slice.

@@ -60,9 +60,14 @@ impl Filter {
         }
     }
 
-    fn judge(&mut self, t: f64, estimate: &Estimate) {
+    /// Whether estimates at a time are judged (s).
+    pub fn assesses(&self, t: f64) -> bool {
         let [from, to] = self.assess;
-        if t < from || t > to {
+        from <= t && t <= to
+    }
+
+    fn judge(&mut self, t: f64, estimate: &Estimate) {
+        if !self.assesses(t) {
             return;
         }
         let error = (estimate.frequency_rad_s - estimate.true_frequency_rad_s).abs();

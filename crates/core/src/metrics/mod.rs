@@ -231,6 +231,11 @@ impl Gather {
         }
     }
 
+    /// Whether a filter's estimates at a time are judged (s).
+    pub fn assesses(&self, t: f64) -> bool {
+        self.filter.as_ref().is_some_and(|filter| filter.assesses(t))
+    }
+
     /// The metrics of the run that has ended.
     pub fn finish(self, scenario: &Scenario) -> Metrics {
         let mut metrics = match self.kind {

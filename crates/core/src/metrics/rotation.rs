@@ -84,17 +84,20 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
     let Ok((sampled, law)) = Loop::of(scenario) else { return f64::NAN };
     let end = scenario.duration.seconds();
     let modes = 0..sampled.body.modes.len();
-    let at = |t: f64| {
+    let ratios = |t: f64| {
         let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
-        let ratios: Vec<f64> = modes.clone().map(ratio).collect();
-        let gain = law.extra_gain(sampled.frequency() * ratios[sampled.dominant]);
-        Held::new(&sampled, &ratios).closed(gain).spectral_radius()
+        modes.clone().map(ratio).collect()
     };
     let drifting = scenario.drift.iter().flat_map(|drift| {
         let even = (0..DRIFTING).map(|index| end * f64::from(index) / f64::from(DRIFTING));
         drift.kinks().into_iter().filter(move |kink| *kink < end).chain(even)
     });
-    drifting.chain([end]).map(at).fold(f64::NAN, f64::max)
+    let all: Vec<Vec<f64>> = drifting.chain([end]).map(ratios).collect();
+    let of = |(held, ratios): (Held<'_>, &Vec<f64>)| {
+        let gain = law.extra_gain(sampled.frequency() * ratios[sampled.dominant]);
+        held.closed(gain).spectral_radius()
+    };
+    Held::several(&sampled, &all).into_iter().zip(&all).map(of).fold(f64::NAN, f64::max)
 }
 
 impl Rotation {

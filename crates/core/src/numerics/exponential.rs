@@ -2,17 +2,12 @@
 
 use nalgebra::DMatrix;
 
+use crate::lanes::{Processor, Real, Work};
+
 /// exp(M), by scaling, Taylor's series and squaring. Every sum has a fixed order: the same bits on every machine.
 pub fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let order = matrix.nrows();
-    let norm = matrix.row_iter().map(|row| row.iter().map(|m| m.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let mut squarings = 0;
-    let mut scale = 1.0;
-    // What is not finite stays so, and needs no scaling.
-    while norm * scale > 0.5 && squarings < 60 {
-        squarings += 1;
-        scale *= 0.5;
-    }
+    let (squarings, scale) = scaling(matrix);
     let small = matrix * scale;
     let mut term = DMatrix::identity(order, order);
     let mut sum = term.clone();
@@ -25,4 +20,118 @@ pub fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
         sum = &sum * &sum;
     }
     sum
+}
+/// How often the exponential of a part is squared, and the part.
+fn scaling(matrix: &DMatrix<f64>) -> (u32, f64) {
+    let norm = matrix.row_iter().map(|row| row.iter().map(|m| m.abs()).sum::<f64>()).fold(0.0, f64::max);
+    let mut squarings = 0;
+    let mut scale = 1.0;
+    // What is not finite stays so, and needs no scaling.
+    while norm * scale > 0.5 && squarings < 60 {
+        squarings += 1;
+        scale *= 0.5;
+    }
+    (squarings, scale)
+}
+
+/// The exponentials of matrices of one order: each to the bit as alone, side by side where the processor can.
+pub fn exponentials(matrices: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
+    let Some(processor) = Processor::best().filter(|_| matrices.len() > 1) else {
+        return matrices.iter().map(exponential).collect();
+    };
+    let some = |some: &[DMatrix<f64>]| processor.run::<1, _>(Several(some));
+    matrices.chunks(processor.lanes(1)).flat_map(some).collect()
+}
+
+/// As many matrices as there are lanes, or fewer.
+struct Several<'a>(&'a [DMatrix<f64>]);
+
+impl Work for Several<'_> {
+    type Output = Vec<DMatrix<f64>>;
+
+    #[inline(always)]
+    fn run<R: Real>(self, kind: R) -> Vec<DMatrix<f64>> {
+        let Self(matrices) = self;
+        let order = matrices[0].nrows();
+        let (mut each, mut squarings) = ([0.0; 16], [0; 16]);
+        let mut scales = [0.0; 16];
+        for (lane, matrix) in matrices.iter().enumerate() {
+            (squarings[lane], scales[lane]) = scaling(matrix);
+        }
+        let scale = kind.load(&scales);
+        let zero = kind.of(0.0);
+        let mut small = vec![zero; order * order];
+        for (at, entry) in small.iter_mut().enumerate() {
+            for (lane, matrix) in matrices.iter().enumerate() {
+                each[lane] = matrix.as_slice()[at];
+            }
+            *entry = kind.load(&each) * scale;
+        }
+        let mut term = vec![zero; order * order];
+        for at in 0..order {
+            term[at * order + at] = kind.of(1.0);
+        }
+        let mut sum = term.clone();
+        let mut room = term.clone();
+        for n in 1..=15 {
+            multiply(&term, &small, order, &mut room);
+            let divisor = kind.of(f64::from(n));
+            for at in 0..order * order {
+                term[at] = room[at] / divisor;
+                sum[at] = sum[at] + term[at];
+            }
+        }
+        for done in 0..squarings.into_iter().max().unwrap_or(0) {
+            for lane in 0..R::LANES {
+                each[lane] = f64::from(u8::from(done < squarings[lane]));
+            }
+            let goes_on = zero.lt(kind.load(&each));
+            multiply(&sum, &sum, order, &mut room);
+            for at in 0..order * order {
+                sum[at] = R::select(goes_on, room[at], sum[at]);
+            }
+        }
+        let mut found = vec![DMatrix::zeros(order, order); matrices.len()];
+        for (at, entry) in sum.iter().enumerate() {
+            entry.store(&mut each);
+            for (lane, matrix) in found.iter_mut().enumerate() {
+                matrix.as_mut_slice()[at] = each[lane];
+            }
+        }
+        found
+    }
+}
+
+/// The product of matrices, each sum in the order of nalgebra's.
+#[inline(always)]
+fn multiply<R: Real>(a: &[R], b: &[R], order: usize, into: &mut [R]) {
+    for column in 0..order {
+        for row in 0..order {
+            let mut sum = a[row] * b[column * order];
+            for k in 1..order {
+                sum = a[k * order + row] * b[column * order + k] + sum;
+            }
+            into[column * order + row] = sum;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn side_by_side_each_is_as_alone() {
+        for (count, order) in [(1, 3), (2, 11), (9, 11), (21, 10)] {
+            let entry = |matrix: usize, i: usize, j: usize| {
+                let seed = (matrix * 131 + i * 17 + j * 7) as f64;
+                libm::sin(seed) * libm::pow(10.0, libm::cos(3.0 * matrix as f64))
+            };
+            let all: Vec<_> =
+                (0..count).map(|matrix| DMatrix::from_fn(order, order, |i, j| entry(matrix, i, j))).collect();
+            for (matrix, found) in all.iter().zip(exponentials(&all)) {
+                assert_eq!(found, exponential(matrix), "{count} of order {order}");
+            }
+        }
+    }
 }

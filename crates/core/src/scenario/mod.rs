@@ -150,19 +150,24 @@ impl Scenario {
 
     /// Reads a scenario from a document.
     pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
-        Self::solved(document, None)
+        Self::solved(document, None, true)
     }
 
     /// Reads a scenario from a document that differs from another scenario in some keys. If the body is not among them,
     /// its modes are taken over.
     pub fn from_document_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
-        Self::solved(document, Some(parent))
+        Self::solved(document, Some(parent), true)
     }
 
-    fn solved(document: &Document, parent: Option<&Self>) -> Result<Self, ScenarioError> {
+    /// The same of a document that differs in the values of numbers alone: every key of it is known.
+    pub(crate) fn from_numbers_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
+        Self::solved(document, Some(parent), false)
+    }
+
+    fn solved(document: &Document, parent: Option<&Self>, new_keys: bool) -> Result<Self, ScenarioError> {
         let document = &*document.in_si(units)?;
         let mut scenario: Self = document.read()?;
-        if let Some(error) = document.unread(&scenario.to_table()) {
+        if let Some(error) = new_keys.then(|| document.unread(&scenario.to_table())).flatten() {
             return Err(error);
         }
         if let Some(parent) = parent {

@@ -2,16 +2,18 @@
 
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
-use crate::body::Drifting;
+use crate::body::Lent;
+use crate::estimator::kalman::Filter;
 use crate::record::Record;
+use crate::sensor::Truth;
 use crate::time::Instant;
 
 impl Simulation {
-    /// Lends the motion of its body: none but that of drifting modes under what is constant from event to event, where no guard
-    /// or window looks between events.
-    pub(crate) fn lend(&mut self) -> Option<Drifting> {
+    /// Lends the motion of its body before the run begins: none but that of coupled or drifting modes. It is for laws without
+    /// guards, and nothing may look between events.
+    pub(crate) fn lend(&mut self) -> Option<Lent> {
         let Plant::Planar(plant) = &mut self.plant else { return None };
-        if self.sensing.next.is_none() || self.monitor.is_some() { None } else { plant.lend() }
+        if self.monitor.is_some() { None } else { plant.lend() }
     }
 
     /// Begins the run.
@@ -43,6 +45,44 @@ impl Simulation {
             self.now = now;
             self.decisions = 0;
         }
+    }
+
+    /// Measures what there is.
+    pub(super) fn measure(&mut self, truth: &Truth) -> bool {
+        self.turn_to_target(self.now);
+        let plant = &self.plant;
+        self.sensing.read(self.now, |sensor| plant.at_sensor(sensor, truth), &self.origin)
+    }
+
+    /// Where it is in time.
+    pub(crate) fn now(&self) -> Instant {
+        self.now
+    }
+
+    /// Whether a sample is due where the body is.
+    pub(crate) fn samples(&self) -> bool {
+        self.sensing.next == Some(self.now)
+    }
+
+    /// Takes the angle of a sample ahead of what is done with it (rad); none of a silent sensor.
+    ///
+    /// # Errors
+    /// As a run.
+    pub(crate) fn read_ahead(&mut self) -> Result<Option<f64>, SimulationError> {
+        let truth = self.plant.view(self.now)?;
+        let measured = self.measure(&truth);
+        self.read = Some(measured);
+        Ok(measured.then(|| self.sensing.measured[0][0]))
+    }
+
+    /// The filter, and the mean reduced moment since its last sample (rad/s²).
+    pub(crate) fn filter(&mut self) -> Option<(&mut Filter, Option<f64>)> {
+        self.estimator.filter(self.now)
+    }
+
+    /// The true state of the filter's components.
+    pub(crate) fn true_state(&self) -> Vec<f64> {
+        self.estimator.true_state(self.now, &self.plant.about(0, &self.origin))
     }
 
     /// Does what is due where the body is.

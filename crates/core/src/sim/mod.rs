@@ -102,6 +102,8 @@ pub struct Simulation {
     met: bool,
     slips: (u32, Instant),
     telling: Telling,
+    /// Whether anything was measured now, if that was read ahead.
+    read: Option<bool>,
 }
 
 impl Simulation {
@@ -129,6 +131,7 @@ impl Simulation {
             decisions: 0,
             met: false,
             slips: (0, Instant::START),
+            read: None,
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -227,7 +230,7 @@ impl Simulation {
         if let Some((_, guard)) = self.trip.filter(|(at, _)| *at == now) {
             event = Event::Guard(guard);
         }
-        if self.sensing.next == Some(now) {
+        if self.sensing.next == Some(now) || self.read.is_some() {
             let truth = self.plant.view(now)?;
             self.sense(&truth, record)?;
             event = Event::Due { sampled: true };
@@ -257,9 +260,7 @@ impl Simulation {
     /// Takes a sample, which the estimator makes a belief of.
     fn sense(&mut self, truth: &Truth, record: &mut impl Record) -> Result<(), SimulationError> {
         let now = self.now;
-        self.turn_to_target(now);
-        let plant = &self.plant;
-        let measured = self.sensing.read(now, |sensor| plant.at_sensor(sensor, truth), &self.origin);
+        let measured = self.read.take().unwrap_or_else(|| self.measure(truth));
         if self.sensing.next.is_some() {
             let (from, to) = (self.given.seconds(), now.seconds());
             self.estimator.pushed(self.drive.actuator.waveform_impulse(from, to));

@@ -17,22 +17,58 @@ pub struct Held<'a> {
     late: usize,
 }
 
+impl Loop {
+    /// Whole periods of the delay, and the part of a period beyond them (s).
+    fn lateness(&self) -> (f64, f64) {
+        let periods = self.delay / self.period;
+        // A delay of whole periods is one, whatever its last bits.
+        let late = libm::floor(periods + 1e-9);
+        (late, (periods - late).max(0.0) * self.period)
+    }
+
+    /// The spans over which its body's motion is needed (s): a period and, where a delay parts it, its parts.
+    fn spans(&self) -> Vec<f64> {
+        let (_, part) = self.lateness();
+        if part > 1e-9 * self.period {
+            vec![self.period, self.period - part, part]
+        } else {
+            vec![self.period]
+        }
+    }
+}
+
 impl<'a> Held<'a> {
     /// A loop at its own frequencies times these ratios.
     pub fn new(of: &'a Loop, ratios: &[f64]) -> Self {
         let coupled = Coupled::new(&of.body, of.back_emf, of.total, ratios);
-        let (transition, mut whole) = coupled.discrete(of.period);
+        Self::from(of, of.spans().into_iter().map(|span| coupled.discrete(span)).collect())
+    }
+
+    /// The same at several sets of ratios.
+    pub fn several(of: &'a Loop, ratios: &[Vec<f64>]) -> Vec<Self> {
+        let system = |ratios: &Vec<f64>| Coupled::new(&of.body, of.back_emf, of.total, ratios);
+        let systems: Vec<_> = ratios.iter().map(system).collect();
+        let spans = of.spans();
+        let all: Vec<_> =
+            systems.iter().flat_map(|system| spans.iter().map(move |span| (system, *span))).collect();
+        let found = Coupled::several(&all);
+        found.chunks(spans.len()).map(|found| Self::from(of, found.to_vec())).collect()
+    }
+
+    /// By the transitions over the spans of a loop.
+    fn from(of: &'a Loop, found: Vec<(DMatrix<f64>, DVector<f64>)>) -> Self {
+        let (late, _) = of.lateness();
+        let mut found = found.into_iter();
+        // The first is always there.
+        let (transition, mut whole) =
+            found.next().unwrap_or_else(|| (DMatrix::zeros(0, 0), DVector::zeros(0)));
         whole *= of.authority;
-        let periods = of.delay / of.period;
-        // A delay of whole periods is one, whatever its last bits.
-        let late = libm::floor(periods + 1e-9);
-        let part = (periods - late).max(0.0) * of.period;
-        let forced = if part > 1e-9 * of.period {
-            let (rest, new) = coupled.discrete(of.period - part);
-            let old = rest * coupled.discrete(part).1;
-            vec![new * of.authority, old * of.authority]
-        } else {
-            vec![whole]
+        let forced = match (found.next(), found.next()) {
+            (Some((rest, new)), Some((_, added))) => {
+                let old = rest * added;
+                vec![new * of.authority, old * of.authority]
+            }
+            _ => vec![whole],
         };
         Self { of, transition, forced, late: late as usize }
     }

@@ -1,11 +1,16 @@
 //! The filters at work: a normal distribution that is predicted over each period and updated by each sample.
 
+mod beside;
+mod lent;
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::lock::Lock;
 use super::model::Model;
 use super::{Ranking, sigma};
 use crate::belief::Dominant;
+
+pub use beside::Filters;
 
 /// An innovation of more standard deviations than this is no measurement.
 const FARTHEST: f64 = 1e6;
@@ -70,6 +75,8 @@ pub struct Filter {
     /// For how long (s).
     gated_for: f64,
     trusted: Dominant,
+    /// What a step beside other filters came to, whose covariance is kept there.
+    beside: lent::Step,
 }
 
 /// What a sample told the filter.
@@ -99,6 +106,7 @@ impl Filter {
             gated: false,
             gated_for: 0.0,
             trusted: Dominant::default(),
+            beside: lent::Step::default(),
             tuning,
         };
         let input = DVector::from_fn(order, |i, _| filter.tuning.model.input(i));
@@ -210,12 +218,17 @@ impl Filter {
             self.restore();
             nis = None;
         }
-        self.rest(gated);
+        self.settle(gated, innovation, nis).0
+    }
+
+    /// What follows from a measurement; tells whether the ratios are taken to stand still from now on.
+    fn settle(&mut self, gated: bool, innovation: f64, nis: Option<f64>) -> (Innovation, bool) {
+        let rests = self.rest(gated);
         self.lock.take(nis.map(|nis| (nis, innovation)));
         self.hold_ratios();
         self.choose_mode();
         self.trust();
-        Innovation { innovation: if nis.is_some() { innovation } else { 0.0 }, nis }
+        (Innovation { innovation: if nis.is_some() { innovation } else { 0.0 }, nis }, rests)
     }
 
     fn keep(&mut self) {
@@ -279,18 +292,20 @@ impl Filter {
 
     /// Whether the dominant mode is too still from this sample on. After a whole period of it the ratios are taken to stand
     /// still, too: nothing shows how far their rates would carry them. That they may move stays in the covariance.
-    fn rest(&mut self, gated: bool) {
+    fn rest(&mut self, gated: bool) -> bool {
         self.gated = gated;
         let before = self.gated_for;
         self.gated_for = if gated { before + self.tuning.period } else { 0.0 };
         let model = &self.tuning.model;
         let whole = std::f64::consts::TAU / model.frequency(self.mode, self.mean.as_slice());
-        if before < whole && self.gated_for >= whole {
+        let rests = before < whole && self.gated_for >= whole;
+        if rests {
             for rate in (model.motion() + 1..model.order()).step_by(2) {
                 self.covariance[(rate, rate)] += self.mean[rate] * self.mean[rate];
                 self.mean[rate] = 0.0;
             }
         }
+        rests
     }
 
     /// Keeps the ratios within their bounds: one that reaches them has lost the body.

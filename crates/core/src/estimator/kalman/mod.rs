@@ -19,7 +19,7 @@ use crate::body::{Coupled, Mode, Planar};
 use crate::quantity::{NonNegative, Positive};
 use crate::random::Stream;
 
-pub use filter::{Filter, Innovation, Prediction, Tuning};
+pub use filter::{Filter, Filters, Innovation, Prediction, Tuning};
 pub use model::Model;
 
 /// A linear Kalman filter as a scenario describes it: natural frequencies that are known and constant.

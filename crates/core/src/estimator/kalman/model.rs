@@ -11,22 +11,22 @@ use crate::body::{Flow, Mode};
 /// The model.
 #[derive(Clone, Debug)]
 pub struct Model {
-    modes: Vec<ModeModel>,
+    pub(super) modes: Vec<ModeModel>,
     /// How many ratios the state has: none, one for all modes, or one for each.
     ratios: usize,
     /// Back-EMF a (1/s), and whether it opposes the total rate or the rigid one.
-    back_emf: (f64, bool),
-    substeps: u32,
+    pub(super) back_emf: (f64, bool),
+    pub(super) substeps: u32,
     /// The ratios stay within.
-    bounds: [f64; 2],
+    pub(super) bounds: [f64; 2],
 }
 
 #[derive(Clone, Debug)]
-struct ModeModel {
-    flow: Flow,
-    frequency: f64,
-    gain: f64,
-    drag: f64,
+pub(super) struct ModeModel {
+    pub(super) flow: Flow,
+    pub(super) frequency: f64,
+    pub(super) gain: f64,
+    pub(super) drag: f64,
 }
 
 /// One mode's free flow over a substep: x+ = a x + b x' + push, x'+ = c x + d x' + kick.
@@ -157,12 +157,21 @@ impl Model {
         }
     }
 
+    /// The rates of so many modes are opposed by the back-EMF.
+    pub(super) fn felt(&self) -> usize {
+        if self.back_emf.1 { self.modes.len() } else { 0 }
+    }
+
+    /// What part of the rate back-EMF takes from the rigid one in `h` seconds.
+    pub(super) fn taken(&self, h: f64) -> f64 {
+        let a = self.back_emf.0;
+        let s = 1.0 + self.modes[..self.felt()].iter().map(|swing| swing.gain).sum::<f64>();
+        if s == 0.0 { a * h } else { -libm::expm1(-a * h * s) / s }
+    }
+
     /// Back-EMF alone: z' = -a g c z, a matrix of rank one, whose exponential is z - g (1 - exp(-a s h))/s c z with s = c g.
     fn brake(&self, h: f64, state: &mut [f64], tangent: Option<&mut DMatrix<f64>>) {
-        let (a, total) = self.back_emf;
-        let felt = if total { self.modes.len() } else { 0 };
-        let s = 1.0 + self.modes[..felt].iter().map(|swing| swing.gain).sum::<f64>();
-        let part = if s == 0.0 { a * h } else { -libm::expm1(-a * h * s) / s };
+        let (felt, part) = (self.felt(), self.taken(h));
         let rate = (0..=felt).map(|i| state[1 + 2 * i]).sum::<f64>();
         state[1] -= part * rate;
         for (index, swing) in self.modes.iter().enumerate() {

@@ -76,21 +76,25 @@ impl<R: Real> Courses<R> {
         self.error = peak(&error, self.error, counts);
         let [plain, weighted] = error.integrals();
         let mut area = (length * (from * plain + length * weighted)).abs();
-        let ((low, high), middle) = (error.bounds(), error.at(0.5));
+        let of = [error.bounds().0, error.bounds().1, error.at(0.5), angle[0], from, length];
+        let mut all = [[0.0; 16]; 6];
+        for index in 0..6 {
+            of[index].store(&mut all[index]);
+        }
         for lane in 0..R::LANES {
             if !passed.counts[lane] {
                 continue;
             }
             let Some(run) = runs[lane].rotation() else { continue };
-            let (begins, lasts) = (from.lane(lane), length.lane(lane));
-            let (low, high) = (low.lane(lane), high.lane(lane));
+            let [low, high, middle, start, begins, lasts] =
+                [all[0][lane], all[1][lane], all[2][lane], all[3][lane], all[4][lane], all[5][lane]];
             if low < 0.0 && high > 0.0 {
                 area = area.with_lane(lane, integral(&error.lane(lane), begins, lasts));
             }
-            let verdict = run.judge(angle[0].lane(lane));
+            let verdict = run.judge(start);
             let band = verdict.band();
             if low > band || high < -band {
-                if middle.lane(lane).abs() > band {
+                if middle.abs() > band {
                     verdict.outside(begins + lasts * 0.0, begins + lasts * 1.0);
                 }
             } else if !(low >= -band && high <= band) {

@@ -4,12 +4,12 @@ use crate::time::Instant;
 
 /// The motion as its body knows it.
 #[derive(Clone, Debug)]
-pub struct Lent {
+pub struct Elsewhere {
     mobility: f64,
     departed: Option<(Instant, f64)>,
 }
 
-impl Lent {
+impl Elsewhere {
     /// That of a body that a unit of torque accelerates so (1/(kg m²)).
     pub fn new(mobility: f64) -> Self {
         Self { mobility, departed: None }

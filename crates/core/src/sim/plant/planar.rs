@@ -1,7 +1,7 @@
 //! A body with one angle on its way: its motion since the last event, and what is seen of it now.
 
-use super::lent::Lent;
-use crate::body::{Coupling, Drifting, Flight, Flown, Input, Output, Segment, Unfolding, Wrench};
+use super::lent::Elsewhere;
+use crate::body::{Coupling, Flight, Flown, Input, Lent, Output, Segment, Unfolding, Wrench};
 use crate::guard::Guard;
 use crate::motion::crossing::locate;
 use crate::motion::{Expansion, Sensed, State, Stretch};
@@ -35,7 +35,7 @@ enum Motion {
     /// Of coupled or drifting modes.
     Coupled(Box<Coupling>),
     /// Of drifting modes, computed elsewhere.
-    Lent(Lent),
+    Lent(Elsewhere),
 }
 
 /// The torques of one motion, as metrics take them.
@@ -144,12 +144,11 @@ impl PlanarPlant {
                 && locate(arc, &guards, span, &mut self.state.clone(), || record.poll())?.is_none())
     }
 
-    /// Lets someone else compute the motion from now on; none but that of drifting modes.
-    pub fn lend(&mut self) -> Option<Drifting> {
+    /// Lets someone else compute the motion from now on; none but that of coupled or drifting modes between departures.
+    pub fn lend(&mut self) -> Option<Lent> {
         let Motion::Coupled(coupling) = &self.motion else { return None };
-        let (motion, mobility) = coupling.drifting()?;
-        let motion = motion.clone();
-        self.motion = Motion::Lent(Lent::new(mobility));
+        let (motion, mobility) = coupling.lent()?;
+        self.motion = Motion::Lent(Elsewhere::new(mobility));
         Some(motion)
     }
 

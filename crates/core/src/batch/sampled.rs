@@ -1,17 +1,22 @@
-//! Sampled loops about a body with drifting frequencies: each run senses, estimates and decides on its own, and the motions
-//! between their events, which are most of the work, are computed side by side.
+//! Sampled loops about a body with a wheel, or with drifting frequencies: each run senses, estimates and decides on its own, and
+//! the motions between their events, which are most of the work, are computed side by side.
 //!
 //! The runs share no clock: in each round every run goes to its own next event, whatever it is.
 
+mod filters;
+mod motions;
+
 use super::{Batch, Job};
-use crate::body::{Drifting, Ratio, SERIES, Springs};
-use crate::estimator::Estimator;
+use crate::actuator::Actuator;
+use crate::body::Lent;
 use crate::lanes::{Mask, Processor, Real, Work};
 use crate::law::Law;
 use crate::metrics::{Courses, Gather, Metrics, Passed};
 use crate::scenario::Scenario;
 use crate::sim::{Exerted, Simulation};
 use crate::time::Instant;
+
+use motions::Motions;
 
 /// The batch.
 pub struct Side;
@@ -22,11 +27,10 @@ impl Batch for Side {
     }
 
     fn takes(&self, scenario: &Scenario) -> bool {
-        scenario.drift.is_some()
+        (scenario.drift.is_some() || matches!(scenario.actuator, Actuator::Wheel(_)))
             && matches!(scenario.law, Law::Pd(_))
             && scenario.plan.is_none()
             && scenario.model.outputs.is_empty()
-            && scenario.estimator.as_ref().is_none_or(|estimator| !matches!(estimator, Estimator::Own(_)))
     }
 
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
@@ -35,7 +39,13 @@ impl Batch for Side {
             let Some(run) = Run::new(job) else { return vec![None; jobs.len()] };
             runs.push(run);
         }
-        let mut gathers: Vec<Gather> = jobs.iter().map(|job| Gather::new(job.scenario)).collect();
+        let mut gathers: Vec<Gather> = Vec::with_capacity(jobs.len());
+        for job in jobs {
+            // What differs in nothing but its noises begins alike.
+            let alike = jobs.iter().zip(&gathers).find(|(other, _)| other.scenario == job.scenario);
+            let gather = alike.map(|(_, gather)| gather.clone());
+            gathers.push(gather.unwrap_or_else(|| Gather::new(job.scenario)));
+        }
         if gathers.iter_mut().any(|gather| gather.rotation().is_none()) {
             return vec![None; jobs.len()];
         }
@@ -49,7 +59,7 @@ impl Batch for Side {
 /// A run among others.
 struct Run {
     simulation: Simulation,
-    motion: Drifting,
+    motion: Lent,
     /// When its motion began, its reduced moment (rad/s²), and its torques.
     departed: Instant,
     moment: f64,
@@ -100,51 +110,39 @@ impl Work for Rounds<'_> {
     #[inline(always)]
     fn run<R: Real>(self, kind: R) {
         let Self { runs, gathers } = self;
-        let springs: Vec<&Springs<f64>> = runs.iter().map(|run| run.motion.springs()).collect();
-        let (Some(springs), ratios) = (Springs::beside(kind, &springs), runs[0].motion.ratios()) else {
-            return;
-        };
-        let count = springs.count();
-        if runs.iter().any(|run| run.motion.ratios() != ratios || run.motion.springs().count() != count) {
-            return;
-        }
-        let zero = kind.of(0.0);
-        let (mut series, mut each) = (vec![zero; SERIES * count], [0.0; 16]);
-        for index in 0..2 * count {
-            for (lane, run) in runs.iter().enumerate() {
-                each[lane] = run.motion.start()[index];
-            }
-            series[index] = kind.load(&each);
-        }
+        let Some(mut motions) = Motions::new(kind, runs) else { return };
+        let (count, zero) = (motions.count, kind.of(0.0));
         for (run, gather) in runs.iter_mut().zip(gathers.iter_mut()) {
             run.begin(gather);
         }
-        let mut alone = vec![vec![Ratio::new(0.0); ratios]; runs.len()];
-        let mut beside = vec![Ratio::new(kind); ratios];
+        if !filters::agree(runs) {
+            return;
+        }
+        let mut filters = filters::of(kind, runs);
         let mut courses = Courses::new(kind);
         // Where the bodies are: angles and rates of all coordinates.
-        let mut here = [vec![zero; count], vec![zero; count]];
+        let mut here = vec![zero; 2 * count];
         let mut rows = vec![[0.0; 16]; 2 * count];
         let mut fresh = true;
         let (mut spans, mut froms, mut counts) = ([0.0; 16], [0.0; 16], [false; 16]);
         while runs.iter().any(|run| run.goes_on) {
             if fresh {
-                fill(&springs, runs, &mut alone, &mut beside, kind, &mut series);
+                motions.fill(runs, kind);
             }
             let mut next = [Instant::START; 16];
             let mut due = [false; 16];
             for (lane, run) in runs.iter().enumerate() {
                 (next[lane], due[lane]) = run.simulation.following();
-                spans[lane] = if run.goes_on { next[lane].since(run.departed).seconds() } else { 0.0 };
+                if run.goes_on {
+                    spans[lane] = next[lane].since(run.departed).seconds();
+                }
             }
             let h = kind.load(&spans);
-            let sure = springs.surely_reach(&series, h);
+            let sure = motions.reach(h);
             let reached = R::select(sure, zero.of(1.0), zero);
-            for index in 0..count {
-                let [angle, rate, _] = springs.at(&series, index, h);
-                (here[0][index], here[1][index]) = (angle, rate);
-                angle.store(&mut rows[2 * index]);
-                rate.store(&mut rows[2 * index + 1]);
+            motions.go(&spans, h, &mut here);
+            for index in 0..2 * count {
+                here[index].store(&mut rows[index]);
             }
             let mut departs = [false; 16];
             let before: [(Instant, Exerted); 16] = {
@@ -155,16 +153,22 @@ impl Work for Rounds<'_> {
                 before
             };
             for (lane, run) in runs.iter_mut().enumerate() {
+                if !sure.all() && reached.lane(lane) == 0.0 {
+                    run.goes_on = false;
+                }
+                if run.goes_on {
+                    let motion = (0..count).map(|index| [rows[index][lane], rows[count + index][lane]]);
+                    run.simulation.bring(next[lane], motion);
+                }
+            }
+            if let Some(filters) = &mut filters {
+                filters::sample(filters, runs, gathers, &due, kind);
+            }
+            for (lane, run) in runs.iter_mut().enumerate() {
                 counts[lane] = false;
                 if !run.goes_on {
                     continue;
                 }
-                if !sure.all() && reached.lane(lane) == 0.0 {
-                    run.goes_on = false;
-                    continue;
-                }
-                let motion = (0..count).map(|index| [rows[2 * index][lane], rows[2 * index + 1][lane]]);
-                run.simulation.bring(next[lane], motion);
                 let gather = &mut gathers[lane];
                 let done = if due[lane] { run.simulation.act(gather) } else { run.simulation.end(gather) };
                 run.is_whole = done.is_ok() && !due[lane];
@@ -185,7 +189,7 @@ impl Work for Rounds<'_> {
                 &Passed {
                     from: kind.load(&froms),
                     length: h,
-                    series: &series,
+                    series: &motions.series,
                     count,
                     constant: load(&|lane| before[lane].1.constant),
                     back_emf: (load(&|lane| before[lane].1.back_emf.0), before[0].1.back_emf.1),
@@ -196,37 +200,16 @@ impl Work for Rounds<'_> {
             // Those that depart do so from where they are.
             fresh = departs.iter().any(|departs| *departs);
             if fresh {
+                let mut flags = [0.0; 16];
                 for (lane, departs) in departs.iter().enumerate() {
-                    each[lane] = f64::from(u8::from(*departs));
+                    flags[lane] = f64::from(u8::from(*departs));
                 }
-                let departs = zero.lt(kind.load(&each));
-                for index in 0..count {
-                    series[index] = R::select(departs, here[0][index], series[index]);
-                    series[count + index] = R::select(departs, here[1][index], series[count + index]);
+                let departs = zero.lt(kind.load(&flags));
+                for index in 0..2 * count {
+                    motions.series[index] = R::select(departs, here[index], motions.series[index]);
                 }
             }
         }
         courses.finish(gathers);
     }
-}
-
-/// Fills the series of all motions from their first two terms.
-#[inline(always)]
-fn fill<R: Real>(
-    springs: &Springs<R>,
-    runs: &[Run],
-    alone: &mut [Vec<Ratio<f64>>],
-    beside: &mut [Ratio<R>],
-    kind: R,
-    series: &mut [R],
-) {
-    let mut moments = [0.0; 16];
-    for (lane, run) in runs.iter().enumerate() {
-        moments[lane] = run.moment;
-        run.motion.expand_ratios(run.departed.seconds(), &mut alone[lane]);
-    }
-    for (index, ratio) in beside.iter_mut().enumerate() {
-        ratio.put(alone, index);
-    }
-    springs.fill(beside, kind.load(&moments), series);
 }

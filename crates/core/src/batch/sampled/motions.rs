@@ -1,0 +1,248 @@
+//! The motions of bodies side by side, from one departure to the next: of drifting frequencies, or of constant ones.
+
+use super::Run;
+use crate::body::{Constant, Coupled, Ratio, SERIES, Springs};
+use crate::lanes::Real;
+use crate::motion::stretch::REACH;
+use crate::numerics::polynomial::TERMS;
+
+/// So many sets of transitions are kept, the newest last.
+const KEPT: usize = 8;
+
+/// The motions: Taylor series of all coordinates, the n-th terms side by side. Their first two terms are where they depart from.
+#[derive(Debug)]
+pub struct Motions<R> {
+    /// How many coordinates each body has.
+    pub count: usize,
+    /// See above.
+    pub series: Vec<R>,
+    flow: Flow<R>,
+}
+
+#[derive(Debug)]
+enum Flow<R> {
+    /// Ratios of each run, and of all side by side.
+    Drifting(Springs<R>, Vec<Vec<Ratio<f64>>>, Vec<Ratio<R>>),
+    Constant(Box<Flat<R>>),
+}
+
+/// Linear systems z' = A z + g m.
+#[derive(Debug)]
+struct Flat<R> {
+    systems: Vec<Coupled>,
+    /// A row by row, with the columns of each row that are not 0 in all lanes, and g.
+    matrix: Vec<R>,
+    columns: Vec<Vec<usize>>,
+    input: Vec<R>,
+    reach: R,
+    moment: R,
+    /// z at departure, and room for it elsewhere.
+    from: Vec<R>,
+    room: [Vec<R>; 2],
+    /// Transitions over spans (s): their columns, and what a unit moment adds.
+    kept: Vec<([f64; 16], Vec<R>, Vec<R>)>,
+}
+
+impl<R: Real> Motions<R> {
+    /// Bodies at their start; none of bodies that differ in structure.
+    pub fn new(kind: R, runs: &[Run]) -> Option<Self> {
+        let count = runs.first()?.motion.start().len() / 2;
+        if runs.iter().any(|run| run.motion.start().len() != 2 * count) {
+            return None;
+        }
+        let beside = |of: &dyn Fn(&Run) -> f64| {
+            let mut each = [0.0; 16];
+            for lane in 0..R::LANES {
+                each[lane] = of(&runs[lane.min(runs.len() - 1)]);
+            }
+            kind.load(&each)
+        };
+        let drifting: Vec<_> = runs.iter().filter_map(|run| run.motion.drifting()).collect();
+        let constant: Vec<_> = runs.iter().filter_map(|run| run.motion.constant()).collect();
+        let flow = if drifting.len() == runs.len() {
+            let ratios = drifting[0].ratios();
+            let springs: Vec<_> = drifting.iter().map(|motion| motion.springs()).collect();
+            let springs = Springs::beside(kind, &springs)?;
+            if drifting.iter().any(|motion| motion.ratios() != ratios) {
+                return None;
+            }
+            let alone = vec![vec![Ratio::new(0.0); ratios]; runs.len()];
+            Flow::Drifting(springs, alone, vec![Ratio::new(kind); ratios])
+        } else if constant.len() == runs.len() {
+            Flow::Constant(Box::new(Flat::new(kind, &constant)))
+        } else {
+            return None;
+        };
+        let mut series = vec![kind.of(0.0); TERMS * count];
+        for index in 0..2 * count {
+            series[index] = beside(&|run| run.motion.start()[index]);
+        }
+        Some(Self { count, series, flow })
+    }
+
+    /// Fills the series of all motions from their first two terms.
+    #[inline(always)]
+    pub fn fill(&mut self, runs: &[Run], kind: R) {
+        let mut moments = [0.0; 16];
+        for (lane, run) in runs.iter().enumerate() {
+            moments[lane] = run.moment;
+        }
+        let moment = kind.load(&moments);
+        match &mut self.flow {
+            Flow::Drifting(springs, alone, beside) => {
+                for (run, ratios) in runs.iter().zip(alone.iter_mut()) {
+                    if let Some(motion) = run.motion.drifting() {
+                        motion.expand_ratios(run.departed.seconds(), ratios);
+                    }
+                }
+                for (index, ratio) in beside.iter_mut().enumerate() {
+                    ratio.put(alone, index);
+                }
+                springs.fill(beside, moment, &mut self.series[..SERIES * self.count]);
+            }
+            Flow::Constant(flat) => flat.fill(moment, &mut self.series),
+        }
+    }
+
+    /// Where a motion of this length is one stretch (s).
+    #[inline(always)]
+    pub fn reach(&self, h: R) -> R::Mask {
+        match &self.flow {
+            Flow::Drifting(springs, ..) => springs.surely_reach(&self.series, h),
+            Flow::Constant(flat) => h.le(flat.reach),
+        }
+    }
+
+    /// The angles of all coordinates, and their rates, so long after departure (s).
+    #[inline(always)]
+    pub fn go(&mut self, spans: &[f64; 16], h: R, here: &mut [R]) {
+        let (angles, rates) = here.split_at_mut(self.count);
+        match &mut self.flow {
+            Flow::Drifting(springs, ..) => {
+                for index in 0..self.count {
+                    let [angle, rate, _] = springs.at(&self.series, index, h);
+                    (angles[index], rates[index]) = (angle, rate);
+                }
+            }
+            Flow::Constant(flat) => flat.go(spans, angles, rates),
+        }
+    }
+}
+
+impl<R: Real> Flat<R> {
+    fn new(kind: R, all: &[&Constant]) -> Self {
+        let order = all[0].system().input.len();
+        let beside = |of: &dyn Fn(&Constant) -> f64| {
+            let mut each = [0.0; 16];
+            for lane in 0..R::LANES {
+                each[lane] = of(all[lane.min(all.len() - 1)]);
+            }
+            kind.load(&each)
+        };
+        let entries = (0..order * order).map(|at| (at / order, at % order));
+        let filled =
+            |row: usize, column: usize| all.iter().any(|motion| motion.system().system[(row, column)] != 0.0);
+        let columns = |row: usize| (0..order).filter(|column| filled(row, *column)).collect();
+        let zero = kind.of(0.0);
+        Self {
+            systems: all.iter().map(|motion| motion.system().clone()).collect(),
+            matrix: entries.map(|at| beside(&|motion| motion.system().system[at])).collect(),
+            columns: (0..order).map(columns).collect(),
+            input: (0..order).map(|at| beside(&|motion| motion.system().input[at])).collect(),
+            reach: beside(&|motion| REACH / motion.fastest()),
+            moment: zero,
+            from: vec![zero; order],
+            room: [vec![zero; order], vec![zero; order]],
+            kept: Vec::with_capacity(KEPT),
+        }
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, moment: R, series: &mut [R]) {
+        self.moment = moment;
+        let (order, count) = (self.from.len(), self.from.len() / 2);
+        for index in 0..count {
+            (self.from[2 * index], self.from[2 * index + 1]) = (series[index], series[count + index]);
+        }
+        let [before, after] = &mut self.room;
+        before.copy_from_slice(&self.from);
+        for n in 1..TERMS {
+            let divisor = moment.of(n as f64);
+            for row in 0..order {
+                let mut sum = moment.of(0.0);
+                for (place, column) in self.columns[row].iter().enumerate() {
+                    let part = self.matrix[row * order + column] * before[*column];
+                    sum = if place == 0 { part } else { sum + part };
+                }
+                if n == 1 {
+                    sum = sum + self.input[row] * moment;
+                }
+                after[row] = sum / divisor;
+            }
+            for index in 0..count {
+                series[n * count + index] = after[2 * index];
+            }
+            std::mem::swap(before, after);
+        }
+    }
+
+    #[inline(always)]
+    fn go(&mut self, spans: &[f64; 16], angles: &mut [R], rates: &mut [R]) {
+        let order = self.from.len();
+        let known = self.kept.iter().position(|(kept, ..)| kept == spans);
+        let at = known.unwrap_or_else(|| self.keep(spans));
+        let (_, transition, input) = &self.kept[at];
+        for row in 0..order {
+            let mut sum = self.from[0] * transition[row];
+            for column in 1..order {
+                sum = self.from[column] * transition[column * order + row] + sum;
+            }
+            let z = self.moment * input[row] + sum;
+            if row % 2 == 0 {
+                angles[row / 2] = z;
+            } else {
+                rates[row / 2] = z;
+            }
+        }
+    }
+
+    /// Finds the transitions over spans (s), and where they are kept.
+    fn keep(&mut self, spans: &[f64; 16]) -> usize {
+        let order = self.from.len();
+        let mut all = Vec::with_capacity(self.systems.len());
+        for (lane, system) in self.systems.iter().enumerate() {
+            // Bodies that differ in nothing but their noises share one.
+            let same =
+                (0..lane).find(|other| spans[*other] == spans[lane] && self.systems[*other] == *system);
+            let of = same.map_or_else(
+                || system.discrete(spans[lane]),
+                |other: usize| -> (_, _) {
+                    let known: &(_, _) = &all[other];
+                    known.clone()
+                },
+            );
+            all.push(of);
+        }
+        let kind = self.moment;
+        let mut each = [0.0; 16];
+        let mut transition = vec![kind; order * order];
+        for (at, entry) in transition.iter_mut().enumerate() {
+            for (lane, (matrix, _)) in all.iter().enumerate() {
+                each[lane] = matrix.as_slice()[at];
+            }
+            *entry = kind.load(&each);
+        }
+        let mut input = vec![kind; order];
+        for (at, entry) in input.iter_mut().enumerate() {
+            for (lane, (_, vector)) in all.iter().enumerate() {
+                each[lane] = vector[at];
+            }
+            *entry = kind.load(&each);
+        }
+        if self.kept.len() == KEPT {
+            self.kept.remove(0);
+        }
+        self.kept.push((*spans, transition, input));
+        self.kept.len() - 1
+    }
+}

@@ -1,0 +1,153 @@
+//! Runs side by side come to what each comes to alone, to the bit, whatever the processor, the width and the threads.
+
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use flexsc_core::Scenario;
+use flexsc_core::batch::{self, Job};
+use flexsc_core::campaign::{Campaign, Outcome, Run};
+use flexsc_core::lanes::Processor;
+use flexsc_core::metrics::Selection;
+
+use crate::study::scenario;
+
+/// So many runs: some groups, and what is left.
+const RUNS: u64 = 19;
+/// After the kink of the ramps.
+const SHORT: (&str, &str) = ("duration", "260.0");
+
+fn runs(scenario: &Scenario) -> Vec<Run> {
+    let study = Campaign::new(scenario.clone(), "beside", None).expect("a campaign");
+    (0..RUNS).map(|number| study.run(number).expect("a run")).collect()
+}
+
+/// Holds runs side by side against each alone; tells how many were not declined, with the widest lanes.
+fn taken(what: &str, scenario: &Scenario) -> usize {
+    let runs = runs(scenario);
+    let alone: Vec<String> =
+        runs.iter().map(|run| format!("{:?}", Campaign::simulate(run, ()).map_err(|_| "failed"))).collect();
+    let jobs: Vec<Job<'_>> =
+        runs.iter().map(|run| Job { number: run.number, scenario: &run.scenario }).collect();
+    let mut widest = None;
+    for processor in Processor::all() {
+        let beside = batch::simulate_on(processor, &jobs);
+        let count = beside.iter().flatten().count();
+        widest.get_or_insert(count);
+        for ((number, alone), metrics) in alone.iter().enumerate().zip(beside) {
+            if let Some(metrics) = metrics {
+                let beside = format!("{:?}", Ok::<_, &str>(metrics));
+                assert_eq!(&beside, alone, "{what}: run {number} with {}", processor.name());
+            }
+        }
+    }
+    widest.unwrap_or(usize::MAX)
+}
+
+#[test]
+fn sampled_loops_with_drifting_frequencies() {
+    let one = usize::from(Processor::best().is_some_and(|processor| RUNS as usize % processor.lanes(1) == 1));
+    let all = RUNS as usize - one;
+    let with = |name: &str, keys: &[(&str, &str)]| scenario(name, &[&[SHORT], keys].concat());
+    let (fixed, scheduled) = ("wheel-fixed-gain", "wheel-scheduled-gain");
+    let uncertain = "{ \"body.planar.angle\" = { uniform = [-0.06, 0.06] }, \
+                     \"body.planar.modes[0].damping\" = { uniform = [0.001, 0.2] }, \
+                     \"law.pd.k_p\" = { relative_uniform = 0.3 } }";
+    let sun = "{ common = { sinusoid = { amplitude = 0.1, period = 90.0, phase = 3.0 } } }";
+    let each = "{ each = [{ ramp = { time = 50.0, to = 0.5 } }, { ramp = { from = 7.3, time = 20.0, to = 1.2 } }, \
+                { sinusoid = { amplitude = 0.2, period = 70.0 } }, { table = [{ time = 3.0, ratio = 1.0 }, \
+                { time = 100.0, ratio = 0.7 }] }] }";
+    let damped = ("body.planar.modes[0].damping", "0.01");
+    for (what, scenario) in [
+        ("a constant gain", with(fixed, &[])),
+        ("a schedule", with(scheduled, &[])),
+        ("uncertain", with(scheduled, &[damped, ("uncertain", uncertain)])),
+        ("uncertain delays", with("wheel-robust-gain", &[])),
+        ("a long delay", with(scheduled, &[("actuator.wheel.delay", "0.7")])),
+        ("a filter", with("wheel-ekf", &[])),
+        ("a filter of each mode", with("wheel-ekf", &[("estimator.extended_kalman.ratios", "\"each\"")])),
+        ("a filter without back-EMF", with("wheel-ekf", &[("actuator.wheel.back_emf", "0.0")])),
+        ("rigid back-EMF", with("wheel-ekf", &[("actuator.wheel.opposes", "\"rigid_rate\"")])),
+        ("the Sun", with(scheduled, &[("drift", sun)])),
+        ("each mode", with(scheduled, &[("drift", each)])),
+        ("exact", with(fixed, &[("law.pd.differentiation", "\"exact\""), ("law.pd.k_d", "900.0")])),
+        ("a slow law", with(fixed, &[("law.pd.period", "0.6"), ("law.pd.limit", "0.3")])),
+        (
+            "a coarse wheel",
+            with(fixed, &[("actuator.wheel.quantum", "0.05"), ("sensor.sampled.bias", "1e-4")]),
+        ),
+        ("odd noise", with("wheel-ekf", &[("disturbance[0].period", "0.7"), ("duration", "261.1")])),
+    ] {
+        assert_eq!(taken(what, &scenario), all, "{what}");
+    }
+}
+
+#[test]
+fn sampled_loops_with_constant_frequencies() {
+    let one = usize::from(Processor::best().is_some_and(|processor| RUNS as usize % processor.lanes(1) == 1));
+    let with = |keys: &[(&str, &str)]| scenario("wheel-slow-mode", &[&[SHORT], keys].concat());
+    let uncertain = "{ \"body.planar.modes[0].frequency\" = { relative_uniform = 0.2 }, \
+                     \"actuator.wheel.delay\" = { uniform = [0.01, 0.29] }, \
+                     \"actuator.wheel.gain\" = { relative_uniform = 0.1 } }";
+    for (what, scenario) in [
+        ("as it is", with(&[])),
+        (
+            "damped",
+            with(&[
+                ("body.planar.modes[1].damping", "0.02"),
+                ("sensor", "{ sampled = { period = 0.3, noise = 1e-5 } }"),
+            ]),
+        ),
+        (
+            "uncertain",
+            with(&[("uncertain", uncertain), ("sensor", "{ sampled = { period = 0.3, noise = 1e-5 } }")]),
+        ),
+        ("rigid back-EMF", with(&[("actuator.wheel.opposes", "\"rigid_rate\"")])),
+    ] {
+        assert_eq!(taken(what, &scenario), RUNS as usize - one, "{what}");
+    }
+}
+
+#[test]
+fn what_a_batch_declines_is_simulated_alone() {
+    let silent = "[{ silent = { from = 60.0, to = 63.0 } }]";
+    let lost = scenario("wheel-ekf", &[SHORT, ("sensor.sampled.faults", silent)]);
+    assert_eq!(taken("a silent sensor", &lost), 0);
+    let text = scenario("wheel-ekf", &[SHORT]).to_toml().replace("extended_kalman", "unscented_kalman");
+    assert!(taken("unscented", &Scenario::parse("unscented", &text).expect("valid")) > 0);
+    for name in ["relay-sampled", "wheel-slow-mode", "rotation-robust"] {
+        let short = scenario(name, &[("duration", "40.0")]);
+        taken(name, &short);
+    }
+}
+
+#[test]
+fn rows_depend_on_no_thread_and_no_neighbour() {
+    for name in ["wheel-robust-gain", "wheel-ekf"] {
+        let study =
+            Campaign::new(scenario(name, &[("duration", "60.0")]), "beside", None).expect("a campaign");
+        let study = Arc::new(study);
+        let rows = |threads: usize, beside: bool| {
+            let mut rows = Vec::new();
+            let work = |run: &Run| Ok(Campaign::simulate(run, ())?);
+            let tell =
+                |outcome: Option<Outcome>| -> Result<(), Infallible> {
+                    // All but how long it took.
+                    rows.extend(outcome.map(|Outcome { number, drawn, metrics, .. }| {
+                        format!("{number} {drawn:?} {metrics:?}")
+                    }));
+                    Ok(())
+                };
+            let Ok(()) = if beside {
+                study.each_beside(3..40, threads, &Selection::ALL, work, tell)
+            } else {
+                study.each(3..40, threads, work, tell)
+            };
+            rows
+        };
+        let alone = rows(1, false);
+        assert_eq!(alone.len(), 37);
+        for threads in [1, 2, 8] {
+            assert_eq!(rows(threads, true), alone, "{name} on {threads} threads");
+        }
+    }
+}
