@@ -184,13 +184,13 @@ impl Campaign {
         let mut alone = Vec::new();
         for (number, run) in runs {
             let (drawn, metrics) = match run {
-                Ok(run) => match found.next().flatten() {
-                    Some(metrics) => (run.drawn, Ok(selection.of_run(metrics))),
-                    None => {
+                Ok(run) => {
+                    let Some(metrics) = found.next().flatten() else {
                         alone.push(run);
                         continue;
-                    }
-                },
+                    };
+                    (run.drawn, Ok(selection.of_run(metrics)))
+                }
                 Err(error) => (self.draw(number), Err(RunError::from(error))),
             };
             if !tell(Outcome { number, drawn, metrics, seconds }) {

@@ -3,12 +3,13 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::excessive_precision, reason = "as fdlibm has them")]
 
+use std::f64::consts::FRAC_2_PI;
+
 use crate::lanes::Real;
 
 /// Beyond this (rad) the reduction by pi/2 in three parts is not exact.
 pub const FARTHEST: f64 = 1e6;
 
-const TWO_OVER_PI: f64 = 6.366_197_723_675_813_8e-1;
 /// The first 33 bits of pi/2, the next 33, and the rest.
 const HALF_PI: [f64; 3] =
     [1.570_796_326_734_125_614_17, 6.077_100_506_303_965_976_60e-11, 2.022_266_248_795_950_631_54e-21];
@@ -56,7 +57,7 @@ pub fn nearest<R: Real>(x: R) -> R {
 /// Sine and cosine of an angle (rad) up to [`FARTHEST`]; within 1 unit in the last place.
 #[inline(always)]
 pub fn sincos<R: Real>(x: R) -> (R, R) {
-    let turns = nearest(x * x.of(TWO_OVER_PI));
+    let turns = nearest(x * x.of(FRAC_2_PI));
     // The products of the first two parts, and the first difference, are exact.
     let first = x - turns * x.of(HALF_PI[0]);
     let second = turns * x.of(HALF_PI[1]);
@@ -125,4 +126,42 @@ pub fn arc<R: Real>(t: R) -> R {
         even = t.of(ARC[i]) + w * even;
     }
     t - t * (z * odd + w * even)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_of_all_sizes_agree_with_libm() {
+        let mut worst = 0.0_f64;
+        let mut check = |x: f64| {
+            let ((sin, cos), (a, b)) = (sincos(x), libm::sincos(x));
+            worst = worst.max((sin - a).abs()).max((cos - b).abs());
+        };
+        for i in 0..100_000 {
+            let part = f64::from(i) / 100_000.0;
+            for size in [1e-9, 0.7, 3.0, 40.0, 2e4, FARTHEST] {
+                check(size * part);
+                check(-size * part);
+            }
+            // Beside multiples of pi/2, where most digits cancel.
+            let quarter = f64::from(6 * i) * std::f64::consts::FRAC_PI_2;
+            check(quarter);
+            check(quarter.next_up());
+        }
+        assert!(worst < 1.2e-16, "{worst:e}");
+    }
+
+    #[test]
+    fn short_angles_and_arcs_agree_with_libm() {
+        for i in -1000..=1000 {
+            let part = f64::from(i) / 1000.0;
+            let ((sin, cos), (a, b)) = (sincos_short(0.78 * part), libm::sincos(0.78 * part));
+            assert!((sin - a).abs() < 1.2e-16 && (cos - b).abs() < 1.2e-16, "{part}");
+            let t = 0.4375 * part;
+            assert!((arc(t) - libm::atan(t)).abs() <= 1e-16 * t.abs(), "{part}");
+        }
+        assert_eq!(nearest(2.5), 2.0);
+    }
 }

@@ -5,6 +5,7 @@
 //! lane to the next one at the cycle's end. What a lane does depends on no other.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+#![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 mod fill;
 mod look;
@@ -95,9 +96,7 @@ impl<R: Real> Flight<R> {
             Place::Brake => (self.strong, one, self.edge),
         };
         self.depart(moment);
-        for index in 0..self.modes.len() {
-            self.moved[index] = self.modes[index];
-        }
+        self.moved.copy_from_slice(&self.modes);
         if place == Place::Push {
             self.pushed = self.now;
         }

@@ -71,7 +71,8 @@ fn shipped_scenarios_and_others_come_to_the_same() {
     ];
     for modes in modes {
         for rest in ["", "[estimator.envelope]\nwindow = 77.0\n", "[reference]\nband = 5.1e-4\n"] {
-            compare(&[text(modes, rest), text(modes, rest), text(modes, rest)], 0);
+            let scenarios = vec![text(modes, rest); 3];
+            compare(&scenarios, 0);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The envelope of undamped modes in lanes: what `estimator::envelope` does, to the bit.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+#![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 use crate::lanes::Real;
 use crate::numerics::swing_integral::undamped;

@@ -1,6 +1,7 @@
 //! Runs come into the lanes of a flight.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+#![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 use super::{Flight, MOST, NEVER, ROWS};
 use crate::batch::relay::clock::Clock;
@@ -68,10 +69,10 @@ impl<R: Real> Flight<R> {
     pub(super) fn fill<C: Crew>(&mut self, crew: &mut C) -> bool {
         let mut any = false;
         for lane in 0..R::LANES {
-            if !self.active[lane] {
-                if let Some(setup) = crew.next(lane) {
-                    self.begin(lane, &setup, crew.band(lane));
-                }
+            if !self.active[lane]
+                && let Some(setup) = crew.next(lane)
+            {
+                self.begin(lane, &setup, crew.band(lane));
             }
             any |= self.active[lane];
         }

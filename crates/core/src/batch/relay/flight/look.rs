@@ -1,6 +1,7 @@
 //! What is seen of the lanes of a flight, one by one.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+#![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 use super::Flight;
 use crate::batch::relay::clock::Clock;
