@@ -23,7 +23,9 @@ impl Directory {
         for runs in &theirs {
             let meets = |own: &&Range<u64>| own.start < runs.end && runs.start < own.end;
             match own.iter().find(meets) {
-                None => drop(other.reading(runs)?),
+                None => {
+                    other.reading(runs)?;
+                }
                 Some(own) if own == runs => self.same(other, runs)?,
                 Some(own) => {
                     let why = format!("has runs that {} has too, in another part", self.file(own).display());
