@@ -26,6 +26,7 @@ use kept::Kept;
 pub use kept::SCENARIO;
 
 /// What of a campaign is run, and what is made of it.
+#[allow(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub struct Job<'a> {
     /// The runs.
     pub range: Range<u64>,
