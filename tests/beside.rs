@@ -1,5 +1,7 @@
 //! Runs side by side come to what each comes to alone, to the bit, whatever the processor, the width and the threads.
 
+#![allow(clippy::large_stack_arrays, reason = "scenarios side by side")]
+
 use std::convert::Infallible;
 use std::sync::Arc;
 

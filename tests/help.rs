@@ -1,6 +1,6 @@
 //! What `--help` promises: verbs in groups, and examples that work as they stand, one after another in one directory.
 
-use crate::util::{Dir, SCENARIOS};
+use crate::util::{Dir, SCENARIOS, has_extension};
 
 /// The examples at the end of a verb's help, without what is redirected.
 fn examples(dir: &Dir, verb: &str) -> Vec<String> {
@@ -14,9 +14,8 @@ fn examples(dir: &Dir, verb: &str) -> Vec<String> {
 fn every_example_of_the_help_works() {
     let dir = Dir::new();
     for entry in std::fs::read_dir(SCENARIOS).expect("shipped").flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if name.ends_with(".toml") {
-            std::fs::copy(entry.path(), dir.path(&name)).expect("copied");
+        if has_extension(&entry.file_name().to_string_lossy(), "toml") {
+            std::fs::copy(entry.path(), dir.path(&entry.file_name().to_string_lossy())).expect("copied");
         }
     }
     let overview = dir.run("--help").exits(0).out;

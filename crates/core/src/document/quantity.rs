@@ -97,7 +97,7 @@ fn split(text: &str) -> Option<(f64, &str)> {
     }
     // The longest number counts: `1e-3 rad`, but `2 e`.
     let ends = text.char_indices().map(|(index, _)| index).filter(|index| *index > 0);
-    let longest = ends.filter_map(|end| Some((text[..end].parse::<f64>().ok()?, end))).last()?;
+    let longest = ends.rev().find_map(|end| Some((text[..end].parse::<f64>().ok()?, end)))?;
     let unit = text[longest.1..].trim();
     let named =
         unit.starts_with(|c: char| c.is_alphabetic() || c == '\u{b0}' || c == '1' || c == '(' || c == '/');

@@ -182,7 +182,7 @@ mod tests {
         close(converted("arcsec", "rad"), 4.848_136_811_095_36e-6);
         close(converted("deg/h", "rad/s"), 4.848_136_811_095_36e-6);
         close(converted("rpm", "rad/s"), 0.104_719_755_119_659_77);
-        close(converted("Hz", "rad/s"), 6.283_185_307_179_586);
+        close(converted("Hz", "rad/s"), TAU);
         close(converted("mHz", "1/s"), 1e-3);
         close(converted("deg/sqrt(h)", "rad/sqrt(s)"), 2.908_882_086_657_216e-4);
         close(converted("mN m", "N m"), 1e-3);
