@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::batch::{self, Job};
-use flexsc_core::campaign::{Campaign, Outcome, Run};
+use flexsc_core::campaign::{Campaign, Grid, Outcome, Run};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
 
@@ -124,10 +124,17 @@ fn what_a_batch_declines_is_simulated_alone() {
 
 #[test]
 fn rows_depend_on_no_thread_and_no_neighbour() {
-    for name in ["wheel-robust-gain", "wheel-ekf"] {
-        let study =
-            Campaign::new(scenario(name, &[("duration", "60.0")]), "beside", None).expect("a campaign");
-        let study = Arc::new(study);
+    let gains = || Some(Grid::even("law.relay.k_t".to_owned(), 0.28, 0.40, 40));
+    for (name, duration, grid) in [
+        ("wheel-robust-gain", "60.0", None),
+        ("wheel-ekf", "60.0", None),
+        ("relay-fixed", "3000.0", gains()),
+        ("relay-adaptive", "9000.0", gains()),
+        ("relay-no-freeze", "9000.0", gains()),
+    ] {
+        let study = Campaign::new(scenario(name, &[("duration", duration)]), "beside", grid);
+        let study = Arc::new(study.expect("a campaign"));
+        assert!(batch::takes(study.scenario()), "{name}");
         let rows = |threads: usize, beside: bool| {
             let mut rows = Vec::new();
             let work = |run: &Run| Ok(Campaign::simulate(run, ())?);

@@ -32,7 +32,7 @@ pub enum Work<'a> {
 
 /// What runs the inputs.
 struct Worker {
-    /// Standard input is the line to the parent.
+    /// What was standard input: the line to the parent.
     parent: File,
     server: Option<Server>,
 }
@@ -40,6 +40,8 @@ struct Worker {
 /// Runs inputs in the present directory.
 pub fn work(work: &Work<'_>) -> io::Result<()> {
     let parent = File::from(io::stdin().as_fd().try_clone_to_owned()?);
+    // A command that reads standard input finds nothing there, and not that line.
+    rustix::stdio::dup2_stdin(File::open("/dev/null")?)?;
     let told = parent.try_clone()?;
     std::panic::set_hook(Box::new(move |panic| {
         let text = panic.to_string().replace('\n', " ");
