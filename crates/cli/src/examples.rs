@@ -13,7 +13,7 @@ use crate::{files, print, say};
 /// Lists scenarios by their names.
 macro_rules! shipped {
     ($($name:literal),+ $(,)?) => {
-        &[$(($name, include_str!(concat!("../../../scenarios/", $name, ".toml")))),+]
+        &[$(($name, include_str!(concat!("../scenarios/", $name, ".toml")))),+]
     };
 }
 

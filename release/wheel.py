@@ -1,0 +1,42 @@
+"""Builds a wheel for a target, or the source distribution, into dist/.
+
+`python release/wheel.py x86_64-unknown-linux-gnu`, or `python release/wheel.py sdist`.
+
+Linux wheels are built with zig as the linker, against an old C library, so that they run on old systems. A target
+other than the machine's needs its standard library: `rustup target add TARGET`.
+"""
+
+import os
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+ENVIRONMENT = ROOT / "target" / "venv-release"
+MAX_BYTES = 10 * 2**20
+
+
+def main() -> None:
+    (target,) = sys.argv[1:] or sys.exit(__doc__)
+    if not ENVIRONMENT.exists():
+        venv.create(ENVIRONMENT, with_pip=True)
+    scripts = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
+    pip = [scripts / "python", "-m", "pip", "--quiet", "--disable-pip-version-check", "install"]
+    subprocess.run([*pip, "maturin>=1.9.4,<2", "ziglang"], check=True)
+    # maturin finds zig on the path of its environment.
+    environment = {**os.environ, "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
+    command = [scripts / "maturin", "sdist", "--out", "dist"]
+    if target != "sdist":
+        command = [scripts / "maturin", "build", "--release", "--strip", "--out", "dist", "--target", target]
+        if "linux" in target:
+            command += ["--zig", "--compatibility", "musllinux_1_2" if "musl" in target else "manylinux_2_17"]
+    subprocess.run([str(word) for word in command], cwd=ROOT, env=environment, check=True)
+    for made in sorted((ROOT / "dist").glob("flexsc-*")):
+        print(f"{made.name}  {made.stat().st_size / 2**20:.1f} MiB")
+        if made.suffix == ".whl" and made.stat().st_size > MAX_BYTES:
+            sys.exit(f"{made.name} is above {MAX_BYTES / 2**20:.0f} MiB")
+
+
+if __name__ == "__main__":
+    main()
