@@ -2,6 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::metrics;
+use flexsc_core::record::description;
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -12,12 +13,17 @@ pub struct Args {
     /// What the metrics mean, instead of the form of scenarios
     #[arg(long)]
     metrics: bool,
+    /// The topics of logs with their fields, instead of the form of scenarios
+    #[arg(long, conflicts_with = "metrics")]
+    topics: bool,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let document = if args.metrics {
         let meaning = |m: &metrics::Meaning| json!({"name": m.name, "unit": m.unit, "doc": m.doc});
         metrics::ALL.iter().map(meaning).collect()
+    } else if args.topics {
+        description::topics()
     } else {
         Scenario::schema()
     };

@@ -53,7 +53,7 @@ mod _native {
     #[pymodule_export]
     use super::{
         Log, Scenario, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,
-        schema_json, simulate, to_mcap, write,
+        schema_json, simulate, to_mcap, topics_json, write,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -331,6 +331,11 @@ fn schema_json() -> String {
 fn metrics_json() -> String {
     let meaning = |m: &metrics::Meaning| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc}));
     serde_json::Value::Object(metrics::ALL.iter().map(meaning).collect()).to_string()
+}
+
+#[pyfunction]
+fn topics_json() -> String {
+    record::description::topics().to_string()
 }
 
 #[pyfunction]

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod columns;
+pub mod description;
 mod descriptor;
 pub mod foxglove;
 mod log;

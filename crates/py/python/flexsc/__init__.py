@@ -68,6 +68,7 @@ __all__ = [
     "schema",
     "stability_map",
     "sweep",
+    "topics",
     "write_scenario",
 ]
 
@@ -110,4 +111,14 @@ def schema() -> dict[str, Any]:
 def metrics() -> dict[str, dict[str, str]]:
     """What the metrics mean: by name, the `unit` (empty for a count, a ratio or a word) and the `doc`."""
     told: dict[str, dict[str, str]] = json.loads(engine.metrics_json())
+    return told
+
+
+def topics() -> dict[str, dict[str, Any]]:
+    """What the topics of a log hold: by name, the `doc` and the `fields`, each with its `name`, `doc` and `kind`.
+
+    >>> flexsc.topics()["rate"]["fields"][0]
+    {'name': 'rate_rad_s', 'doc': 'Rate, elastic part included (rad/s).', 'kind': 'number'}
+    """
+    told: dict[str, dict[str, Any]] = json.loads(engine.topics_json())
     return told

@@ -1,0 +1,80 @@
+//! What the topics of a log hold, as JSON: for reference pages, and for programs that read logs.
+
+use serde_json::{Map, Value, json};
+
+use super::row::{Field, Kind};
+use super::topics::TOPICS;
+
+/// Every topic of every log, by name without its slash: `message`, `doc` and `fields`.
+///
+/// A field has its `name`, which ends with its unit, `doc`, and `kind`: `number`, `count`, `text`, `flag`, `time`, `label`
+/// with its `labels`, or `row` and `rows` with the `fields` of each row.
+pub fn topics() -> Value {
+    let topics = TOPICS.iter().map(|topic| {
+        let told = json!({"message": topic.message, "doc": text(topic.doc), "fields": fields(topic.fields)});
+        (topic.name.trim_start_matches('/').to_owned(), told)
+    });
+    Value::Object(topics.collect::<Map<_, _>>())
+}
+
+fn fields(of: &[Field]) -> Value {
+    of.iter().map(field).collect()
+}
+
+fn field(field: &Field) -> Value {
+    let mut told = json!({"name": field.name, "doc": text(field.doc)});
+    told["kind"] = match field.kind {
+        Kind::Number => "number",
+        Kind::Count => "count",
+        Kind::Text => "text",
+        Kind::Flag => "flag",
+        Kind::Time(_) => "time",
+        Kind::Label(labels) => {
+            let meanings = labels.values.iter().zip(labels.docs);
+            let meaning = |(value, doc): (&&str, &&str)| ((*value).to_owned(), Value::from(doc.trim()));
+            told["labels"] = Value::Object(meanings.map(meaning).collect());
+            "label"
+        }
+        Kind::Row(message) => {
+            told["fields"] = fields(message.fields);
+            "row"
+        }
+        Kind::Rows(message) => {
+            told["fields"] = fields(message.fields);
+            "rows"
+        }
+    }
+    .into();
+    told
+}
+
+fn text(lines: &[&str]) -> String {
+    lines.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_topic_and_field_is_described() {
+        let all = topics();
+        let all = all.as_object().expect("topics");
+        assert_eq!(all.len(), TOPICS.len());
+        let state = &all["command"]["fields"][3];
+        assert!(state["labels"]["W+"].as_str().is_some_and(|doc| doc.contains("weak")), "{state}");
+        fn described(fields: &Value, place: &str) {
+            for field in fields.as_array().expect("fields") {
+                let name = field["name"].as_str().expect("a name");
+                assert!(!field["doc"].as_str().expect("a text").is_empty(), "{place}.{name}");
+                if let Some(inner) = field.get("fields") {
+                    described(inner, &format!("{place}.{name}"));
+                }
+            }
+        }
+        for (name, topic) in all {
+            assert!(!topic["doc"].as_str().expect("a text").is_empty(), "{name}");
+            described(&topic["fields"], name);
+        }
+    }
+}

@@ -1,0 +1,47 @@
+"""What MkDocs adds to docs/: references made from the engine, tutorials with their outputs, formulas."""
+
+from __future__ import annotations
+
+import html
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+from latex2mathml.converter import convert
+from mkdocs.structure.files import File, Files
+
+sys.path.insert(0, str(Path(__file__).parent))
+import reference
+import tutorials
+
+ROOT = Path(__file__).resolve().parents[1]
+MATH = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
+# Comments that mark the numbers of a page for its test.
+MARK = re.compile(r"<!--.*?-->\n?", re.DOTALL)
+
+
+def on_files(files: Files, config: Any) -> Files:
+    """Adds the pages that are made."""
+    for path, text in {**reference.pages(), "changelog.md": (ROOT / "CHANGELOG.md").read_text()}.items():
+        files.append(File.generated(config, path, content=text))
+    for source in sorted((ROOT / "docs/tutorials").glob("*.py")):
+        for path, content in tutorials.made(source).items():
+            files.append(File.generated(config, f"tutorials/{path}", content=content))
+        files.remove(files.get_file_from_path(f"tutorials/{source.name}"))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: Any) -> str:
+    """Drops the marks of numbers, and turns links to files outside docs/ into links to the repository."""
+    return MARK.sub("", markdown).replace("](../", "](https://github.com/flexsc/flexsc/blob/main/")
+
+
+def on_page_content(content: str, **_: Any) -> str:
+    """Turns formulas into MathML, which browsers draw without a script."""
+
+    def formula(match: re.Match[str]) -> str:
+        display = "block" if match[2] == "[" else "inline"
+        return convert(html.unescape(match[3].strip()), display=display)
+
+    return MATH.sub(formula, content)

@@ -1,0 +1,70 @@
+"""The documentation does what it says: its commands and its Python run as they stand, page by page.
+
+What cannot run here is left out: lines with a placeholder in capitals, live runs, clusters, and `reproduce`,
+which has a test of its own. Campaigns are cut short.
+"""
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import command_path
+
+ROOT = Path(__file__).parents[2]
+# `flexsc reproduce` runs the commands of papers.md.
+PAGES = [ROOT / "README.md", *sorted(set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs/papers.md"})]
+VERBS = (
+    "check|completions|cycle|damping|examples|export|identify|layout|log|map|merge|modes|new|observer|plan|plot|"
+    "schema|simulate|sweep|top|tune"
+)
+ELSEWHERE = re.compile(r"\b[A-Z]{3,}\b|--live|--scheduler|study\.toml|part-0|\.\.\.|/shared")
+BLOCK = re.compile(r"(?:^ {4}.*\n)+|^```(?:sh|text|bash)?\n(?:.*\n)*?```", re.MULTILINE)
+CODE = re.compile(r"(<!-- not run: .*? -->\n+)?^```python\n((?:.*\n)*?)```", re.MULTILINE)
+# Libraries that a page shows and that the tests do without.
+OPTIONAL = re.compile(r"ModuleNotFoundError: No module named '(control|dask|duckdb|pandas|polars|ray|xarray)")
+
+
+def code(page: Path) -> str:
+    """The Python of a page, but for what says why it is not run."""
+    return "\n".join(block for skipped, block in CODE.findall(page.read_text("utf-8")) if not skipped)
+
+
+def commands(page: Path) -> list[str]:
+    """The commands of a page, without the comments behind them."""
+    lines: list[str] = []
+    for block in BLOCK.findall(page.read_text("utf-8")):
+        for line in re.findall(
+            rf"^ *((?:flexsc|cargo run --release --) (?:{VERBS}) .*)$", block, re.MULTILINE
+        ):
+            command = re.split(r"\s{3,}|\s+#|\s+>", line.replace("cargo run --release --", "flexsc"))[0]
+            lines += [part.strip() for part in command.split("&&") if not ELSEWHERE.search(part)]
+    return lines
+
+
+@pytest.mark.parametrize(
+    "page",
+    [page for page in PAGES if code(page) or commands(page)],
+    ids=lambda page: str(page.relative_to(ROOT)),
+)
+def test_what_a_page_says_runs(page: Path, tmp_path: Path) -> None:
+    for folder in ("scenarios", "docs/images"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    if page.name == "start.md":
+        written = re.findall(r"```toml\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+        (tmp_path / "mine.toml").write_text("\n".join(written), "utf-8")
+
+    def run(*words: str) -> "subprocess.CompletedProcess[str]":
+        return subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+
+    for line in commands(page):
+        short = re.sub(r"--row \d{2,}", "--row 7", re.sub(r"--runs \d{3,}", "--runs 12", line))
+        done = run(command_path(), *shlex.split(short)[1:])
+        assert done.returncode == 0, f"{line}\n{done.stderr}"
+    done = run(sys.executable, "-W", "error", "-c", code(page))
+    if missing := OPTIONAL.search(done.stderr):
+        pytest.skip(missing[0])
+    assert done.returncode == 0, done.stderr
