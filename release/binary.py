@@ -1,6 +1,6 @@
 """Builds the command for a target into dist/, with its checksum and its bill of materials (CycloneDX).
 
-`python release/binary.py x86_64-unknown-linux-gnu`; the list of crates comes from `cargo metadata`, as locked.
+`python release/binary.py x86_64-unknown-linux-gnu`; the crates are those of the lock file.
 """
 
 import hashlib

@@ -2,8 +2,8 @@
 
 `python release/wheel.py x86_64-unknown-linux-gnu`, or `python release/wheel.py sdist`.
 
-Linux wheels are built with zig as the linker, against an old C library, so that they run on old systems. A target
-other than the machine's needs its standard library: `rustup target add TARGET`.
+Linux wheels are linked by zig against an old C library, so that they run on old systems. A target other than
+that of the machine needs its standard library: `rustup target add TARGET`.
 """
 
 import os

@@ -61,7 +61,7 @@ def test_what_a_page_says_runs(page: Path, tmp_path: Path) -> None:
         return subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
 
     for line in commands(page):
-        short = re.sub(r"--row \d{2,}", "--row 7", re.sub(r"--runs \d{3,}", "--runs 12", line))
+        short = re.sub(r"--row \d{2,}", "--row 7", re.sub(r"--runs \d{3,}", "--runs 8", line))
         done = run(command_path(), *shlex.split(short)[1:])
         assert done.returncode == 0, f"{line}\n{done.stderr}"
     done = run(sys.executable, "-W", "error", "-c", code(page))
