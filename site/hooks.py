@@ -32,9 +32,10 @@ def on_files(files: Files, config: Any) -> Files:
     return files
 
 
-def on_page_markdown(markdown: str, **_: Any) -> str:
+def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Drops the marks of numbers, and turns links to files outside docs/ into links to the repository."""
-    return MARK.sub("", markdown).replace("](../", "](https://github.com/flexsc/flexsc/blob/main/")
+    above = "../" * (1 + page.file.src_uri.count("/"))
+    return MARK.sub("", markdown).replace(f"]({above}", "](https://github.com/flexsc/flexsc/blob/main/")
 
 
 def on_page_content(content: str, **_: Any) -> str:
@@ -42,6 +43,10 @@ def on_page_content(content: str, **_: Any) -> str:
 
     def formula(match: re.Match[str]) -> str:
         display = "block" if match[2] == "[" else "inline"
-        return convert(html.unescape(match[3].strip()), display=display)
+        text = html.unescape(match[3].strip())
+        # What the converter does not know, or sets too narrowly.
+        text = text.replace(r"\begin{aligned}", r"\begin{array}{rl}").replace(r"\end{aligned}", r"\end{array}")
+        text = text.replace(r"\begin{bmatrix}", r"{\begin{bmatrix}").replace(r"\end{bmatrix}", r"\end{bmatrix}}")
+        return convert(text, display=display)
 
     return MATH.sub(formula, content)

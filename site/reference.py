@@ -177,8 +177,8 @@ def short(value: object) -> str:
 def metrics() -> str:
     rows = [(f"`{name}`", told["unit"], told["doc"]) for name, told in flexsc.metrics().items()]
     return (
-        "# Every metric\n\nA run reports the metrics that its parts have. A number that does not exist is null in JSON and NaN "
-        "in a table. `flexsc schema --metrics` prints this list.\n\n"
+        "# Every metric\n\nA run reports the metrics that its parts have. A number that does not "
+        "exist is null in JSON and NaN in a table. `flexsc schema --metrics` prints this list.\n\n"
         + table(("metric", "unit", "meaning"), rows)
     )
 

@@ -115,7 +115,7 @@ def metrics() -> dict[str, dict[str, str]]:
 
 
 def topics() -> dict[str, dict[str, Any]]:
-    """What the topics of a log hold: by name, the `doc` and the `fields`, each with its `name`, `doc` and `kind`.
+    """What the topics of a log hold: by name the `doc` and the `fields`, each with `name`, `doc` and `kind`.
 
     >>> flexsc.topics()["rate"]["fields"][0]
     {'name': 'rate_rad_s', 'doc': 'Rate, elastic part included (rad/s).', 'kind': 'number'}
