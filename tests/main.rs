@@ -80,6 +80,7 @@ mod spacecraft;
 mod spatial;
 mod state_space;
 mod station;
+mod stepping;
 mod stops;
 #[cfg(unix)]
 mod stops_soon;

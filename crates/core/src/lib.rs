@@ -79,4 +79,4 @@ pub mod whole;
 
 pub use document::{Document, LONGEST, Mistake, ScenarioError, nearest};
 pub use scenario::Scenario;
-pub use sim::{Simulation, SimulationError};
+pub use sim::{Field, Group, Occasion, Simulation, SimulationError};

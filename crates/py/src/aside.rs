@@ -13,7 +13,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 /// How often Python is asked for signals.
-const LOOK: Duration = Duration::from_millis(20);
+pub const LOOK: Duration = Duration::from_millis(20);
 /// How long work may take to end once it is asked to stop: what has not ended then is left behind.
 const PATIENCE: Duration = Duration::from_millis(150);
 /// What a main thread has on most systems (bytes).
@@ -24,6 +24,10 @@ const STACK: usize = 8 << 20;
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
+    pub fn ask(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
     pub fn asked(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

@@ -8,9 +8,11 @@
 mod aside;
 mod campaign;
 mod columns;
+mod copies;
 mod damping;
 mod error;
 mod sampled;
+mod stepping;
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -43,6 +45,8 @@ mod _native {
     #[pymodule_export]
     use super::campaign::{Directory, Work};
     #[pymodule_export]
+    use super::copies::Simulators;
+    #[pymodule_export]
     use super::damping::{
         identify_json, observer_margin_json, observer_region_json, persistence, relay_damping_json,
     };
@@ -50,6 +54,8 @@ mod _native {
     use super::error::{LogError, ScenarioError, SimulationError};
     #[pymodule_export]
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
+    #[pymodule_export]
+    use super::stepping::Simulator;
     #[pymodule_export]
     use super::{
         Log, Scenario, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,

@@ -11,6 +11,8 @@ pub struct Controls {
     axes: Vec<Held>,
     /// When any of them wants to be asked again.
     until: Option<Instant>,
+    /// What is commanded in their place, from outside.
+    steered: Option<[Command; 3]>,
 }
 
 /// A law, and what it holds.
@@ -38,7 +40,14 @@ impl Controls {
     /// The laws before a run, about axes on which the actuator has these authorities.
     pub fn new(law: &Law, authorities: &[Authority]) -> Self {
         let axis = |(axis, authority)| Held { law: law.about(axis).start(authority), hold: Hold::NONE };
-        Self { axes: authorities.iter().enumerate().map(axis).collect(), until: None }
+        Self { axes: authorities.iter().enumerate().map(axis).collect(), until: None, steered: None }
+    }
+
+    /// Commands in the place of the laws from now on, which nobody asks any more.
+    pub fn steer(&mut self, commands: [Command; 3]) {
+        self.steered = Some(commands);
+        self.until = None;
+        self.axes.iter_mut().for_each(|held| held.hold = Hold::NONE);
     }
 
     /// Asks the laws that an event concerns; tells the cause for the first of them that answers.
@@ -50,6 +59,9 @@ impl Controls {
         beliefs: &[Belief],
     ) -> Option<Cause> {
         let mut first = None;
+        if self.steered.is_some() {
+            return first;
+        }
         for (axis, (held, belief)) in self.axes.iter_mut().zip(beliefs).enumerate() {
             let timeout = held.hold.until.filter(|until| *until == now).map(|_| Cause::Timeout);
             let cause = match event {
@@ -93,6 +105,9 @@ impl Controls {
 
     /// What they command, about each axis.
     pub fn commands(&self) -> [Command; 3] {
+        if let Some(commands) = self.steered {
+            return commands;
+        }
         let mut commands = [Command::Torque(0.0); 3];
         for (held, command) in self.axes.iter().zip(&mut commands) {
             *command = held.hold.command;

@@ -21,7 +21,8 @@ impl Simulation {
     /// # Errors
     /// As a run.
     pub(crate) fn begin_lent(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
-        if self.telling.open(self.now, record)? { self.begin(record) } else { Ok(()) }
+        self.open(record)?;
+        self.resume(None, record).map(|_| ())
     }
 
     /// When anything is due next, and whether that is within the run; else its end.

@@ -15,17 +15,17 @@ mod plant;
 mod reference;
 mod sensing;
 mod showing;
+mod sight;
 mod slipping;
+mod stepping;
 mod telling;
 
 use thiserror::Error;
 
 use crate::belief::Belief;
-use crate::body::spatial::SpatialState;
 use crate::environment::into;
 use crate::estimator::{self, Estimate, Monitor, Taken};
 use crate::law::{Cause, Controls, Event};
-use crate::motion::State;
 use crate::random::Seed;
 use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
@@ -34,6 +34,8 @@ use crate::time::{Instant, Span};
 
 use drive::Drive;
 pub(crate) use plant::Exerted;
+pub use sight::{Field, Group};
+pub use stepping::Occasion;
 
 use plant::Plant;
 use reference::Reference;
@@ -104,6 +106,10 @@ pub struct Simulation {
     telling: Telling,
     /// Whether anything was measured now, if that was read ahead.
     read: Option<bool>,
+    /// What came up at this instant and is not yet answered, where the run was stopped between.
+    unanswered: Option<Event>,
+    /// Whether there are commands from outside that the actuator does not have yet.
+    steered: bool,
 }
 
 impl Simulation {
@@ -132,6 +138,8 @@ impl Simulation {
             met: false,
             slips: (0, Instant::START),
             read: None,
+            unanswered: None,
+            steered: false,
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -150,55 +158,39 @@ impl Simulation {
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
     pub fn run_until(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
         let until = until.min(self.end);
-        if self.telling.open(self.now, record)? {
-            self.begin(record)?;
-        }
-        loop {
-            let mut next = self.next();
-            if let Some(at) = self.plant.approach(next.min(until), record)? {
-                next = at;
-                self.slips(at)?;
-            }
-            self.turned(next.min(until));
-            if next > until {
-                self.now = until;
-                self.plant.view(until)?;
-                return self.finish(record);
-            }
-            if next > self.now {
-                self.now = next;
-                self.decisions = 0;
-            }
+        self.open(record)?;
+        self.resume(None, record)?;
+        while self.arrive(until, record)? {
             self.serve(record)?;
         }
+        self.finish(record)
     }
 
-    /// The state of a body with one angle now.
-    pub fn state(&self) -> Option<&State> {
-        if let Plant::Planar(plant) = &self.plant { Some(plant.state()) } else { None }
-    }
-
-    /// The state of a body with three axes now.
-    pub fn spatial_state(&self) -> Option<&SpatialState> {
-        if let Plant::Spatial(plant) = &self.plant { Some(plant.state()) } else { None }
-    }
-
-    /// The mean of the total envelope over the window that was closed last (rad).
-    pub fn window_mean(&self) -> Option<f64> {
-        self.monitor.as_ref().map(|monitor| monitor.mean)
-    }
-
-    /// Tunes a number of the law, such as `k_t`, as an adaptation does.
-    pub fn tune(&mut self, key: &str, value: f64) {
-        self.laws.tune(key, value);
+    /// Brings the body to the next instant at which anything is due, until an instant; tells whether anything is.
+    fn arrive(&mut self, until: Instant, record: &mut impl Record) -> Result<bool, SimulationError> {
+        let mut next = self.next();
+        if let Some(at) = self.plant.approach(next.min(until), record)? {
+            next = at;
+            self.slips(at)?;
+        }
+        let now = next.min(until);
+        self.turned(now);
+        if now > self.now {
+            self.now = now;
+            self.decisions = 0;
+        }
+        if next > until {
+            self.plant.view(until)?;
+        }
+        Ok(next <= until)
     }
 
     fn begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         let truth = self.plant.view(self.now)?;
-        self.sense(&truth, record)?;
         self.ask(Event::Start);
         self.feel(&truth);
         self.drive.command(self.now, self.laws.commands(), &self.beliefs, truth.rigid);
+        self.steered = false;
         self.drive.serve(self.now, truth.rigid);
         self.depart(record)?;
         self.turned(self.now);
@@ -225,6 +217,12 @@ impl Simulation {
 
     /// Does what is due now.
     fn serve(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        let event = self.perceive(record)?;
+        self.answer(event, record)
+    }
+
+    /// Measures and estimates what is due now; tells what has come up for laws.
+    fn perceive(&mut self, record: &mut impl Record) -> Result<Event, SimulationError> {
         let now = self.now;
         let mut event = Event::Due { sampled: false };
         if let Some((_, guard)) = self.trip.filter(|(at, _)| *at == now) {
@@ -239,8 +237,13 @@ impl Simulation {
             self.close_window(record)?;
         }
         self.tell_arrival(record)?;
-        let sampled = event == Event::Due { sampled: true };
-        if matches!(event, Event::Guard(_)) || self.laws.concerned(now, sampled, &self.beliefs) {
+        Ok(event)
+    }
+
+    /// Laws decide on what has come up, and the actuator acts.
+    fn answer(&mut self, event: Event, record: &mut impl Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        if self.steered || self.concerns(event) {
             self.decide(event, record)?;
         }
         let met = std::mem::take(&mut self.met);
@@ -328,6 +331,7 @@ impl Simulation {
 
     fn decide(&mut self, event: Event, record: &mut impl Record) -> Result<(), SimulationError> {
         let now = self.now;
+        self.steered = false;
         self.decisions += 1;
         if self.decisions > MOST_DECISIONS {
             return Err(SimulationError::Chatter { at: now, count: self.decisions });

@@ -288,7 +288,8 @@ impl Simulation {
             }
             if self.estimates {
                 let damped = || self.laws.damped();
-                let Some(tracking) = self.estimator.tracking(&|| plant.modal_rates(), &damped) else {
+                let Some(tracking) = self.estimator.tracking(&|| plant.mode_rates().collect(), &damped)
+                else {
                     return Ok(());
                 };
                 record.record(now, Sample::Tracking(&tracking))?;

@@ -26,6 +26,7 @@ from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._scenario import Log, Result, Scenario
+from flexsc._simulator import Quantities, Simulator, Simulators, Snapshot
 from flexsc.structure import (
     StateSpace,
     Structure,
@@ -40,10 +41,14 @@ __all__ = [
     "Log",
     "LogError",
     "Plan",
+    "Quantities",
     "Result",
     "Scenario",
     "ScenarioError",
     "SimulationError",
+    "Simulator",
+    "Simulators",
+    "Snapshot",
     "StateSpace",
     "Structure",
     "Table",

@@ -85,6 +85,11 @@ impl PlanarPlant {
         &self.state
     }
 
+    /// Rates of the modes at the instant seen last (rad/s).
+    pub fn mode_rates(&self) -> impl Iterator<Item = f64> {
+        self.frequencies.iter().zip(&self.state.modes).map(|(w, phase)| w * phase.quadrature)
+    }
+
     /// Integrates up to an instant what has no closed form, as long as the record lets it: seeing the body there is then soon
     /// done.
     pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {

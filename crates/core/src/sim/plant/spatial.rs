@@ -316,8 +316,8 @@ impl SpatialPlant {
     }
 
     /// Rates of the modes (m sqrt(kg)/s) at the instant seen last.
-    pub fn modal_rates(&self) -> Vec<f64> {
-        self.elastic.rates(&self.state.modes).collect()
+    pub fn mode_rates(&self) -> impl Iterator<Item = f64> {
+        self.elastic.rates(&self.state.modes)
     }
 
     /// Energy of the elastic modes at the instant seen last (J), and of those that the sensor sees: the slow ones that it

@@ -1,0 +1,217 @@
+//! A run that Python steps.
+
+use std::time::Instant as WallInstant;
+
+use flexsc_core::law::Command;
+use flexsc_core::record::{Record, RecordError, Sample};
+use flexsc_core::time::{Instant, Span};
+use flexsc_core::{Field, Group, Occasion, Simulation, SimulationError};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::Scenario;
+use crate::aside::LOOK;
+use crate::error::simulation_error;
+
+/// A field as Python takes it: its group, its name, its unit, and how many numbers it has.
+pub type FieldRow = (&'static str, &'static str, &'static str, Option<usize>);
+
+/// The fields of a simulation's row.
+pub fn fields(fields: &[Field]) -> Vec<FieldRow> {
+    let group = |of| match of {
+        Group::State => "state",
+        Group::Measured => "measured",
+        Group::Believed => "believed",
+    };
+    fields.iter().map(|field| (group(field.group), field.name, field.unit, field.count)).collect()
+}
+
+/// The unit of commands to a scenario.
+pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
+    use flexsc_core::actuator::Actuator;
+    match &scenario.actuator {
+        Actuator::Wheel(_) => "",
+        _ if scenario.axis_count() == 3 => "N m",
+        _ => scenario.model.commanded().1,
+    }
+}
+
+/// The largest command about each axis that the actuator of a scenario can execute; infinite without a limit.
+pub fn command_limit(scenario: &flexsc_core::Scenario) -> Vec<f64> {
+    use flexsc_core::actuator::Actuator;
+    let gain = if let Actuator::Wheel(wheel) = &scenario.actuator { wheel.gain.get() } else { 1.0 };
+    let axes = scenario.study.axes.iter().zip(&scenario.study.authorities);
+    axes.map(|(axis, can)| can.accelerations[0].min(can.accelerations[1]) * axis.commanded_inertia() / gain)
+        .collect()
+}
+
+/// Commands about each axis.
+pub fn commands(values: &[f64]) -> [Command; 3] {
+    [0, 1, 2].map(|axis| Command::Torque(values.get(axis).copied().unwrap_or(0.0)))
+}
+
+/// A length of time that Python gave.
+pub fn span(dt: f64) -> PyResult<Span> {
+    let span = Span::from_seconds(if dt.is_finite() { dt } else { 0.0 });
+    if span > Span::ZERO && dt <= 1e13 {
+        return Ok(span);
+    }
+    Err(PyValueError::new_err(format!("dt must be a time of 1e-15 s to 1e13 s, got {dt}")))
+}
+
+/// A record that asks Python for signals, and ends its run where they raise.
+struct Signals {
+    since: WallInstant,
+    polls: u32,
+    raised: Option<PyErr>,
+}
+
+impl Record for Signals {
+    fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
+        Ok(())
+    }
+
+    fn poll(&mut self) -> Result<(), RecordError> {
+        self.polls += 1;
+        if self.polls.is_multiple_of(64) && self.since.elapsed() > LOOK {
+            self.since = WallInstant::now();
+            self.raised = Python::attach(|py| py.check_signals().err());
+        }
+        if self.raised.is_some() { Err(RecordError::Interrupted) } else { Ok(()) }
+    }
+}
+
+#[pyclass(module = "flexsc._native")]
+pub struct Simulator {
+    simulation: Simulation,
+    name: String,
+    axes: usize,
+    unit: &'static str,
+    limit: Vec<f64>,
+    fields: Vec<Field>,
+    /// Why it cannot go on.
+    failed: Option<String>,
+}
+
+impl Simulator {
+    pub fn of(simulation: Simulation, scenario: &flexsc_core::Scenario) -> Self {
+        Self {
+            fields: simulation.fields(scenario),
+            simulation,
+            name: scenario.name.clone(),
+            axes: scenario.axis_count(),
+            unit: command_unit(scenario),
+            limit: command_limit(scenario),
+            failed: None,
+        }
+    }
+
+    /// Goes on, as long as Python lets it.
+    fn go<T: Send>(
+        &mut self,
+        py: Python<'_>,
+        on: impl FnOnce(&mut Simulation, &mut Signals) -> Result<T, SimulationError> + Send,
+    ) -> PyResult<T> {
+        if let Some(why) = &self.failed {
+            return Err(crate::error::SimulationError::new_err(why.clone()));
+        }
+        let mut signals = Signals { since: WallInstant::now(), polls: 0, raised: None };
+        let simulation = &mut self.simulation;
+        let gone = py.detach(|| on(simulation, &mut signals));
+        gone.map_err(|error| {
+            let interrupted = signals.raised.is_some();
+            let why = if interrupted { "was interrupted".to_owned() } else { error.to_string() };
+            self.failed = Some(format!("{}: {why}; restore a snapshot, or begin anew", self.name));
+            signals.raised.unwrap_or_else(|| simulation_error(&self.name, error))
+        })
+    }
+}
+
+#[pymethods]
+impl Simulator {
+    #[new]
+    fn new(py: Python<'_>, scenario: &Scenario, run: u64) -> PyResult<Self> {
+        let mut simulator = Self::of(Simulation::new(&scenario.inner, run), &scenario.inner);
+        simulator.go(py, |simulation, record| simulation.open(record))?;
+        Ok(simulator)
+    }
+
+    #[getter]
+    fn time(&self) -> f64 {
+        self.simulation.time().seconds()
+    }
+
+    #[getter]
+    fn done(&self) -> bool {
+        self.simulation.is_done()
+    }
+
+    #[getter]
+    fn axes(&self) -> usize {
+        self.axes
+    }
+
+    #[getter]
+    fn command_unit(&self) -> &'static str {
+        self.unit
+    }
+
+    #[getter]
+    fn command_limit(&self) -> Vec<f64> {
+        self.limit.clone()
+    }
+
+    #[getter]
+    fn fields(&self) -> Vec<FieldRow> {
+        fields(&self.fields)
+    }
+
+    fn look<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut row = vec![0.0; self.fields.iter().map(Field::width).sum()];
+        self.simulation.look(&mut row).map_err(|error| simulation_error(&self.name, error))?;
+        Ok(row.into_pyarray(py))
+    }
+
+    /// Commands from now on; `values` are as many as there are axes, and finite.
+    fn steer(&mut self, values: PyReadonlyArray1<'_, f64>) {
+        let values: Vec<f64> = values.as_array().iter().copied().collect();
+        self.simulation.steer(commands(&values));
+    }
+
+    fn step(&mut self, py: Python<'_>, dt: f64) -> PyResult<()> {
+        let until = self.simulation.time() + span(dt)?;
+        self.go(py, |simulation, record| simulation.run_up_to(until, record))
+    }
+
+    fn run_until(&mut self, py: Python<'_>, time: f64) -> PyResult<()> {
+        let until = Instant::START + Span::from_seconds(time);
+        self.go(py, |simulation, record| simulation.run_up_to(until, record))
+    }
+
+    fn run_to_next(&mut self, py: Python<'_>, occasion: &str, time: f64) -> PyResult<bool> {
+        let occasion = match occasion {
+            "sample" => Occasion::Sample,
+            "decision" => Occasion::Decision,
+            "switching" => Occasion::Switching,
+            "window" => Occasion::Window,
+            _ => {
+                let why = "an event is 'sample', 'decision', 'switching' or 'window'";
+                return Err(PyValueError::new_err(format!("{why}, got {occasion:?}")));
+            }
+        };
+        let until = if time.is_finite() { Instant::START + Span::from_seconds(time) } else { Instant::END };
+        self.go(py, |simulation, record| simulation.run_to_next(occasion, until, record))
+    }
+
+    fn copy(&self) -> Self {
+        Self {
+            simulation: self.simulation.clone(),
+            name: self.name.clone(),
+            limit: self.limit.clone(),
+            fields: self.fields.clone(),
+            failed: self.failed.clone(),
+            ..*self
+        }
+    }
+}

@@ -1,0 +1,205 @@
+"""Environments: accepted by the checkers, many as each alone, ends of episodes, a study's table."""
+
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import flexsc
+import numpy as np
+import numpy.typing as npt
+import pytest
+from conftest import shipped
+from test_stepping import UNCERTAIN
+
+gymnasium = pytest.importorskip("gymnasium")
+
+from flexsc.gym import Beyond, Quadratic, SpacecraftEnv, SpacecraftVectorEnv  # noqa: E402
+from gymnasium.utils.env_checker import check_env  # noqa: E402
+
+UNBOUNDED = "ignore:.*A Box observation space m"
+
+
+@pytest.fixture(scope="module")
+def uncertain() -> flexsc.Scenario:
+    return flexsc.Scenario(UNCERTAIN).with_("duration", 5.0)
+
+
+@pytest.fixture
+def one_angle() -> flexsc.Scenario:
+    values = {"duration": 3.0, "law": {"open": {}}, "body": {"planar": {"inertia": 2.0, "angle": 1.0}}}
+    return flexsc.Scenario(values)
+
+
+@pytest.mark.filterwarnings(UNBOUNDED)
+def test_gymnasium_accepts_them(uncertain: flexsc.Scenario, one_angle: flexsc.Scenario) -> None:
+    check_env(SpacecraftEnv(uncertain), skip_render_check=True)
+    check_env(SpacecraftEnv(one_angle, limit=1.0), skip_render_check=True)
+    env = gymnasium.make("flexsc/Spacecraft-v0", scenario="four-clamped-modes", dt=1.0, limit=1.0)
+    with warnings.catch_warnings():
+        # Of what `make` wraps around it.
+        warnings.simplefilter("ignore")
+        check_env(env.unwrapped, skip_render_check=True)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_stable_baselines_accepts_them(uncertain: flexsc.Scenario) -> None:
+    checker = pytest.importorskip("stable_baselines3.common.env_checker")
+    checker.check_env(SpacecraftEnv(uncertain))
+
+
+def test_an_episode_is_the_run_that_it_names(uncertain: flexsc.Scenario) -> None:
+    env = SpacecraftEnv(uncertain, dt=0.25, observe={"measured.rate": 0.01, "state.modes": 1.0})
+    first, info = env.reset(seed=4)
+    again, other = env.reset()
+    assert info["run"] != other["run"]
+    assert not np.array_equal(first, again)
+    observation, told = env.reset(seed=4)
+    np.testing.assert_array_equal(observation, first)
+    assert told == info
+    run = info["run"]
+    sim = flexsc.Simulator(uncertain.draw(run), run)
+    action = np.array([0.3, -0.2, 1.0])
+    for _ in range(20):
+        observation, _, terminated, truncated, _ = env.step(action)
+        sim.step(action * sim.command_limit, 0.25)
+        expected = np.append(sim.measured["rate"] / 0.01, sim.state["modes"]).astype(np.float32)
+        np.testing.assert_array_equal(observation, expected)
+        assert not terminated
+        assert truncated == sim.done
+    assert sim.done
+    observation, told = env.reset(options={"run": run})
+    np.testing.assert_array_equal(observation, first)
+
+
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
+def test_many_are_what_each_is_alone(uncertain: flexsc.Scenario, mode: str) -> None:
+    # Five seconds are seven steps; some end before, as their rate is too large.
+    options: dict[str, Any] = {"dt": 0.8, "terminate": Beyond(rate=0.03), "reward": Quadratic(effort=0.5)}
+    many = SpacecraftVectorEnv(uncertain, num_envs=6, autoreset_mode=mode, **options)
+    each = [SpacecraftEnv(uncertain, **options) for _ in range(6)]
+    observations, info = many.reset(seed=10)
+    began = [env.reset(seed=10 + index) for index, env in enumerate(each)]
+    np.testing.assert_array_equal(observations, [observation for observation, _ in began])
+    np.testing.assert_array_equal(info["run"], [told["run"] for _, told in began])
+    random = np.random.default_rng(5)
+    ended = np.zeros(6, dtype=bool)
+    ends, terminations = 0, 0
+    for _ in range(30):
+        actions = random.uniform(-1.2, 1.2, (6, 3)).astype(np.float32)
+        if mode == "Disabled" and ended.any():
+            observations, info = many.reset(options={"reset_mask": ended})
+            for index in np.flatnonzero(ended):
+                observation, told = each[index].reset()
+                np.testing.assert_array_equal(observations[index], observation)
+                assert info["run"][index] == told["run"]
+            ended[:] = False
+        told_all = many.step(actions)
+        for index, env in enumerate(each):
+            if mode == "NextStep" and ended[index]:
+                observation, told = env.reset()
+                expected: tuple[Any, ...] = (observation, 0.0, False, False)
+                assert told_all[4]["run"][index] == told["run"]
+                assert told_all[4]["_run"][index]
+            else:
+                expected = env.step(actions[index])[:4]
+            ended[index] = expected[2] or expected[3]
+            terminations += int(expected[2])
+            ends += int(ended[index])
+            if mode == "SameStep" and ended[index]:
+                np.testing.assert_array_equal(told_all[4]["final_obs"][index], expected[0])
+                assert told_all[4]["_final_obs"][index]
+                expected = (env.reset()[0], *expected[1:])
+            np.testing.assert_array_equal(told_all[0][index], expected[0])
+            assert tuple(part[index] for part in told_all[1:4]) == expected[1:]
+    assert ends > terminations > 0
+    assert many.observation_space.contains(told_all[0])
+    assert many.metadata["autoreset_mode"].value == mode
+
+
+def test_episodes_end_by_time_or_by_what_happens(one_angle: flexsc.Scenario) -> None:
+    env = SpacecraftEnv(one_angle, dt=1.0, limit=2.0, terminate=Beyond(error=3.0))
+    env.reset(seed=0)
+    # 1 rad/s² from 1 rad: 1.5, 3 and 5.5 rad.
+    told = [env.step(np.ones(1))[2:4] for _ in range(3)]
+    assert told == [(False, False), (False, False), (True, True)]
+    env.reset()
+    assert [env.step(np.zeros(1))[2:4] for _ in range(3)] == [(False, False)] * 2 + [(False, True)]
+    envs = SpacecraftVectorEnv(one_angle, 2, 1.0, 2.0, autoreset_mode="Disabled")
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        envs.step(np.zeros((2, 1)))
+    envs.reset(seed=0)
+    for _ in range(3):
+        envs.step(np.zeros((2, 1)))
+    with pytest.raises(ValueError, match="2 episodes have ended"):
+        envs.step(np.zeros((2, 1)))
+
+
+def test_rewards_and_observations_are_free(one_angle: flexsc.Scenario) -> None:
+    env = SpacecraftEnv(
+        one_angle,
+        dt=1.0,
+        limit=4.0,
+        observe=lambda sims: np.stack([sims.time, sims.state["angle"]], axis=1),
+        reward=lambda sims, actions: actions[:, 0] + 10.0 * sims.state["rate"],
+    )
+    assert env.reset(seed=0)[0].tolist() == [0.0, 1.0]
+    observation, reward, *_ = env.step(np.array([0.5]))
+    assert observation.tolist() == [1.0, 1.5]
+    assert reward == 10.5
+    default = SpacecraftEnv(one_angle, dt=1.0, limit=4.0)
+    default.reset(seed=0)
+    # 1.5 rad and 1 rad/s, each a tenth of which costs 1.
+    assert default.step(np.array([0.5]))[1] == pytest.approx(-(225.0 + 100.0 + 0.01 * 0.25))
+
+
+def test_bad_arguments_are_told(uncertain: flexsc.Scenario, one_angle: flexsc.Scenario) -> None:
+    with pytest.raises(ValueError, match=r"\(N m\), the actuator has none: give `limit`"):
+        SpacecraftEnv(one_angle)
+    with pytest.raises(ValueError, match="must name `state"):
+        SpacecraftEnv(uncertain, observe={"rate": 1.0})
+    with pytest.raises(KeyError, match="no quantity 'speed'"):
+        SpacecraftEnv(uncertain, observe={"state.speed": 1.0})
+    with pytest.raises(ValueError, match=r"observe must give an array of shape \(1, numbers\)"):
+        SpacecraftEnv(uncertain, observe=lambda sims: np.zeros(3))
+    env = SpacecraftEnv(uncertain, reward=lambda sims, actions: np.zeros((1, 2)))
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match=r"actions must have shape \(1, 3\)"):
+        env.step(np.zeros(2))
+    with pytest.raises(ValueError, match=r"reward must give an array of shape \(1,\)"):
+        env.step(np.zeros(3))
+    with pytest.raises(ValueError, match="there must be 2 seeds"):
+        SpacecraftVectorEnv(uncertain, 2).reset(seed=[1])
+
+
+def rodrigues(attitude: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    return attitude[:, 1:] / (1.0 + attitude[:, :1])
+
+
+def test_the_law_of_a_study_as_an_agent() -> None:
+    """Docs: four clamped modes under -30 p - 60 w, at most 1 N m, held for a second."""
+    scenario = shipped("four-clamped-modes").with_("spacecraft.whole_damping", True)
+    envs = SpacecraftVectorEnv(
+        scenario,
+        num_envs=3,
+        dt=1.0,
+        limit=1.0,
+        observe=lambda sims: np.hstack([rodrigues(sims.state["attitude"]), sims.state["rate"]]),
+    )
+    envs.reset(seed=0)
+    state = envs.simulators.state
+
+    def rates() -> Iterator[float]:
+        nonlocal state
+        for _ in range(10):
+            envs.step(-30.0 * rodrigues(state["attitude"]) - 60.0 * state["rate"])
+            state = envs.simulators.state
+            yield float(np.abs(state["rate"]).max())
+
+    most = max(rates())
+    # Of tests/golden/outside.csv, and the largest rate of its docs.
+    np.testing.assert_allclose(
+        rodrigues(state["attitude"]), [[0.1684178601, 0.01825439783, -0.1075669416]] * 3, rtol=1e-9
+    )
+    exact = [-0.08445766623, -0.01487397736, 0.06782833490]
+    np.testing.assert_allclose(state["rate"], [exact] * 3, rtol=2e-9)
+    assert most == pytest.approx(0.08445766623, rel=2e-9)
