@@ -8,17 +8,17 @@ mod accelerometers;
 mod arrival;
 mod beside;
 mod drive;
+mod error;
 mod events;
 mod failing;
 mod journal;
+mod own;
 mod plant;
 mod reference;
 mod sensing;
 mod showing;
 mod slipping;
 mod telling;
-
-use thiserror::Error;
 
 use crate::belief::Belief;
 use crate::body::spatial::SpatialState;
@@ -33,6 +33,7 @@ use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 
 use drive::Drive;
+pub use error::SimulationError;
 pub(crate) use plant::Exerted;
 
 use plant::Plant;
@@ -42,36 +43,6 @@ use telling::Telling;
 
 /// More decisions than this at one instant are chatter: no scenario's law needs more than a few.
 const MOST_DECISIONS: u32 = 32;
-
-/// A simulation that cannot go on.
-#[derive(Debug, Error)]
-pub enum SimulationError {
-    /// The state of the body is no longer a finite number.
-    #[error("the state is no longer finite at t = {at} s")]
-    NonFinite {
-        /// When.
-        at: Instant,
-    },
-    /// The law switches without end at one instant.
-    #[error("chatter: the law decided {count} times at t = {at} s")]
-    Chatter {
-        /// When.
-        at: Instant,
-        /// How often.
-        count: u32,
-    },
-    /// Wheels slip and stick without end.
-    #[error("chatter: wheels slipped and stuck {count} times within a nanosecond at t = {at} s")]
-    WheelChatter {
-        /// When.
-        at: Instant,
-        /// How often.
-        count: u32,
-    },
-    /// The record could not be kept.
-    #[error(transparent)]
-    Record(#[from] RecordError),
-}
 
 /// All that moves in a run.
 #[derive(Clone, Debug)]
@@ -104,6 +75,8 @@ pub struct Simulation {
     telling: Telling,
     /// Whether anything was measured now, if that was read ahead.
     read: Option<bool>,
+    /// Whether parts of it are a program's own.
+    own: bool,
 }
 
 impl Simulation {
@@ -132,6 +105,7 @@ impl Simulation {
             met: false,
             slips: (0, Instant::START),
             read: None,
+            own: scenario.has_own_parts(),
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -203,6 +177,7 @@ impl Simulation {
         self.depart(record)?;
         self.turned(self.now);
         self.tell_first_slips();
+        self.check_own_parts()?;
         self.tell_begin(record)
     }
 
@@ -250,6 +225,7 @@ impl Simulation {
             self.drive.serve(now, truth.rigid);
             self.depart(record)?;
         }
+        self.check_own_parts()?;
         self.tell_slips(record)?;
         self.tell_failures(record)?;
         self.tell_accelerations(record)?;

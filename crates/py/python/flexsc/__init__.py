@@ -26,6 +26,7 @@ from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._scenario import Log, Result, Scenario
+from flexsc.parts import Actuator, Adaptation, Effort, Estimator, Hold, Law, Reading, Sensor
 from flexsc.structure import (
     StateSpace,
     Structure,
@@ -37,12 +38,20 @@ from flexsc.structure import (
 )
 
 __all__ = [
+    "Actuator",
+    "Adaptation",
+    "Effort",
+    "Estimator",
+    "Hold",
+    "Law",
     "Log",
     "LogError",
     "Plan",
+    "Reading",
     "Result",
     "Scenario",
     "ScenarioError",
+    "Sensor",
     "SimulationError",
     "StateSpace",
     "Structure",
