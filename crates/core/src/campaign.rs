@@ -110,12 +110,11 @@ impl Campaign {
     /// The campaign of a scenario over its `[uncertain]` keys and the points of a design.
     pub fn of(scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
         let scenario = scenario.with_own_modes();
-        let mut table = scenario.to_table();
+        // Parts of a program's own have no text: runs take them over.
+        let mut table = scenario.table_beside_own_parts();
         // What was drawn is said by the keys themselves.
         table.remove("uncertain");
         table.remove("correlated");
-        // Parts of a program's own have no text: runs take them over.
-        table.retain(|_, part| part.get("own").is_none());
         if let Some(why) = design.problem(scenario.uncertain.len()) {
             return Err(ScenarioError::Key { origin: origin.to_owned(), key: "design".to_owned(), why });
         }
@@ -244,6 +243,7 @@ impl Campaign {
                 .iter()
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),
+            own_parts: run.scenario.own_parts().each(),
             attachments: vec![Attachment {
                 name: "layout.json",
                 media_type: "application/json",

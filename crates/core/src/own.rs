@@ -1,6 +1,7 @@
 //! Parts from outside of this crate: kinds of a role that a program brings with it, and no scenario file can name.
 
 use std::borrow::Cow;
+use std::error::Error;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -53,6 +54,34 @@ impl<T: ?Sized> Serialize for Own<T> {
 impl<'de, T: ?Sized> Deserialize<'de> for Own<T> {
     fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
         Err(serde::de::Error::custom("is a part of a program's own, which no scenario file can name"))
+    }
+}
+
+/// Why a part of a program's own cannot go on: the error that ends its run.
+#[derive(Clone, Debug)]
+pub struct Halt(Arc<dyn Error + Send + Sync>);
+
+impl Halt {
+    /// A part that cannot go on for this reason.
+    pub fn new(error: impl Error + Send + Sync + 'static) -> Self {
+        Self(Arc::new(error))
+    }
+
+    /// The reason, if it is of this type.
+    pub fn downcast<E: Error + 'static>(&self) -> Option<&E> {
+        self.0.downcast_ref()
+    }
+}
+
+impl fmt::Display for Halt {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(out)
+    }
+}
+
+impl Error for Halt {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.0.source()
     }
 }
 

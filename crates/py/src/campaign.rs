@@ -63,6 +63,18 @@ fn array(py: Python<'_>, column: Column) -> PyResult<Bound<'_, PyAny>> {
 #[pyclass(frozen, module = "flexsc._native")]
 pub struct Work(Arc<Whole>);
 
+impl Work {
+    /// The work, if a file can describe it.
+    fn on_file(&self) -> PyResult<&Whole> {
+        if self.0.campaign.scenario().has_own_parts() {
+            let why = "the scenario has parts written in Python, which are in this process alone: leave out `out`, `executor` and \
+                       `progress`, and its runs are made on threads here";
+            return Err(PyValueError::new_err(why));
+        }
+        Ok(&self.0)
+    }
+}
+
 #[pymethods]
 impl Work {
     /// The work of some runs; `part` is the number of runs of a part, in place of about 4 s of work.
@@ -96,6 +108,10 @@ impl Work {
         let count = runs.1.saturating_sub(runs.0);
         let cost = campaign.cost(count, None).map_err(|why| wrong(format!("runs {why}")))?;
         allowed(&cost, yes)?;
+        if scenario.inner.has_own_parts() {
+            let whole = Whole::here(campaign, runs.0..runs.1, selection).map_err(wrong)?;
+            return Ok(Self(Arc::new(whole)));
+        }
         let mut manifest = Manifest::new(&campaign, runs.0..runs.1, &selection).map_err(wrong)?;
         if let Some(part_s) = part_s {
             manifest.shorten(part_s);
@@ -117,8 +133,8 @@ impl Work {
     }
 
     #[getter]
-    fn manifest(&self) -> String {
-        self.0.manifest.to_toml()
+    fn manifest(&self) -> PyResult<String> {
+        self.on_file().map(|work| work.manifest.to_toml())
     }
 
     #[getter]
@@ -202,7 +218,7 @@ impl Directory {
     /// Begins a directory, or continues one; it is locked as long as this lives.
     #[staticmethod]
     fn create(py: Python<'_>, path: PathBuf, work: &Work, force: bool) -> PyResult<Self> {
-        let manifest = work.0.manifest.clone();
+        let manifest = work.on_file()?.manifest.clone();
         let made = aside(py, move |_| Parts::create(&path, manifest, force))?;
         Ok(Self(Arc::new(made.map_err(failed)?)))
     }

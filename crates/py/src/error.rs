@@ -50,7 +50,13 @@ pub fn allowed(cost: &flexsc_core::scenario::Cost, yes: bool) -> PyResult<()> {
     }
 }
 
+/// The exception of a run that ended; that of a part written in Python is its own.
 pub fn simulation_error(name: &str, error: flexsc_core::SimulationError) -> PyErr {
+    if let flexsc_core::SimulationError::Own { source, .. } = &error
+        && let Some(raised) = source.downcast::<PyErr>()
+    {
+        return Python::attach(|py| raised.clone_ref(py));
+    }
     SimulationError::new_err(format!("{name}: {error}"))
 }
 

@@ -11,6 +11,8 @@ mod columns;
 mod copies;
 mod damping;
 mod error;
+mod linear;
+mod parts;
 mod sampled;
 mod stepping;
 
@@ -52,6 +54,13 @@ mod _native {
     };
     #[pymodule_export]
     use super::error::{LogError, ScenarioError, SimulationError};
+    #[pymodule_export]
+    use super::linear::{exponential, linear_json};
+    #[pymodule_export]
+    use super::parts::{
+        Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Reading, Setting, Stream, Taken,
+        Truth,
+    };
     #[pymodule_export]
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
     #[pymodule_export]
@@ -125,11 +134,34 @@ impl Scenario {
     }
 
     fn with_keys(&self, keys: Vec<(String, String)>) -> PyResult<Self> {
-        let mut document = Document::from_table(&self.origin, self.inner.to_table());
+        let mut document = Document::from_table(&self.origin, self.inner.table_beside_own_parts());
         for (key, value) in keys {
             document.set_text(&key, &value).map_err(scenario_error)?;
         }
         Self::new(&self.origin, flexsc_core::Scenario::from_document_like(&document, &self.inner))
+    }
+
+    /// The scenario with parts written in Python in place of its own, each with its role.
+    fn with_parts(&self, py: Python<'_>, parts: Vec<parts::Named>) -> PyResult<Self> {
+        Self::new(&self.origin, self.inner.bringing(parts::own_parts(py, parts)?))
+    }
+
+    /// A scenario of a text beside which parts stand that are written in Python.
+    #[staticmethod]
+    fn beside(py: Python<'_>, text: &str, name: &str, parts: Vec<parts::Named>) -> PyResult<Self> {
+        let document = Document::parse(name, text.to_owned()).map_err(scenario_error)?;
+        let own = parts::own_parts(py, parts)?;
+        Self::new(name, flexsc_core::Scenario::from_document_beside(&document, &own))
+    }
+
+    /// Its parts that are written in Python, each with its role.
+    fn parts(&self, py: Python<'_>) -> Vec<parts::Named> {
+        parts::named(py, &self.inner.own_parts())
+    }
+
+    /// The text of what is not written in Python.
+    fn text_beside(&self) -> String {
+        toml::to_string(&self.inner.table_beside_own_parts()).unwrap_or_default()
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {
@@ -202,7 +234,11 @@ fn simulate<'py>(
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
-    let (metrics, trace) = aside(py, move |stop| (Campaign::simulate(&run, (&mut trace, stop)), trace))?;
+    let is_own = scenario.inner.has_own_parts();
+    let (metrics, trace) = aside(py, move |stop| {
+        let metrics = parts::known_thread(is_own, || Campaign::simulate(&run, (&mut trace, stop)));
+        (metrics, trace)
+    })?;
     let metrics = metrics.map_err(|error| simulation_error(scenario.name(), error))?;
     let topics = PyDict::new(py);
     for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
@@ -215,10 +251,10 @@ fn simulate<'py>(
 fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathBuf) -> PyResult<u64> {
     let none = || PyValueError::new_err("log must be 'events', 'full' or 'scene' for a file");
     let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
-    let place = path.clone();
+    let (place, is_own) = (path.clone(), scenario.inner.has_own_parts());
     let written = aside(py, move |stop| {
         let mut file = LogFile::create(&place, &Campaign::provenance(&run, detail), detail)?;
-        let metrics = Campaign::simulate(&run, (&mut file, stop))?;
+        let metrics = parts::known_thread(is_own, || Campaign::simulate(&run, (&mut file, stop)))?;
         Ok(file.finish(&metrics, RunEnd::Complete)?)
     })?;
     written.map_err(|error| error::unwritten(&path, scenario.name(), error))

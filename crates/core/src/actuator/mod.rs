@@ -24,6 +24,7 @@ mod wheel;
 mod wheels;
 mod written;
 
+use std::any::Any;
 use std::fmt;
 
 use schemars::JsonSchema;
@@ -33,7 +34,7 @@ use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::document::Fault;
 use crate::motion::turning::Turned;
-use crate::own::Own;
+use crate::own::{Halt, Own};
 use crate::record::{self, WheelMotion};
 use crate::time::{Instant, Span};
 
@@ -100,6 +101,11 @@ pub trait Effector: Send + Sync {
 
     /// Its largest torque about an axis (N m); none without a limit.
     fn limit(&self, _axis: usize) -> Option<f64> {
+        None
+    }
+
+    /// What it is, for the program that brought it.
+    fn any(&self) -> Option<&dyn Any> {
         None
     }
 }
@@ -198,6 +204,11 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     /// The pulses that wait for the cycle that begins.
     fn waiting(&self) -> Vec<Pulse> {
         Vec::new()
+    }
+
+    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    fn halted(&self) -> Option<Halt> {
+        None
     }
 
     /// A copy in the same state.

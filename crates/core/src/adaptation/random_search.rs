@@ -7,8 +7,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Learn;
 use crate::label::labels;
 use crate::quantity::{Finite, Positive};
+use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
 /// The constants of the search.
@@ -150,5 +152,29 @@ impl Search {
         self.gain = (self.gain + self.draw * self.constants.step.get()).clamp(low, high);
         let Self { gain, draw, settled, .. } = *self;
         Step { decision, change, draw, gain, settled }
+    }
+}
+
+/// The search with the numbers that it draws, one for each window.
+#[derive(Clone, Debug)]
+pub(super) struct Drawing {
+    search: Search,
+    draws: Stream,
+}
+
+impl Drawing {
+    /// A search in a run.
+    pub fn new(search: Search, seed: Seed) -> Self {
+        Self { search, draws: seed.stream("adaptation") }
+    }
+}
+
+impl Learn for Drawing {
+    fn learn(&mut self, now: Instant, mean: f64) -> Option<Step> {
+        self.search.learn(now, mean, self.draws.uniform())
+    }
+
+    fn copy(&self) -> Box<dyn Learn> {
+        Box::new(self.clone())
     }
 }

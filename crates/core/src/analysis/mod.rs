@@ -4,6 +4,7 @@ pub mod cycle;
 pub mod damping;
 pub mod identification;
 pub mod influence;
+pub mod linear_model;
 pub mod modal;
 pub mod parts;
 pub mod rigid_cycle;

@@ -53,6 +53,18 @@ impl Manifest {
     /// # Errors
     /// A campaign that no text can hold.
     pub fn new(campaign: &Campaign, runs: Range<u64>, selection: &Selection) -> Result<Self, Wrong> {
+        if campaign.scenario().has_own_parts() {
+            return Err("has parts of a program's own, which no file can hold".to_owned());
+        }
+        Self::in_memory(campaign, runs, selection)
+    }
+
+    /// The same of a campaign that no file has to hold.
+    pub(super) fn in_memory(
+        campaign: &Campaign,
+        runs: Range<u64>,
+        selection: &Selection,
+    ) -> Result<Self, Wrong> {
         let design = campaign.design().clone();
         if design.runs().is_some_and(|all| runs.end > all) {
             let all = design.runs().unwrap_or_default();
@@ -60,9 +72,6 @@ impl Manifest {
                 "the design has {all} runs, and runs {} to {} are wanted",
                 runs.start, runs.end
             ));
-        }
-        if campaign.scenario().has_own_parts() {
-            return Err("has parts of a program's own, which no file can hold".to_owned());
         }
         let seconds = campaign.cost(1, None)?.seconds;
         let mut manifest = Self {

@@ -40,6 +40,13 @@ impl Work {
         Ok(Self { manifest, campaign, selection, fields })
     }
 
+    /// The work of runs that are made here alone, with parts of a program's own too.
+    pub fn here(campaign: Campaign, runs: Range<u64>, selection: Selection) -> Result<Self, String> {
+        let manifest = Manifest::in_memory(&campaign, runs, &selection)?;
+        let fields = campaign.fields(&selection);
+        Ok(Self { manifest, campaign: Arc::new(campaign), selection, fields })
+    }
+
     /// No rows yet.
     pub fn rows(&self) -> Rows {
         Rows::new(self.fields.clone())

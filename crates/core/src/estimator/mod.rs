@@ -10,6 +10,7 @@ mod monitor;
 mod rigid_rate;
 mod sampled;
 
+use std::any::Any;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -20,7 +21,7 @@ use crate::actuator::Actuate;
 use crate::belief::{Belief, Damped, Reads};
 use crate::body::{Drift, Mode, Planar};
 use crate::motion::State;
-use crate::own::Own;
+use crate::own::{Halt, Own};
 use crate::quantity::{NonNegative, Positive};
 use crate::random::Seed;
 use crate::record;
@@ -63,6 +64,11 @@ pub enum Estimator {
 pub trait Observe: Send + Sync {
     /// The estimator at work, in what it is told of a scenario.
     fn start(&self, known: &Known<'_>, seed: Seed) -> Box<dyn Estimate>;
+
+    /// What it is, for the program that brought it.
+    fn any(&self) -> Option<&dyn Any> {
+        None
+    }
 }
 
 /// What an ideal observer knows.
@@ -173,6 +179,11 @@ pub trait Estimate: fmt::Debug + Send + Sync {
     /// The true state of that filter's components.
     fn true_state(&self, _now: Instant, _truth: &State) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    fn halted(&self) -> Option<Halt> {
+        None
     }
 
     /// A copy in the same state.

@@ -1,10 +1,11 @@
 //! The envelope monitor: its observer, its windows, and the adaptation that learns from them.
 
 use super::{Envelope, EnvelopeMonitor};
-use crate::adaptation::{Adaptation, Search};
+use crate::adaptation::{Adaptation, Learn};
 use crate::body::Planar;
 use crate::motion::State;
-use crate::random::{Seed, Stream};
+use crate::own::Halt;
+use crate::random::Seed;
 use crate::record::{self, ModeEnvelope, WindowMean};
 use crate::time::{Instant, Span};
 
@@ -25,8 +26,7 @@ pub struct Monitor {
 /// The adaptation at work.
 #[derive(Clone, Debug)]
 struct Searching {
-    search: Search,
-    draws: Stream,
+    search: Box<dyn Learn>,
     /// The number of the law that it tunes, and its value.
     key: String,
     value: f64,
@@ -50,10 +50,10 @@ impl Monitor {
         tunable: &[(&str, f64)],
         seed: Seed,
     ) -> Self {
-        let search = adaptation.cloned().map(|Adaptation::RandomSearch(constants)| {
-            let key = constants.tunes.clone();
+        let search = adaptation.map(|adaptation| {
+            let key = adaptation.tunes().to_owned();
             let value = tunable.iter().find(|(known, _)| *known == key).map_or(f64::NAN, |(_, value)| *value);
-            Searching { search: Search::new(constants, value), draws: seed.stream("adaptation"), key, value }
+            Searching { search: adaptation.start(value, seed), key, value }
         });
         Self {
             observer: EnvelopeMonitor::new(spec, &model.modes, model.inertia.get()),
@@ -93,7 +93,7 @@ impl Monitor {
         self.closes = now + self.window;
         self.index += 1;
         let step = self.search.as_mut().and_then(|searching| {
-            let step = searching.search.learn(now, mean.mean_rad, searching.draws.uniform())?;
+            let step = searching.search.learn(now, mean.mean_rad)?;
             let row = record::Adaptation {
                 window: mean.window,
                 decision: step.decision,
@@ -105,6 +105,11 @@ impl Monitor {
             Some((row, std::mem::replace(&mut searching.value, step.gain)))
         });
         Closed { mean, step }
+    }
+
+    /// Why an adaptation from outside cannot go on.
+    pub fn halted(&self) -> Option<Halt> {
+        self.search.as_ref().and_then(|searching| searching.search.halted())
     }
 
     /// The key of the number that the adaptation tunes.

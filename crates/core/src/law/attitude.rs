@@ -212,7 +212,7 @@ mod tests {
         let law: AttitudeLaw = crate::document::from_text(&text).unwrap();
         assert_eq!(law.inconsistency(), None);
         let width = PulseWidth::default();
-        law.start(&Authority { accelerations: [most; 2], width, delay: 0.0, threshold: 0.0 })
+        law.start(&Authority { axis: 0, accelerations: [most; 2], width, delay: 0.0, threshold: 0.0 })
     }
 
     fn command(law: &mut dyn Control, angle: f64, rate: f64, acceleration: f64) -> f64 {

@@ -3,6 +3,7 @@
 use super::{Authority, Cause, Command, Control, Damped, Goal, Hold, Law};
 use crate::belief::Belief;
 use crate::guard::Guard;
+use crate::own::Halt;
 use crate::time::Instant;
 
 /// The laws at work.
@@ -118,6 +119,11 @@ impl Controls {
     /// The law about an axis.
     pub fn about(&self, axis: usize) -> &dyn Control {
         &*self.axes[axis].law
+    }
+
+    /// Why one from outside cannot go on.
+    pub fn halted(&self) -> Option<Halt> {
+        self.axes.iter().find_map(|held| held.law.halted())
     }
 
     /// Tunes a number of all of them.

@@ -21,6 +21,7 @@ mod stages;
 mod state_space;
 mod switching_lines;
 
+use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 
@@ -32,7 +33,7 @@ pub use crate::belief::Reads;
 use crate::belief::{Belief, Damped};
 use crate::document::Fault;
 use crate::guard::Guard;
-use crate::own::Own;
+use crate::own::{Halt, Own};
 use crate::quantity::Finite;
 use crate::time::{Instant, Span};
 
@@ -110,6 +111,11 @@ pub trait Rule {
     fn tunable(&self) -> Vec<(&'static str, f64)> {
         Vec::new()
     }
+
+    /// What it is, for the program that brought it.
+    fn any(&self) -> Option<&dyn Any> {
+        None
+    }
 }
 
 /// A law at work about one axis.
@@ -119,6 +125,11 @@ pub trait Control: fmt::Debug + Send + Sync {
 
     /// The state that the law is in.
     fn state(&self) -> Phase;
+
+    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    fn halted(&self) -> Option<Halt> {
+        None
+    }
 
     /// A copy in the same state.
     fn copy(&self) -> Box<dyn Control>;
@@ -156,6 +167,8 @@ impl Clone for Box<dyn Control> {
 /// What an actuator can do about an axis, as laws know it.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Authority {
+    /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
+    pub axis: usize,
     /// Accelerations of plus and minus (rad/s²); endless without a limit.
     pub accelerations: [f64; 2],
     /// What it makes of a wanted pulse.

@@ -91,6 +91,7 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
     let law: AttitudeLaw =
         crate::document::from_text("period = 0.25\nbandwidth = 0.1\ndamping = 0.8").unwrap();
     let authority = Authority {
+        axis: 0,
         accelerations: [f64::INFINITY; 2],
         width: PulseWidth::default(),
         delay: 0.0,

@@ -151,6 +151,7 @@ mod tests {
         assert_eq!(laws.inconsistency(), None);
         assert_eq!(laws.period(), Some(Span::from_seconds(1.0)));
         let authority = Authority {
+            axis: 0,
             accelerations: [f64::INFINITY; 2],
             width: PulseWidth::default(),
             delay: 0.0,

@@ -41,7 +41,8 @@ impl<W: Write + Seek> McapLog<W> {
             ("units", "SI: rad, s, kg m², N m; suffixes of the fields name them".to_owned()),
         ];
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
-        write_metadata(&mut writer, "flexsc.run", metadata.into())?;
+        let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
+        write_metadata(&mut writer, "flexsc.run", metadata.into_iter().chain(own).collect())?;
         let channels = Channels { writer, of: vec![None; TOPICS.len()], since_flush: 0 };
         Ok(Self { log: Encode::new(channels, from, detail)? })
     }

@@ -23,6 +23,8 @@ pub struct Provenance {
     pub epoch_ns: u64,
     /// The observed coordinates, in the order in which they are logged.
     pub outputs: Vec<OutputName>,
+    /// The roles of parts that a program brought with it: with some the run does not repeat from its scenario alone.
+    pub own_parts: Vec<&'static str>,
     /// What lies in the log beside its messages and its scenario.
     pub attachments: Vec<Attachment>,
 }

@@ -46,7 +46,7 @@ impl Study {
                 ([of(0), of(1)], jets.width(), f64::from(jets.delay) * period.seconds())
             }
         };
-        Authority { accelerations, width, delay, threshold: 0.0 }
+        Authority { axis, accelerations, width, delay, threshold: 0.0 }
     }
 
     /// The elastic rate beyond which the active damping of an axis acts (rad/s); 0 of a law without it.

@@ -102,12 +102,13 @@ impl Scenario {
     }
 
     pub(super) fn adaptation_inconsistency(&self) -> Option<Fault> {
-        let Some(Adaptation::RandomSearch(search)) = &self.adaptation else { return None };
-        let [low, high] = search.bounds.map(Finite::get);
+        let adaptation = self.adaptation.as_ref()?;
         let tunable = self.law.tunable();
-        let Some(gain) = tunable.iter().find(|(key, _)| *key == search.tunes).map(|(_, value)| *value) else {
+        let tunes = adaptation.tunes();
+        let kind = if let Adaptation::Own(_) = adaptation { "own" } else { "random_search" };
+        let Some(gain) = tunable.iter().find(|(key, _)| *key == tunes).map(|(_, value)| *value) else {
             let known: Vec<_> = tunable.iter().map(|(key, _)| format!("`{key}`")).collect();
-            let why = match (known.is_empty(), search.tunes.as_str()) {
+            let why = match (known.is_empty(), tunes) {
                 (true, "k_t") => "adapts the gain k_t of a law `relay`, and there is none".to_owned(),
                 (true, _) => format!("tunes a number of the law, and the law `{}` has none", self.law.kind()),
                 (false, tunes) => {
@@ -118,15 +119,17 @@ impl Scenario {
                     )
                 }
             };
-            let key =
-                if known.is_empty() { "adaptation.random_search" } else { "adaptation.random_search.tunes" };
+            let tunes = if known.is_empty() { "" } else { ".tunes" };
+            let key = format!("adaptation.{kind}{tunes}");
             return Some(Fault::new(key, why));
         };
         let bounds = "adaptation.random_search.bounds".to_owned();
         if self.estimator.as_ref().is_none_or(|estimator| estimator.envelope().is_none()) {
             let why = "needs the window means of an `[estimator.envelope]`, and there is none";
-            return Some(Fault::new("adaptation.random_search", why));
+            return Some(Fault::new(format!("adaptation.{kind}"), why));
         }
+        let Adaptation::RandomSearch(search) = adaptation else { return None };
+        let [low, high] = search.bounds.map(Finite::get);
         if low >= high {
             return Some(Fault::new(
                 bounds,

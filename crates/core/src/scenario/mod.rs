@@ -10,6 +10,7 @@ mod failing;
 mod known;
 mod learning;
 mod log;
+mod own;
 mod parts;
 mod reference;
 mod sensing;
@@ -46,6 +47,7 @@ pub use cost::{Cost, MOST_RUNS};
 pub use drives::{Courses, Drives};
 pub use failing::Failing;
 pub use log::{Log, SceneSpec};
+pub use own::OwnParts;
 pub use reference::{Pointing, Reference};
 pub use study::Study;
 
@@ -150,29 +152,32 @@ impl Scenario {
 
     /// Reads a scenario from a document.
     pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
-        Self::solved(document, None, true)
+        Self::solved(document, None, &OwnParts::default(), true)
     }
 
     /// Reads a scenario from a document that differs from another scenario in some keys. If the body is not among them,
     /// its modes are taken over.
     pub fn from_document_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
-        Self::solved(document, Some(parent), true)
+        Self::solved(document, Some(parent), &parent.own_parts(), true)
     }
 
     /// The same of a document that differs in the values of numbers alone: every key of it is known.
     pub(crate) fn from_numbers_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
-        Self::solved(document, Some(parent), false)
+        Self::solved(document, Some(parent), &parent.own_parts(), false)
     }
 
-    fn solved(document: &Document, parent: Option<&Self>, new_keys: bool) -> Result<Self, ScenarioError> {
+    fn solved(
+        document: &Document,
+        parent: Option<&Self>,
+        own: &OwnParts,
+        new_keys: bool,
+    ) -> Result<Self, ScenarioError> {
         let document = &*document.in_si(units)?;
         let mut scenario: Self = document.read()?;
         if let Some(error) = new_keys.then(|| document.unread(&scenario.to_table())).flatten() {
             return Err(error);
         }
-        if let Some(parent) = parent {
-            scenario.take_own_parts(parent);
-        }
+        scenario.take_own_parts(own, document);
         if scenario.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             scenario.name = stem.unwrap_or_default().to_string_lossy().into_owned();
@@ -201,42 +206,6 @@ impl Scenario {
             Some(problem) => return Err(inconsistent(problem)),
         }
         Ok(scenario)
-    }
-
-    /// The scenario with a part of a program's own, such as `law: Law::Own(..)`, in place of what was read.
-    ///
-    /// # Errors
-    /// The part does not fit the others.
-    pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Result<Self, ScenarioError> {
-        change(&mut self);
-        let origin = self.name.clone();
-        let fault = |fault: Fault| ScenarioError::Key { origin, key: fault.key, why: fault.why };
-        self.fit().and_then(|()| self.inconsistency().map_or(Ok(()), Err)).map_err(fault)?;
-        Ok(self)
-    }
-
-    /// Whether it has a part of a program's own, which no text can hold.
-    pub fn has_own_parts(&self) -> bool {
-        matches!(self.law, Law::Own(_))
-            || self.sensor.iter().any(|sensor| matches!(sensor, Sensor::Own(_)))
-            || matches!(self.estimator, Some(Estimator::Own(_)))
-            || matches!(self.actuator, Actuator::Own(_))
-    }
-
-    /// Takes over the parts of a program's own.
-    fn take_own_parts(&mut self, other: &Self) {
-        if let Law::Own(_) = other.law {
-            self.law.clone_from(&other.law);
-        }
-        if other.sensor.iter().any(|sensor| matches!(sensor, Sensor::Own(_))) {
-            self.sensor.clone_from(&other.sensor);
-        }
-        if let Some(Estimator::Own(_)) = other.estimator {
-            self.estimator.clone_from(&other.estimator);
-        }
-        if let Actuator::Own(_) = other.actuator {
-            self.actuator.clone_from(&other.actuator);
-        }
     }
 
     /// The scenario's body of one angle, for what is an analysis of such bodies.

@@ -3,6 +3,7 @@
 mod accelerometer;
 mod counter;
 mod gyro;
+mod instrument;
 mod late;
 mod magnetometer;
 mod sampled;
@@ -20,13 +21,14 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::{AXES, Vector, beyond, rotation};
 use crate::document::{self, Parts};
 use crate::environment::Seen;
-use crate::own::Own;
+use crate::own::{Halt, Own};
 use crate::quantity::Positive;
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
 pub use accelerometer::{Accelerating, Accelerometer, Felt};
 pub use gyro::{AtCycles, Gyro};
+pub use instrument::Instrument;
 pub use magnetometer::Magnetometer;
 pub use sampled::{AtSamples, Fault, Sampled};
 pub use star_tracker::StarTracker;
@@ -58,25 +60,6 @@ pub enum Sensor {
     Own(Own<dyn Instrument>),
 }
 
-/// What a sensor from outside tells of itself before a run.
-pub trait Instrument: Send + Sync {
-    /// The sensor in a run of a body with so many axes.
-    fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sense>;
-
-    /// The period of its samples.
-    fn period(&self) -> Span;
-
-    /// Standard deviation of the measured angle (rad).
-    fn angle_noise(&self) -> f64 {
-        0.0
-    }
-
-    /// Standard deviation of the measured rate (rad/s), if rates are measured.
-    fn rate_noise(&self) -> Option<f64> {
-        None
-    }
-}
-
 /// A sensor at work.
 pub trait Sense: fmt::Debug + Send + Sync {
     /// What is measured now, after the last reading; nothing of a sensor that is silent.
@@ -89,6 +72,11 @@ pub trait Sense: fmt::Debug + Send + Sync {
 
     /// The true bias of its rates now (rad/s), of a gyro.
     fn bias(&self) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    fn halted(&self) -> Option<Halt> {
         None
     }
 

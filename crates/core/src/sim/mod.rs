@@ -8,9 +8,11 @@ mod accelerometers;
 mod arrival;
 mod beside;
 mod drive;
+mod error;
 mod events;
 mod failing;
 mod journal;
+mod own;
 mod plant;
 mod reference;
 mod sensing;
@@ -19,8 +21,6 @@ mod sight;
 mod slipping;
 mod stepping;
 mod telling;
-
-use thiserror::Error;
 
 use crate::belief::Belief;
 use crate::environment::into;
@@ -33,6 +33,7 @@ use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 
 use drive::Drive;
+pub use error::SimulationError;
 pub(crate) use plant::Exerted;
 pub use sight::{Field, Group};
 pub use stepping::Occasion;
@@ -44,36 +45,6 @@ use telling::Telling;
 
 /// More decisions than this at one instant are chatter: no scenario's law needs more than a few.
 const MOST_DECISIONS: u32 = 32;
-
-/// A simulation that cannot go on.
-#[derive(Debug, Error)]
-pub enum SimulationError {
-    /// The state of the body is no longer a finite number.
-    #[error("the state is no longer finite at t = {at} s")]
-    NonFinite {
-        /// When.
-        at: Instant,
-    },
-    /// The law switches without end at one instant.
-    #[error("chatter: the law decided {count} times at t = {at} s")]
-    Chatter {
-        /// When.
-        at: Instant,
-        /// How often.
-        count: u32,
-    },
-    /// Wheels slip and stick without end.
-    #[error("chatter: wheels slipped and stuck {count} times within a nanosecond at t = {at} s")]
-    WheelChatter {
-        /// When.
-        at: Instant,
-        /// How often.
-        count: u32,
-    },
-    /// The record could not be kept.
-    #[error(transparent)]
-    Record(#[from] RecordError),
-}
 
 /// All that moves in a run.
 #[derive(Clone, Debug)]
@@ -110,6 +81,8 @@ pub struct Simulation {
     unanswered: Option<Event>,
     /// Whether there are commands from outside that the actuator does not have yet.
     steered: bool,
+    /// Whether parts of it are a program's own.
+    own: bool,
 }
 
 impl Simulation {
@@ -140,6 +113,7 @@ impl Simulation {
             read: None,
             unanswered: None,
             steered: false,
+            own: scenario.has_own_parts(),
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -195,6 +169,7 @@ impl Simulation {
         self.depart(record)?;
         self.turned(self.now);
         self.tell_first_slips();
+        self.check_own_parts()?;
         self.tell_begin(record)
     }
 
@@ -253,6 +228,7 @@ impl Simulation {
             self.drive.serve(now, truth.rigid);
             self.depart(record)?;
         }
+        self.check_own_parts()?;
         self.tell_slips(record)?;
         self.tell_failures(record)?;
         self.tell_accelerations(record)?;

@@ -1,6 +1,7 @@
 //! The sensors of a run: when each is due, and what their readings come to about each axis.
 
 use crate::attitude::Vector;
+use crate::own::Halt;
 use crate::random::Seed;
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Reading, Sense, Sensor, Truth};
@@ -114,6 +115,11 @@ impl Sensing {
         }
         self.next = self.sensors.iter().filter_map(|due| due.next).min();
         any
+    }
+
+    /// Why a sensor from outside cannot go on.
+    pub fn halted(&self) -> Option<Halt> {
+        self.sensors.iter().find_map(|due| due.sensor.halted())
     }
 
     /// The true bias of the first gyro now (rad/s).

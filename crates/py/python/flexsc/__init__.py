@@ -27,6 +27,7 @@ from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._scenario import Log, Result, Scenario
 from flexsc._simulator import Quantities, Simulator, Simulators, Snapshot
+from flexsc.parts import Actuator, Adaptation, Effort, Estimator, Hold, Law, Reading, Sensor
 from flexsc.structure import (
     StateSpace,
     Structure,
@@ -38,13 +39,21 @@ from flexsc.structure import (
 )
 
 __all__ = [
+    "Actuator",
+    "Adaptation",
+    "Effort",
+    "Estimator",
+    "Hold",
+    "Law",
     "Log",
     "LogError",
     "Plan",
     "Quantities",
+    "Reading",
     "Result",
     "Scenario",
     "ScenarioError",
+    "Sensor",
     "SimulationError",
     "Simulator",
     "Simulators",

@@ -2,20 +2,33 @@
 
 import os
 from collections.abc import Sequence
-from typing import Any, Final, TypeAlias, final
+from typing import Any, Final, Literal, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Authority",
+    "Demanded",
     "Directory",
+    "Draws",
+    "Effort",
+    "Event",
+    "Hold",
+    "Instant",
+    "Known",
     "Log",
     "LogError",
+    "Reading",
     "Scenario",
     "ScenarioError",
+    "Setting",
     "SimulationError",
     "Simulator",
     "Simulators",
+    "Stream",
+    "Taken",
+    "Truth",
     "Work",
     "__version__",
     "examples",
@@ -73,6 +86,11 @@ class Scenario:
     @staticmethod
     def from_values(text: str, name: str) -> Scenario: ...
     def with_keys(self, keys: Sequence[tuple[str, str]]) -> Scenario: ...
+    def with_parts(self, parts: Sequence[tuple[str, object]]) -> Scenario: ...
+    @staticmethod
+    def beside(text: str, name: str, parts: Sequence[tuple[str, object]]) -> Scenario: ...
+    def parts(self) -> list[tuple[str, Any]]: ...
+    def text_beside(self) -> str: ...
     def draw(self, run: int) -> Scenario: ...
     @property
     def name(self) -> str: ...
@@ -90,6 +108,338 @@ class Scenario:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__ = None  # type: ignore[assignment]
+
+_Three: TypeAlias = tuple[float, float, float]
+_Four: TypeAlias = tuple[float, float, float, float]
+
+@final
+class Instant:
+    """An instant of a run, to the femtosecond: `Instant(whole, femtoseconds)`."""
+
+    def __new__(cls, whole: int, femtoseconds: int) -> Instant: ...
+    @property
+    def seconds(self) -> float:
+        """The instant (s), rounded to a float."""
+    def __float__(self) -> float: ...
+    def __sub__(self, earlier: Instant, /) -> float: ...
+    def __add__(self, seconds: float, /) -> Instant: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __lt__(self, other: Instant, /) -> bool: ...
+    def __le__(self, other: Instant, /) -> bool: ...
+    def __gt__(self, other: Instant, /) -> bool: ...
+    def __ge__(self, other: Instant, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, tuple[int, int]]: ...
+    def __deepcopy__(self, _memo: object) -> Instant: ...
+
+@final
+class Stream:
+    """Random numbers of a run, the same on every machine. A copy goes on as this one does."""
+
+    def uniform(self) -> float:
+        """A number of [0, 1)."""
+    def normal(self) -> float:
+        """A number with mean 0 and standard deviation 1."""
+    def __deepcopy__(self, _memo: object) -> Stream: ...
+
+@final
+class Draws:
+    """What the random numbers of a run come from."""
+
+    @property
+    def seed(self) -> int:
+        """The scenario's seed."""
+    @property
+    def run(self) -> int:
+        """The number of the run."""
+    def stream(self, name: str) -> Stream:
+        """The stream of a name. Streams of other names are independent of it."""
+    def __deepcopy__(self, _memo: object) -> Draws: ...
+
+@final
+class Authority:
+    """What an actuator can do about an axis, as laws know it."""
+
+    @property
+    def axis(self) -> int:
+        """The axis: 0, or 0 to 2 for roll, pitch and yaw."""
+    @property
+    def accelerations(self) -> tuple[float, float]:
+        """The largest accelerations of plus and minus (rad/s²); infinite without a limit."""
+    @property
+    def delay(self) -> float:
+        """Time from a command to its execution (s)."""
+    def __deepcopy__(self, _memo: object) -> Authority: ...
+
+@final
+class Event:
+    """Why a law is asked, and what it knows then. Angles count from the target on three axes."""
+
+    @property
+    def now(self) -> Instant:
+        """When: `event.now - earlier` is the time between (s), without rounding before the difference."""
+    @property
+    def time(self) -> float:
+        """The same in seconds."""
+    @property
+    def cause(self) -> Literal["start", "timeout", "at_least", "at_most"]:
+        """The start of the run, the time of the last hold, or its level that the angle has passed."""
+    @property
+    def angle(self) -> float:
+        """Angle (rad)."""
+    @property
+    def rate(self) -> float:
+        """Rate (rad/s)."""
+    @property
+    def goal_angle(self) -> float:
+        """Where the body shall be now (rad)."""
+    @property
+    def goal_rate(self) -> float:
+        """How fast it shall turn (rad/s)."""
+    @property
+    def goal_acceleration(self) -> float:
+        """And how that shall change (rad/s²), of a target that the body is led to."""
+    @property
+    def goal_from(self) -> Instant:
+        """From when on the goal counts: the start, or the end of a manoeuvre."""
+    @property
+    def whole(self) -> float:
+        """Length of the vector of the angles about all axes (rad); 0 of a body with one angle."""
+    @property
+    def field_rate(self) -> float:
+        """How fast the magnetic field along the axis changes (T/s)."""
+    @property
+    def queued(self) -> float:
+        """Change of the rate that is commanded, and not yet executed (rad/s)."""
+    @property
+    def dominant(self) -> _Three:
+        """The dominant mode: displacement (rad), its rate (rad/s) and frequency (rad/s)."""
+    @property
+    def elastic(self) -> list[_Three]:
+        """The elastic modes: rate (rad/s), frequency (rad/s), and its jump for each jump of the rigid rate."""
+    @property
+    def trusted(self) -> bool:
+        """Whether the elastic modes may be acted on."""
+
+@final
+class Hold:
+    """A command from now on, and when the law is asked again.
+
+    `Hold(torque)` holds a torque (N m; rad/s² on a body without inertia; of a wheel, units of its command);
+    `acceleration` (rad/s²), `change` of the rigid rate (rad/s) and `moment` (A m²) take its place. The law is
+    asked again `after` so many seconds, or at the instant `until`, or when the angle is `at_least` or `at_most` a
+    level (rad), whichever is first; without a time after the law's `period`. `state` is what the log calls it.
+    """
+
+    def __new__(
+        cls,
+        torque: float | None = None,
+        *,
+        after: float | None = None,
+        until: Instant | None = None,
+        at_least: float | None = None,
+        at_most: float | None = None,
+        state: str = "PD",
+        acceleration: float | None = None,
+        change: float | None = None,
+        moment: float | None = None,
+    ) -> Hold: ...
+    @property
+    def torque(self) -> float | None: ...
+    @property
+    def acceleration(self) -> float | None: ...
+    @property
+    def change(self) -> float | None: ...
+    @property
+    def moment(self) -> float | None: ...
+    @property
+    def after(self) -> float | None: ...
+    @property
+    def until(self) -> Instant | None: ...
+    @property
+    def at_least(self) -> float | None: ...
+    @property
+    def at_most(self) -> float | None: ...
+    @property
+    def state(self) -> str: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
+    def __deepcopy__(self, _memo: object) -> Hold: ...
+
+@final
+class Truth:
+    """What there is to measure at an instant."""
+
+    @property
+    def now(self) -> Instant: ...
+    @property
+    def time(self) -> float:
+        """When (s)."""
+    @property
+    def angle(self) -> float | None:
+        """The angle with its elastic part (rad), of a body with one."""
+    @property
+    def attitude(self) -> _Four | None:
+        """The attitude (w, x, y, z), which turns vectors of the body's axes into inertial ones, of one with three axes."""
+    @property
+    def elastic(self) -> _Three:
+        """The elastic rotations at the sensor beside the attitude (rad)."""
+    @property
+    def rate(self) -> _Three:
+        """Rates at the sensor, elastic part included (rad/s)."""
+    @property
+    def rigid(self) -> _Three:
+        """Rates of the body as if it were rigid (rad/s)."""
+    @property
+    def turned(self) -> _Three:
+        """The integral of `rate` (rad) but for a constant, as a gyro counts it."""
+    @property
+    def field(self) -> _Three | None:
+        """The magnetic field in inertial axes (T), if there is one."""
+    @property
+    def sun(self) -> _Three | None:
+        """The direction to the Sun in inertial axes, in the light."""
+    def attitude_at(self, angles: Sequence[float] | npt.NDArray[np.float64]) -> _Four | None:
+        """The attitude turned by three small angles about the body's axes (rad)."""
+
+@final
+class Reading:
+    """What a sensor measured: the `angle` (rad) or the `attitude` (w, x, y, z), the true one of a sensor that tells neither;
+    the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with what it is in `inertial` ones."""
+
+    def __new__(
+        cls,
+        *,
+        angle: float | None = None,
+        attitude: Sequence[float] | npt.NDArray[np.float64] | None = None,
+        rate: float | Sequence[float] | npt.NDArray[np.float64] | None = None,
+        vector: Sequence[float] | npt.NDArray[np.float64] | None = None,
+        inertial: Sequence[float] | npt.NDArray[np.float64] | None = None,
+        is_direction: bool = False,
+    ) -> Reading: ...
+    @property
+    def angle(self) -> float | None: ...
+    @property
+    def attitude(self) -> _Four | None: ...
+    @property
+    def rate(self) -> _Three | None: ...
+    @property
+    def vector(self) -> _Three | None: ...
+    @property
+    def inertial(self) -> _Three | None: ...
+    @property
+    def is_direction(self) -> bool: ...
+    def __deepcopy__(self, _memo: object) -> Reading: ...
+
+@final
+class Known:
+    """What an estimator knows of a scenario before a run."""
+
+    @property
+    def axes(self) -> int:
+        """1 or 3."""
+    @property
+    def inertias(self) -> list[float]:
+        """Moment of inertia about each axis (kg m²)."""
+    @property
+    def modes(self) -> list[list[_Three]]:
+        """Frequency (rad/s), damping ratio and gain of each mode, about each axis."""
+    @property
+    def period(self) -> float | None:
+        """Period of the samples (s)."""
+    @property
+    def angle_noise(self) -> float:
+        """Standard deviation of the measured angle (rad)."""
+    @property
+    def rate_noise(self) -> list[float | None]:
+        """The same of the measured rate (rad/s) about each axis, if it is measured."""
+    @property
+    def reads(self) -> list[str]:
+        """What the law about each axis reads."""
+    @property
+    def draws(self) -> Draws:
+        """Random numbers of the run."""
+    def __deepcopy__(self, _memo: object) -> Known: ...
+
+@final
+class Taken:
+    """A sample, and what is around it."""
+
+    @property
+    def now(self) -> Instant: ...
+    @property
+    def time(self) -> float:
+        """When (s)."""
+    @property
+    def measured(self) -> list[tuple[float, float]] | None:
+        """Angle beyond the target (rad) and rate (rad/s) about each axis; None of a sensor that is silent."""
+    @property
+    def readings(self) -> list[Reading | None]:
+        """What each sensor measured now, in the order of the scenario; None of one that was not due, or silent."""
+    @property
+    def origin_angle(self) -> float | None:
+        """From where angles count (rad), of a body with one angle."""
+    @property
+    def origin_attitude(self) -> _Four | None:
+        """The target (w, x, y, z), of a body with three axes."""
+    @property
+    def truth(self) -> list[tuple[float, float]]:
+        """The true rigid angle beyond the target (rad) and rate (rad/s) about each axis, for ideal observers."""
+    @property
+    def torque(self) -> list[float]:
+        """The torque that the actuator holds about each axis (N m)."""
+
+@final
+class Setting:
+    """What an actuator knows of what is around it about an axis."""
+
+    @property
+    def axis(self) -> int:
+        """The axis: 0, or 0 to 2 for roll, pitch and yaw."""
+    @property
+    def inertia(self) -> float:
+        """What a unit of the torque accelerates (kg m²)."""
+    @property
+    def rate(self) -> float:
+        """Rate at the start (rad/s)."""
+    @property
+    def period(self) -> float | None:
+        """The law's period (s), if it has one."""
+    def __deepcopy__(self, _memo: object) -> Setting: ...
+
+@final
+class Demanded:
+    """What laws demand from now on."""
+
+    @property
+    def now(self) -> Instant: ...
+    @property
+    def time(self) -> float:
+        """When (s)."""
+    @property
+    def values(self) -> list[float]:
+        """What is demanded about each axis."""
+    @property
+    def kinds(self) -> list[Literal["torque", "change", "moment"]]:
+        """What that is: a torque (N m), a change of the rigid rate (rad/s), or a magnetic moment (A m²)."""
+    @property
+    def rigid(self) -> _Three:
+        """The rigid rates of the body (rad/s)."""
+    @property
+    def field(self) -> _Three | None:
+        """The magnetic field in the body's axes as it is measured (T)."""
+
+@final
+class Effort:
+    """Torques about each axis (N m), and after how many seconds the actuator is asked again."""
+
+    def __new__(
+        cls, torques: Sequence[float] | npt.NDArray[np.float64], *, after: float | None = None
+    ) -> Effort: ...
+    @property
+    def torques(self) -> list[float]: ...
+    @property
+    def after(self) -> float | None: ...
 
 @final
 class Work:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor
+
 
 class Scenario:
     """A study: everything that a scenario file contains. It is valid and immutable.
@@ -159,6 +161,57 @@ class Scenario:
         keys = {key: value} if isinstance(key, str) else key
         return self._of(self._native.with_keys([(k, toml(self.name, k, v)) for k, v in keys.items()]))
 
+    def with_parts(
+        self,
+        *,
+        law: Law | None = None,
+        sensor: Sensor | Mapping[int, Sensor] | None = None,
+        estimator: Estimator | None = None,
+        adaptation: Adaptation | None = None,
+        actuator: Actuator | None = None,
+    ) -> Scenario:
+        """A scenario with parts of your own in the place of its own, as `flexsc.parts` describes them.
+
+        The objects are copied: what happens to them later does not change the scenario. Several sensors are
+        given by their places in the scenario's list, `sensor={1: MyTracker()}`; one alone takes the place of the
+        first. No file can hold such parts: `to_toml` has empty tables for them, a log of a run does not repeat
+        alone, and campaigns run in this process only.
+
+        >>> class Off(flexsc.Law):
+        ...     def decide(self, event):
+        ...         return flexsc.Hold(0.0)
+        >>> flexsc.Scenario.example("relay-fixed").with_parts(law=Off()).parts
+        {'law': <...Off object at ...>}
+
+        Raises:
+            TypeError: An object is not of the class of its role.
+            ScenarioError: The parts do not fit the others.
+        """
+        from flexsc import parts
+
+        sensors = sensor if isinstance(sensor, Mapping) else {} if sensor is None else {0: sensor}
+        given: list[tuple[str, type[Any], object]] = [
+            ("law", parts.Law, law),
+            ("estimator", parts.Estimator, estimator),
+            ("adaptation", parts.Adaptation, adaptation),
+            ("actuator", parts.Actuator, actuator),
+            *((f"sensor {index(place)}", parts.Sensor, each) for place, each in sensors.items()),
+        ]
+        brought = []
+        for role, kind, part in given:
+            if part is None:
+                continue
+            if not isinstance(part, kind):
+                found = part.__name__ if isinstance(part, type) else type(part).__name__
+                raise TypeError(f"{role} must be an object of a flexsc.{kind.__name__}, got {found}")
+            brought.append((role, part))
+        return self._of(self._native.with_parts(brought))
+
+    @property
+    def parts(self) -> dict[str, object]:
+        """The parts of your own by role; sensors as `sensor 0`."""
+        return dict(self._native.parts())
+
     def draw(self, run: int) -> Scenario:
         """The scenario of one run of a campaign: its `[uncertain]` keys drawn and set.
 
@@ -211,7 +264,14 @@ class Scenario:
         return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes} modes, seed {self.seed}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
+        parts = self._native.parts()
+        if parts:
+            return _beside, (self._native.text_beside(), self.name, parts)
         return Scenario.parse, (self.to_toml(), self.name)
+
+
+def _beside(text: str, name: str, parts: list[tuple[str, object]]) -> Scenario:
+    return Scenario._of(engine.Scenario.beside(text, name, parts))
 
 
 class _Topics:

@@ -81,8 +81,9 @@ fn suits(scenario: &Scenario, law: &Relay) -> bool {
         .estimator
         .as_ref()
         .is_none_or(|estimator| estimator.envelope().is_some_and(|envelope| envelope.form == Form::Dynamic));
-    let learns =
-        scenario.adaptation.as_ref().is_none_or(|Adaptation::RandomSearch(search)| search.tunes == "k_t");
+    let learns = scenario.adaptation.as_ref().is_none_or(
+        |adaptation| matches!(adaptation, Adaptation::RandomSearch(search) if search.tunes == "k_t"),
+    );
     let duration = scenario.duration.seconds();
     let modes = model.modes.iter().chain(watched(scenario));
     let are_exact =

@@ -1,0 +1,186 @@
+//! A scenario's body at rest as one linear system, x' = A x + B u, y = C x + D u: what design programs take.
+//!
+//! With one angle it is that of `Coupled`. With three axes G' = M + H x w, q'' + D q' + W² q = phi' (M + H x w): G = J w_r, the
+//! rate of the hub w = w_r + phi q' where modes act back on it, H what rotors store (\[Likins70\]). Surroundings are left out.
+
+use nalgebra::{DMatrix, Matrix3};
+use serde::Serialize;
+
+use crate::attitude::{AXES, Vector};
+use crate::body::{Coupled, Drift, Drive, Planar, Spatial};
+use crate::document::Fault;
+use crate::random::Seed;
+use crate::scenario::Scenario;
+use crate::time::Instant;
+
+/// The system.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LinearModel {
+    /// A, row by row.
+    pub a: Vec<Vec<f64>>,
+    /// B.
+    pub b: Vec<Vec<f64>>,
+    /// C.
+    pub c: Vec<Vec<f64>>,
+    /// What the states are.
+    pub states: Vec<Signal>,
+    /// What the inputs are: the torques that actuators give.
+    pub inputs: Vec<Signal>,
+    /// What the outputs are: what a sensor of angle and rate sees, and all coordinates.
+    pub outputs: Vec<Signal>,
+}
+
+/// A number of a system, and its unit.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Signal {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+}
+
+fn signal(name: impl Into<String>, unit: &str) -> Signal {
+    Signal { name: name.into(), unit: unit.to_owned() }
+}
+
+fn rows(of: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    of.row_iter().map(|row| row.iter().copied().collect()).collect()
+}
+
+impl LinearModel {
+    /// The body of a scenario, with natural frequencies as they are at a time (s).
+    ///
+    /// # Errors
+    /// A body that is no linear system: its key, and why.
+    pub fn of(scenario: &Scenario, at: f64) -> Result<Self, Fault> {
+        if scenario.study.drives.is_some() {
+            let why = "turn appendages, and the body is another from time to time: it is no linear system";
+            return Err(Fault::new("appendage", format!("has drives that {why}")));
+        }
+        Ok(match scenario.body.spatial() {
+            None => Self::of_one_angle(scenario, at),
+            Some(body) => Self::of_three_axes(scenario, body),
+        })
+    }
+
+    fn of_one_angle(scenario: &Scenario, at: f64) -> Self {
+        let body: &Planar = &scenario.model;
+        let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, at));
+        let ratios: Vec<f64> = (0..body.modes.len()).map(ratio).collect();
+        let (back_emf, total) = scenario.study.back_emf;
+        let back_emf = back_emf / body.inertia.get();
+        let coupled = Coupled::new(body, back_emf, total, &ratios);
+        let order = coupled.system.nrows();
+        let shown = |first: usize, j: usize| {
+            // The clamped modes of a hub whose motion is given do not show in it.
+            let is_seen = j == first || j % 2 == first && body.drive == Drive::Torque;
+            if is_seen { 1.0 } else { 0.0 }
+        };
+        let mut seen: Vec<(Signal, Vec<f64>)> = vec![
+            (signal("angle", "rad"), (0..order).map(|j| shown(0, j)).collect()),
+            (signal("rate", "rad/s"), (0..order).map(|j| shown(1, j)).collect()),
+        ];
+        for output in &body.outputs {
+            let mut row = vec![0.0; order];
+            row[0] = output.rigid.get();
+            output.modes.iter().enumerate().for_each(|(mode, weight)| row[2 + 2 * mode] = weight.get());
+            seen.push((signal(output.name.clone(), &output.unit), row));
+        }
+        let mut states = vec![signal("rigid_angle", "rad"), signal("rigid_rate", "rad/s")];
+        for mode in 0..body.modes.len() {
+            states.push(signal(format!("mode{mode}_displacement"), "rad"));
+            states.push(signal(format!("mode{mode}_rate"), "rad/s"));
+        }
+        let input = coupled.input / body.commanded_inertia();
+        let b = DMatrix::from_column_slice(order, 1, input.as_slice());
+        Self::new(&coupled.system, &b, states, vec![signal("torque", body.torque_unit())], seen)
+    }
+
+    fn of_three_axes(scenario: &Scenario, body: &Spatial) -> Self {
+        let (study, modes) = (&scenario.study, body.modes.len());
+        let flexible = scenario.body.flexible();
+        let inertia = flexible.map_or_else(|| body.tensor(), |flexible| flexible.inertia);
+        // A tensor that was checked has an inverse.
+        let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
+        let seed = Seed { scenario: scenario.seed, run: 0 };
+        let stored = Vector::from(study.actuator(scenario, seed).stored(Instant::START));
+        let measured = study.measured(body);
+        let hub = |mode: usize| flexible.map_or_else(Vector::zeros, |body| body.modes[mode].rotation);
+        let order = 6 + 2 * modes;
+        let (mut a, mut b) = (DMatrix::zeros(order, order), DMatrix::zeros(order, 3));
+        // How a torque at the hub moves rates and modes.
+        let mut pushed = DMatrix::zeros(order, 3);
+        pushed.view_mut((3, 0), (3, 3)).copy_from(&inverse);
+        for mode in 0..modes {
+            pushed.view_mut((7 + 2 * mode, 0), (1, 3)).copy_from(&hub(mode).transpose());
+        }
+        for axis in 0..3 {
+            let input = &measured.inputs[axis];
+            let rigid = Vector::from_fn(|row, _| input.turning[row] * input.acceleration);
+            let unit = 1.0 / (body.tensor() * rigid)[axis];
+            let torque = body.tensor() * rigid * unit;
+            b.view_mut((3, axis), (3, 1)).copy_from(&(inverse * torque));
+            for mode in 0..modes {
+                b[(7 + 2 * mode, axis)] = input.forces[mode] * unit;
+            }
+            a[(axis, 3 + axis)] = 1.0;
+        }
+        let mut rate = DMatrix::zeros(3, order);
+        for axis in 0..3 {
+            rate[(axis, 3 + axis)] = 1.0;
+            for mode in 0..modes {
+                rate[(axis, 7 + 2 * mode)] = hub(mode)[axis];
+            }
+        }
+        a += &pushed * stored.cross_matrix() * rate;
+        for (index, mode) in body.modes.iter().enumerate() {
+            let (q, w) = (6 + 2 * index, mode.frequency.get());
+            a[(q, q + 1)] = 1.0;
+            a[(q + 1, q)] -= w * w;
+            let coupled = flexible.and_then(|flexible| flexible.damping.as_ref());
+            match coupled {
+                Some(damping) => {
+                    for other in 0..modes {
+                        a[(q + 1, 7 + 2 * other)] -= damping[(index, other)];
+                    }
+                }
+                None => a[(q + 1, q + 1)] -= 2.0 * mode.damping.get() * w,
+            }
+        }
+        let mut seen = Vec::new();
+        for (first, what, unit) in [(0, "", "rad"), (1, "_rate", "rad/s")] {
+            for (axis, name) in AXES.iter().enumerate() {
+                let mut row = vec![0.0; order];
+                row[3 * first + axis] = 1.0;
+                for mode in 0..modes {
+                    row[6 + first + 2 * mode] = measured.seen[axis][mode];
+                }
+                seen.push((signal(format!("{name}{what}"), unit), row));
+            }
+        }
+        let rigid = |what: &str, unit: &str| AXES.map(|axis| signal(format!("rigid_{axis}{what}"), unit));
+        let mut states: Vec<Signal> = rigid("", "rad").into_iter().chain(rigid("_rate", "rad/s")).collect();
+        for mode in 0..modes {
+            states.push(signal(format!("mode{mode}_displacement"), "m sqrt(kg)"));
+            states.push(signal(format!("mode{mode}_rate"), "m sqrt(kg)/s"));
+        }
+        let inputs = AXES.map(|axis| signal(format!("torque_{axis}"), "N m"));
+        Self::new(&a, &b, states, inputs.into(), seen)
+    }
+
+    /// A system that shows what is seen, and all its states.
+    fn new(
+        a: &DMatrix<f64>,
+        b: &DMatrix<f64>,
+        states: Vec<Signal>,
+        inputs: Vec<Signal>,
+        seen: Vec<(Signal, Vec<f64>)>,
+    ) -> Self {
+        let (mut outputs, mut c): (Vec<Signal>, Vec<Vec<f64>>) = seen.into_iter().unzip();
+        for (index, state) in states.iter().enumerate() {
+            outputs.push(state.clone());
+            c.push((0..states.len()).map(|j| f64::from(u8::from(j == index))).collect());
+        }
+        Self { a: rows(a), b: rows(b), c, states, inputs, outputs }
+    }
+}

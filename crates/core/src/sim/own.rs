@@ -1,0 +1,27 @@
+//! Parts of a program's own in a run: where one cannot go on, the run ends.
+
+use super::{Simulation, SimulationError};
+
+impl Simulation {
+    /// Ends a run with a part of a program's own that cannot go on.
+    pub(super) fn check_own_parts(&self) -> Result<(), SimulationError> {
+        if !self.own {
+            return Ok(());
+        }
+        let halted = || {
+            let adaptation = self.monitor.as_ref().and_then(|monitor| monitor.halted());
+            let all = [
+                ("sensor", self.sensing.halted()),
+                ("estimator", self.estimator.halted()),
+                ("adaptation", adaptation),
+                ("law", self.laws.halted()),
+                ("actuator", self.drive.actuator.halted()),
+            ];
+            all.into_iter().find_map(|(role, halt)| Some((role, halt?)))
+        };
+        match halted() {
+            Some((role, source)) => Err(SimulationError::Own { at: self.now, role, source }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,221 @@
+"""Parts of your own: a law, an estimator, a sensor, an actuator or an adaptation as an object of Python.
+
+A part is asked at events and at samples alone; between them the motion is exact. `Scenario.with_parts` puts it
+in the place of the scenario's own, beside all other kinds:
+
+>>> import flexsc
+>>> class Damper(flexsc.Law):
+...     period = 0.25
+...     def decide(self, event):
+...         return flexsc.Hold(-4.0 * event.angle - 30.0 * event.rate)
+>>> scenario = flexsc.Scenario({"duration": 60.0, "law": {"open": {}}, "body": {"planar": {"angle": 1e-3}}})
+>>> scenario.with_parts(law=Damper()).simulate().metrics["switchings"]
+241
+
+Each run begins with copies of the objects, so that runs repeat: `copy` makes them, by `copy.deepcopy` unless a
+class says otherwise. An exception ends the run, and comes out of `simulate` as it was raised; in a campaign it is
+the `error` of its row. Numbers are in SI units.
+"""
+
+from __future__ import annotations
+
+import copy
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Literal, TypeVar
+
+from flexsc._native import (
+    Authority,
+    Demanded,
+    Draws,
+    Effort,
+    Event,
+    Hold,
+    Instant,
+    Known,
+    Reading,
+    Setting,
+    Stream,
+    Taken,
+    Truth,
+)
+
+if TYPE_CHECKING:
+    from types import MappingProxyType
+
+__all__ = [
+    "Actuator",
+    "Adaptation",
+    "Authority",
+    "Demanded",
+    "Draws",
+    "Effort",
+    "Estimator",
+    "Event",
+    "Hold",
+    "Instant",
+    "Known",
+    "Law",
+    "Reading",
+    "Sensor",
+    "Setting",
+    "Stream",
+    "Taken",
+    "Truth",
+]
+
+_Self = TypeVar("_Self", bound="_Part")
+
+
+class _Part(ABC):
+    """What all parts have."""
+
+    def copy(self: _Self) -> _Self:
+        """Make a part in the same state that shares nothing with this one: by `copy.deepcopy`."""
+        return copy.deepcopy(self)
+
+
+class Law(_Part):
+    """A control law about one axis; on a body with three axes a copy acts about each.
+
+    >>> class Weak(Law):
+    ...     def decide(self, event):
+    ...         return Hold(-1e-6 if event.angle > 0.0 else 1e-6, after=1.0)
+    """
+
+    period: float | None = None
+    """Period (s) at which it is asked again if a hold names no time; None of a law that names them all."""
+    reads: Literal["nothing", "field", "motion", "dominant_mode", "elastic_rates"] = "motion"
+    """What it reads of an estimator."""
+    promise: float | None = None
+    """How near to the goal it promises to stay (rad), for the metrics; None if it promises nothing."""
+    switches: bool = False
+    """Whether the torque changes with the state that a hold names alone, as a relay's does."""
+    tracks: bool = False
+    """Whether it follows a manoeuvre while it lasts; else its goal is where the manoeuvre ends."""
+    tunable: Mapping[str, float] | MappingProxyType[str, float] = {}
+    """The numbers that an adaptation may tune, by name, with their values at the start."""
+
+    def start(self, authority: Authority) -> None:
+        """Begin a run about the axis `authority.axis`."""
+
+    @abstractmethod
+    def decide(self, event: Event) -> Hold:
+        """Answer an event: the command from now on, and when to be asked again.
+
+        Asked at the start of the run, at the time that the last hold named, and when the angle passes one of
+        its levels: exactly then with a continuous sensor, else at the first sample beyond it.
+        """
+
+    def tune(self, key: str, value: float) -> None:
+        """Take over a number of `tunable` that an adaptation has changed."""
+
+
+class Estimator(_Part):
+    """An estimator: at each sample it makes a belief of what was measured, about all axes together.
+
+    >>> class Direct(Estimator):
+    ...     def take(self, taken):
+    ...         return taken.measured
+    """
+
+    def start(self, known: Known) -> None:
+        """Begin a run, with what is known of the scenario."""
+
+    @abstractmethod
+    def take(self, taken: Taken) -> Sequence[Sequence[float]] | None:
+        """Take a sample.
+
+        Returns:
+            Angle (rad) and rate (rad/s) about each axis, of shape (axes, 2), angles beyond the target; with
+            displacement (rad), rate (rad/s) and frequency (rad/s) of the dominant mode behind them, of shape
+            (axes, 5). None leaves the belief as it is.
+        """
+
+    def given(self, now: Instant, moments: tuple[float, float, float]) -> None:
+        """Take over the reduced moments (rad/s²) about each axis that the actuator gives from now on."""
+
+    def carry(self, taken: Taken) -> Sequence[Sequence[float]] | None:
+        """Carry the belief on from the last sample to now, where a law is asked between samples.
+
+        `taken` has the time and the target, and nothing that was measured. Returns what `take` does. It must
+        not change the estimator.
+        """
+        return None
+
+    def shift(self, by: tuple[float, float, float]) -> None:
+        """Take over that angles count from another target: by so much more (rad) about each axis."""
+
+
+class Sensor(_Part):
+    """A sensor: it is read at samples.
+
+    >>> class Encoder(Sensor):
+    ...     period = 0.25
+    ...     def read(self, truth):
+    ...         return Reading(angle=round(truth.angle / 1e-6) * 1e-6)
+    """
+
+    period: float
+    """Period of its samples (s)."""
+    angle_noise: float = 0.0
+    """Standard deviation of the measured angle (rad), as filters take it to be."""
+    rate_noise: float | None = None
+    """The same of the measured rate (rad/s); None of a sensor that measures none."""
+
+    def start(self, axes: int, draws: Draws) -> None:
+        """Begin a run of a body with 1 or 3 axes; noise comes from streams of `draws`, so that runs repeat."""
+
+    @abstractmethod
+    def read(self, truth: Truth) -> Reading | None:
+        """Read what there is to measure; None where the sensor is silent."""
+
+
+class Actuator(_Part):
+    """An actuator: it makes torques of what laws demand, about all axes together.
+
+    >>> class Servo(Actuator):
+    ...     limit = 0.05
+    ...     def command(self, demanded):
+    ...         return [max(-0.05, min(0.05, value)) for value in demanded.values]
+    """
+
+    limit: float | Sequence[float] | None = None
+    """Largest torque about an axis (N m), or about each; None without a limit."""
+
+    def start(self, settings: Sequence[Setting]) -> None:
+        """Begin a run, with what is around it about each axis."""
+
+    @abstractmethod
+    def command(self, demanded: Demanded) -> Effort | Sequence[float]:
+        """Answer demands: the torques (N m) about each axis from now on, of shape (axes,).
+
+        `Effort(torques, after=s)` is asked again after `s` seconds, with the same demands.
+        """
+
+
+class Adaptation(_Part):
+    """An adaptation: after each window of an `[estimator.envelope]` it may tune a number of the law.
+
+    >>> class Descent(Adaptation):
+    ...     tunes = "k_t"
+    ...     def start(self, value, draws):
+    ...         self.value = value
+    ...     def learn(self, time, mean):
+    ...         self.value += 1e-4
+    ...         return self.value
+    """
+
+    tunes: str
+    """The name of the number of the law: one of its `tunable`."""
+
+    def start(self, value: float, draws: Draws) -> None:
+        """Begin a run, with the number as the law has it."""
+
+    @abstractmethod
+    def learn(self, time: float, mean: float) -> float | None:
+        """Learn the mean envelope (rad) of the window that ends now (s).
+
+        Returns:
+            The number from now on; None leaves it.
+        """

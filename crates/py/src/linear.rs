@@ -1,0 +1,39 @@
+//! Linear models of bodies, and the exponential that samples them.
+
+use flexsc_core::ScenarioError;
+use flexsc_core::analysis::linear_model::LinearModel;
+use flexsc_core::numerics::exponential::exponential as of_matrix;
+use nalgebra::DMatrix;
+use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use serde_json::json;
+
+use super::Scenario;
+use super::error::scenario_error;
+
+/// The body of a scenario as a linear system, with natural frequencies as they are at a time (s).
+#[pyfunction]
+pub fn linear_json(scenario: &Scenario, at: f64) -> PyResult<String> {
+    let model = LinearModel::of(&scenario.inner, at).map_err(|fault| {
+        let origin = scenario.inner.name.clone();
+        scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
+    })?;
+    Ok(json!(model).to_string())
+}
+
+/// The exponential of a square matrix.
+#[pyfunction]
+pub fn exponential<'py>(
+    py: Python<'py>,
+    matrix: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let matrix = matrix.as_array();
+    let (order, columns) = matrix.dim();
+    if order != columns || !matrix.iter().all(|entry| entry.is_finite()) {
+        return Err(PyValueError::new_err("must be a square matrix of finite numbers"));
+    }
+    let found = of_matrix(&DMatrix::from_fn(order, order, |row, column| matrix[(row, column)]));
+    let flat: Vec<f64> = (0..order * order).map(|at| found[(at / order, at % order)]).collect();
+    flat.to_pyarray(py).reshape([order, order])
+}

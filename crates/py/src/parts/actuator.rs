@@ -1,0 +1,279 @@
+//! Actuators written in Python: they make torques of what is demanded, about each axis.
+
+use std::any::Any;
+
+use flexsc_core::actuator::{Actuate, Demand, Effector, Setting as EngineSetting};
+use flexsc_core::attitude::Vector;
+use flexsc_core::body::Wrench;
+use flexsc_core::own::Halt;
+use flexsc_core::time::{Instant as Exact, Span};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::instant::{Instant, span};
+use super::object::{Method, Object, numbers};
+use super::reading::Three;
+
+/// What an actuator knows of what is around it about an axis.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug)]
+pub struct Setting {
+    #[pyo3(get)]
+    axis: usize,
+    #[pyo3(get)]
+    inertia: f64,
+    #[pyo3(get)]
+    rate: f64,
+    #[pyo3(get)]
+    period: Option<f64>,
+}
+
+#[pymethods]
+impl Setting {
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        *self
+    }
+}
+
+/// What laws demand from now on.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Clone, Debug)]
+pub struct Demanded {
+    now: Exact,
+    demands: Vec<Demand>,
+    rigid: [f64; 3],
+    field: Option<Vector>,
+}
+
+#[pymethods]
+impl Demanded {
+    #[getter]
+    fn now(&self) -> Instant {
+        Instant(self.now)
+    }
+
+    /// When (s).
+    #[getter]
+    fn time(&self) -> f64 {
+        self.now.seconds()
+    }
+
+    /// The numbers that are demanded, about each axis.
+    #[getter]
+    fn values(&self) -> Vec<f64> {
+        self.demands.iter().map(value).collect()
+    }
+
+    /// What they are.
+    #[getter]
+    fn kinds(&self) -> Vec<&'static str> {
+        let kind = |demand: &Demand| match demand {
+            Demand::Torque(_) => "torque",
+            Demand::Change(_) => "change",
+            Demand::Moment(_) => "moment",
+        };
+        self.demands.iter().map(kind).collect()
+    }
+
+    /// The rigid rates of the body (rad/s).
+    #[getter]
+    fn rigid(&self) -> Three {
+        self.rigid.into()
+    }
+
+    /// The magnetic field in the body's axes as it is measured (T).
+    #[getter]
+    fn field(&self) -> Option<Three> {
+        self.field.map(|field| <[f64; 3]>::from(field).into())
+    }
+}
+
+fn value(demand: &Demand) -> f64 {
+    match *demand {
+        Demand::Torque(value) | Demand::Change(value) | Demand::Moment(value) => value,
+    }
+}
+
+/// Torques about each axis (N m), and after how many seconds the actuator is asked again.
+///
+/// >>> import flexsc
+/// >>> flexsc.Effort([0.01], after=0.05).torques
+/// [0.01]
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Clone, Debug)]
+pub struct Effort {
+    torques: Vec<f64>,
+    after: Option<Span>,
+}
+
+#[pymethods]
+impl Effort {
+    #[new]
+    #[pyo3(signature = (torques, *, after=None))]
+    fn new(torques: &Bound<'_, PyAny>, after: Option<f64>) -> PyResult<Self> {
+        let after = after.map(|after| super::law::positive(after, "after")).transpose()?;
+        Ok(Self { torques: numbers(torques)?, after })
+    }
+
+    #[getter]
+    fn torques(&self) -> Vec<f64> {
+        self.torques.clone()
+    }
+
+    #[getter]
+    fn after(&self) -> Option<f64> {
+        self.after.map(Span::seconds)
+    }
+}
+
+/// An actuator as a scenario has it.
+#[derive(Debug)]
+pub struct Brought {
+    object: Object,
+    limits: Vec<f64>,
+}
+
+impl Brought {
+    /// Reads what an actuator says of itself.
+    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let limit = part.getattr("limit")?;
+        let limits = if limit.is_none() {
+            Vec::new()
+        } else if let Ok(limit) = limit.extract::<f64>() {
+            vec![limit; 3]
+        } else {
+            numbers(&limit)?
+        };
+        for limit in &limits {
+            span(*limit, "").map_err(|_| {
+                PyValueError::new_err(format!("limit must be a torque of 0 N m or more, got {limit}"))
+            })?;
+        }
+        Ok(Self { object: Object::new(part), limits })
+    }
+}
+
+impl Effector for Brought {
+    fn start(&self, settings: &[EngineSetting]) -> Box<dyn Actuate> {
+        let told: Vec<Setting> = settings
+            .iter()
+            .map(|setting| Setting {
+                axis: setting.axis,
+                inertia: setting.inertia,
+                rate: setting.rate,
+                period: setting.cycle.map(Span::seconds),
+            })
+            .collect();
+        let method = Python::attach(|py| Method::new(self.object.begun(py, (told,)), "command"));
+        Box::new(Acting {
+            method,
+            asked: [0.0; 3],
+            torques: [0.0; 3],
+            inertias: settings.iter().map(|setting| setting.inertia).collect(),
+            demands: vec![Demand::Torque(0.0); settings.len()],
+            due: None,
+            field: None,
+        })
+    }
+
+    fn limit(&self, axis: usize) -> Option<f64> {
+        self.limits.get(axis).copied()
+    }
+
+    fn any(&self) -> Option<&dyn Any> {
+        Some(&self.object)
+    }
+}
+
+/// An actuator at work.
+#[derive(Debug)]
+struct Acting {
+    method: Method,
+    asked: [f64; 3],
+    torques: [f64; 3],
+    inertias: Vec<f64>,
+    demands: Vec<Demand>,
+    due: Option<Exact>,
+    field: Option<Vector>,
+}
+
+impl Acting {
+    /// Takes over what the actuator answers.
+    fn act(&mut self, now: Exact, rigid: [f64; 3]) {
+        let Self { method, demands, field, .. } = self;
+        let (demanded, axes) =
+            (Demanded { now, demands: demands.clone(), rigid, field: *field }, demands.len());
+        let told = Python::attach(|py| {
+            let argument = || Ok(Bound::new(py, demanded)?.into_any());
+            method.call(py, argument, |told| {
+                let effort = match told.cast::<Effort>() {
+                    Ok(effort) => effort.get().clone(),
+                    Err(_) => Effort { torques: numbers(told)?, after: None },
+                };
+                let count = effort.torques.len();
+                if count != axes || effort.torques.iter().any(|torque| !torque.is_finite()) {
+                    let why =
+                        format!("command must return a finite torque about each of {axes} axes, got {count}");
+                    return Err(PyValueError::new_err(why));
+                }
+                Ok(effort)
+            })
+        });
+        let effort = told.unwrap_or(Effort { torques: vec![0.0; axes], after: None });
+        self.torques[..axes].copy_from_slice(&effort.torques);
+        self.due = effort.after.map(|after| now + after);
+    }
+}
+
+impl Actuate for Acting {
+    fn command(&mut self, now: Exact, demands: &[Demand], rigid: [f64; 3]) {
+        self.demands = demands.iter().take(self.inertias.len()).copied().collect();
+        for (asked, demand) in self.asked.iter_mut().zip(&self.demands) {
+            *asked = if let Demand::Torque(torque) = *demand { torque } else { 0.0 };
+        }
+        self.act(now, rigid);
+    }
+
+    fn feel(&mut self, field: Vector) {
+        self.field = Some(field);
+    }
+
+    fn due(&self) -> Option<Exact> {
+        self.due
+    }
+
+    fn serve(&mut self, now: Exact, rigid: [f64; 3]) {
+        if self.due == Some(now) {
+            self.act(now, rigid);
+        }
+    }
+
+    fn exert(&self, _: Exact, onto: &mut Wrench) {
+        onto.hub.iter_mut().zip(&self.torques).for_each(|(hub, torque)| *hub += torque);
+    }
+
+    fn asked(&self, axis: usize) -> f64 {
+        self.asked[axis]
+    }
+
+    fn torque(&self, axis: usize) -> f64 {
+        self.torques[axis]
+    }
+
+    fn moment(&self, axis: usize) -> f64 {
+        self.torques[axis] / self.inertias[axis]
+    }
+
+    fn halted(&self) -> Option<Halt> {
+        self.method.halted()
+    }
+
+    fn copy(&self) -> Box<dyn Actuate> {
+        Box::new(Self {
+            method: self.method.copy("command"),
+            inertias: self.inertias.clone(),
+            demands: self.demands.clone(),
+            ..*self
+        })
+    }
+}

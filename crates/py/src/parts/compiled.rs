@@ -1,0 +1,152 @@
+//! Laws that are compiled functions, called by their address: what numba's `cfunc` and C compilers make.
+
+use std::any::Any;
+
+use flexsc_core::belief::Belief;
+use flexsc_core::guard::Guard;
+use flexsc_core::law::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Rule};
+use flexsc_core::own::Halt;
+use flexsc_core::time::{Instant, Span};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+use super::law::positive;
+use super::object::Object;
+
+/// The function: now and the time since its last call (s), the cause, angle and rate, those of the goal, its states, its hold.
+type Function = unsafe extern "C" fn(f64, f64, f64, f64, f64, f64, f64, *mut f64, *mut f64);
+
+/// A law as a scenario has it.
+#[derive(Debug)]
+pub struct Brought {
+    object: Object,
+    function: Function,
+    period: Option<Span>,
+    promise: Option<f64>,
+    switches: bool,
+    states: Vec<f64>,
+}
+
+impl Brought {
+    /// Reads what a compiled law says of itself.
+    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let address: usize = part.getattr("address")?.extract()?;
+        if address == 0 {
+            return Err(PyValueError::new_err("address must be that of a function, got 0"));
+        }
+        let period: Option<f64> = part.getattr("period")?.extract()?;
+        Ok(Self {
+            object: Object::new(part),
+            function: of_address(address),
+            period: period.map(|period| positive(period, "period")).transpose()?,
+            promise: part.getattr("promise")?.extract()?,
+            switches: part.getattr("switches")?.extract()?,
+            states: part.getattr("states")?.extract()?,
+        })
+    }
+}
+
+#[expect(unsafe_code, reason = "whoever gives the address says that it is that of such a function")]
+fn of_address(address: usize) -> Function {
+    // SAFETY: `flexsc.CompiledLaw` documents the signature, and keeps the function's owner alive.
+    unsafe { std::mem::transmute::<*const (), Function>(address as *const ()) }
+}
+
+impl Rule for Brought {
+    fn start(&self, _: &Authority) -> Box<dyn Control> {
+        Box::new(Deciding {
+            function: self.function,
+            period: self.period,
+            states: self.states.clone(),
+            last: None,
+            above: true,
+            halted: None,
+        })
+    }
+
+    fn period(&self) -> Option<Span> {
+        self.period
+    }
+
+    fn switches(&self) -> bool {
+        self.switches
+    }
+
+    fn promise(&self) -> Promise {
+        self.promise.map_or(Promise::Nothing, Promise::Within)
+    }
+
+    fn any(&self) -> Option<&dyn Any> {
+        Some(&self.object)
+    }
+}
+
+/// A law at work.
+#[derive(Clone, Debug)]
+struct Deciding {
+    function: Function,
+    period: Option<Span>,
+    states: Vec<f64>,
+    last: Option<Instant>,
+    /// Whether the first guard is one of at least an angle.
+    above: bool,
+    halted: Option<Halt>,
+}
+
+impl Control for Deciding {
+    #[expect(unsafe_code, reason = "the function is foreign")]
+    fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold {
+        let cause = match cause {
+            Cause::Start => 0.0,
+            Cause::Timeout => 1.0,
+            Cause::Guard(0) if self.above => 2.0,
+            Cause::Guard(_) => 3.0,
+        };
+        let since = self.last.replace(now).map_or(0.0, |last| now.since(last).seconds());
+        let (angle, rate) = goal.at(now);
+        // Torque, time, least and most angle.
+        let mut hold = [0.0, f64::NAN, f64::NAN, f64::NAN];
+        // SAFETY: the states are as many as the law said, the hold has four numbers, and both outlive the call.
+        unsafe {
+            let (states, hold) = (self.states.as_mut_ptr(), hold.as_mut_ptr());
+            (self.function)(
+                now.seconds(),
+                since,
+                cause,
+                belief.angle,
+                belief.rate,
+                angle,
+                rate,
+                states,
+                hold,
+            );
+        }
+        let [torque, after, above, below] = hold;
+        if !torque.is_finite() || after < 0.0 || after.is_infinite() {
+            let why = format!("a compiled law gave a torque of {torque} and a time of {after} s");
+            self.halted = Some(Halt::new(PyRuntimeError::new_err(why)));
+            return Hold::NONE;
+        }
+        self.above = !above.is_nan();
+        let guards = match (above.is_nan(), below.is_nan()) {
+            (false, false) => Guards::two(Guard::at_least(above), Guard::at_most(below)),
+            (false, true) => Guards::one(Guard::at_least(above)),
+            (true, false) => Guards::one(Guard::at_most(below)),
+            (true, true) => Guards::NONE,
+        };
+        let after = if after.is_nan() { self.period } else { Some(Span::from_seconds(after)) };
+        Hold { command: Command::Torque(torque), until: after.map(|after| now + after), guards }
+    }
+
+    fn state(&self) -> Phase {
+        if self.last.is_some() { Phase::Feedback } else { Phase::Open }
+    }
+
+    fn halted(&self) -> Option<Halt> {
+        self.halted.clone()
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(self.clone())
+    }
+}

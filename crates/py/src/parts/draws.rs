@@ -1,0 +1,55 @@
+//! Random numbers of a run for Python: streams that depend on the scenario's seed and the number of the run alone.
+
+use flexsc_core::random::{Seed, Stream as Engine};
+use pyo3::prelude::*;
+
+/// What the random numbers of a run come from.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug)]
+pub struct Draws(pub Seed);
+
+#[pymethods]
+impl Draws {
+    /// The stream of a name. Streams of other names are independent of it.
+    fn stream(&self, name: &str) -> Stream {
+        Stream(self.0.stream(name))
+    }
+
+    /// The scenario's seed.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.0.scenario
+    }
+
+    /// The number of the run.
+    #[getter]
+    fn run(&self) -> u64 {
+        self.0.run
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        *self
+    }
+}
+
+/// Random numbers of a run, the same on every machine. A copy goes on as this one does.
+#[pyclass(module = "flexsc._native")]
+#[derive(Clone, Debug)]
+pub struct Stream(Engine);
+
+#[pymethods]
+impl Stream {
+    /// A number of [0, 1).
+    fn uniform(&mut self) -> f64 {
+        self.0.uniform()
+    }
+
+    /// A number with mean 0 and standard deviation 1.
+    fn normal(&mut self) -> f64 {
+        self.0.normal()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        self.clone()
+    }
+}

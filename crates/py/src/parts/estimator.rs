@@ -1,0 +1,304 @@
+//! Estimators written in Python: at samples they make beliefs of readings.
+
+use std::any::Any;
+
+use flexsc_core::belief::{Belief, Dominant, Reads};
+use flexsc_core::estimator::{Estimate, Known as EngineKnown, Observe, Taken as EngineTaken};
+use flexsc_core::own::Halt;
+use flexsc_core::random::Seed;
+use flexsc_core::sensor::Orientation;
+use flexsc_core::time::{Instant as Exact, Span};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::draws::Draws;
+use super::instant::Instant;
+use super::object::{Method, Object, numbers, overrides};
+use super::reading::{Four, Reading, Three, angle, attitude};
+
+/// What an estimator knows of a scenario before a run.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Clone, Debug)]
+pub struct Known {
+    inertias: Vec<f64>,
+    /// Frequency, damping ratio and gain of each mode about each axis.
+    modes: Vec<Vec<(f64, f64, f64)>>,
+    period: Option<Span>,
+    angle_noise: f64,
+    rate_noise: Vec<Option<f64>>,
+    reads: Vec<&'static str>,
+    seed: Seed,
+}
+
+#[pymethods]
+impl Known {
+    /// 1 or 3.
+    #[getter]
+    fn axes(&self) -> usize {
+        self.inertias.len()
+    }
+
+    /// Moment of inertia about each axis (kg m²).
+    #[getter]
+    fn inertias(&self) -> Vec<f64> {
+        self.inertias.clone()
+    }
+
+    /// Frequency (rad/s), damping ratio and gain of each mode, about each axis.
+    #[getter]
+    fn modes(&self) -> Vec<Vec<(f64, f64, f64)>> {
+        self.modes.clone()
+    }
+
+    /// Period of the samples (s).
+    #[getter]
+    fn period(&self) -> Option<f64> {
+        self.period.map(Span::seconds)
+    }
+
+    /// Standard deviation of the measured angle (rad).
+    #[getter]
+    fn angle_noise(&self) -> f64 {
+        self.angle_noise
+    }
+
+    /// The same of the measured rate (rad/s) about each axis, if it is measured.
+    #[getter]
+    fn rate_noise(&self) -> Vec<Option<f64>> {
+        self.rate_noise.clone()
+    }
+
+    /// What the law about each axis reads.
+    #[getter]
+    fn reads(&self) -> Vec<&'static str> {
+        self.reads.clone()
+    }
+
+    /// Random numbers of the run.
+    #[getter]
+    fn draws(&self) -> Draws {
+        Draws(self.seed)
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        self.clone()
+    }
+}
+
+/// A sample, and what is around it.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Clone, Debug)]
+pub struct Taken {
+    now: Exact,
+    measured: Option<Vec<(f64, f64)>>,
+    readings: Vec<Option<Reading>>,
+    origin: Orientation,
+    truth: Vec<(f64, f64)>,
+    torque: Vec<f64>,
+}
+
+#[pymethods]
+impl Taken {
+    #[getter]
+    fn now(&self) -> Instant {
+        Instant(self.now)
+    }
+
+    /// When (s).
+    #[getter]
+    fn time(&self) -> f64 {
+        self.now.seconds()
+    }
+
+    /// Angle beyond the target (rad) and rate (rad/s) about each axis; None of a sensor that is silent.
+    #[getter]
+    fn measured(&self) -> Option<Vec<(f64, f64)>> {
+        self.measured.clone()
+    }
+
+    /// What each sensor measured now, in the order of the scenario; None of one that was not due, or silent.
+    #[getter]
+    fn readings(&self) -> Vec<Option<Reading>> {
+        self.readings.clone()
+    }
+
+    /// From where angles count (rad), of a body with one angle.
+    #[getter]
+    fn origin_angle(&self) -> Option<f64> {
+        angle(&self.origin)
+    }
+
+    /// The target (w, x, y, z), of a body with three axes.
+    #[getter]
+    fn origin_attitude(&self) -> Option<Four> {
+        attitude(&self.origin)
+    }
+
+    /// The true rigid angle beyond the target (rad) and rate (rad/s) about each axis, for ideal observers.
+    #[getter]
+    fn truth(&self) -> Vec<(f64, f64)> {
+        self.truth.clone()
+    }
+
+    /// The torque that the actuator holds about each axis (N m).
+    #[getter]
+    fn torque(&self) -> Vec<f64> {
+        self.torque.clone()
+    }
+}
+
+/// An estimator as a scenario has it.
+#[derive(Debug)]
+pub struct Brought {
+    object: Object,
+    also: Also,
+}
+
+/// The methods that its class has beside `take`.
+#[derive(Copy, Clone, Debug)]
+struct Also {
+    given: bool,
+    carry: bool,
+    shift: bool,
+}
+
+impl Brought {
+    /// Reads what an estimator says of itself.
+    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let has = |method| overrides(part, "Estimator", method);
+        let also = Also { given: has("given")?, carry: has("carry")?, shift: has("shift")? };
+        Ok(Self { object: Object::new(part), also })
+    }
+}
+
+impl Observe for Brought {
+    fn start(&self, known: &EngineKnown<'_>, seed: Seed) -> Box<dyn Estimate> {
+        let reads = |reads: &Reads| match reads {
+            Reads::Nothing => "nothing",
+            Reads::Field => "field",
+            Reads::Motion => "motion",
+            Reads::DominantMode => "dominant_mode",
+            Reads::ElasticRates => "elastic_rates",
+        };
+        let modes = known.axes.iter().map(|axis| {
+            let modes = axis.modes.iter();
+            modes.map(|mode| (mode.frequency.get(), mode.damping.get(), mode.gain.get())).collect()
+        });
+        let told = Known {
+            inertias: known.axes.iter().map(|axis| axis.inertia.get()).collect(),
+            modes: modes.collect(),
+            period: known.sampling,
+            angle_noise: known.angle_noise,
+            rate_noise: known.rate_noise.clone(),
+            reads: known.reads.iter().map(reads).collect(),
+            seed,
+        };
+        let method = Python::attach(|py| {
+            Method::new(Py::new(py, told).and_then(|told| self.object.begun(py, (told,))), "take")
+        });
+        Box::new(Observing { method, also: self.also })
+    }
+
+    fn any(&self) -> Option<&dyn Any> {
+        Some(&self.object)
+    }
+}
+
+/// An estimator at work.
+#[derive(Debug)]
+struct Observing {
+    method: Method,
+    also: Also,
+}
+
+/// Writes what an estimator believes about each axis.
+fn write(told: &Bound<'_, PyAny>, beliefs: &mut [Belief]) -> PyResult<()> {
+    if told.is_none() {
+        return Ok(());
+    }
+    let wrong = |found: String| {
+        let axes = beliefs.len();
+        PyValueError::new_err(format!(
+            "an estimator must return angle and rate about each of {axes} axes, or with them displacement, rate and frequency of \
+             the dominant mode, or None, got {found}"
+        ))
+    };
+    let rows = told.try_iter()?.map(|row| numbers(&row?)).collect::<PyResult<Vec<_>>>()?;
+    if rows.len() != beliefs.len() {
+        return Err(wrong(format!("{} rows", rows.len())));
+    }
+    if let Some(row) = rows.iter().find(|row| ![2, 5].contains(&row.len())) {
+        return Err(wrong(format!("a row of {} numbers", row.len())));
+    }
+    for (belief, row) in beliefs.iter_mut().zip(rows) {
+        [belief.angle, belief.rate] = [row[0], row[1]];
+        if let [_, _, displacement, rate, frequency] = row[..] {
+            belief.dominant = Dominant { displacement, rate, frequency };
+        }
+    }
+    Ok(())
+}
+
+impl Estimate for Observing {
+    fn given(&mut self, now: Exact, moments: [f64; 3]) {
+        if self.also.given {
+            let moments: Three = moments.into();
+            let with = (Instant(now), moments);
+            Python::attach(|py| self.method.other(py, |part| part.call_method1("given", with).map(drop)));
+        }
+    }
+
+    fn take(&mut self, taken: &EngineTaken<'_>, beliefs: &mut [Belief]) {
+        let axes = 0..beliefs.len();
+        let truth = |axis| {
+            let state = (taken.truth)(axis);
+            (state.rigid_angle, state.rigid_rate)
+        };
+        let told = Taken {
+            now: taken.now,
+            measured: taken.measured.map(|all| all.iter().map(|pair| (*pair).into()).collect()),
+            readings: taken.readings.iter().map(|reading| reading.as_ref().map(Reading::of)).collect(),
+            origin: *taken.origin,
+            truth: axes.clone().map(truth).collect(),
+            torque: axes.map(|axis| taken.actuator.torque(axis)).collect(),
+        };
+        Python::attach(|py| {
+            let argument = || Ok(Bound::new(py, told)?.into_any());
+            self.method.call(py, argument, |told| write(told, beliefs))
+        });
+    }
+
+    fn carry(&self, now: Exact, origin: &Orientation, beliefs: &mut [Belief]) {
+        if !self.also.carry {
+            return;
+        }
+        let told = Taken {
+            now,
+            measured: None,
+            readings: Vec::new(),
+            origin: *origin,
+            truth: Vec::new(),
+            torque: Vec::new(),
+        };
+        Python::attach(|py| {
+            self.method.other(py, |part| write(&part.call_method1("carry", (told,))?, beliefs));
+        });
+    }
+
+    fn shift(&mut self, by: [f64; 3]) {
+        if self.also.shift {
+            let by: Three = by.into();
+            Python::attach(|py| {
+                self.method.other(py, |part| part.call_method1("shift", (by,)).map(drop));
+            });
+        }
+    }
+
+    fn halted(&self) -> Option<Halt> {
+        self.method.halted()
+    }
+
+    fn copy(&self) -> Box<dyn Estimate> {
+        Box::new(Self { method: self.method.copy("take"), also: self.also })
+    }
+}

@@ -1,0 +1,179 @@
+//! What a law written in Python answers.
+
+use flexsc_core::guard::Guard;
+use flexsc_core::law::{Command, Guards, Hold as Engine, Phase};
+use flexsc_core::time::Span;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::instant::{Instant, span};
+
+/// A command from now on, and when the law is asked again.
+///
+/// `Hold(torque)` holds a torque (N m; rad/s² on a body without inertia; of a wheel, units of its command);
+/// `acceleration` (rad/s²), `change` of the rigid rate (rad/s) and `moment` (A m²) take its place. The law is
+/// asked again `after` so many seconds, or at the instant `until`, or when the angle is `at_least` or `at_most` a
+/// level (rad), whichever is first; without a time after the law's `period`. `state` is what the log calls it.
+///
+/// >>> import flexsc
+/// >>> flexsc.Hold(-4e-5, at_most=4e-4, state="RACC").at_most
+/// 0.0004
+#[pyclass(frozen, from_py_object, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug)]
+pub struct Hold {
+    command: Command,
+    after: Option<Span>,
+    until: Option<Instant>,
+    pub at_least: Option<f64>,
+    pub at_most: Option<f64>,
+    pub phase: Phase,
+}
+
+/// The states of laws.
+const PHASES: [Phase; 12] = [
+    Phase::Open,
+    Phase::Feedback,
+    Phase::Start,
+    Phase::RightPush,
+    Phase::RightBrake,
+    Phase::WeakRight,
+    Phase::LeftPush,
+    Phase::LeftBrake,
+    Phase::WeakLeft,
+    Phase::Coasting,
+    Phase::Firing,
+    Phase::Detumbling,
+];
+
+fn phase(label: &str) -> PyResult<Phase> {
+    PHASES.into_iter().find(|phase| phase.label() == label).ok_or_else(|| {
+        let all = PHASES.map(|phase| format!("'{}'", phase.label())).join(", ");
+        PyValueError::new_err(format!("state must be one of {all}, got {label:?}"))
+    })
+}
+
+fn finite(what: &str, value: f64) -> PyResult<f64> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(PyValueError::new_err(format!("{what} must be a finite number, got {value}")))
+    }
+}
+
+impl Hold {
+    /// The engine's answer of a law that is asked again after a period, if it names no time.
+    pub fn of(&self, now: flexsc_core::time::Instant, period: Option<Span>) -> Engine {
+        let until = self.until.map(|until| until.0).or_else(|| Some(now + self.after.or(period)?));
+        let guards = match (self.at_least, self.at_most) {
+            (Some(above), Some(below)) => Guards::two(Guard::at_least(above), Guard::at_most(below)),
+            (Some(above), None) => Guards::one(Guard::at_least(above)),
+            (None, Some(below)) => Guards::one(Guard::at_most(below)),
+            (None, None) => Guards::NONE,
+        };
+        Engine { command: self.command, until, guards }
+    }
+}
+
+#[pymethods]
+impl Hold {
+    #[new]
+    #[pyo3(signature = (torque=None, *, after=None, until=None, at_least=None, at_most=None, state="PD", acceleration=None, change=None, moment=None))]
+    #[expect(clippy::too_many_arguments, reason = "the arguments of a Python class")]
+    fn new(
+        torque: Option<f64>,
+        after: Option<f64>,
+        until: Option<Instant>,
+        at_least: Option<f64>,
+        at_most: Option<f64>,
+        state: &str,
+        acceleration: Option<f64>,
+        change: Option<f64>,
+        moment: Option<f64>,
+    ) -> PyResult<Self> {
+        let command = match (torque, acceleration, change, moment) {
+            (Some(torque), None, None, None) => Command::Torque(finite("torque", torque)?),
+            (None, Some(value), None, None) => Command::Acceleration(finite("acceleration", value)?),
+            (None, None, Some(value), None) => Command::Change(finite("change", value)?),
+            (None, None, None, Some(value)) => Command::Moment(finite("moment", value)?),
+            _ => {
+                let why = "a hold has one of torque, acceleration, change and moment";
+                return Err(PyValueError::new_err(why));
+            }
+        };
+        if after.is_some() && until.is_some() {
+            return Err(PyValueError::new_err("a hold has one of after and until"));
+        }
+        Ok(Self {
+            command,
+            after: after.map(|after| span(after, "after")).transpose()?,
+            until,
+            at_least: at_least.map(|level| finite("at_least", level)).transpose()?,
+            at_most: at_most.map(|level| finite("at_most", level)).transpose()?,
+            phase: if state == "PD" { Phase::Feedback } else { phase(state)? },
+        })
+    }
+
+    #[getter]
+    fn torque(&self) -> Option<f64> {
+        if let Command::Torque(value) = self.command { Some(value) } else { None }
+    }
+
+    #[getter]
+    fn acceleration(&self) -> Option<f64> {
+        if let Command::Acceleration(value) = self.command { Some(value) } else { None }
+    }
+
+    #[getter]
+    fn change(&self) -> Option<f64> {
+        if let Command::Change(value) = self.command { Some(value) } else { None }
+    }
+
+    #[getter]
+    fn moment(&self) -> Option<f64> {
+        if let Command::Moment(value) = self.command { Some(value) } else { None }
+    }
+
+    #[getter]
+    fn after(&self) -> Option<f64> {
+        self.after.map(Span::seconds)
+    }
+
+    #[getter]
+    fn until(&self) -> Option<Instant> {
+        self.until
+    }
+
+    #[getter]
+    fn at_least(&self) -> Option<f64> {
+        self.at_least
+    }
+
+    #[getter]
+    fn at_most(&self) -> Option<f64> {
+        self.at_most
+    }
+
+    #[getter]
+    fn state(&self) -> &'static str {
+        self.phase.label()
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {
+        let told = PyDict::new(py);
+        told.set_item("torque", self.torque())?;
+        told.set_item("after", self.after())?;
+        told.set_item("until", self.until)?;
+        told.set_item("at_least", self.at_least)?;
+        told.set_item("at_most", self.at_most)?;
+        told.set_item("state", self.state())?;
+        told.set_item("acceleration", self.acceleration())?;
+        told.set_item("change", self.change())?;
+        told.set_item("moment", self.moment())?;
+        Ok(((), told))
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        *self
+    }
+}

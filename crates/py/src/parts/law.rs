@@ -1,0 +1,333 @@
+//! Laws written in Python: asked at events, they answer with a hold.
+
+use std::any::Any;
+use std::collections::BTreeSet;
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+use flexsc_core::belief::{Belief, Reads};
+use flexsc_core::law::{
+    Authority as EngineAuthority, Cause, Control, Goal, Hold as Held, Phase, Promise, Rule,
+};
+use flexsc_core::own::Halt;
+use flexsc_core::time::{Instant as Exact, Span};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::hold::Hold;
+use super::instant::{Instant, span};
+use super::object::{Method, Object};
+
+/// What an actuator can do about an axis, as laws know it.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug)]
+pub struct Authority(EngineAuthority);
+
+#[pymethods]
+impl Authority {
+    /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
+    #[getter]
+    fn axis(&self) -> usize {
+        self.0.axis
+    }
+
+    /// The largest accelerations of plus and minus (rad/s²); infinite without a limit.
+    #[getter]
+    fn accelerations(&self) -> (f64, f64) {
+        self.0.accelerations.into()
+    }
+
+    /// Time from a command to its execution (s).
+    #[getter]
+    fn delay(&self) -> f64 {
+        self.0.delay
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        *self
+    }
+}
+
+/// Why a law is asked, and what it knows then. Angles count from the target on three axes.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Clone, Debug)]
+pub struct Event {
+    now: Exact,
+    cause: &'static str,
+    goal: Goal,
+    belief: Belief,
+}
+
+#[pymethods]
+impl Event {
+    /// When: `event.now - earlier` is the time between (s), without rounding before the difference.
+    #[getter]
+    fn now(&self) -> Instant {
+        Instant(self.now)
+    }
+
+    /// The same in seconds.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.now.seconds()
+    }
+
+    /// The start of the run, the time of the last hold, or its level that the angle has passed.
+    #[getter]
+    fn cause(&self) -> &'static str {
+        self.cause
+    }
+
+    /// Angle (rad).
+    #[getter]
+    fn angle(&self) -> f64 {
+        self.belief.angle
+    }
+
+    /// Rate (rad/s).
+    #[getter]
+    fn rate(&self) -> f64 {
+        self.belief.rate
+    }
+
+    /// Where the body shall be now (rad).
+    #[getter]
+    fn goal_angle(&self) -> f64 {
+        self.goal.at(self.now).0
+    }
+
+    /// How fast it shall turn (rad/s).
+    #[getter]
+    fn goal_rate(&self) -> f64 {
+        self.goal.rate
+    }
+
+    /// And how that shall change (rad/s²), of a target that the body is led to.
+    #[getter]
+    fn goal_acceleration(&self) -> f64 {
+        self.goal.acceleration
+    }
+
+    /// From when on the goal counts: the start, or the end of a manoeuvre.
+    #[getter]
+    fn goal_from(&self) -> Instant {
+        Instant(self.goal.from)
+    }
+
+    /// Length of the vector of the angles about all axes (rad); 0 of a body with one angle.
+    #[getter]
+    fn whole(&self) -> f64 {
+        self.belief.whole
+    }
+
+    /// How fast the magnetic field along the axis changes (T/s).
+    #[getter]
+    fn field_rate(&self) -> f64 {
+        self.belief.field_rate
+    }
+
+    /// Change of the rate that is commanded, and not yet executed (rad/s).
+    #[getter]
+    fn queued(&self) -> f64 {
+        self.belief.queued
+    }
+
+    /// The dominant mode: displacement (rad), its rate (rad/s) and frequency (rad/s).
+    #[getter]
+    fn dominant(&self) -> (f64, f64, f64) {
+        let dominant = self.belief.dominant;
+        (dominant.displacement, dominant.rate, dominant.frequency)
+    }
+
+    /// The elastic modes: rate (rad/s), frequency (rad/s), and its jump for each jump of the rigid rate.
+    #[getter]
+    fn elastic(&self) -> Vec<(f64, f64, f64)> {
+        self.belief.elastic.iter().map(|mode| (mode.rate, mode.frequency, mode.influence)).collect()
+    }
+
+    /// Whether the elastic modes may be acted on.
+    #[getter]
+    fn trusted(&self) -> bool {
+        self.belief.trusted
+    }
+
+    fn __repr__(&self) -> String {
+        let Belief { angle, rate, .. } = self.belief;
+        format!("<flexsc.parts.Event {} at {} s: angle {angle}, rate {rate}>", self.cause, self.now)
+    }
+}
+
+/// A law as a scenario has it.
+#[derive(Debug)]
+pub struct Brought {
+    object: Object,
+    period: Option<Span>,
+    reads: Reads,
+    promise: Option<f64>,
+    switches: bool,
+    tracks: bool,
+    tunable: Vec<(&'static str, f64)>,
+}
+
+/// A key for as long as the program runs: laws have few.
+fn kept(key: &str) -> &'static str {
+    static KEYS: OnceLock<Mutex<BTreeSet<&'static str>>> = OnceLock::new();
+    let mut keys = KEYS.get_or_init(Mutex::default).lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = keys.get(key) {
+        return known;
+    }
+    let leaked: &'static str = Box::leak(key.to_owned().into_boxed_str());
+    keys.insert(leaked);
+    leaked
+}
+
+impl Brought {
+    /// Reads what a law says of itself.
+    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let period: Option<f64> = part.getattr("period")?.extract()?;
+        let reads: String = part.getattr("reads")?.extract()?;
+        let tunable = part.getattr("tunable")?.call_method0("items")?;
+        let number = |pair: PyResult<Bound<'_, PyAny>>| -> PyResult<(&'static str, f64)> {
+            let (key, value): (String, f64) = pair?.extract()?;
+            Ok((kept(&key), value))
+        };
+        Ok(Self {
+            object: Object::new(part),
+            period: period.map(|period| positive(period, "period")).transpose()?,
+            reads: match reads.as_str() {
+                "nothing" => Reads::Nothing,
+                "field" => Reads::Field,
+                "motion" => Reads::Motion,
+                "dominant_mode" => Reads::DominantMode,
+                "elastic_rates" => Reads::ElasticRates,
+                other => {
+                    let all = "'nothing', 'field', 'motion', 'dominant_mode' or 'elastic_rates'";
+                    return Err(PyValueError::new_err(format!("reads must be {all}, got {other:?}")));
+                }
+            },
+            promise: part.getattr("promise")?.extract()?,
+            switches: part.getattr("switches")?.extract()?,
+            tracks: part.getattr("tracks")?.extract()?,
+            tunable: tunable.try_iter()?.map(number).collect::<PyResult<_>>()?,
+        })
+    }
+}
+
+/// A period, which is longer than nothing.
+pub fn positive(seconds: f64, what: &str) -> PyResult<Span> {
+    match span(seconds, what)? {
+        Span::ZERO => Err(PyValueError::new_err(format!("{what} must be longer than 0 s"))),
+        period => Ok(period),
+    }
+}
+
+impl Rule for Brought {
+    fn start(&self, authority: &EngineAuthority) -> Box<dyn Control> {
+        let method = Python::attach(|py| {
+            let begun = Py::new(py, Authority(*authority)).and_then(|with| self.object.begun(py, (with,)));
+            Method::new(begun, "decide")
+        });
+        Box::new(Deciding {
+            method,
+            period: self.period,
+            tracks: self.tracks,
+            tuned: self.tunable.first().copied(),
+            above: true,
+            phase: Phase::Open,
+        })
+    }
+
+    fn period(&self) -> Option<Span> {
+        self.period
+    }
+
+    fn switches(&self) -> bool {
+        self.switches
+    }
+
+    fn promise(&self) -> Promise {
+        self.promise.map_or(Promise::Nothing, Promise::Within)
+    }
+
+    fn reads(&self) -> Reads {
+        self.reads
+    }
+
+    fn tunable(&self) -> Vec<(&'static str, f64)> {
+        self.tunable.clone()
+    }
+
+    fn any(&self) -> Option<&dyn Any> {
+        Some(&self.object)
+    }
+}
+
+/// A law at work.
+#[derive(Debug)]
+struct Deciding {
+    method: Method,
+    period: Option<Span>,
+    tracks: bool,
+    /// The first number that may be tuned, and its value.
+    tuned: Option<(&'static str, f64)>,
+    /// Whether the first guard is one of at least an angle.
+    above: bool,
+    phase: Phase,
+}
+
+impl Control for Deciding {
+    fn decide(&mut self, now: Exact, cause: Cause, goal: &Goal, belief: &Belief) -> Held {
+        let cause = match cause {
+            Cause::Start => "start",
+            Cause::Timeout => "timeout",
+            Cause::Guard(0) if self.above => "at_least",
+            Cause::Guard(_) => "at_most",
+        };
+        let event = Event { now, cause, goal: *goal, belief: belief.clone() };
+        let told = Python::attach(|py| {
+            let argument = || Ok(Bound::new(py, event)?.into_any());
+            self.method.call(py, argument, |told| match told.cast::<Hold>() {
+                Ok(hold) => Ok(*hold.get()),
+                Err(_) => {
+                    let kind = told.get_type().name()?;
+                    let why = format!("decide must return a flexsc.Hold, got {kind}");
+                    Err(pyo3::exceptions::PyTypeError::new_err(why))
+                }
+            })
+        });
+        let Some(hold) = told else { return Held::NONE };
+        self.above = hold.at_least.is_some();
+        self.phase = hold.phase;
+        hold.of(now, self.period)
+    }
+
+    fn state(&self) -> Phase {
+        self.phase
+    }
+
+    fn halted(&self) -> Option<Halt> {
+        self.method.halted()
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(Self { method: self.method.copy("decide"), ..*self })
+    }
+
+    fn tuned(&self) -> f64 {
+        self.tuned.map_or(f64::NAN, |(_, value)| value)
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        if let Some((first, own)) = &mut self.tuned
+            && *first == key
+        {
+            *own = value;
+        }
+        Python::attach(|py| {
+            self.method.other(py, |part| part.call_method1(pyo3::intern!(py, "tune"), (key, value)).map(drop))
+        });
+    }
+
+    fn tracks(&self) -> bool {
+        self.tracks
+    }
+}

@@ -1,0 +1,125 @@
+//! An object of Python as the engine holds it: copied for each run, with the error that it raised.
+
+use std::fmt;
+use std::sync::OnceLock;
+
+use flexsc_core::own::Halt;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+/// An object with a role's methods.
+pub struct Object(Py<PyAny>);
+
+impl fmt::Debug for Object {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str("Object")
+    }
+}
+
+impl Object {
+    pub fn new(object: &Bound<'_, PyAny>) -> Self {
+        Self(object.clone().unbind())
+    }
+
+    pub fn clone_ref(&self, py: Python<'_>) -> Py<PyAny> {
+        self.0.clone_ref(py)
+    }
+
+    /// A copy of it.
+    pub fn copy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.0.bind(py).call_method0(pyo3::intern!(py, "copy"))
+    }
+
+    /// A copy of it, begun with an argument.
+    pub fn begun<'py, A>(&self, py: Python<'py>, with: A) -> PyResult<Bound<'py, PyAny>>
+    where
+        A: IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>
+            + pyo3::call::PyCallArgs<'py>,
+    {
+        let copy = self.copy(py)?;
+        copy.call_method1(pyo3::intern!(py, "start"), with)?;
+        Ok(copy)
+    }
+}
+
+/// A method of a part at work, or the error that ended it.
+#[derive(Debug)]
+pub struct Method {
+    /// The part, and its method.
+    at_work: Option<(Object, Py<PyAny>)>,
+    halted: OnceLock<Halt>,
+}
+
+impl Method {
+    /// This method of a part that has begun.
+    pub fn new(part: PyResult<Bound<'_, PyAny>>, name: &str) -> Self {
+        let both = part.and_then(|part| Ok((Object::new(&part), part.getattr(name)?.unbind())));
+        let method = Self { at_work: None, halted: OnceLock::new() };
+        match method.kept(both) {
+            Some(both) => Self { at_work: Some(both), ..method },
+            None => method,
+        }
+    }
+
+    /// The part and its method, unless it cannot go on.
+    fn at_work(&self) -> Option<&(Object, Py<PyAny>)> {
+        self.at_work.as_ref().filter(|_| self.halted.get().is_none())
+    }
+
+    /// Calls the method with what `argument` makes, and reads what it gives; nothing of a part that cannot go on.
+    pub fn call<'py, T>(
+        &self,
+        py: Python<'py>,
+        argument: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+        read: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+    ) -> Option<T> {
+        let (_, method) = self.at_work()?;
+        let told = argument().and_then(|argument| method.bind(py).call1((argument,)));
+        self.kept(told.and_then(|told| read(&told)))
+    }
+
+    /// Calls another of the part's methods.
+    pub fn other<'py, T>(
+        &self,
+        py: Python<'py>,
+        call: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+    ) -> Option<T> {
+        self.kept(call(self.at_work()?.0.0.bind(py)))
+    }
+
+    /// What was told; an error is kept.
+    fn kept<T>(&self, told: PyResult<T>) -> Option<T> {
+        told.map_err(|error| self.halted.set(Halt::new(error))).ok()
+    }
+
+    pub fn halted(&self) -> Option<Halt> {
+        self.halted.get().cloned()
+    }
+
+    /// This method of a copy of the part.
+    pub fn copy(&self, name: &str) -> Self {
+        match self.at_work() {
+            None => Self { at_work: None, halted: self.halted.clone() },
+            Some((part, _)) => Python::attach(|py| Self::new(part.copy(py), name)),
+        }
+    }
+}
+
+/// Whether the class of a part has a method of its own in the place of that of the role.
+pub fn overrides(part: &Bound<'_, PyAny>, role: &str, method: &str) -> PyResult<bool> {
+    let role = part.py().import("flexsc.parts")?.getattr(role)?;
+    Ok(!part.get_type().getattr(method)?.is(role.getattr(method)?))
+}
+
+/// Numbers of anything that can be iterated over.
+pub fn numbers(of: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    of.try_iter()?.map(|number| number?.extract()).collect()
+}
+
+/// The same, exactly so many.
+pub fn exactly<const N: usize>(of: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; N]> {
+    let all = numbers(of)?;
+    let count = all.len();
+    let wrong = || format!("{what} must be {N} numbers, got {count}");
+    all.try_into().map_err(|_| pyo3::exceptions::PyValueError::new_err(wrong()))
+}

@@ -1,0 +1,228 @@
+//! What there is to measure, and what sensors measured, for Python.
+
+use flexsc_core::attitude::Vector;
+use flexsc_core::sensor::{Orientation, Reading as Engine, Sight, Truth as EngineTruth};
+use flexsc_core::time::Instant as Exact;
+use nalgebra::Quaternion;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::instant::Instant;
+use super::object::exactly;
+
+/// A quaternion [w, x, y, z].
+pub type Four = (f64, f64, f64, f64);
+/// Three numbers along the body's axes.
+pub type Three = (f64, f64, f64);
+
+pub fn four(q: &Quaternion<f64>) -> Four {
+    (q.w, q.i, q.j, q.k)
+}
+
+/// An angle, of a body with one.
+pub fn angle(at: &Orientation) -> Option<f64> {
+    if let Orientation::Angle(angle) = at { Some(*angle) } else { None }
+}
+
+/// An attitude, of a body with three axes.
+pub fn attitude(at: &Orientation) -> Option<Four> {
+    if let Orientation::Attitude(q) = at { Some(four(q)) } else { None }
+}
+
+/// What a sensor measured: the `angle` (rad) or the `attitude` (w, x, y, z), the true one of a sensor that tells neither;
+/// the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with what it is in `inertial` ones.
+///
+/// >>> import flexsc
+/// >>> flexsc.Reading(angle=1e-3, rate=2e-6).rate
+/// (2e-06, 0.0, 0.0)
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug)]
+pub struct Reading {
+    /// Where the body points, of a sensor that tells it.
+    at: Option<Orientation>,
+    rate: Option<[f64; 3]>,
+    sight: Option<Sight>,
+}
+
+impl Reading {
+    pub fn of(reading: &Engine) -> Self {
+        Self { at: Some(reading.at), rate: reading.rate, sight: reading.sight }
+    }
+
+    /// The engine's reading, of a body that points there.
+    pub fn within(&self, truth: &Orientation) -> PyResult<Engine> {
+        let at = self.at.unwrap_or(*truth);
+        let same = matches!(
+            (&at, truth),
+            (Orientation::Angle(_), Orientation::Angle(_))
+                | (Orientation::Attitude(_), Orientation::Attitude(_))
+        );
+        if !same {
+            let why =
+                "a reading has an angle of a body with one angle, an attitude of a body with three axes";
+            return Err(PyValueError::new_err(why));
+        }
+        Ok(Engine { at, rate: self.rate, sight: self.sight })
+    }
+}
+
+#[pymethods]
+impl Reading {
+    #[new]
+    #[pyo3(signature = (*, angle=None, attitude=None, rate=None, vector=None, inertial=None, is_direction=false))]
+    fn new(
+        angle: Option<f64>,
+        attitude: Option<&Bound<'_, PyAny>>,
+        rate: Option<&Bound<'_, PyAny>>,
+        vector: Option<&Bound<'_, PyAny>>,
+        inertial: Option<&Bound<'_, PyAny>>,
+        is_direction: bool,
+    ) -> PyResult<Self> {
+        let attitude = attitude.map(|of| exactly::<4>(of, "attitude")).transpose()?;
+        let at = match (angle, attitude) {
+            (Some(_), Some(_)) => {
+                return Err(PyValueError::new_err("a reading has one of angle and attitude"));
+            }
+            (Some(angle), None) => Some(Orientation::Angle(angle)),
+            (None, Some([w, x, y, z])) => {
+                let q = Quaternion::new(w, x, y, z);
+                let length = q.norm();
+                if (length - 1.0).abs() > 1e-6 || !length.is_finite() {
+                    let why = format!(
+                        "attitude must be a unit quaternion (w, x, y, z), got one of length {length}"
+                    );
+                    return Err(PyValueError::new_err(why));
+                }
+                Some(Orientation::Attitude(q))
+            }
+            (None, None) => None,
+        };
+        let of = |vector: Option<&Bound<'_, PyAny>>, what: &str| {
+            vector.map(|of| exactly::<3>(of, what)).transpose()
+        };
+        let sight = match (of(vector, "vector")?, of(inertial, "inertial")?) {
+            (Some(vector), Some(inertial)) => {
+                Some(Sight { vector: Vector::from(vector), inertial: Vector::from(inertial), is_direction })
+            }
+            (None, None) => None,
+            _ => return Err(PyValueError::new_err("a reading has vector and inertial together")),
+        };
+        let rate = match rate {
+            None => None,
+            Some(rate) => match rate.extract::<f64>() {
+                Ok(rate) => Some([rate, 0.0, 0.0]),
+                Err(_) => Some(exactly::<3>(rate, "rate")?),
+            },
+        };
+        Ok(Self { at, rate, sight })
+    }
+
+    #[getter]
+    fn angle(&self) -> Option<f64> {
+        angle(self.at.as_ref()?)
+    }
+
+    #[getter]
+    fn attitude(&self) -> Option<Four> {
+        attitude(self.at.as_ref()?)
+    }
+
+    #[getter]
+    fn rate(&self) -> Option<Three> {
+        self.rate.map(Into::into)
+    }
+
+    #[getter]
+    fn vector(&self) -> Option<Three> {
+        self.sight.map(|sight| sight.vector.into()).map(<[f64; 3]>::into)
+    }
+
+    #[getter]
+    fn inertial(&self) -> Option<Three> {
+        self.sight.map(|sight| sight.inertial.into()).map(<[f64; 3]>::into)
+    }
+
+    #[getter]
+    fn is_direction(&self) -> bool {
+        self.sight.is_some_and(|sight| sight.is_direction)
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        *self
+    }
+}
+
+/// What there is to measure at an instant.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug)]
+pub struct Truth {
+    pub now: Exact,
+    pub truth: EngineTruth,
+}
+
+#[pymethods]
+impl Truth {
+    #[getter]
+    fn now(&self) -> Instant {
+        Instant(self.now)
+    }
+
+    /// When (s).
+    #[getter]
+    fn time(&self) -> f64 {
+        self.now.seconds()
+    }
+
+    /// The angle with its elastic part (rad), of a body with one.
+    #[getter]
+    fn angle(&self) -> Option<f64> {
+        angle(&self.truth.orientation)
+    }
+
+    /// The attitude (w, x, y, z), which turns vectors of the body's axes into inertial ones, of one with three axes.
+    #[getter]
+    fn attitude(&self) -> Option<Four> {
+        attitude(&self.truth.orientation)
+    }
+
+    /// The elastic rotations at the sensor beside the attitude (rad).
+    #[getter]
+    fn elastic(&self) -> Three {
+        self.truth.elastic.into()
+    }
+
+    /// Rates at the sensor, elastic part included (rad/s).
+    #[getter]
+    fn rate(&self) -> Three {
+        self.truth.rate.into()
+    }
+
+    /// Rates of the body as if it were rigid (rad/s).
+    #[getter]
+    fn rigid(&self) -> Three {
+        self.truth.rigid.into()
+    }
+
+    /// The integral of `rate` (rad) but for a constant, as a gyro counts it.
+    #[getter]
+    fn turned(&self) -> Three {
+        self.truth.turned.into()
+    }
+
+    /// The magnetic field in inertial axes (T), if there is one.
+    #[getter]
+    fn field(&self) -> Option<Three> {
+        self.truth.sky.field.map(|field| <[f64; 3]>::from(field).into())
+    }
+
+    /// The direction to the Sun in inertial axes, in the light.
+    #[getter]
+    fn sun(&self) -> Option<Three> {
+        self.truth.sky.sun.map(|sun| <[f64; 3]>::from(sun).into())
+    }
+
+    /// The attitude turned by small angles about the body's axes.
+    fn attitude_at(&self, angles: &Bound<'_, PyAny>) -> PyResult<Option<Four>> {
+        Ok(attitude(&self.truth.orientation.at(exactly::<3>(angles, "angles")?)))
+    }
+}

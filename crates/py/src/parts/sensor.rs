@@ -1,0 +1,99 @@
+//! Sensors written in Python: they read at samples.
+
+use std::any::Any;
+
+use flexsc_core::own::Halt;
+use flexsc_core::random::Seed;
+use flexsc_core::sensor::{Instrument, Reading as EngineReading, Sense, Truth as EngineTruth};
+use flexsc_core::time::{Instant, Span};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+use super::draws::Draws;
+use super::law::positive;
+use super::object::{Method, Object};
+use super::reading::{Reading, Truth};
+
+/// A sensor as a scenario has it.
+#[derive(Debug)]
+pub struct Brought {
+    object: Object,
+    period: Span,
+    angle_noise: f64,
+    rate_noise: Option<f64>,
+}
+
+impl Brought {
+    /// Reads what a sensor says of itself.
+    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            object: Object::new(part),
+            period: positive(part.getattr("period")?.extract()?, "period")?,
+            angle_noise: part.getattr("angle_noise")?.extract()?,
+            rate_noise: part.getattr("rate_noise")?.extract()?,
+        })
+    }
+}
+
+impl Instrument for Brought {
+    fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sense> {
+        let method = Python::attach(|py| {
+            let begun = Py::new(py, Draws(seed)).and_then(|draws| self.object.begun(py, (axes, draws)));
+            Method::new(begun, "read")
+        });
+        Box::new(Reads(method))
+    }
+
+    fn period(&self) -> Span {
+        self.period
+    }
+
+    fn angle_noise(&self) -> f64 {
+        self.angle_noise
+    }
+
+    fn rate_noise(&self) -> Option<f64> {
+        self.rate_noise
+    }
+
+    fn any(&self) -> Option<&dyn Any> {
+        Some(&self.object)
+    }
+}
+
+/// A sensor at work.
+#[derive(Debug)]
+struct Reads(Method);
+
+impl Sense for Reads {
+    fn read(
+        &mut self,
+        now: Instant,
+        truth: &EngineTruth,
+        _: Option<&EngineReading>,
+    ) -> Option<EngineReading> {
+        Python::attach(|py| {
+            let argument = || Ok(Bound::new(py, Truth { now, truth: *truth })?.into_any());
+            self.0.call(py, argument, |told| {
+                if told.is_none() {
+                    return Ok(None);
+                }
+                let Ok(reading) = told.cast::<Reading>() else {
+                    let kind = told.get_type().name()?;
+                    let why = format!("read must return a flexsc.Reading or None, got {kind}");
+                    return Err(PyTypeError::new_err(why));
+                };
+                reading.get().within(&truth.orientation).map(Some)
+            })
+        })
+        .flatten()
+    }
+
+    fn halted(&self) -> Option<Halt> {
+        self.0.halted()
+    }
+
+    fn copy(&self) -> Box<dyn Sense> {
+        Box::new(Self(self.0.copy("read")))
+    }
+}

@@ -1,0 +1,282 @@
+"""Parts written in Python: the same switchings and beliefs as those of the engine, errors, copies, campaigns."""
+
+from __future__ import annotations
+
+import _thread
+import pickle
+import threading
+import time
+import traceback
+from pathlib import Path
+
+import flexsc
+import numpy as np
+import pytest
+from conftest import shipped
+from flexsc.parts import Event
+from own import AlphaBeta, Descent, Encoder, Mekf, Notes, Pd, Relay, Servo, turn, times
+
+SMALL = """
+duration = 200.0
+[law.open]
+[body.planar]
+inertia = 100.0
+angle = 2e-3
+modes = [{ frequency = 1.3, gain = 0.2, damping = 0.02 }]
+[sensor.sampled]
+period = 0.25
+[[disturbance]]
+torque = 1e-4
+[uncertain]
+"body.planar.rate" = { uniform = [0.0, 1e-5] }
+"""
+
+
+@pytest.mark.parametrize("name", ["relay-fixed", "relay-adaptive"])
+def test_the_relay_in_python_switches_at_the_same_instants(name: str) -> None:
+    scenario = shipped(name)
+    own = scenario.with_parts(law=Relay.of(scenario))
+    mine, theirs = own.simulate(), scenario.simulate()
+    assert mine.topics == theirs.topics
+    for topic in theirs:
+        assert mine[topic].keys() == theirs[topic].keys()
+        for column, values in theirs[topic].items():
+            if topic != "events" and values.dtype != object:
+                np.testing.assert_array_equal(mine[topic][column], values, f"{topic}.{column}")
+    for metric, value in theirs.metrics.items():
+        np.testing.assert_array_equal(mine.metrics[metric], value, metric)
+    # And again: a run leaves nothing behind.
+    np.testing.assert_array_equal(own.simulate()["command"]["time_s"], theirs["command"]["time_s"])
+
+
+def test_a_relay_in_python_is_cheap() -> None:
+    scenario = shipped("relay-fixed")
+    own = scenario.with_parts(law=Relay.of(scenario))
+
+    def least() -> float:
+        taken = []
+        for _ in range(20):
+            began = time.process_time()
+            own.simulate(log="none")
+            taken.append(time.process_time() - began)
+        return min(taken)
+
+    # The whole run of 20 000 s; slower builds and machines have as much again.
+    assert least() < 0.030
+
+
+def mekf() -> Mekf:
+    """The filter of earth-observer, for the keys that the scenario has."""
+    axes = np.array([0.8, 0.0, 0.6, 0.0])
+    columns = [times(times(axes, np.array([0.0, *row])), axes * [1, -1, -1, -1])[1:] for row in np.eye(3)]
+    tracker = sum(
+        np.outer(axis, axis) * deviation**2
+        for axis, deviation in zip(columns, [2.4e-5, 2.4e-5, 1.5e-4], strict=True)
+    )
+    return Mekf((3e-6, 1e-8), (1e-3, 1e-5), np.array(tracker), 0.2)
+
+
+def test_an_attitude_filter_in_numpy_believes_the_same() -> None:
+    scenario = shipped("earth-observer").with_("duration", 120.0)
+    told = []
+    for parts in [{}, {"estimator": mekf()}]:
+        notes = Notes()
+        law = Pd(0.25, 40.0, 250.0, notes)
+        scenario.with_parts(law=law, **parts).simulate(log="none")
+        told.append(np.array(sorted(notes.rows)))
+    built_in, own = told
+    assert built_in.shape == own.shape == (3 * 481, 4)
+    np.testing.assert_array_equal(built_in[:, :2], own[:, :2])
+    # 30 s after the start it leaves for a target 1 rad away.
+    assert np.abs(built_in[:, 3]).max() > 5e-3
+    np.testing.assert_allclose(own[:, 2:], built_in[:, 2:], rtol=0.0, atol=1e-12)
+
+
+def all_own(text: str = SMALL) -> flexsc.Scenario:
+    return flexsc.Scenario.parse(text, "own").with_parts(
+        law=Pd(0.25, 4.0, 30.0, Notes()),
+        sensor=Encoder(0.25, 1e-6, 1e-7),
+        estimator=AlphaBeta(0.4, 0.1),
+        actuator=Servo(0.05, 1e-6, 0.05),
+    )
+
+
+def test_own_parts_close_the_loop_together() -> None:
+    result = all_own().simulate(log="full")
+    end = result["attitude"]["rigid_rad"][-40:]
+    # A law without an integral part stays torque/k_p from the target: 2.5e-5 rad.
+    np.testing.assert_allclose(end, 2.5e-5, atol=2e-6)
+    steps = result["torque"]["applied_nm"] / 1e-6
+    np.testing.assert_allclose(steps, np.round(steps), atol=1e-6)
+
+
+def test_own_parts_hold_three_axes() -> None:
+    three = (
+        "duration = 200.0\n[law.open]\n[body.spatial]\ninertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]\n"
+        'rate = [1e-5, -1e-5, 2e-5]\npoints = [{ name = "hub" }]\n'
+        "modes = [{ frequency = 1.3, damping = 0.02, shapes.hub = { rotation = [0.02, 0.01, 0.03] } }]\n"
+    )
+    pointing = all_own(three).simulate(log="full")["pointing"]
+    for axis in ("roll", "pitch", "yaw"):
+        assert abs(pointing[f"{axis}_error_rad"][-1]) < 2e-5
+
+
+def test_an_adaptation_in_python_tunes() -> None:
+    scenario = shipped("relay-adaptive").with_parts(adaptation=Descent(0.002))
+    result = scenario.simulate()
+    gains = result["adaptation"]["gain"]
+    assert len(gains) == 40
+    np.testing.assert_allclose(np.abs(np.diff(gains)), 0.002, atol=1e-9)
+    assert result.metrics["gain_final"] == gains[-1]
+    # A law in Python is tuned as well.
+    relay = Relay.of(shipped("relay-adaptive"))
+    np.testing.assert_array_equal(scenario.with_parts(law=relay).simulate()["adaptation"]["gain"], gains)
+
+
+class Wrong(flexsc.Law):
+    period = 1.0
+
+    def decide(self, event: Event) -> flexsc.Hold:
+        if event.time > 5.0:
+            raise ZeroDivisionError("at six")
+        return flexsc.Hold(0.0)
+
+
+def test_an_exception_ends_the_run_as_it_was_raised(tmp_path: Path) -> None:
+    scenario = flexsc.Scenario.parse(SMALL, "own").with_parts(law=Wrong())
+    with pytest.raises(ZeroDivisionError, match="at six") as raised:
+        scenario.simulate()
+    assert traceback.extract_tb(raised.value.__traceback__)[-1].name == "decide"
+    with pytest.raises(ZeroDivisionError):
+        flexsc.Result(scenario, 0, "events", {}, {}).to_mcap(tmp_path / "run.mcap")
+    assert not (tmp_path / "run.mcap").exists()
+    table = flexsc.campaign(scenario, runs=3, jobs=2)
+    assert list(table["error"]) == ["the law at t = 6.000000000000000 s: ZeroDivisionError: at six"] * 3
+
+
+def test_what_a_part_answers_is_checked() -> None:
+    class Silent(flexsc.Law):
+        def decide(self, event: Event) -> flexsc.Hold:
+            return None  # type: ignore[return-value]
+
+    scenario = flexsc.Scenario.parse(SMALL, "own")
+    with pytest.raises(TypeError, match=r"decide must return a flexsc\.Hold, got NoneType"):
+        scenario.with_parts(law=Silent()).simulate()
+    with pytest.raises(ValueError, match="torque must be a finite number"):
+        flexsc.Hold(float("nan"))
+    with pytest.raises(ValueError, match="one of torque, acceleration, change and moment"):
+        flexsc.Hold()
+    with pytest.raises(ValueError, match="state must be one of"):
+        flexsc.Hold(1.0, state="push")
+    with pytest.raises(TypeError, match=r"law must be an object of a flexsc\.Law, got Servo"):
+        scenario.with_parts(law=Servo(1.0, 1.0, 1.0))  # type: ignore[arg-type]
+    with pytest.raises(flexsc.ScenarioError, match=r"sensor\[1\].*is not there"):
+        scenario.with_parts(sensor={1: Encoder(1.0, 1.0, 1.0)})
+    with pytest.raises(flexsc.ScenarioError, match="k_t"):
+        scenario.with_parts(law=Wrong(), adaptation=Descent(0.1))
+
+
+def told(scenario: flexsc.Scenario) -> list[float]:
+    """The torques of a run."""
+    return list(scenario.simulate(log="full")["torque"]["feedback_nm"])
+
+
+def test_runs_begin_with_copies() -> None:
+    class Counting(flexsc.Law):
+        period = 1.0
+        count = 0
+
+        def decide(self, event: Event) -> flexsc.Hold:
+            self.count += 1
+            return flexsc.Hold(1e-6 * self.count)
+
+    law = Counting()
+    scenario = flexsc.Scenario.parse(SMALL, "own").with_parts(law=law)
+    first = told(scenario)
+    law.count = 1000
+    np.testing.assert_array_equal(told(scenario), first)
+    assert law.count == 1000
+    assert scenario.parts["law"] is not law
+
+
+def test_scenarios_with_parts_are_scenarios(tmp_path: Path) -> None:
+    scenario = all_own()
+    assert sorted(scenario.parts) == ["actuator", "estimator", "law", "sensor 0"]
+    changed = scenario.with_("duration", 100.0)
+    assert changed.duration == 100.0
+    assert changed.parts["law"] is scenario.parts["law"]
+    assert scenario.with_("duration", 200.0) == scenario != changed
+    built_in = scenario.with_("law", {"pd": {"k_p": 4.0, "k_d": 30.0, "period": 0.25}})
+    assert "law" not in built_in.parts
+    again = pickle.loads(pickle.dumps(scenario))
+    np.testing.assert_array_equal(told(again), told(scenario))
+    # The log says that it does not repeat alone.
+    scenario.simulate().to_mcap(tmp_path / "run.mcap")
+    log = flexsc.read_log(tmp_path / "run.mcap")
+    assert log.metadata["own_parts"] == "law, sensor, estimator, actuator"
+    assert len(log["law"]["time_s"]) > 0
+    with pytest.raises(flexsc.ScenarioError, match="a program's own"):
+        log.scenario  # noqa: B018
+
+
+def test_campaigns_run_them_in_this_process(tmp_path: Path) -> None:
+    scenario = all_own()
+    one, two = (flexsc.campaign(scenario, runs=6, jobs=jobs) for jobs in (1, 2))
+    for name in one:
+        assert list(map(str, one[name])) == list(map(str, two[name])), name
+    assert set(one["error"]) == {""}
+    assert len(set(one["body.planar.rate"])) == 6
+    run = scenario.draw(3).simulate(run=3, log="none")
+    assert run.metrics["angle_rms_rad"] == one["angle_rms_rad"][3] != one["angle_rms_rad"][2]
+    with pytest.raises(ValueError, match="in this process alone"):
+        flexsc.campaign(scenario, runs=2, out=tmp_path / "rows")
+
+
+def test_a_sensor_stands_beside_others() -> None:
+    scenario = shipped("earth-observer").with_("duration", 5.0)
+
+    class Blind(flexsc.Sensor):
+        period = 1.0
+
+        def read(self, truth: flexsc.parts.Truth) -> None:
+            return None
+
+    with pytest.raises(flexsc.ScenarioError, match="star_tracker"):
+        # The filter has nothing else that corrects it.
+        scenario.with_parts(sensor={1: Blind()})
+    notes = Notes()
+
+    class Noting(Mekf):
+        def take(self, taken: flexsc.parts.Taken) -> list[tuple[float, float]]:
+            notes.rows.append((taken.time, *(reading is not None for reading in taken.readings)))
+            return [(0.0, 0.0)] * 3
+
+        def carry(self, taken: flexsc.parts.Taken) -> None:
+            return None
+
+    scenario.with_parts(sensor={1: Blind()}, estimator=Noting((1, 1), (1, 1), np.eye(3), 0.0)).simulate()
+    assert all(row[1] and not row[2] for row in notes.rows)
+    assert len(notes.rows) == 51
+
+
+def test_ctrl_c_ends_a_run() -> None:
+    class Slow(flexsc.Law):
+        period = 1e-3
+
+        def decide(self, event: Event) -> flexsc.Hold:
+            time.sleep(1e-3)
+            return flexsc.Hold(0.0)
+
+    scenario = flexsc.Scenario.parse(SMALL, "own").with_parts(law=Slow())
+    began = time.monotonic()
+    threading.Timer(0.3, _thread.interrupt_main).start()
+    with pytest.raises(KeyboardInterrupt):
+        scenario.simulate()
+    assert time.monotonic() - began < 2.0
+
+
+def test_turns_are_rotations() -> None:
+    # What the filter of these tests is made of.
+    quarter = turn(np.array([0.0, 0.0, np.pi / 2]))
+    seen = times(times(quarter, np.array([0.0, 1.0, 0.0, 0.0])), quarter * [1, -1, -1, -1])
+    np.testing.assert_allclose(seen, [0.0, 0.0, 1.0, 0.0], atol=1e-15)
