@@ -39,7 +39,7 @@ fn distributions_have_the_quantiles_of_the_table() {
         ["u-distribution-envelope_late_mean_rad.svg", "u-distribution-gain_initial.svg"]
     );
     for (metric, label, unit) in
-        [("gain_initial", "gain initial", 1.0), ("envelope_late_mean_rad", "envelope late mean, µrad", 1e-6)]
+        [("gain_initial", "gain initial", 1.0), ("envelope_late_mean_rad", "envelope late mean (µrad)", 1e-6)]
     {
         let drawing = Drawing::read(&dir, &format!("u-distribution-{metric}"));
         drawing.shows(&["median", "5 and 95 %", "part of the runs", "runs", label]);
@@ -78,14 +78,14 @@ fn scatters_show_what_was_drawn_and_fans_what_was_logged() {
     assert!(told.contains("flexsc simulate out/scenario.toml --runs "), "{told}");
     assert!(dir.names("figures").contains(&"u-fan.svg".to_owned()), "{:?}", dir.names("figures"));
     let scatter = Drawing::read(&dir, "u-scatter-envelope_late_mean_rad");
-    scatter.shows(&["law.relay.k_t", "body.planar.rate", "envelope late mean, µrad"]);
+    scatter.shows(&["law.relay.k_t", "body.planar.rate", "envelope late mean (µrad)"]);
     let dots = scatter
         .each(|node| (node.has_tag_name("circle") && node.attribute("fill") == Some(BLUE)).then_some(()));
     // Two panels with a legend each.
     assert_eq!(dots.len(), 2 * (9 + 1));
 
     let fan = Drawing::read(&dir, "u-fan");
-    fan.shows(&["5 to 95 %", "25 to 75 %", "median", "mean envelope, µrad", "time, s"]);
+    fan.shows(&["5 to 95 %", "25 to 75 %", "median", "mean envelope (µrad)", "time (s)"]);
     let last = |run: usize| -> f64 {
         let json = table(&dir, "out/runs.csv")[run]["envelope_window_means_rad"].clone();
         let means: Vec<f64> = serde_json::from_str(&json).expect("numbers");
@@ -113,7 +113,7 @@ fn sweeps_have_curves_and_maps() {
     dir.run("plot one -o figures/one.svg --metric torque_impulse_per_hour_nm_s").exits(1).says(&["figures"]);
     dir.run("plot one -o one.svg --metric torque_impulse_per_hour_nm_s").exits(0);
     let curve = Drawing::at(&dir, "one.svg");
-    curve.shows(&["law.relay.k_t", "acceleration impulse per hour, mrad/s"]);
+    curve.shows(&["law.relay.k_t", "acceleration impulse per hour (mrad/s)"]);
     let dots = curve.each(|node| {
         let is = node.has_tag_name("circle") && node.attribute("fill") == Some(BLUE);
         is.then(|| node.attribute("cx").and_then(|x| x.parse::<f64>().ok()))?
@@ -127,7 +127,7 @@ fn sweeps_have_curves_and_maps() {
     dir.run(&format!("{sweep} --vary law.relay.weak=8e-7:1.6e-6:5 --table csv -o two")).exits(0);
     dir.run("plot two -o two.svg --metric envelope_late_mean_rad").exits(0);
     let map = Drawing::at(&dir, "two.svg");
-    map.shows(&["law.relay.k_t", "law.relay.weak", "least", "envelope late mean, µrad"]);
+    map.shows(&["law.relay.k_t", "law.relay.weak", "least", "envelope late mean (µrad)"]);
     let rows = table(&dir, "two/runs.csv");
     let number = |row: usize, name: &str| rows[row][name].parse::<f64>().expect("a number");
     let least = (0..rows.len()).min_by(|a, b| {

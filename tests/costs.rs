@@ -192,7 +192,7 @@ fn campaigns_and_grids_have_bounds() {
         &["--horizon must be at most 1e7 samples"],
     );
     refused(
-        dir.run_bounded(&format!("tune a.toml {grid} --gain 0:1:0.00002")),
+        dir.run_bounded(&format!("tune a.toml {grid} --gain 0:1:50001")),
         &["the grid makes 5.0e9 steps"],
     );
     refused(

@@ -275,8 +275,8 @@ fn what_is_no_sampled_loop() {
     dir.run("tune relay-fixed.toml").exits(2).says(&["law: must be `pd`"]);
     dir.write("fitted.toml", FITTED);
     for (arguments, words) in [
-        ("tune fitted.toml --frequency 0.3:0.1:4", "LO:HI:N"),
-        ("tune fitted.toml --gain 1:2", "LO:HI:STEP"),
+        ("tune fitted.toml --frequency 0.3:0.1:4", "LO:HI:COUNT"),
+        ("tune fitted.toml --gain 1:2", "LO:HI:COUNT"),
         ("tune fitted.toml --limit 0", "--limit must be a positive number, got 0"),
         ("tune fitted.toml --robust 1.5", "--robust must be 0 or more and below 1, got 1.5"),
         ("tune fitted.toml --band 0", "--band must be a positive number, got 0"),

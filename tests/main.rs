@@ -42,6 +42,7 @@ mod foreign;
 mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
+mod habits;
 mod help;
 mod jets;
 mod layout;

@@ -233,7 +233,7 @@ fn designs_have_lists_tables_ranges_and_replicas() {
         ("--vary law.relay.k_t=0.4:0.3 --sample sobol:4", "the lower one first"),
         ("--vary law.relay.k_t=0.3:0.4 --sample halton:4", "random, latin-hypercube, sobol"),
         ("--vary law.relay.k_t=0.3,0.4 --sample sobol:0", "needs a number of points"),
-        ("--vary law.relay.k_t=0.3,x", "is not KEY=START:END:COUNT"),
+        ("--vary law.relay.k_t=0.3,x", "is not KEY=LO:HI:COUNT"),
         ("--vary law.relay.k_t=0.3,0.4 --runs 1:3", "the sweep has 2 runs"),
         ("--points missing.csv", "missing.csv"),
         ("--points relay-fixed.toml", "relay-fixed.toml"),

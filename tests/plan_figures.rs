@@ -40,10 +40,10 @@ fn a_series_is_drawn_with_each_number_of_modes() {
         .exits(0)
         .says(&["rotation-sine-plan-section_4.png", "peak torque"]);
     let axes = [
-        ["torque, N m", "time, s"],
-        ["hub angle, rad", "time, s"],
-        ["section_4, mrad", "time, s"],
-        ["left in section_4, rad", "all frequencies off by, %"],
+        ["torque (N m)", "time (s)"],
+        ["hub angle (rad)", "time (s)"],
+        ["section_4 (mrad)", "time (s)"],
+        ["left in section_4 (rad)", "all frequencies off by (%)"],
     ];
     for (figure, axes) in SINE.iter().zip(axes) {
         let svg = svg(&dir, "rotation-sine", figure);
@@ -83,7 +83,7 @@ fn a_series_is_drawn_with_each_number_of_modes() {
 fn other_commands_are_drawn_beside_the_rigid_bang_bang() {
     let dir = Dir::with(&["rotation-sine", "rotation-robust", "rotation-kinematic"]);
     let set = "--set manoeuvre.command={minimum_energy={suppress=2}}";
-    dir.run(&format!("plan rotation-sine.toml --figures figures --format svg --output section_2 {set}"))
+    dir.run(&format!("plan rotation-sine.toml --figures figures --format svg --coordinate section_2 {set}"))
         .exits(0);
     let torque = svg(&dir, "rotation-sine", "torque");
     let words = texts(&torque);
@@ -96,24 +96,24 @@ fn other_commands_are_drawn_beside_the_rigid_bang_bang() {
     assert!(dir.has("figures/rotation-sine-plan-section_2.svg"));
 
     // A series with zeros of its own stands beside those of as many modes.
-    dir.run("plan rotation-robust.toml --figures figures --format svg --output angle").exits(0);
+    dir.run("plan rotation-robust.toml --figures figures --format svg --coordinate angle").exits(0);
     let words = texts(&svg(&dir, "rotation-robust", "robustness"));
     assert!(
         ["p = 0", "p = 1", "p = 2", "as planned"].iter().all(|name| words.iter().any(|text| text == name))
     );
-    assert!(words.iter().any(|text| text == "left in angle, rad"));
+    assert!(words.iter().any(|text| text == "left in angle (rad)"));
     // Where the hub's motion is commanded the torque is what moves it.
     dir.run("plan rotation-kinematic.toml --figures figures --format svg").exits(0);
     let words = texts(&svg(&dir, "rotation-kinematic", "torque"));
-    assert!(words.iter().any(|text| text == "torque, N m"), "{words:?}");
+    assert!(words.iter().any(|text| text == "torque (N m)"), "{words:?}");
 }
 
 #[test]
 fn what_cannot_be_drawn_is_bad_input() {
     let dir = Dir::with(&["rotation-sine"]);
-    let words = ["--output must be one of angle, section_1, section_2, section_3, section_4, got tip"];
-    dir.run("plan rotation-sine.toml --figures figures --output tip").exits(2).says(&words);
-    dir.run("plan rotation-sine.toml --compare --output tip").exits(2).says(&words);
+    let words = ["--coordinate must be one of angle, section_1, section_2, section_3, section_4, got tip"];
+    dir.run("plan rotation-sine.toml --figures figures --coordinate tip").exits(2).says(&words);
+    dir.run("plan rotation-sine.toml --compare --coordinate tip").exits(2).says(&words);
     dir.run("plan rotation-sine.toml --output section_1").exits(2);
     dir.run("plan rotation-sine.toml --compare --figures figures").exits(2);
     assert!(!dir.has("figures"));

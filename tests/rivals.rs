@@ -241,10 +241,12 @@ fn the_command_compares_too() {
     let dir = Dir::holding("turn.toml", quarter);
     let lines = dir.run("plan turn.toml --compare --json").exits(0).prints(&["\"command\":\"sine p=2\""]);
     assert_eq!(lines.lines().count(), FIELD.len());
-    dir.run("plan turn.toml --compare --output angle").exits(0).says(&["sine w1³", "776.08"]);
+    dir.run("plan turn.toml --compare --coordinate angle").exits(0).says(&["sine w1³", "776.08"]);
     let lines = dir.run("plan turn.toml --compare --json --peak-torque 521.080754063").exits(0).out;
     assert_eq!(lines.lines().filter(|line| line.contains("refused")).count(), 0, "{lines}");
-    dir.run("plan turn.toml --compare --output tip").exits(2).says(&["--output must be one of angle, phi4"]);
+    dir.run("plan turn.toml --compare --coordinate tip")
+        .exits(2)
+        .says(&["--coordinate must be one of angle, phi4"]);
     dir.run("plan turn.toml --band 1.5").exits(2).says(&["--band must be between 0 and 1, got 1.5"]);
     dir.run("plan turn.toml --peak-torque -1").exits(2);
 }

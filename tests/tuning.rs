@@ -106,10 +106,10 @@ fn the_command_tells_regions_schedules_and_maps() {
     let law = Loop::of(&scheduled).expect("a loop").1;
     assert!((law.extra_gain(0.2) - 0.1).abs() < 1e-9 && (law.extra_gain(1.0) - 1.4).abs() < 1e-9);
     let sure =
-        dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:0.25 --json {few}")).exits(0).json();
+        dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:13 --json {few}")).exits(0).json();
     assert!(sure["rows"][0]["gain"].is_number());
     assert_eq!(sure["schedule"][0]["gain"], sure["rows"][0]["gain"]);
-    dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:0.25 {few}")).exits(0).says(&["off by 5 %"]);
+    dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:13 {few}")).exits(0).says(&["off by 5 %"]);
 
     dir.run("map fitted.toml --frequency 0.1:0.3:3 --period 0.1:0.7:4 -o map.csv")
         .exits(0)

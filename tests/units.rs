@@ -56,8 +56,8 @@ fn wrong_units_are_told_all_at_once_with_their_places() {
         .replace("damping = 0.7", "damping = '70 deg'");
     let told = Scenario::parse("x", &text).expect_err("refused").to_string();
     for words in [
-        "x:2:12: `duration` has the unit `kg`, expected one of s",
-        "`appendage[0].modes[0].frequency` has the unit `fortnights`, which is not known; expected one of rad/s",
+        "x:2:12: `duration` has the unit `kg`, expected a unit such as `s`",
+        "`appendage[0].modes[0].frequency` has the unit `fortnights`, which is not known; expected a unit such as `rad/s`",
         "`law.attitude.damping` has the unit `deg`, and takes a number without one",
     ] {
         assert!(told.contains(words), "no `{words}` in\n{told}");

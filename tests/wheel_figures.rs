@@ -13,7 +13,7 @@ fn the_angle_is_drawn_with_its_band_and_when_it_has_settled() {
     let names = ["angle", "extra", "modes", "torque"].map(|what| format!("wheel-scheduled-gain-{what}.svg"));
     assert_eq!(dir.names("figures"), names);
     let angle = Drawing::read(&dir, "wheel-scheduled-gain-angle");
-    angle.shows(&["angle, mrad", "time, s", "within ±3 mrad", "settled at 172.0 s"]);
+    angle.shows(&["angle (mrad)", "time (s)", "within ±3 mrad", "settled at 172.0 s"]);
     let settled = angle.shapes("polyline", "stroke", VERMILLION);
     let times: Vec<f64> = settled.iter().flatten().map(|(x, _)| angle.across(*x, ["0", "600"])).collect();
     // One dash is the legend's.
@@ -37,7 +37,7 @@ fn the_extra_gain_follows_the_frequency() {
     dir.run("simulate wheel-scheduled-gain.toml --set duration=250").exits(0);
     dir.run("plot wheel-scheduled-gain.mcap --format svg --what extra -o figures").exits(0);
     let extra = Drawing::read(&dir, "wheel-scheduled-gain-extra");
-    extra.shows(&["gain k_d", "frequency read, rad/s"]);
+    extra.shows(&["gain k_d", "frequency read (rad/s)"]);
     // 0.3 rad/s at the start, 0.2 after 100 s, 0.1 from 200 s on: gains 1.4, 0.1 and -0.6.
     let lines = extra.shapes("polyline", "stroke", BLUE);
     let gain = lines.iter().find(|line| line.len() > 1).expect("a line");
@@ -69,7 +69,7 @@ fn filters_have_figures_from_events_and_from_full_logs() {
 
     let frequency = Drawing::read(&full, "wheel-ekf-frequency");
     frequency.shows(&["± 2 standard deviations", "estimated", "true", "gated", "held for the law"]);
-    frequency.shows(&["frequency, rad/s", "error, mrad/s"]);
+    frequency.shows(&["frequency (rad/s)", "error (mrad/s)"]);
     let log = Log::open(&full.path("wheel-ekf.mcap")).expect("a log");
     let estimator = log.columns("/estimator").expect("a topic");
     let column = |name: &str| estimator.numbers(name).expect("a column");
@@ -101,7 +101,7 @@ fn filters_have_figures_from_events_and_from_full_logs() {
 
     // The error of the displacement is small beside the displacement.
     let estimate = Drawing::read(&full, "wheel-ekf-estimate");
-    estimate.shows(&["displacement, mrad", "error, µrad", "estimated, as the law reads it", "true"]);
+    estimate.shows(&["displacement (mrad)", "error (µrad)", "estimated, as the law reads it", "true"]);
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn a_wheel_is_drawn_with_its_limits() {
     dir.run(&format!("simulate wheel-fast-mode.toml --set duration=60 {rotor}")).exits(0);
     dir.run("plot wheel-fast-mode.mcap --format svg --what wheel -o figures").exits(0);
     let wheel = Drawing::read(&dir, "wheel-fast-mode-wheel");
-    wheel.shows(&["speed, rad/s", "momentum, mrad/s", "limits"]);
+    wheel.shows(&["speed (rad/s)", "momentum (mrad/s)", "limits"]);
     let (_, start) = wheel.line(BLACK)[0];
     near(wheel.up(start, ["−40", "−20"]), 10.0, 0.2);
     let limits = wheel.shapes("polyline", "stroke", VERMILLION);
@@ -142,10 +142,10 @@ fn a_wheel_is_drawn_with_its_limits() {
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn tuned_gains_are_drawn() {
     let dir = Dir::with(&["wheel-scheduled-gain"]);
-    let options = "--frequency 0.2:0.3:2 --gain -2:4:0.05 --robust 0.1 --figures figures --format svg --json";
+    let options = "--frequency 0.2:0.3:2 --gain -2:4:121 --robust 0.1 --figures figures --format svg --json";
     dir.run(&format!("tune wheel-scheduled-gain.toml {options}")).exits(0);
     let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
-    region.shows(&["gain k_d of the extra loop", "frequency of the dominant mode, rad/s", "middle"]);
+    region.shows(&["gain k_d of the extra loop", "frequency of the dominant mode (rad/s)", "middle"]);
     region.shows(&["stable, settles within 200 s", "of the scenario", "robust against 10 %"]);
     // From -0.8 to 1 at 0.2 rad/s, from -0.9 to 3.7 at 0.3 rad/s.
     let corners = &region.shapes("polygon", "fill", SKY)[1];
@@ -157,12 +157,12 @@ fn tuned_gains_are_drawn() {
     // The first is the legend's.
     near(region.up(middle[1][0].1, ["−1.0", "3.0"]), 0.1, 0.02);
     let settling = Drawing::read(&dir, "wheel-scheduled-gain-tune-settling");
-    settling.shows(&["settling time, s", "limit", "without the extra loop", "the same, perturbed"]);
+    settling.shows(&["settling time (s)", "limit", "without the extra loop", "the same, perturbed"]);
     let without = settling.shapes("polyline", "stroke", BLACK);
     near(settling.up(without[1][0].1, ["20", "160"]), 180.3, 0.5);
 
     // A region that ends at the highest gain tells so, and without --robust there is no such gain.
-    dir.run("tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:0.1 --figures figures")
+    dir.run("tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:31 --figures figures")
         .exits(0)
         .says(&["wheel-scheduled-gain-tune-region.png", "0.3000"]);
     let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
@@ -179,7 +179,7 @@ fn the_map_is_drawn_with_the_limit_of_stability() {
     assert!(dir.read("figures/wheel-fast-mode-map.png").starts_with(b"\x89PNG\r\n\x1a\n"));
     let map = Drawing::read(&dir, "wheel-fast-mode-map");
     assert!(map.0.len() < 100_000, "{}", map.0.len());
-    map.shows(&["spectral radius", "limit of stability", "period of the samples, s", "0.999", "1.001"]);
+    map.shows(&["spectral radius", "limit of stability", "period of the samples (s)", "0.999", "1.001"]);
     // The longest periods: 1.75, 1.4, 1.1 and 0.75 s at 0.1, 0.15, 0.2 and 0.3 rad/s.
     let limit = map.line(BLACK);
     for (w, longest) in [(0.1, 1.75), (0.15, 1.4), (0.2, 1.1), (0.3, 0.75)] {

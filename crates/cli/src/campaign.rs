@@ -2,6 +2,7 @@
 
 mod kept;
 mod live;
+pub mod logs;
 pub mod options;
 pub mod parts;
 mod scheduler;
@@ -118,13 +119,18 @@ pub fn run(
         _ => table(study, job, work)?,
     };
     let runs = told.runs as u64;
+    if study.design().keys().is_empty() && are_alike(&told.statistics) {
+        say!(
+            "warning: no metric differs between the {runs} runs: does the scenario have noise or [uncertain] keys?"
+        );
+    }
     if !job.json {
         let (name, took) = (&study.scenario().name, began.elapsed().as_secs_f64());
         if let Some(only) = &told.only {
             summary::tell(study.scenario(), only, took);
         } else {
             say!("{name}   {runs} runs, {took:.2} s");
-            tell_statistics(&told.statistics, told.runs);
+            tell_statistics(&told.statistics, &study.design().keys(), told.runs);
         }
         if let Some(path) = &told.table {
             say!("  table          {}", path.display());
@@ -318,14 +324,24 @@ fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failur
     files::write(path, &table().map_err(|error| Failure::write(path)(error.into()))?)
 }
 
-/// Prints statistics.
-pub fn tell_statistics(statistics: &[Statistics], runs: usize) {
+/// Metrics that repeat a key of the scenario.
+const ECHOES: [(&str, &str); 2] = [("gain_initial", "law.relay.k_t"), ("goal_band_rad", "reference.band")];
+
+/// Whether there are several runs, and every metric has one value in all of them.
+fn are_alike(statistics: &[Statistics]) -> bool {
+    let mut several = statistics.iter().filter(|s| s.runs + s.infinite > 1).peekable();
+    several.peek().is_some() && several.all(|s| s.sd == 0.0 && s.infinite == 0)
+}
+
+/// Prints statistics, but not of metrics that repeat a key that was swept.
+pub fn tell_statistics(statistics: &[Statistics], swept: &[&str], runs: usize) {
     if runs == 0 {
         return;
     }
     let quantiles = QUANTILES.map(|q| format!("{:>11}", format!("{:.0} %", 100.0 * q))).concat();
     say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", "metric", "runs", "mean", "sd");
-    for s in statistics.iter().filter(|s| s.runs > 0) {
+    let is_swept = |s: &Statistics| ECHOES.iter().any(|(name, key)| *name == s.name && swept.contains(key));
+    for s in statistics.iter().filter(|s| s.runs > 0 && !is_swept(s)) {
         let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
         say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
     }

@@ -1,4 +1,4 @@
-//! Figures as files: SVG, PNG or both, each by itself or all on one sheet.
+//! Figures as files: SVG, PNG or PDF, each by itself or all on one sheet.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 #[cfg(feature = "png")]
 use flexsc_figure::Renderer;
-use flexsc_figure::{Named, sheet};
+use flexsc_figure::{Named, Style, sheet};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -16,19 +16,19 @@ use crate::left_out::Renderer;
 use crate::{files, print, say};
 
 /// How files of other programs end: no directory for figures is meant to be called so.
-const OTHERS: [&str; 14] =
-    ["bmp", "eps", "gif", "htm", "html", "jpeg", "jpg", "json", "mcap", "pdf", "ps", "tif", "tiff", "webp"];
+const OTHERS: [&str; 13] =
+    ["bmp", "eps", "gif", "htm", "html", "jpeg", "jpg", "json", "mcap", "ps", "tif", "tiff", "webp"];
 
-/// Whether a command that tells numbers also draws them.
+/// Whether a command that prints numbers also draws them.
 #[derive(clap::Args)]
 #[group(skip)]
 pub struct Drawing {
-    /// Draw what is told into this directory, made if it is not there
-    #[arg(long, value_name = "DIR")]
+    /// Draw the figures: into a directory, created if missing, or as one FILE.svg, .png or .pdf
+    #[arg(short = 'o', long = "out", visible_alias = "figures", value_name = "DIR|FILE")]
     pub figures: Option<PathBuf>,
-    /// Form of the figures
-    #[arg(long, value_enum, default_value = EVERY.name(), requires = "figures")]
-    pub format: Format,
+    /// Format of the figures [default: svg and png, or by the extension of FILE]
+    #[arg(long, value_enum, requires = "figures")]
+    pub format: Option<Format>,
 }
 
 impl Drawing {
@@ -37,8 +37,8 @@ impl Drawing {
     /// # Errors
     /// See [`Target::save`].
     pub fn save(&self, figures: impl FnOnce() -> Vec<Named>) -> Result<(), Failure> {
-        let Some(directory) = &self.figures else { return Ok(()) };
-        Target::Directory(directory.clone(), self.format).save(&figures(), false)
+        let Some(out) = &self.figures else { return Ok(()) };
+        Target::new(Some(out), out, self.format)?.save(&figures(), Style::default(), false)
     }
 }
 
@@ -49,7 +49,9 @@ pub enum Format {
     Svg,
     /// Pixels
     Png,
-    /// One file of each
+    /// Vector graphics with their fonts, for LaTeX
+    Pdf,
+    /// SVG and PNG
     Both,
 }
 
@@ -57,14 +59,43 @@ pub enum Format {
 pub const EVERY: Format = if cfg!(feature = "png") { Format::Both } else { Format::Svg };
 
 impl Format {
-    /// What the command calls it.
-    const fn name(self) -> &'static str {
+    /// The forms of files, each with its extension.
+    const fn files(self) -> &'static [Self] {
         match self {
-            Self::Svg => "svg",
-            Self::Png => "png",
-            Self::Both => "both",
+            Self::Svg => &[Self::Svg],
+            Self::Png => &[Self::Png],
+            Self::Pdf => &[Self::Pdf],
+            Self::Both => &[Self::Svg, Self::Png],
         }
     }
+
+    const fn extension(self) -> &'static str {
+        match self {
+            Self::Svg | Self::Both => "svg",
+            Self::Png => "png",
+            Self::Pdf => "pdf",
+        }
+    }
+
+    /// A drawn figure as a file of this form.
+    fn bytes(self, svg: &str, style: &Style, renderer: &Renderer) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Svg | Self::Both => Ok(style.sized(svg).into_bytes()),
+            Self::Png => renderer.png(svg, style),
+            Self::Pdf => renderer.pdf(&style.sized(svg)),
+        }
+    }
+}
+
+/// The form that a file's name says.
+fn said(path: &Path) -> Option<Format> {
+    let extension = path.extension()?.to_ascii_lowercase();
+    [Format::Svg, Format::Png, Format::Pdf].into_iter().find(|format| extension == format.extension())
+}
+
+/// Whether a path is that of a figure.
+pub fn is_figure(path: &Path) -> bool {
+    said(path).is_some() && !path.is_dir()
 }
 
 /// Where figures go.
@@ -79,19 +110,15 @@ impl Target {
     /// What `-o` and `--format` say, or a directory if there is no `-o`.
     pub fn new(out: Option<&Path>, otherwise: &Path, format: Option<Format>) -> Result<Self, Failure> {
         let out = out.unwrap_or(otherwise);
-        let extension = out.extension().map(std::ffi::OsStr::to_ascii_lowercase);
-        let said = match extension.as_deref().and_then(|extension| extension.to_str()) {
-            _ if out.is_dir() => None,
-            Some("svg") => Some(Format::Svg),
-            Some("png") => Some(Format::Png),
-            Some(other) if OTHERS.contains(&other) => {
-                return Err(Failure::Arguments(format!(
-                    "-o {}: figures cannot be written as .{other}\n\nhint: give a file that ends in .svg or .png, or a directory",
-                    out.display()
-                )));
-            }
-            _ => None,
-        };
+        let said = if out.is_dir() { None } else { said(out) };
+        let other = out.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+        let other = other.as_deref().and_then(|extension| extension.to_str()).filter(|_| !out.is_dir());
+        if let Some(other) = other.filter(|other| OTHERS.contains(other)) {
+            return Err(Failure::Arguments(format!(
+                "-o {}: figures cannot be written as .{other}\n\nhint: give a file that ends in .svg, .png or .pdf, or a directory",
+                out.display()
+            )));
+        }
         match (said, format) {
             (None, format) => Ok(Self::Directory(out.to_owned(), format.unwrap_or(EVERY))),
             (Some(said), Some(format)) if format != said => Err(Failure::Arguments(format!(
@@ -107,17 +134,17 @@ impl Target {
     ///
     /// # Errors
     /// A figure that cannot be drawn, and a file or a directory that cannot be written.
-    pub fn save(&self, figures: &[Named], json: bool) -> Result<(), Failure> {
+    pub fn save(&self, figures: &[Named], style: Style, json: bool) -> Result<(), Failure> {
         match self {
-            Self::Directory(directory, format) => save_each(directory, *format, figures, json),
+            Self::Directory(directory, format) => save_each(directory, (*format, style), figures, json),
             Self::File(path, format) => {
                 let undrawn = |why| Failure::Draw { path: path.clone(), why };
-                let drawn = figures.par_iter().map(|(_, figure)| figure.svg()).collect::<Result<Vec<_>, _>>();
+                let drawn = figures
+                    .par_iter()
+                    .map(|(_, figure)| figure.laid_out(&style))
+                    .collect::<Result<Vec<_>, _>>();
                 let svg = sheet(&drawn.map_err(undrawn)?);
-                let bytes = match format {
-                    Format::Svg | Format::Both => svg.into_bytes(),
-                    Format::Png => Renderer::default().png(&svg).map_err(undrawn)?,
-                };
+                let bytes = format.bytes(&svg, &style, &Renderer::default()).map_err(undrawn)?;
                 let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
                 let bytes = [(path.clone(), bytes)];
                 files::write_all(&bytes)?;
@@ -128,29 +155,28 @@ impl Target {
 }
 
 /// Writes figures into a directory, which is made if it is not there.
-fn save_each(directory: &Path, format: Format, figures: &[Named], json: bool) -> Result<(), Failure> {
+fn save_each(
+    directory: &Path,
+    (format, style): (Format, Style),
+    figures: &[Named],
+    json: bool,
+) -> Result<(), Failure> {
     files::make_directory(directory)?;
     let renderer = Renderer::default();
-    let path = |name: &str, extension: &str| directory.join(format!("{name}.{extension}"));
-    let draw = |(name, figure): &Named| -> Result<(String, Vec<u8>), Failure> {
-        let undrawn = |why| Failure::Draw { path: path(name, "svg"), why };
-        let svg = figure.svg().map_err(undrawn)?;
-        let png = if format == Format::Svg { Vec::new() } else { renderer.png(&svg).map_err(undrawn)? };
-        Ok((svg, png))
+    let draw = |(name, figure): &Named| -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+        let path = |format: &Format| directory.join(format!("{name}.{}", format.extension()));
+        let undrawn = |why| Failure::Draw { path: path(&format), why };
+        let svg = figure.laid_out(&style).map_err(undrawn)?;
+        let file = |format: &Format| {
+            let undrawn = |why| Failure::Draw { path: path(format), why };
+            Ok((path(format), format.bytes(&svg, &style, &renderer).map_err(undrawn)?))
+        };
+        format.files().iter().map(file).collect()
     };
     let drawn = figures.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?;
-    let mut names = Vec::new();
-    let mut all = Vec::new();
-    for ((name, _), (svg, png)) in figures.iter().zip(drawn) {
-        if format != Format::Png {
-            names.push(name);
-            all.push((path(name, "svg"), svg.into_bytes()));
-        }
-        if format != Format::Svg {
-            names.push(name);
-            all.push((path(name, "png"), png));
-        }
-    }
+    let names = figures.iter().flat_map(|(name, _)| format.files().iter().map(move |_| name));
+    let names: Vec<&String> = names.collect();
+    let all: Vec<_> = drawn.into_iter().flatten().collect();
     files::write_all(&all)?;
     names.into_iter().zip(&all).try_for_each(|(name, file)| tell(file, &[name], json))
 }

@@ -76,8 +76,8 @@ pub struct Args {
     #[arg(value_name = "NAME")]
     names: Vec<String>,
     /// Directory for the copies
-    #[arg(short, long, value_name = "DIR", default_value = ".")]
-    output: PathBuf,
+    #[arg(short, long, alias = "output", value_name = "DIR", default_value = ".")]
+    out: PathBuf,
     /// Replace files that are there
     #[arg(long)]
     force: bool,
@@ -120,13 +120,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let copies = args.names.iter().map(|name| {
         let stem = name.strip_suffix(".toml").unwrap_or(name);
-        Ok((args.output.join(format!("{stem}.toml")), text(name)?.as_bytes().to_vec()))
+        Ok((args.out.join(format!("{stem}.toml")), text(name)?.as_bytes().to_vec()))
     });
     let copies = copies.collect::<Result<Vec<_>, Failure>>()?;
     for (path, _) in &copies {
         refuse_existing(path, args.force)?;
     }
-    files::make_directory(&args.output)?;
+    files::make_directory(&args.out)?;
     files::write_all(&copies)?;
     for (path, _) in &copies {
         say!("{}", path.display());

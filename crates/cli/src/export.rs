@@ -1,5 +1,7 @@
 //! `flexsc export`: a topic of a log as a table.
 
+mod metrics;
+
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -45,6 +47,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         return tell(args, |out| writeln!(out, "{}", log.topics().join("\n")));
     };
     let columns = log.columns(topic)?;
+    if topic == metrics::TOPIC
+        && let Some(table) = metrics::table(&columns, args.format)
+    {
+        let table = table.map_err(|why| unreadable(&args.log, topic, why.to_string()))?;
+        return tell(args, |out| out.write_all(&table));
+    }
     let table = flat(&columns).map_err(|why| unreadable(&args.log, topic, why))?;
     tell(args, |out| match args.format {
         Format::Csv => csv(&table, columns.len(), out),

@@ -4,13 +4,13 @@ use std::str::FromStr;
 
 use flexsc_core::analysis::sampled_loop::Gains;
 
-/// LO:HI:N, so many numbers from the first to the last, evenly apart: each above 0.
+/// LO:HI:COUNT, so many numbers from the first to the last, evenly apart: each above 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Even(pub Vec<f64>);
 
-/// LO:HI:STEP.
+/// LO:HI:COUNT of gains, which may have any sign.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Stepped(pub Gains);
+pub struct Tried(pub Gains);
 
 /// The most points of a grid.
 const MOST: u32 = 100_000;
@@ -41,25 +41,47 @@ impl FromStr for Even {
             {
                 Ok(Self::new(low, high, count))
             }
-            _ => Err(format!("must be LO:HI:N with 0 < LO <= HI and N from 1 to {MOST}, got {text}")),
+            _ => Err(format!("must be LO:HI:COUNT with 0 < LO <= HI and COUNT from 1 to {MOST}, got {text}")),
         }
     }
 }
 
-impl FromStr for Stepped {
+impl FromStr for Tried {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
-        let parsed =
-            three(text).and_then(|[low, high, step]| Some((number(low)?, number(high)?, number(step)?)));
+        let parsed = three(text)
+            .and_then(|[low, high, count]| Some((number(low)?, number(high)?, count.parse::<u32>().ok()?)));
         match parsed {
-            Some((low, high, step)) if low <= high && step > 0.0 && (high - low) / step < f64::from(MOST) => {
-                Ok(Self(Gains { low, high, step }))
+            Some((low, high, 1)) if low == high => Ok(Self(Gains { low, high, step: 1.0 })),
+            Some((low, high, count)) if low < high && (2..=MOST).contains(&count) => {
+                Ok(Self(Gains { low, high, step: (high - low) / f64::from(count - 1) }))
             }
             _ => Err(format!(
-                "must be LO:HI:STEP with LO <= HI, STEP > 0 and at most {MOST} steps, got {text}"
+                "must be LO:HI:COUNT with LO < HI and COUNT from 2 to {MOST}, such as -2:6:161, got {text}"
             )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_count_of_gains_is_that_of_the_gains_tried() {
+        for (text, count, last) in [("-2:6:161", 161, 6.0), ("-1:2:13", 13, 2.0), ("0:1:50001", 50_001, 1.0)]
+        {
+            let Tried(gains) = text.parse().expect(text);
+            let values = gains.values();
+            assert_eq!(values.len(), count, "{text}");
+            assert!((values[count - 1] - last).abs() < 1e-12, "{text}");
+        }
+        assert_eq!("-2:6:161".parse(), Ok(Tried(Gains { low: -2.0, high: 6.0, step: 0.05 })));
+        assert_eq!("3:3:1".parse::<Tried>().map(|Tried(gains)| gains.values()), Ok(vec![3.0]));
+        for text in ["-2:6:0.05", "6:-2:5", "1:2", "1:2:1", "0:inf:3", "0:1:0"] {
+            assert!(text.parse::<Tried>().is_err_and(|why| why.contains("LO:HI:COUNT")), "{text}");
         }
     }
 }

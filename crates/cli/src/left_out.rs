@@ -1,9 +1,12 @@
 //! What this build leaves out, and how to have it.
 
+#[cfg(not(feature = "png"))]
+use flexsc_figure::Style;
+
 /// What helps.
 pub const HINT: &str = "hint: cargo build --release --features full";
 
-/// In place of what renders PNG.
+/// In place of what renders PNG and PDF.
 #[cfg(not(feature = "png"))]
 #[derive(Default)]
 pub struct Renderer {}
@@ -11,7 +14,12 @@ pub struct Renderer {}
 #[cfg(not(feature = "png"))]
 impl Renderer {
     #[expect(clippy::unused_self, reason = "as of the renderer that there is with the feature")]
-    pub fn png(&self, _: &str) -> Result<Vec<u8>, String> {
+    pub fn png(&self, _: &str, _: &Style) -> Result<Vec<u8>, String> {
         Err(format!("PNG needs the feature `png`, which this build leaves out\n\n{HINT}"))
+    }
+
+    #[expect(clippy::unused_self, reason = "as of the renderer that there is with the feature")]
+    pub fn pdf(&self, _: &str) -> Result<Vec<u8>, String> {
+        Err(format!("PDF needs the feature `png`, which this build leaves out\n\n{HINT}"))
     }
 }

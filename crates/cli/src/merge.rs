@@ -42,6 +42,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let left: u64 = into.missing().map_err(parts::failure)?.iter().map(|runs| runs.end - runs.start).sum();
     let told = parts::told(&into)?;
     say!("{}: {} runs, {left} are missing", args.out.display(), told.runs);
-    campaign::tell_statistics(&told.statistics, told.runs);
+    campaign::tell_statistics(&told.statistics, &into.work().campaign.design().keys(), told.runs);
     Ok(())
 }

@@ -14,7 +14,9 @@ pub fn fixed(value: Option<f64>, decimals: usize) -> String {
 pub fn short(number: f64) -> String {
     if number.is_nan() {
         "-".to_owned()
-    } else if number == 0.0 || (1e-3..1e6).contains(&number.abs()) {
+    } else if number == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e6).contains(&number.abs()) {
         let digits = if number.abs() >= 1e3 { 1 } else { 4 };
         format!("{number:.digits$}")
     } else {

@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
-use clap::ValueEnum;
 use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, Design, Directory, Run};
-use flexsc_core::metrics::{Metrics, Selection};
-use flexsc_core::record::{Detail, LogFile, RecordError, RunEnd, There, there};
+use flexsc_core::metrics::Selection;
+use flexsc_core::record::{Detail, RecordError};
 use flexsc_core::scenario::{Cost, MOST_RUNS};
 
+use crate::campaign::logs::{self, LogDetail, logged};
 use crate::campaign::{self, Options, parts};
 use crate::consent::Consent;
-use crate::failure::{Failure, Refused};
+use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::results::print_lines;
 use crate::stop::{self, Stop};
@@ -71,30 +71,6 @@ pub struct Args {
 pub struct Runs {
     pub range: Range<u64>,
     part: bool,
-}
-
-/// What a log holds.
-#[derive(Copy, Clone, PartialEq, ValueEnum)]
-enum LogDetail {
-    /// No log
-    None,
-    /// All that changes: switchings, window means, adaptation
-    Events,
-    /// Also the motion at each period of the scenario's log, and at every switching
-    Full,
-    /// Also the scene for viewers in three dimensions: frames, shapes, plumes
-    Scene,
-}
-
-impl LogDetail {
-    fn detail(self) -> Option<Detail> {
-        match self {
-            Self::None => None,
-            Self::Events => Some(Detail::Events),
-            Self::Full => Some(Detail::Full),
-            Self::Scene => Some(Detail::Scene),
-        }
-    }
 }
 
 /// Reads `N` or `LO:HI`.
@@ -237,6 +213,7 @@ fn several(
     runs: &Runs,
     (prefixed, selection): (bool, &Selection),
 ) -> Result<(), Failure> {
+    let detail = args.log.unwrap_or(LogDetail::None).detail();
     let job = campaign::Job {
         range: runs.range.clone(),
         part: runs.part,
@@ -248,31 +225,10 @@ fn several(
         force: args.force,
         jobs: args.jobs,
         json: args.json,
-        scheduler: args.options.scheduler(args.log.is_some_and(|log| log != LogDetail::None), args.json)?,
-        plain: args.log.unwrap_or(LogDetail::None).detail().is_none(),
+        scheduler: args.options.scheduler(detail.is_some(), args.json)?,
+        plain: detail.is_none(),
     };
-    let detail = args.log.unwrap_or(LogDetail::None).detail();
-    let directory = args.out.clone().unwrap_or_default();
-    let (name, force) = (study.scenario().name.clone(), args.force);
-    let log = move |number| directory.join(format!("{name}-{number}.mcap"));
-    campaign::run(study, &job, {
-        let (log, selection) = (log.clone(), selection.clone());
-        move |run| match detail {
-            // No log for the runs that had not begun.
-            _ if stop::asked() => Err(stop::interrupted().into()),
-            None => Ok(Campaign::simulate_for(run, &selection, Stop)?),
-            Some(detail) => Ok(selection.of_run(logged(run, &log(run.number), (detail, force), Stop)?.0)),
-        }
-    })?;
-    if detail.is_some() && !args.json {
-        let (first, last) = (log(runs.range.start), log(runs.range.end - 1));
-        if first == last {
-            say!("  log            {}", first.display());
-        } else {
-            say!("  logs           {} to {}", first.display(), last.display());
-        }
-    }
-    Ok(())
+    logs::run(study, &job, detail)
 }
 
 /// The scenario itself as a run: no key of it is drawn.
@@ -329,38 +285,4 @@ fn single(
 
 fn interrupted(log: Option<Detail>, path: &Path) -> String {
     if log.is_none() { String::new() } else { format!("; {} holds the run up to there", path.display()) }
-}
-
-/// Simulates a run into a log file, and returns its size. An interrupted run leaves a finished log, a failed one
-/// too, and one that cannot be written none.
-fn logged(
-    run: &Run,
-    path: &Path,
-    (detail, force): (Detail, bool),
-    record: impl flexsc_core::record::Record,
-) -> Result<(Metrics, u64), SimulationError> {
-    let provenance = Campaign::provenance(run, detail);
-    let mut log = LogFile::create(path, &provenance, detail)?;
-    // Nobody else writes it now.
-    if let (There::Other(what), false) = (there(path, &provenance), force) {
-        let text = format!(
-            "{}: {what}\n\nhint: give another directory with -o, or --force to replace it",
-            path.display()
-        );
-        return Err(RecordError::Io(Refused(text).into()).into());
-    }
-    match Campaign::simulate(run, (&mut log, record)) {
-        Ok(metrics) => {
-            let bytes = log.finish(&metrics, RunEnd::Complete)?;
-            Ok((metrics, bytes))
-        }
-        // It is removed.
-        Err(SimulationError::Record(RecordError::Io(error))) => Err(RecordError::Io(error).into()),
-        Err(error) => {
-            let interrupted = matches!(error, SimulationError::Record(RecordError::Interrupted));
-            let end = if interrupted { RunEnd::Interrupted } else { RunEnd::Failed };
-            log.finish(&Metrics::default(), end)?;
-            Err(error)
-        }
-    }
 }

@@ -8,12 +8,13 @@ use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Block, Campaign, Design, Span};
+use flexsc_core::record::Detail;
 
 use crate::campaign::Options;
+use crate::campaign::logs::{self, LogDetail};
 use crate::consent::Consent;
 use crate::failure::Failure;
 use crate::simulate::{Runs, runs};
-use crate::stop::{self, Stop};
 use crate::{campaign, files, scenario};
 
 /// No sweep has more combinations.
@@ -23,8 +24,8 @@ const MOST_VALUES: u32 = 10_000_000;
 pub struct Args {
     /// Scenario file
     pub scenario: PathBuf,
-    /// A key and its values: START:END:COUNT, evenly apart, such as law.relay.k_t=0.28:0.40:2401; a list A,B,C; or a range
-    /// START:END for --sample. Given again, every combination with the values of another key; ranges are sampled together
+    /// A key and its values: LO:HI:COUNT, evenly apart, such as law.relay.k_t=0.28:0.40:2401; a list A,B,C; or a range
+    /// LO:HI for --sample. Given again, every combination with the values of another key; ranges are sampled together
     #[arg(long, required_unless_present = "points", value_name = "KEY=VALUES", value_parser = varied)]
     vary: Vec<Varied>,
     /// A table of points, as CSV: a column for each key, a row for each point; combined with the values of --vary
@@ -45,12 +46,15 @@ pub struct Args {
     /// Threads [default: one for each core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Replace the tables of another campaign in DIR
-    #[arg(long, requires = "out")]
+    /// Replace tables of another campaign in DIR, and logs of other settings
+    #[arg(long)]
     force: bool,
     /// Print one JSON object for each run on stdout
     #[arg(long)]
     json: bool,
+    /// Detail of a log for each run, NAME-RUN.mcap in DIR [default: none]
+    #[arg(long, value_name = "DETAIL")]
+    log: Option<LogDetail>,
     #[command(flatten)]
     options: Options,
     #[command(flatten)]
@@ -73,9 +77,7 @@ enum Values {
 
 fn varied(text: &str) -> Result<Varied, String> {
     let form = || {
-        format!(
-            "`{text}` is not KEY=START:END:COUNT, such as law.relay.k_t=0.28:0.40:25, KEY=A,B,C or KEY=START:END"
-        )
+        format!("`{text}` is not KEY=LO:HI:COUNT, such as law.relay.k_t=0.28:0.40:25, KEY=A,B,C or KEY=LO:HI")
     };
     let (key, values) = text.split_once('=').ok_or_else(form)?;
     let number = |text: &str| text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(form);
@@ -98,6 +100,11 @@ fn varied(text: &str) -> Result<Varied, String> {
 }
 
 impl Args {
+    /// What the log of each run holds; none without logs.
+    fn detail(&self) -> Option<Detail> {
+        self.log.and_then(LogDetail::detail)
+    }
+
     /// The points, and how many they are.
     fn design(&self, uncertain: bool) -> Result<(Design, u64), Failure> {
         let mut blocks = Vec::new();
@@ -144,7 +151,8 @@ impl Args {
         }
         let study = Campaign::of(scenario, origin, design)?;
         let runs = range.end - range.start;
-        let cost = study.cost(runs, None).map_err(|why| Failure::Arguments(format!("--vary: {why}")))?;
+        let cost =
+            study.cost(runs, self.detail()).map_err(|why| Failure::Arguments(format!("--vary: {why}")))?;
         self.consent.to(&self.options.cost(cost, self.out.is_some()))?;
         Ok((study, range))
     }
@@ -157,25 +165,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if let Some(out) = &args.out {
         files::make_directory(out)?;
     }
+    let detail = args.detail();
     let job = campaign::Job {
         range,
         part: args.runs.is_some(),
         table: args.out.as_deref(),
         kind: args.options.table(),
-        selection: selection.clone(),
+        selection,
         fail_fast: args.options.fail_fast,
         prefix: None,
         force: args.force,
         jobs: args.jobs,
         json: args.json,
-        scheduler: args.options.scheduler(false, args.json)?,
-        plain: true,
+        scheduler: args.options.scheduler(detail.is_some(), args.json)?,
+        plain: detail.is_none(),
     };
-    campaign::run(&Arc::new(study), &job, move |run| {
-        if stop::asked() {
-            Err(stop::interrupted().into())
-        } else {
-            Ok(Campaign::simulate_for(run, &selection, Stop)?)
-        }
-    })
+    logs::run(&Arc::new(study), &job, detail)
 }

@@ -86,18 +86,15 @@ impl Statistics {
     }
 }
 
-/// The statistics of every metric that is a number, over runs of one scenario.
-pub fn statistics(runs: &[Metrics]) -> Vec<Statistics> {
-    let mut gathered = Gathered::default();
-    for run in runs {
-        gathered.add(run);
-    }
-    gathered.finish()
-}
-
 /// Mean and standard deviation of finite values. Sums and squares that are too large for a double are made of smaller values:
-/// the mean always fits, and the standard deviation is NaN where it does not.
+/// the mean always fits, and the standard deviation is NaN where it does not. Equal values have their value as the mean and no
+/// deviation, free of rounding.
 fn mean_and_sd(values: &[f64]) -> (f64, f64) {
+    if let [first, _, ..] = values
+        && values.iter().all(|value| value == first)
+    {
+        return (*first, 0.0);
+    }
     let n = values.len() as f64;
     let of = |scale: f64| {
         let mean = values.iter().map(|v| v * scale).sum::<f64>() / n;
@@ -135,9 +132,19 @@ mod tests {
             Metrics(verdict.finish(10.0).into())
         };
         let runs = [run(1.0, 1.0), run(1.0, 9.5), run(f64::NAN, 0.0), run(1.0, 0.0), run(1.0, 3.0)];
-        let told = statistics(&runs);
+        let mut gathered = Gathered::default();
+        runs.iter().for_each(|run| gathered.add(run));
+        let told = gathered.finish();
         assert_eq!((told[0].name, told[0].runs, told[0].mean), ("goal", 4, 0.75));
         assert_eq!((told[2].name, told[2].runs, told[2].mean), ("time_outside_s", 4, 13.5 / 4.0));
+    }
+
+    #[test]
+    fn equal_values_do_not_deviate() {
+        // Their sum divided by their number is another double.
+        for value in [0.1, 0.1_f64 + 0.2, -1e308, 0.0] {
+            assert_eq!(mean_and_sd(&[value; 7]), (value, 0.0));
+        }
     }
 
     #[test]

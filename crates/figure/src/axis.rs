@@ -13,6 +13,8 @@ pub struct Axis {
     pub range: Range<f64>,
     /// How values lie along it.
     pub scale: Scale,
+    /// The largest value of the axes beside it whose prefix it has too.
+    beside: f64,
 }
 
 /// How values lie along an axis.
@@ -44,6 +46,13 @@ enum Form {
 /// No logarithmic axis shows more decades: far below the largest value there is only rounding.
 const DECADES: f64 = 8.0;
 
+/// Axes of one unit have one prefix if their largest values differ by no larger factor: those of one quantity, ...
+const SAME: f64 = 1000.0;
+/// ... and others.
+const ALIKE: f64 = 10.0;
+/// The names of three axes, whose quantity is the same.
+const DIRECTIONS: [&str; 6] = ["roll", "pitch", "yaw", "x", "y", "z"];
+
 /// Prefixes, from the smallest.
 const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
 
@@ -56,7 +65,7 @@ impl Axis {
         let middle = if range.start.is_finite() { range.start } else { 0.0 };
         let half = if middle == 0.0 { 1.0 } else { 0.05 * middle.abs() };
         let range = if wide { range } else { middle - half..middle + half };
-        Self { name: name.to_owned(), unit, range, scale: Scale::Linear }
+        Self { name: name.to_owned(), unit, range, scale: Scale::Linear, beside: 0.0 }
     }
 
     /// An axis that shows all of these values, and a little more.
@@ -81,7 +90,26 @@ impl Axis {
         let (low, high) = if high > 0.0 { (low.log10().floor(), high.log10().ceil()) } else { (-1.0, 0.0) };
         let low = low.min(high - 1.0).max(high - DECADES);
         let range = 10_f64.powf(low)..10_f64.powf(high);
-        Self { name: name.to_owned(), unit, range, scale: Scale::Logarithmic }
+        Self { name: name.to_owned(), unit, range, scale: Scale::Logarithmic, beside: 0.0 }
+    }
+
+    /// Axes of a figure one below the other: those of one unit have one prefix, unless one of them would show too small
+    /// numbers.
+    pub(crate) fn stacked<'a>(axes: impl IntoIterator<Item = &'a Self>) -> Vec<Self> {
+        let mut axes: Vec<Self> = axes.into_iter().cloned().collect();
+        let all = axes.clone();
+        let direction = |axis: &Self| DIRECTIONS.contains(&axis.name.as_str());
+        for axis in &mut axes {
+            let near = |other: &&Self| {
+                let same = other.name == axis.name || (direction(other) && direction(axis));
+                let factor = if same { SAME } else { ALIKE };
+                other.unit == axis.unit
+                    && other.scale == Scale::Linear
+                    && other.size() <= factor * axis.size()
+            };
+            axis.beside = all.iter().filter(near).map(Self::size).fold(0.0, f64::max);
+        }
+        axes
     }
 
     /// Where a value lies, in the numbers of [`Axis::extent`]; not finite if it has no place.
@@ -109,10 +137,10 @@ impl Axis {
             ("", _) | (_, "") => self.name.clone(),
             // The kilogram has a prefix of its own.
             (name, "kg") => match self.prefix().0 {
-                "M" => format!("{name}, t"),
-                prefix => format!("{name}, {prefix}g"),
+                "M" => format!("{name} (t)"),
+                prefix => format!("{name} ({prefix}g)"),
             },
-            (name, unit) => format!("{name}, {}{unit}", self.prefix().0),
+            (name, unit) => format!("{name} ({}{unit})", self.prefix().0),
         }
     }
 
@@ -150,11 +178,16 @@ impl Axis {
         }
     }
 
+    /// The largest absolute value that it shows.
+    fn size(&self) -> f64 {
+        self.range.start.abs().max(self.range.end.abs())
+    }
+
     fn prefix(&self) -> (&'static str, i32) {
         if self.unit.is_empty() || self.scale == Scale::Logarithmic {
             return ("", self.own());
         }
-        let size = self.range.start.abs().max(self.range.end.abs()) * 10_f64.powi(self.own());
+        let size = self.size().max(self.beside) * 10_f64.powi(self.own());
         let half = (self.range.end - self.range.start) / 2.0;
         // Times are told in seconds up to 2500 s, and however late they are.
         let measure = if self.unit == "s" { half } else { size };
@@ -194,7 +227,7 @@ fn superscript(number: i32) -> String {
 /// The name and the unit that an axis of a quantity has: prefixes are those of SI units, so that any other unit stands
 /// in the name.
 pub fn name_and_unit(name: &str, unit: &str) -> (String, &'static str) {
-    if unit == "rad" { (name.to_owned(), "rad") } else { (format!("{name}, {unit}"), "") }
+    if unit == "rad" { (name.to_owned(), "rad") } else { (format!("{name} ({unit})"), "") }
 }
 
 /// The number of 1, 2 or 5 times a power of ten that is nearest to a positive one.
@@ -217,15 +250,15 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         let angle = Axis::exact("angle x", "rad", -6.2e-4..6.2e-4);
-        assert_eq!(angle.label(), "angle x, µrad");
+        assert_eq!(angle.label(), "angle x (µrad)");
         assert_eq!(texts(&angle, 7), ["−600", "−400", "−200", "0", "200", "400", "600"]);
         let time = Axis::exact("time", "s", 0.0..20_000.0);
-        assert_eq!(time.label(), "time, ks");
+        assert_eq!(time.label(), "time (ks)");
         assert_eq!(texts(&time, 4), ["0", "5", "10", "15", "20"]);
         let short = Axis::exact("time", "s", 0.0..3.0);
         assert_eq!(texts(&short, 4), ["0", "1", "2", "3"]);
         let late = Axis::exact("time", "s", 19_900.0..20_000.0);
-        assert_eq!(late.label(), "time, s");
+        assert_eq!(late.label(), "time (s)");
         assert_eq!(texts(&late, 2), ["19900", "19950", "20000"]);
         let gain = Axis::exact("k_t", "", 0.305..0.325);
         assert_eq!(gain.label(), "k_t");
@@ -233,14 +266,14 @@ mod tests {
         let turn = Axis::exact("angle", "rad", -0.1..1.67);
         assert_eq!(
             (turn.label().as_str(), texts(&turn, 4)),
-            ("angle, rad", ["0", "0.5", "1.0", "1.5"].map(str::to_owned).to_vec())
+            ("angle (rad)", ["0", "0.5", "1.0", "1.5"].map(str::to_owned).to_vec())
         );
         let propellant = |most: f64| Axis::exact("propellant", "kg", 0.0..most);
-        assert_eq!(propellant(0.19).label(), "propellant, g");
+        assert_eq!(propellant(0.19).label(), "propellant (g)");
         assert_eq!(texts(&propellant(0.19), 4), ["0", "50", "100", "150"]);
-        assert_eq!(propellant(3.7).label(), "propellant, kg");
+        assert_eq!(propellant(3.7).label(), "propellant (kg)");
         assert_eq!(texts(&propellant(3.7), 4), ["0", "1", "2", "3"]);
-        assert_eq!(propellant(4200.0).label(), "propellant, t");
+        assert_eq!(propellant(4200.0).label(), "propellant (t)");
         // Two ticks at least.
         assert_eq!(texts(&Axis::exact("x", "m", -45.0..45.0), 4), ["−40", "−20", "0", "20", "40"]);
         let huge = Axis::exact("", "", -2e9..2e9);
@@ -248,9 +281,20 @@ mod tests {
     }
 
     #[test]
+    fn axes_one_below_the_other_have_one_prefix() {
+        let axis = |most: f64, unit| Axis::exact("angle", unit, -most..most);
+        let stacked =
+            Axis::stacked(&[axis(3e-3, "rad"), axis(2e-5, "rad"), axis(1e-6, "rad"), axis(1e-5, "m")]);
+        let labels: Vec<String> = stacked.iter().map(Axis::label).collect();
+        // The third is too small for the first, but not for the second.
+        assert_eq!(labels, ["angle (mrad)", "angle (mrad)", "angle (µrad)", "angle (µm)"]);
+        assert_eq!(texts(&stacked[1], 3), ["−0.02", "0", "0.02"]);
+    }
+
+    #[test]
     fn decades_are_whole_and_at_most_eight() {
         let residual = Axis::decades("phi4 left", "rad", [3e-5, 0.0, f64::NAN, 4e-2]);
-        assert_eq!(residual.label(), "phi4 left, rad");
+        assert_eq!(residual.label(), "phi4 left (rad)");
         assert_eq!(texts(&residual, 8), ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"]);
         assert_eq!(texts(&residual, 2), ["10⁻¹", "10⁻³", "10⁻⁵"]);
         // Values are as far from one another as their logarithms, and zero is nowhere.

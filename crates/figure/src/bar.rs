@@ -4,7 +4,7 @@ use plotters::element::Polygon;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
 
-use crate::svg::{Area, Error, at, text};
+use crate::svg::{Area, Error, UNITS, at, text};
 
 /// The classes of a map's values, the lowest first.
 pub struct Bar {
@@ -12,30 +12,45 @@ pub struct Bar {
     pub name: String,
     /// The colour of each class.
     pub colours: Vec<RGBColor>,
-    /// The values between each class and the next.
+    /// The values between each class and the next; an empty one is not written.
     pub edges: Vec<String>,
 }
 
 /// Height of the bar with its numbers (px).
 pub const HEIGHT: u32 = 30;
-/// Width of a class, and height of its colour (px).
-const CLASS: u32 = 40;
+/// The widest class, the widest bar, and the height of the colours (px).
+const CLASS: f64 = 40.0;
+const BAR: f64 = 400.0;
 const COLOUR: u32 = 10;
 
-/// Draws a bar from here on, its name before it.
-pub fn draw(area: &Area<'_>, bar: &Bar, left: u32) -> Result<(), Error> {
+/// Draws a bar from here on, its name before it, in this width.
+pub fn draw(area: &Area<'_>, bar: &Bar, left: u32, width: u32) -> Result<(), Error> {
     let middle = 2 + COLOUR / 2;
-    area.draw_text(&bar.name, &text(11.0, HPos::Left, VPos::Center), at(left, middle))?;
-    let first = left + bar.name.chars().count() as u32 * 58 / 10 + 14;
-    let across = |index: usize| first + index as u32 * CLASS;
+    // A letter is some 0.58 of the font's size wide; a long name leaves half of the width.
+    let letters = bar.name.chars().count() as f64;
+    let size = (0.5 * f64::from(width) / (0.53 * letters)).min(11.0);
+    area.draw_text(&bar.name, &text(size, HPos::Left, VPos::Center), at(left, middle))?;
+    let first = f64::from(left) + letters * 0.53 * size + 14.0;
+    let room = (f64::from(left + width) - first).min(BAR);
+    let class = (room / bar.colours.len() as f64).min(CLASS);
+    let place = |index: usize, down: u32| {
+        let across = (first + index as f64 * class) * f64::from(UNITS);
+        (across.round() as i32, (down * UNITS) as i32)
+    };
     for (index, colour) in bar.colours.iter().enumerate() {
-        let (from, to) = (across(index), across(index + 1));
-        let corners = [at(from, 2), at(to, 2), at(to, 2 + COLOUR), at(from, 2 + COLOUR)];
+        let [top, bottom] = [2, 2 + COLOUR];
+        let corners =
+            [place(index, top), place(index + 1, top), place(index + 1, bottom), place(index, bottom)];
         area.draw(&Polygon::new(corners, colour.filled()))?;
     }
-    for (index, edge) in bar.edges.iter().enumerate() {
-        let below = at(across(index + 1), COLOUR + 11);
-        area.draw_text(edge, &text(10.0, HPos::Center, VPos::Center), below)?;
+    // Texts that would touch the one before are left out.
+    let mut free = f64::NEG_INFINITY;
+    for (index, edge) in bar.edges.iter().enumerate().filter(|(_, edge)| !edge.is_empty()) {
+        let (middle, half) = ((index + 1) as f64 * class, 3.1 * edge.chars().count() as f64);
+        if middle - half > free {
+            area.draw_text(edge, &text(10.0, HPos::Center, VPos::Center), place(index + 1, COLOUR + 11))?;
+            free = middle + half + 4.0;
+        }
     }
     Ok(())
 }

@@ -11,55 +11,134 @@ use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, WHITE};
 use crate::area::polygons;
 use crate::line::{Point, Window, pieces, straighten, thin};
 use crate::svg::{Area, Error, UNITS, at, text};
-use crate::{Figure, Layer, Panel, Shape, bar, colour};
+use crate::{Axis, Figure, Layer, Panel, Shape, bar, colour};
 
-/// Width of every figure (px).
+/// Width of a figure whose panels are as high as they say (px).
 const WIDTH: u32 = 800;
-/// Room left of a panel's plot, and the width of the plot (px).
+/// Room left of a panel's plot, and right of it (px).
 const LEFT: u32 = 70;
-const ACROSS: u32 = WIDTH - LEFT - 20;
+const RIGHT: u32 = 20;
 /// Room below it, for numbers, and for a name of the axis (px).
 const NUMBERS: u32 = 24;
 const NAME: u32 = 18;
-/// Room for the title, and for each legend (px).
+/// Room for the title, for each further line of it, and for each row of a legend (px).
 const TITLE: u32 = 30;
+const LINE: u32 = 17;
 const LEGEND: u32 = 22;
-/// Columns of pixels that a line is told apart on.
-const COLUMNS: u32 = 2 * ACROSS;
+const ROW: u32 = 16;
 const GRID: RGBColor = RGBColor(225, 225, 225);
 
-/// The figure as SVG.
-pub fn svg(figure: &Figure) -> Result<String, Error> {
-    let heights = figure.panels.iter().map(|panel| total_height(panel, figure.panel_height));
-    let height = TITLE + heights.sum::<u32>();
+/// Where things are in a figure.
+#[derive(Copy, Clone)]
+struct Layout {
+    /// Width of the figure (px).
+    width: u32,
+    /// Height of each plot (px).
+    plot: u32,
+}
+
+impl Layout {
+    fn of(figure: &Figure, width: u32) -> Self {
+        let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
+        // Narrow figures are lower too, but not so much.
+        let plot = f64::from(figure.panel_height) * part.powf(0.6);
+        Self { width, plot: plot.round() as u32 }
+    }
+
+    /// Width of a plot (px).
+    fn across(self) -> u32 {
+        self.width - LEFT - RIGHT
+    }
+
+    /// Room for the legend of a panel (px).
+    fn legend(self, panel: &Panel) -> u32 {
+        LEGEND + ROW * self.entries(panel).last().map_or(0, |(_, (row, _))| *row)
+    }
+
+    /// The layers that a legend names, each with its row and how far right it begins (px).
+    fn entries(self, panel: &Panel) -> Vec<(&Layer, (u32, u32))> {
+        let (mut row, mut left) = (0, LEFT);
+        let mut entries = Vec::new();
+        for layer in panel.layers.iter().filter(|layer| !layer.name.is_empty() && !layer.points.is_empty()) {
+            let wide = 23 + letters(&layer.name);
+            if left > LEFT && left + wide > self.width {
+                (row, left) = (row + 1, LEFT);
+            }
+            entries.push((layer, (row, left)));
+            left += wide + 16;
+        }
+        entries
+    }
+
+    /// The height of a panel with all that is around its plot (px).
+    fn panel(self, panel: &Panel) -> u32 {
+        let name = if panel.x.name.is_empty() { 0 } else { NAME };
+        bar_height(panel) + self.legend(panel) + self.plot + NUMBERS + name
+    }
+}
+
+/// The width of letters of a legend (px): the backend knows no font; a letter is some 0.6 of the font's size wide.
+fn letters(text: &str) -> u32 {
+    text.chars().count() as u32 * 62 / 10
+}
+
+/// The size of letters, at most `most` (px), so that a text is no wider than some pixels: a letter is some 0.57 of it wide.
+fn fitting(text: &str, room: f64, most: f64) -> f64 {
+    (room / (0.57 * text.chars().count() as f64)).min(most)
+}
+
+/// A title in lines that are not too small: parted between words, the first line the longest.
+fn title_lines(title: &str, width: u32) -> Vec<String> {
+    let room = f64::from(width - 20);
+    let smallest = 11.0;
+    let mut lines: Vec<String> = Vec::new();
+    for word in title.split(' ') {
+        match lines.last_mut() {
+            Some(line) if fitting(&format!("{line} {word}"), room, 14.0) >= smallest => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// The figure as SVG, so many pixels wide.
+pub fn svg(figure: &Figure, width: u32) -> Result<String, Error> {
+    let layout = Layout::of(figure, width);
+    let lines = title_lines(&figure.title, width);
+    let title = TITLE + LINE * (lines.len().max(1) as u32 - 1);
+    let heights = figure.panels.iter().map(|panel| layout.panel(panel));
+    let height = title + heights.sum::<u32>();
     let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut svg, (WIDTH * UNITS, height * UNITS)).into_drawing_area();
+        let root = SVGBackend::with_string(&mut svg, (width * UNITS, height * UNITS)).into_drawing_area();
         root.fill(&WHITE)?;
-        let (head, body) = root.split_vertically(TITLE * UNITS);
-        head.draw_text(&figure.title, &text(14.0, HPos::Center, VPos::Center), at(WIDTH / 2, TITLE / 2 + 2))?;
+        let (head, body) = root.split_vertically(title * UNITS);
+        for (index, line) in lines.iter().enumerate() {
+            let size = fitting(line, f64::from(width - 20), 14.0);
+            let place = at(width / 2, TITLE / 2 + 2 + LINE * index as u32);
+            head.draw_text(line, &text(size, HPos::Center, VPos::Center), place)?;
+        }
         let mut rest = body;
-        for panel in &figure.panels {
-            let (area, below) = rest.split_vertically(total_height(panel, figure.panel_height) * UNITS);
+        let upward = Axis::stacked(figure.panels.iter().map(|panel| &panel.y));
+        for (panel, y) in figure.panels.iter().zip(&upward) {
+            let (area, below) = rest.split_vertically(layout.panel(panel) * UNITS);
             let (key, area) = area.split_vertically(bar_height(panel) * UNITS);
             if let Some(bar) = &panel.bar {
-                bar::draw(&key, bar, LEFT)?;
+                bar::draw(&key, bar, LEFT, layout.across())?;
             }
-            draw_legend(&area, panel)?;
-            draw_panel(&area, panel, figure.panel_height)?;
+            draw_legend(&area, panel, layout)?;
+            draw_panel(&area, (panel, y), layout)?;
             rest = below;
         }
         root.present()?;
     }
     // The size in pixels; and round joins, since mitred ones point far beyond sharp peaks.
-    let fine = format!("width=\"{}\" height=\"{}\"", WIDTH * UNITS, height * UNITS);
-    let size = format!("width=\"{WIDTH}\" height=\"{height}\" stroke-linejoin=\"round\"");
+    let fine = format!("width=\"{}\" height=\"{}\"", width * UNITS, height * UNITS);
+    let size = format!("width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\"");
     Ok(svg.replacen(&fine, &size, 1))
-}
-
-/// The height of a panel with all that is around its plot (px).
-fn total_height(panel: &Panel, plot: u32) -> u32 {
-    bar_height(panel) + LEGEND + plot + NUMBERS + if panel.x.name.is_empty() { 0 } else { NAME }
 }
 
 fn bar_height(panel: &Panel) -> u32 {
@@ -69,6 +148,9 @@ fn bar_height(panel: &Panel) -> u32 {
 /// A panel's plot: a window of the plane, in the places that values have on the axes, on a rectangle of the backend.
 struct Plot {
     window: Window,
+    /// From the top of the panel to that of the plot, width and height of the plot (px).
+    top: u32,
+    across: u32,
     height: u32,
 }
 
@@ -76,27 +158,33 @@ impl Plot {
     /// Where a point of the plane is.
     fn place(&self, (x, y): Point) -> (i32, i32) {
         let part = |value: f64, range: &Range<f64>| (value - range.start) / (range.end - range.start);
-        let x = f64::from(LEFT) + part(x, &self.window.x) * f64::from(ACROSS);
-        let y = f64::from(LEGEND) + (1.0 - part(y, &self.window.y)) * f64::from(self.height);
+        let x = f64::from(LEFT) + part(x, &self.window.x) * f64::from(self.across);
+        let y = f64::from(self.top) + (1.0 - part(y, &self.window.y)) * f64::from(self.height);
         ((x * f64::from(UNITS)).round() as i32, (y * f64::from(UNITS)).round() as i32)
     }
 }
 
-fn draw_panel(area: &Area<'_>, panel: &Panel, height: u32) -> Result<(), Error> {
-    let plot = Plot { window: Window { x: panel.x.extent(), y: panel.y.extent() }, height };
-    draw_axes(area, panel, &plot)?;
+fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &Axis), layout: Layout) -> Result<(), Error> {
+    let plot = Plot {
+        window: Window { x: panel.x.extent(), y: panel.y.extent() },
+        top: layout.legend(panel),
+        across: layout.across(),
+        height: layout.plot,
+    };
+    draw_axes(area, (&panel.x, y), &plot)?;
     for layer in &panel.layers {
         let points: Vec<Point> =
             layer.points.iter().map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
         match layer.shape {
             Shape::Line(_) | Shape::Dashes => {
                 for piece in pieces(&points, &plot.window) {
-                    let piece = thin(&piece, &plot.window, COLUMNS).into_iter().map(|p| plot.place(p));
+                    let piece =
+                        thin(&piece, &plot.window, 2 * plot.across).into_iter().map(|p| plot.place(p));
                     draw_line(area, layer, straighten(&piece.collect::<Vec<_>>()))?;
                 }
             }
             Shape::Area(_) => {
-                for polygon in polygons(&points, &plot.window, ACROSS) {
+                for polygon in polygons(&points, &plot.window, plot.across) {
                     let corners: Vec<_> = polygon.into_iter().map(|p| plot.place(p)).collect();
                     area.draw(&Polygon::new(straighten(&corners), layer.style()))?;
                 }
@@ -112,35 +200,36 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, height: u32) -> Result<(), Error> 
 }
 
 /// Draws the grid, the numbers and the names of the axes.
-fn draw_axes(area: &Area<'_>, panel: &Panel, plot: &Plot) -> Result<(), Error> {
+fn draw_axes(area: &Area<'_>, (across, up): (&Axis, &Axis), plot: &Plot) -> Result<(), Error> {
     let Window { x, y } = &plot.window;
     let corner = plot.place((x.start, y.start));
     let opposite = plot.place((x.end, y.end));
     let gap = 5 * UNITS as i32;
     let (grid, frame) = (stroke(GRID, 0.6), stroke(colour::GREY, 0.8));
-    let ticks = panel.x.ticks(ACROSS / 85);
-    for (across, label) in
-        ticks.at.iter().map(|at| (plot.place((panel.x.place(*at), y.start)).0, ticks.text(*at)))
+    let ticks = across.ticks((plot.across / 85).max(3));
+    for (place, label) in
+        ticks.at.iter().map(|at| (plot.place((across.place(*at), y.start)).0, ticks.text(*at)))
     {
-        area.draw(&PathElement::new([(across, corner.1), (across, opposite.1)], grid))?;
-        area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (across, corner.1 + gap))?;
+        area.draw(&PathElement::new([(place, corner.1), (place, opposite.1)], grid))?;
+        area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (place, corner.1 + gap))?;
     }
-    let ticks = panel.y.ticks(plot.height / 28);
-    for (up, label) in
-        ticks.at.iter().map(|at| (plot.place((x.start, panel.y.place(*at))).1, ticks.text(*at)))
+    let ticks = up.ticks(plot.height / 28);
+    for (place, label) in ticks.at.iter().map(|at| (plot.place((x.start, up.place(*at))).1, ticks.text(*at)))
     {
-        area.draw(&PathElement::new([(corner.0, up), (opposite.0, up)], grid))?;
-        area.draw_text(&label, &text(11.0, HPos::Right, VPos::Center), (corner.0 - gap, up))?;
+        area.draw(&PathElement::new([(corner.0, place), (opposite.0, place)], grid))?;
+        area.draw_text(&label, &text(11.0, HPos::Right, VPos::Center), (corner.0 - gap, place))?;
     }
     let other = [(corner.0, opposite.1), (opposite.0, corner.1)];
     area.draw(&PathElement::new([corner, other[0], opposite, other[1], corner], frame))?;
-    let below = at(LEFT + ACROSS / 2, LEGEND + plot.height + NUMBERS + NAME / 2 - 1);
-    area.draw_text(&panel.x.label(), &text(12.0, HPos::Center, VPos::Center), below)?;
-    // A letter is some 0.57 of the font's size wide; a long name becomes smaller.
-    let (name, room) = (panel.y.label(), f64::from(plot.height + LEGEND + NUMBERS / 2));
-    let size = (room / (0.57 * name.chars().count() as f64)).min(12.0);
+    let below = at(LEFT + plot.across / 2, plot.top + plot.height + NUMBERS + NAME / 2 - 1);
+    let name = across.label();
+    let size = fitting(&name, f64::from(plot.across + LEFT), 12.0);
+    area.draw_text(&name, &text(size, HPos::Center, VPos::Center), below)?;
+    // A long name becomes smaller.
+    let (name, room) = (up.label(), f64::from(plot.height + plot.top + NUMBERS / 2));
+    let size = fitting(&name, room, 12.0);
     let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
-    area.draw_text(&name, &upright, at(14, LEGEND + plot.height / 2))
+    area.draw_text(&name, &upright, at(14, plot.top + plot.height / 2))
 }
 
 fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<(), Error> {
@@ -151,11 +240,10 @@ fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<
     }
 }
 
-/// Names the layers above the panel, in a row.
-fn draw_legend(area: &Area<'_>, panel: &Panel) -> Result<(), Error> {
-    let middle = LEGEND / 2 + 1;
-    let mut left = LEFT;
-    for layer in panel.layers.iter().filter(|layer| !layer.name.is_empty() && !layer.points.is_empty()) {
+/// Names the layers above the panel, in rows.
+fn draw_legend(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Error> {
+    for (layer, (row, left)) in layout.entries(panel) {
+        let middle = LEGEND / 2 + 1 + ROW * row;
         let (from, to) = (at(left, middle), at(left + 18, middle));
         match layer.shape {
             Shape::Line(_) | Shape::Dashes => draw_line(area, layer, vec![from, to])?,
@@ -167,8 +255,6 @@ fn draw_legend(area: &Area<'_>, panel: &Panel) -> Result<(), Error> {
             _ => draw_mark(area, layer, at(left + 9, middle))?,
         }
         area.draw_text(&layer.name, &text(11.0, HPos::Left, VPos::Center), at(left + 23, middle))?;
-        // The backend knows no font: a letter is some 0.6 of the font's size wide.
-        left += 23 + layer.name.chars().count() as u32 * 62 / 10 + 16;
     }
     Ok(())
 }

@@ -1,10 +1,16 @@
-//! Figures as PNG: the same SVG, rendered with fonts of our own, so that no system needs any.
+//! Figures as PNG and PDF: the same SVG, rendered with fonts of our own, so that no system needs any.
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
-/// Pixels of the PNG for each pixel of the SVG.
-const SCALE: f32 = 2.0;
+use crate::{Style, pdf};
+
+/// Pixels of a PNG for each pixel of the SVG: on screens, ...
+const SCALE: f64 = 2.0;
+/// ... and on paper, 600 to the inch.
+const FINE: f64 = 600.0 / 96.0;
+/// No PNG has more pixels.
+const MOST: u32 = 150_000_000;
 
 /// Renders SVG.
 pub struct Renderer(Options<'static>);
@@ -21,12 +27,22 @@ impl Default for Renderer {
 }
 
 impl Renderer {
-    /// The PNG of an SVG.
-    pub fn png(&self, svg: &str) -> Result<Vec<u8>, String> {
+    /// The PNG of an SVG that was laid out for a style.
+    pub fn png(&self, svg: &str, style: &Style) -> Result<Vec<u8>, String> {
         let tree = Tree::from_str(svg, &self.0).map_err(|error| error.to_string())?;
-        let size = tree.size().to_int_size().scale_by(SCALE).ok_or("it has no size")?;
-        let mut pixels = Pixmap::new(size.width(), size.height()).ok_or("it is too large")?;
-        resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+        let scale = if style.is_for_screens() { SCALE } else { FINE * style.scale() } as f32;
+        let size = tree.size().to_int_size().scale_by(scale).ok_or("it has no size")?;
+        let too_large = || "it is too large for a PNG, but not for SVG and PDF";
+        if size.width().saturating_mul(size.height()) > MOST {
+            return Err(too_large().to_owned());
+        }
+        let mut pixels = Pixmap::new(size.width(), size.height()).ok_or_else(too_large)?;
+        resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
         pixels.encode_png().map_err(|error| error.to_string())
+    }
+
+    /// The PDF of an SVG, with the letters that it uses.
+    pub fn pdf(&self, svg: &str) -> Result<Vec<u8>, String> {
+        pdf::written(&Tree::from_str(svg, &self.0).map_err(|error| error.to_string())?)
     }
 }

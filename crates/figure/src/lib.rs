@@ -1,4 +1,4 @@
-//! Figures: panels of lines, areas and marks over axes, as SVG and, with the feature `png`, as PNG.
+//! Figures: panels of lines, areas and marks over axes, as SVG and, with the feature `png`, as PNG and PDF.
 
 mod area;
 mod axis;
@@ -8,7 +8,10 @@ mod draw;
 #[cfg(feature = "png")]
 mod image;
 mod line;
+#[cfg(feature = "png")]
+mod pdf;
 mod sheet;
+mod style;
 mod svg;
 
 pub use area::band;
@@ -20,6 +23,7 @@ pub use image::Renderer;
 pub use line::{Point, Window, steps};
 pub use plotters::style::RGBColor;
 pub use sheet::sheet;
+pub use style::Style;
 
 /// Colours that also the colour-blind tell apart (Okabe and Ito).
 pub mod colour {
@@ -103,9 +107,14 @@ pub enum Shape {
 }
 
 impl Figure {
-    /// The figure as SVG.
+    /// The figure as SVG, as large as on a screen.
     pub fn svg(&self) -> Result<String, String> {
-        draw::svg(self).map_err(|error| error.to_string())
+        self.laid_out(&Style::default())
+    }
+
+    /// The figure as SVG, laid out for a style but in pixels of its own: [`Style::sized`] gives it its size.
+    pub fn laid_out(&self, style: &Style) -> Result<String, String> {
+        draw::svg(self, style.layout_width()).map_err(|error| error.to_string())
     }
 }
 

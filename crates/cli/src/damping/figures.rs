@@ -28,7 +28,7 @@ pub fn figure(rows: &[Damped], limit: f64) -> Figure {
         Panel::new(x, y, layers)
     };
     let factor = Axis::around("part of the full effect", "", values(&part).into_iter().chain([0.0, 1.0]));
-    let gains = Axis::decades("gain limit, 1/s", "", values(&gain));
+    let gains = Axis::decades("gain limit (1/s)", "", values(&gain));
     let cycles = Axis::decades("limit cycle", "rad/s", values(&cycle));
     let mut panels = vec![panel(x("").unnamed(), factor, part, "beyond this the relay drives the mode")];
     if !values(&gain).is_empty() {

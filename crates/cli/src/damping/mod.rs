@@ -21,7 +21,7 @@ use crate::say;
 #[command(allow_negative_numbers = true)]
 pub struct Args {
     /// Natural frequencies of the modes (rad/s)
-    #[arg(long, value_name = "LO:HI:N")]
+    #[arg(long, value_name = "LO:HI:COUNT")]
     frequency: Even,
     /// Elastic acceleration of a push: the thrusters' rigid one times their influence on the mode (rad/s²)
     #[arg(long, value_name = "ACCELERATION")]

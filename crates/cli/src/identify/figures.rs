@@ -11,7 +11,7 @@ const COLOURS: [RGBColor; 5] =
 
 /// The figure; a run lasts `whole` seconds.
 pub fn figure(sets: &[Set], whole: f64) -> Figure {
-    let x = Axis::exact("time, s", "", 0.0..whole);
+    let x = Axis::exact("time (s)", "", 0.0..whole);
     let panel = |set: &Set| {
         let layer = |(index, row): (usize, &Row)| {
             let found = row.times_s.iter().zip(1_u32..);
@@ -25,7 +25,7 @@ pub fn figure(sets: &[Set], whole: f64) -> Figure {
             Layer::new(&name, COLOURS[index % COLOURS.len()], Shape::Line(1.4), line)
         };
         let layers = set.rows.iter().enumerate().map(layer).collect();
-        let y = Axis::exact("found, %", "", 0.0..104.0);
+        let y = Axis::exact("found (%)", "", 0.0..104.0);
         Panel::new(x.unnamed(), y, layers)
     };
     let mut panels: Vec<Panel> = sets.iter().map(panel).collect();

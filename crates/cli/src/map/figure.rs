@@ -31,8 +31,8 @@ pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
     let radii: Vec<f64> = cells.iter().map(|cell| cell.spectral_radius).collect();
     let ends = |values: &[f64]| values[0]..values[values.len() - 1];
     let field = Field { y: periods.collect(), x: frequencies, values: radii };
-    let x = Axis::exact("frequency of the dominant mode, rad/s", "", ends(&field.x));
-    let y = Axis::exact("period of the samples, s", "", ends(&field.y));
+    let x = Axis::exact("frequency of the dominant mode (rad/s)", "", ends(&field.x));
+    let y = Axis::exact("period of the samples (s)", "", ends(&field.y));
 
     // The classes that there are.
     let class = |radius: f64| EDGES.iter().filter(|edge| radius >= **edge).count();

@@ -10,7 +10,7 @@ use flexsc_core::analysis::sampled_loop::{Cell, map};
 use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
 
-use crate::drawing::Drawing;
+use crate::drawing::{Drawing, Format, is_figure};
 use crate::failure::Failure;
 use crate::grid::Even;
 use crate::results::{Results, show};
@@ -24,19 +24,23 @@ pub struct Args {
     #[command(flatten)]
     settled: Settled,
     /// Frequencies of the dominant mode (rad/s)
-    #[arg(long, value_name = "LO:HI:N")]
+    #[arg(long, value_name = "LO:HI:COUNT")]
     frequency: Even,
     /// Periods of the samples (s); a delay of the wheel keeps its part of the period
-    #[arg(long, value_name = "LO:HI:N")]
+    #[arg(long, value_name = "LO:HI:COUNT")]
     period: Even,
     /// Gain of the extra loop; left out, the scenario's
     #[arg(long, value_name = "GAIN", allow_hyphen_values = true)]
     gain: Option<f64>,
-    /// CSV file to write; left out, the table is printed
-    #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
-    output: Option<PathBuf>,
-    #[command(flatten)]
-    drawing: Drawing,
+    /// CSV file to write, or FILE.svg, .png or .pdf to draw; left out, the table is printed
+    #[arg(short, long, alias = "output", value_name = "FILE", conflicts_with = "json")]
+    out: Option<PathBuf>,
+    /// Draw the map: into a directory, created if missing, or as one FILE.svg, .png or .pdf
+    #[arg(long, value_name = "DIR|FILE")]
+    figures: Option<PathBuf>,
+    /// Format of the figures [default: svg and png, or by the extension of FILE]
+    #[arg(long, value_enum, requires = "figures")]
+    format: Option<Format>,
 }
 
 /// A map.
@@ -81,8 +85,12 @@ impl Results for Mapped {
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let mapped = args.results(&args.scenario.load()?)?;
-    let Some(path) = &args.output else { return show(&mapped, Some(&args.drawing), args.scenario.json) };
-    args.drawing.save(|| mapped.figures())?;
+    let drawing = Drawing { figures: args.figures.clone(), format: args.format };
+    let Some(path) = &args.out else { return show(&mapped, Some(&drawing), args.scenario.json) };
+    drawing.save(|| mapped.figures())?;
+    if is_figure(path) {
+        return Drawing { figures: Some(path.clone()), format: None }.save(|| mapped.figures());
+    }
     files::write(path, csv(&mapped.cells).as_bytes())?;
     let Mapped { name, cells, .. } = &mapped;
     let stable = cells.iter().filter(|cell| cell.spectral_radius < 1.0).count();

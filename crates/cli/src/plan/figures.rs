@@ -56,7 +56,7 @@ impl Family<'_> {
     fn angle(&self) -> Figure {
         let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[0])).collect());
         // Of some radians milliradians would be long numbers.
-        let y = Axis::around("hub angle, rad", "", heights(&lines));
+        let y = Axis::around("hub angle (rad)", "", heights(&lines));
         let (plan, end) = (self.plan, self.end());
         let target = self.body.angle.get() + plan.angle;
         let goal = vec![(plan.time, target), (end, target + plan.end_rate * (end - plan.time))];
@@ -84,7 +84,7 @@ impl Family<'_> {
         let (name, unit) = self.coordinate();
         let (label, unit) = name_and_unit(&format!("left in {name}"), &unit);
         let y = Axis::decades(&label, unit, heights(&lines));
-        let x = Axis::exact("all frequencies off by, %", "", -1e2 * band..1e2 * band);
+        let x = Axis::exact("all frequencies off by (%)", "", -1e2 * band..1e2 * band);
         self.figure(&format!("vibration left in {name}"), x, y, Vec::new(), lines)
     }
 

@@ -33,16 +33,16 @@ pub struct Args {
     /// Plan for this peak torque (N m), each command in its own time, instead of the scenario's time
     #[arg(long, value_name = "TORQUE")]
     peak_torque: Option<f64>,
-    /// Draw the command beside those that suppress fewer modes, or the rigid bang-bang, into this directory, made if it is
-    /// not there
-    #[arg(long, value_name = "DIR", group = "views")]
+    /// Draw the command beside those that suppress fewer modes, or the rigid bang-bang: into a directory, created if missing,
+    /// or as one FILE.svg, .png or .pdf
+    #[arg(short = 'o', long = "out", visible_alias = "figures", value_name = "DIR|FILE", group = "views")]
     figures: Option<PathBuf>,
-    /// Form of the figures
-    #[arg(long, value_enum, default_value = "both", requires = "figures")]
-    format: Format,
+    /// Format of the figures [default: svg and png, or by the extension of FILE]
+    #[arg(long, value_enum, requires = "figures")]
+    format: Option<Format>,
     /// The coordinate that a comparison and figures show: `angle` or an output; the last output if left out
-    #[arg(long, value_name = "NAME", requires = "views")]
-    output: Option<String>,
+    #[arg(long, alias = "output", value_name = "NAME", requires = "views")]
+    coordinate: Option<String>,
 }
 
 impl Args {
@@ -57,7 +57,7 @@ impl Args {
             return Err(Failure::Arguments(format!("--band must be between 0 and 1, got {band}")));
         }
         let limit = self.limit()?;
-        let shown = chosen(self.output.as_deref(), &body)?;
+        let shown = chosen(self.coordinate.as_deref(), &body)?;
         let model = scenario.planned_for().clone();
         let name = scenario.name;
         if self.compare {
@@ -102,11 +102,11 @@ fn percent(band: f64) -> f64 {
 }
 
 /// The index of the coordinate that is shown: the chosen one, else the last output, else the hub's angle.
-fn chosen(output: Option<&str>, body: &Planar) -> Result<usize, Failure> {
+fn chosen(coordinate: Option<&str>, body: &Planar) -> Result<usize, Failure> {
     let names: Vec<&str> =
         std::iter::once("angle").chain(body.outputs.iter().map(|output| output.name.as_str())).collect();
-    let Some(chosen) = output else { return Ok(names.len() - 1) };
+    let Some(chosen) = coordinate else { return Ok(names.len() - 1) };
     names.iter().position(|name| *name == chosen).ok_or_else(|| {
-        Failure::Arguments(format!("--output must be one of {}, got {chosen}", names.join(", ")))
+        Failure::Arguments(format!("--coordinate must be one of {}, got {chosen}", names.join(", ")))
     })
 }

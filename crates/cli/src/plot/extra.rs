@@ -32,7 +32,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         Panel::new(x, y, layers)
     };
     let panels =
-        vec![panel(x.unnamed(), "gain k_d", gains, true), panel(x, "frequency read, rad/s", read, false)];
+        vec![panel(x.unnamed(), "gain k_d", gains, true), panel(x, "frequency read (rad/s)", read, false)];
     Figure { title: title(story, "extra loop"), panels, panel_height: 200 }
 }
 

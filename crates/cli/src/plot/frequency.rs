@@ -19,7 +19,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let heights = |points: &[Point]| points.iter().map(|point| point.1).collect::<Vec<_>>();
     let most = BEYOND * heights(&truth).into_iter().fold(0.0, f64::max);
     let shown = [&estimated, &truth, &lower, &upper].into_iter().flat_map(|points| heights(points));
-    let y = Axis::around("frequency, rad/s", "", shown.map(|value| value.clamp(0.0, most)));
+    let y = Axis::around("frequency (rad/s)", "", shown.map(|value| value.clamp(0.0, most)));
     let x = time(0.0..story.end);
     let mut layers = lock::spans(motion, &y, true);
     layers.extend([

@@ -20,6 +20,7 @@ mod modes;
 mod motion;
 mod orbit;
 mod outputs;
+mod overlay;
 mod phase_plane;
 mod spatial;
 mod story;
@@ -27,6 +28,7 @@ mod torque;
 mod what;
 mod wheel;
 mod wheels;
+mod window;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -34,7 +36,7 @@ use std::path::{Path, PathBuf};
 #[cfg(feature = "papers")]
 use clap::ValueEnum;
 use flexsc_core::record::Log;
-use flexsc_figure::{Axis, Figure, Layer, Shape, colour, round_to_nice};
+use flexsc_figure::{Axis, Figure, Layer, Shape, Style, colour, round_to_nice};
 
 use crate::drawing::{Format, Target};
 use crate::failure::Failure;
@@ -48,16 +50,31 @@ pub struct Args {
     /// Log file, or directory of a campaign
     #[arg(value_name = "LOG|DIR")]
     path: PathBuf,
-    /// Directory for the figures, created if missing, or one FILE.svg or FILE.png for all of them [default: where the
+    /// More logs: their figures over those of the first, a colour for each
+    #[arg(value_name = "LOG")]
+    others: Vec<PathBuf>,
+    /// Directory for the figures, created if missing, or one FILE.svg, .png or .pdf for all of them [default: where the
     /// log or the campaign is]
     #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
     /// Figures to draw [default: all that the log has; the natural ones of a campaign]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
     what: Vec<What>,
-    /// Format of the figures [default: both, or by the extension of FILE]
+    /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum)]
     format: Option<Format>,
+    /// Width of each figure on paper, such as 85 for a column [default: as on a screen]
+    #[arg(long, value_name = "MM")]
+    width: Option<f64>,
+    /// Size of the letters on paper: that of the axes' names [default: 8 with --width]
+    #[arg(long, value_name = "PT")]
+    font: Option<f64>,
+    /// Show each log from this time on (s) [default: all of it, or what a figure is about]
+    #[arg(long, value_name = "TIME")]
+    from: Option<f64>,
+    /// Show each log up to this time (s) [default: its end]
+    #[arg(long, value_name = "TIME")]
+    to: Option<f64>,
     /// Of a campaign: metrics to draw, and to list the worst runs of [default: the main ones that vary]
     #[arg(long, value_delimiter = ',', value_name = "METRICS")]
     metric: Vec<String>,
@@ -69,10 +86,59 @@ pub struct Args {
     json: bool,
 }
 
+impl Args {
+    /// The size of the figures.
+    fn style(&self) -> Result<Style, Failure> {
+        Style::new(self.width, self.font).map_err(|why| Failure::Arguments(format!("--width, --font: {why}")))
+    }
+}
+
+impl Args {
+    /// The figures of a log over the time that is asked for.
+    fn own(&self, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
+        drawn_over(&Log::open(path)?, path, asked, (self.from, self.to))
+    }
+
+    /// The figures that all logs have, those of a kind one over the other.
+    fn together(&self) -> Result<Vec<(What, Figure)>, Failure> {
+        let paths: Vec<&PathBuf> = std::iter::once(&self.path).chain(&self.others).collect();
+        let all = paths.iter().map(|path| self.own(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
+        let names: Vec<String> = paths
+            .iter()
+            .map(|path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
+            .collect();
+        // Logs of one name in several directories are told apart by their paths.
+        let name = |run: usize| {
+            let alone = names.iter().filter(|name| **name == names[run]).count() == 1;
+            if alone { names[run].clone() } else { paths[run].display().to_string() }
+        };
+        let mut figures = Vec::new();
+        let mut runs: Vec<_> = all.into_iter().map(Vec::into_iter).map(Iterator::collect::<Vec<_>>).collect();
+        let kinds: Vec<What> = runs[0].iter().map(|(what, _)| *what).collect();
+        for what in kinds {
+            let mut of_kind = Vec::new();
+            for (run, own) in runs.iter_mut().enumerate() {
+                if let Some(place) = own.iter().position(|(other, _)| *other == what) {
+                    of_kind.push((name(run), own.swap_remove(place).1));
+                }
+            }
+            if of_kind.len() == paths.len() {
+                let title = what.name().replace('-', " ");
+                figures.extend(overlay::overlaid(&title, of_kind).map(|figure| (what, figure)));
+            }
+        }
+        if figures.is_empty() {
+            let why = "these logs have no figure with the same axes, which could show them together";
+            return Err(Failure::Arguments(format!("{why}\n\nhint: draw them one by one")));
+        }
+        Ok(figures)
+    }
+}
+
 /// The figure of a log that is in memory, by its name; `path` is what errors call the log.
 ///
 /// # Errors
-/// See [`figures`].
+/// A figure that the log does not have, and a run that cannot be repeated.
 #[cfg(feature = "papers")]
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> {
     let what = What::from_str(name, false).map_err(Failure::Arguments)?;
@@ -83,6 +149,15 @@ pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> 
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     if args.path.is_dir() {
+        let of_logs = [
+            ("more than one path", !args.others.is_empty()),
+            ("--from", args.from.is_some()),
+            ("--to", args.to.is_some()),
+        ];
+        if let Some((given, _)) = of_logs.into_iter().find(|(_, given)| *given) {
+            let path = args.path.display();
+            return Err(Failure::Arguments(format!("{given}: only for logs, and {path} is a directory")));
+        }
         return campaign::run(args);
     }
     let of_campaigns = [("metric", !args.metric.is_empty()), ("worst", args.worst.is_some())];
@@ -93,21 +168,25 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let beside = args.path.parent().unwrap_or(Path::new(""));
     let target = Target::new(args.out.as_deref(), beside, args.format)?;
     let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
-    let figures = figures(&args.path, &args.what)?;
+    let figures = if args.others.is_empty() { args.own(&args.path, &args.what)? } else { args.together()? };
     let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{}", what.name()), figure));
-    target.save(&named.collect::<Vec<_>>(), args.json)
+    target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
 }
 
 /// Figures of a log: those named, or all that it has.
-///
-/// # Errors
-/// A log that is not accepted, a figure that it does not have, and a run that cannot be repeated.
-pub fn figures(path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
-    drawn(&Log::open(path)?, path, asked)
+fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
+    drawn_over(log, path, asked, (None, None))
 }
 
-fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
-    let story = Story::read(log, path)?;
+/// Figures over a part of the time, if it is given.
+fn drawn_over(
+    log: &Log,
+    path: &Path,
+    asked: &[What],
+    (from, to): (Option<f64>, Option<f64>),
+) -> Result<Vec<(What, Figure)>, Failure> {
+    let mut story = Story::read(log, path)?;
+    story.shown = window::of(from, to, story.end)?;
     let chosen = what::chosen(asked, &What::all_in(&story)).map_err(|(missing, there)| {
         let path = path.display();
         Failure::Arguments(format!(
@@ -125,12 +204,17 @@ fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, 
         story.motion(log, path, 0.0, 0.0)?
     } else if moving {
         let late = phase_plane::late(&story).min(swings(&story).start).min(torque::shown(&story).start);
+        let late = story.shown.as_ref().map_or(late, |shown| shown.start.min(late));
         story.motion(log, path, phase_plane::early(&story), late)?
     } else {
         Motion::default()
     };
     let drawn = chosen.into_iter().filter_map(|what| {
         let figure = what.figure(&story, &motion, &cycles)?;
+        let figure = match &story.shown {
+            Some(shown) => window::cut(figure, shown),
+            None => figure,
+        };
         Some((what, failing::shaded(figure, &story)))
     });
     Ok(drawn.collect())
@@ -170,6 +254,9 @@ fn arrival(story: &Story, y: &Axis) -> Option<Layer> {
 /// What figures of the modes show: the whole run, or of a law that switches about seven periods of the slowest mode at
 /// its end.
 fn swings(story: &Story) -> std::ops::Range<f64> {
+    if let Some(shown) = &story.shown {
+        return shown.clone();
+    }
     if !story.switches() {
         return 0.0..story.end;
     }

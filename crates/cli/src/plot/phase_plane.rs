@@ -10,26 +10,30 @@ use super::title;
 /// So many cycles are shown at the start of a run, and as many at its end.
 const CYCLES: usize = 10;
 
-/// When the last cycles begin (s).
+/// When the last cycles begin (s), or what is asked for.
 pub fn late(story: &Story) -> f64 {
-    story.last_cycles(CYCLES)
+    story.shown.as_ref().map_or_else(|| story.last_cycles(CYCLES), |shown| shown.start)
 }
 
-/// When the first cycles end (s).
+/// When the first cycles end (s); before the start where a time is asked for.
 pub fn early(story: &Story) -> f64 {
+    if story.shown.is_some() {
+        return -1.0;
+    }
     story.first_cycles(CYCLES, late(story))
 }
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let (early, late) = (early(story), late(story));
+    let end = story.shown.as_ref().map_or(story.end, |shown| shown.end);
     let path = |shown: &dyn Fn(f64) -> bool| -> Vec<Point> {
         let states = motion.angle.iter().copied().zip(motion.rate.iter().copied());
         motion.time.iter().zip(states).filter(|(time, _)| shown(**time)).map(|(_, state)| state).collect()
     };
     let first = path(&|time| time <= early && late > 0.0);
     // A log counts the motion in whole nanoseconds.
-    let last = path(&|time| time >= late - 1e-9);
-    let shown = |s: &&Switching| s.time >= late || s.time <= early;
+    let last = path(&|time| time >= late - 1e-9 && time <= end + 1e-9);
+    let shown = |s: &&Switching| (s.time >= late && s.time <= end) || s.time <= early;
     let points = |timeout: bool| -> Vec<Point> {
         let of_kind = story.switchings.iter().filter(shown).filter(|s| s.timeout == timeout);
         of_kind.map(|s| (s.angle, s.rate)).collect()
@@ -59,7 +63,8 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         }
     };
     let mut layers = relay.map_or_else(Vec::new, lines);
-    let name = if first.is_empty() { "trajectory" } else { "end of the run" };
+    let whole = first.is_empty() || story.shown.is_some();
+    let name = if whole { "trajectory" } else { "end of the run" };
     layers.extend([
         Layer::new("start of the run", colour::SKY, Shape::Line(0.6), first),
         Layer::new(name, colour::BLACK, Shape::Line(1.1), last),

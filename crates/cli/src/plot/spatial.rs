@@ -257,7 +257,7 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
     };
     let mut panels = panels(story, "", lines);
     for panel in &mut panels {
-        panel.y.name.push_str(", Hz");
+        panel.y.name.push_str(" (Hz)");
     }
     Figure { title: title(story, "natural frequencies of the tracked modes"), panels, panel_height: 180 }
 }

@@ -18,6 +18,8 @@ pub struct Story {
     pub run: u64,
     /// When the run ended (s).
     pub end: f64,
+    /// The time that figures show, if it is given.
+    pub shown: Option<std::ops::Range<f64>>,
     /// Torque and gain at the start.
     pub start: (f64, f64),
     /// Every switching.
@@ -78,7 +80,7 @@ impl Story {
             Some("complete") => scenario.duration.seconds(),
             _ => last.chain(told).fold(0.0, f64::max),
         };
-        Ok(Self { scenario, run, end, start, switchings, means, steps })
+        Ok(Self { scenario, run, end, shown: None, start, switchings, means, steps })
     }
 
     /// The motion as a full log has it, or else as the run repeated has it. The run repeated keeps the whole

@@ -10,6 +10,9 @@ const SWITCHINGS: usize = 30;
 
 /// The end of the run that is shown (s): all of it if there are few switchings.
 pub fn shown(story: &Story) -> std::ops::Range<f64> {
+    if let Some(shown) = &story.shown {
+        return shown.clone();
+    }
     let first = story.switchings.len().checked_sub(SWITCHINGS).map_or(0.0, |i| story.switchings[i].time);
     let span = round_to_nice(story.end - first);
     let from = if first > 0.0 { (story.end - span).max(0.0) } else { 0.0 };

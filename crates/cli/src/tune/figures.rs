@@ -71,7 +71,7 @@ impl Drawn<'_> {
         let shown = [&middle, &without, &nominal, &worst].into_iter().flatten().map(|point| point.1);
         let finite = shown.filter(|time| time.is_finite()).chain([self.study.limit]);
         let times = finite.map(|time| time.min(BEYOND * self.study.limit));
-        let y = Axis::from_zero("settling time, s", "", times);
+        let y = Axis::from_zero("settling time (s)", "", times);
         let level = vec![(x.range.start, self.study.limit), (x.range.end, self.study.limit)];
         let layers = vec![
             Layer::new("limit", colour::GREY, Shape::Dashes, level),
@@ -91,7 +91,7 @@ impl Drawn<'_> {
     fn frequency(&self) -> Axis {
         let all = || self.regions.iter().map(|region| region.frequency_rad_s);
         let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max));
-        Axis::exact("frequency of the dominant mode, rad/s", "", low..high)
+        Axis::exact("frequency of the dominant mode (rad/s)", "", low..high)
     }
 
     /// The scenario's own gain at the frequencies.

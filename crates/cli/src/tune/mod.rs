@@ -10,7 +10,7 @@ use flexsc_core::analysis::sampled_loop::{Doubt, Goal, Search, robust};
 
 use crate::drawing::Drawing;
 use crate::failure::Failure;
-use crate::grid::{Even, Stepped};
+use crate::grid::{Even, Tried};
 use crate::results::{Results, show};
 use crate::sampled::{Settled, positive, sampled};
 use crate::{print, scenario};
@@ -24,11 +24,11 @@ pub struct Args {
     #[command(flatten)]
     settled: Settled,
     /// Frequencies of the dominant mode (rad/s); left out, 36 from a sixth of its own to four thirds
-    #[arg(long, value_name = "LO:HI:N")]
+    #[arg(long, value_name = "LO:HI:COUNT")]
     frequency: Option<Even>,
     /// Gains to try
-    #[arg(long, value_name = "LO:HI:STEP", default_value = "-2:6:0.05", allow_hyphen_values = true)]
-    gain: Stepped,
+    #[arg(long, value_name = "LO:HI:COUNT", default_value = "-2:6:161", allow_hyphen_values = true)]
+    gain: Tried,
     /// The longest settling time of the region (s)
     #[arg(long, value_name = "TIME", default_value_t = 200.0)]
     limit: f64,

@@ -79,14 +79,12 @@ fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
         return Err(format!("has the unit `{unit}`, and takes a number without one"));
     };
     let Some(given) = Unit::parse(unit) else {
-        return Err(format!(
-            "has the unit `{unit}`, which is not known; expected one of {first}, such as `1 {first}`"
-        ));
+        return Err(format!("has the unit `{unit}`, which is not known; expected a unit such as `{first}`"));
     };
     let factor = wanted.iter().find_map(|wanted| given.per(Unit::parse(wanted)?));
     factor
         .map(|factor| number * factor)
-        .ok_or_else(|| format!("has the unit `{unit}`, expected one of {first}"))
+        .ok_or_else(|| format!("has the unit `{unit}`, expected a unit such as `{first}`"))
 }
 
 /// A text that begins with a number and goes on with something else.

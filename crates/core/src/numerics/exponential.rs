@@ -102,9 +102,9 @@ impl Work for Several<'_> {
     }
 }
 
-/// The product of matrices, each sum in the order of nalgebra's.
+/// The product of square matrices by columns, each sum in the order of nalgebra's.
 #[inline(always)]
-fn multiply<R: Real>(a: &[R], b: &[R], order: usize, into: &mut [R]) {
+pub fn multiply<R: Real>(a: &[R], b: &[R], order: usize, into: &mut [R]) {
     for column in 0..order {
         for row in 0..order {
             let mut sum = a[row] * b[column * order];

@@ -173,7 +173,7 @@ fn option(argument: &Arg, arguments: &mut Vec<String>, chance: &mut Chance) {
         0..4 if kind.contains("KEY=START") => chance
             .one(&["seed=1:3:3", "duration=1:2:2", "law.relay.k_t=0.3:0.4:3", "log.period=1:1e-30:3"])
             .to_owned(),
-        0..4 if kind.contains("LO:HI:N") => {
+        0..4 if kind.contains("LO:HI:COUNT") => {
             chance.one(&["0.1:1:3", "0.05:0.5:5", "1:2:1000000", "0:1:2"]).to_owned()
         }
         0..4 if kind.contains("KEY=") => format!(

@@ -82,7 +82,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             directory.display()
         )));
     }
-    target.save(&figures, args.json)
+    target.save(&figures, args.style()?, args.json)
 }
 
 /// The names of the files in a directory, sorted.

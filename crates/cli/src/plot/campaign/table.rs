@@ -260,7 +260,7 @@ impl Metric {
         let name = bare.map_or_else(|| named.to_owned(), |bare| bare.replace("torque", "acceleration"));
         let name = name.replace('_', " ");
         // Prefixes are those of single units.
-        if unit.contains('²') { (format!("{name}, {unit}"), "") } else { (name, unit) }
+        if unit.contains('²') { (format!("{name} ({unit})"), "") } else { (name, unit) }
     }
 }
 

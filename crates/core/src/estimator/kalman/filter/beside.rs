@@ -3,6 +3,7 @@
 use super::{Filter, Prediction};
 use crate::estimator::kalman::Ranking;
 use crate::lanes::Real;
+use crate::numerics::exponential::multiply;
 
 /// The filters: mean and covariance of each in a lane, columns one after the other.
 #[derive(Clone, Debug)]
@@ -135,15 +136,7 @@ impl<R: Real> Filters<R> {
     fn carry(&mut self) {
         let order = self.order;
         let Self { covariance, tangent, room, noise, .. } = self;
-        for column in 0..order {
-            for row in 0..order {
-                let mut sum = covariance[row] * tangent[column * order];
-                for k in 1..order {
-                    sum = covariance[k * order + row] * tangent[column * order + k] + sum;
-                }
-                room[column * order + row] = sum;
-            }
-        }
+        multiply(covariance, tangent, order, room);
         for column in 0..order {
             for row in 0..=column {
                 let (a, b) =

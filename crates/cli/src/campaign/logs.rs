@@ -1,0 +1,100 @@
+//! Runs with their logs: of one run, and of each run of a campaign beside its rows.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use flexsc_core::SimulationError;
+use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::metrics::Metrics;
+use flexsc_core::record::{Detail, LogFile, Record, RecordError, RunEnd, There, there};
+
+use super::{Job, run as run_all};
+use crate::failure::{Failure, Refused};
+use crate::say;
+use crate::stop::{self, Stop};
+
+/// What a log holds.
+#[derive(Copy, Clone, PartialEq, ValueEnum)]
+pub enum LogDetail {
+    /// No log
+    None,
+    /// All that changes: switchings, window means, adaptation
+    Events,
+    /// Also the motion at each period of the scenario's log, and at every switching
+    Full,
+    /// Also the scene for viewers in three dimensions: frames, shapes, plumes
+    Scene,
+}
+
+impl LogDetail {
+    /// What a log holds; none for no log.
+    pub fn detail(self) -> Option<Detail> {
+        match self {
+            Self::None => None,
+            Self::Events => Some(Detail::Events),
+            Self::Full => Some(Detail::Full),
+            Self::Scene => Some(Detail::Scene),
+        }
+    }
+}
+
+/// Makes the runs of a campaign, with a log of each if a detail is given: NAME-NUMBER.mcap beside its tables.
+pub fn run(study: &Arc<Campaign>, job: &Job<'_>, detail: Option<Detail>) -> Result<(), Failure> {
+    let directory = job.table.map(Path::to_owned).unwrap_or_default();
+    let (name, force) = (study.scenario().name.clone(), job.force);
+    let log = move |number: u64| -> PathBuf { directory.join(format!("{name}-{number}.mcap")) };
+    run_all(study, job, {
+        let (log, selection) = (log.clone(), job.selection.clone());
+        move |run| match detail {
+            // No log for the runs that had not begun.
+            _ if stop::asked() => Err(stop::interrupted().into()),
+            None => Ok(Campaign::simulate_for(run, &selection, Stop)?),
+            Some(detail) => Ok(selection.of_run(logged(run, &log(run.number), (detail, force), Stop)?.0)),
+        }
+    })?;
+    if detail.is_some() && !job.json {
+        let (first, last) = (log(job.range.start), log(job.range.end - 1));
+        if first == last {
+            say!("  log            {}", first.display());
+        } else {
+            say!("  logs           {} to {}", first.display(), last.display());
+        }
+    }
+    Ok(())
+}
+
+/// Simulates a run into a log file, and returns its size. An interrupted run leaves a finished log, a failed one
+/// too, and one that cannot be written none.
+pub fn logged(
+    run: &Run,
+    path: &Path,
+    (detail, force): (Detail, bool),
+    record: impl Record,
+) -> Result<(Metrics, u64), SimulationError> {
+    let provenance = Campaign::provenance(run, detail);
+    let mut log = LogFile::create(path, &provenance, detail)?;
+    // Nobody else writes it now.
+    if let (There::Other(what), false) = (there(path, &provenance), force) {
+        let text = format!(
+            "{}: {what}\n\nhint: give another directory with -o, or --force to replace it",
+            path.display()
+        );
+        return Err(RecordError::Io(Refused(text).into()).into());
+    }
+    match Campaign::simulate(run, (&mut log, record)) {
+        Ok(metrics) => {
+            let bytes = log.finish(&metrics, RunEnd::Complete)?;
+            Ok((metrics, bytes))
+        }
+        // It is removed.
+        Err(SimulationError::Record(RecordError::Io(error))) => Err(RecordError::Io(error).into()),
+        Err(error) => {
+            let interrupted = matches!(error, SimulationError::Record(RecordError::Interrupted));
+            let end = if interrupted { RunEnd::Interrupted } else { RunEnd::Failed };
+            log.finish(&Metrics::default(), end)?;
+            Err(error)
+        }
+    }
+}

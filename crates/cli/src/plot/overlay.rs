@@ -1,0 +1,122 @@
+//! The same figures of several runs, one over the other: a colour for each run.
+
+use flexsc_figure::{Axis, Figure, Layer, Panel, RGBColor, Scale, Shape, colour};
+
+/// The colours of the runs, in turn.
+const COLOURS: [RGBColor; 6] =
+    [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY, colour::BLACK];
+/// Each further line of a run in a panel is lighter by this part.
+const LIGHTER: f64 = 0.45;
+
+/// One figure of the figures of some runs, each with the name of its run; none where they have other panels.
+pub fn overlaid(what: &str, runs: Vec<(String, Figure)>) -> Option<Figure> {
+    let (_, first) = runs.first()?;
+    let alike = |figure: &Figure| {
+        let axes = |figure: &Figure| -> Vec<[(String, &'static str, Scale); 2]> {
+            let axis = |axis: &Axis| (axis.name.clone(), axis.unit, axis.scale);
+            figure.panels.iter().map(|panel| [axis(&panel.x), axis(&panel.y)]).collect()
+        };
+        axes(figure) == axes(first)
+    };
+    let plain = |figure: &Figure| figure.panels.iter().all(|panel| panel.bar.is_none());
+    if !runs.iter().all(|(_, figure)| alike(figure) && plain(figure)) {
+        return None;
+    }
+    let (panel_height, count) = (first.panel_height, first.panels.len());
+    let names: Vec<&str> = runs.iter().map(|(name, _)| name.as_str()).collect();
+    let title = format!("{what}: {}", names.join(", "));
+    let panel = |index: usize| -> Panel {
+        let panels: Vec<(&str, &Panel)> =
+            runs.iter().map(|(name, figure)| (name.as_str(), &figure.panels[index])).collect();
+        let (x, y) = (axis(&panels, |panel| &panel.x), axis(&panels, |panel| &panel.y));
+        Panel::new(x, y, layers(&panels, index == 0))
+    };
+    Some(Figure { title, panels: (0..count).map(panel).collect(), panel_height })
+}
+
+/// The axis that shows what the axes of all panels show.
+fn axis(panels: &[(&str, &Panel)], of: fn(&Panel) -> &Axis) -> Axis {
+    let mut all = of(panels[0].1).clone();
+    for (_, panel) in panels {
+        let range = &of(panel).range;
+        all.range = all.range.start.min(range.start)..all.range.end.max(range.end);
+    }
+    all
+}
+
+fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
+    let mut layers: Vec<Layer> = Vec::new();
+    let same = |a: &Layer, b: &Layer| a.shape == b.shape && a.name == b.name && a.points == b.points;
+    // What all runs have alike, such as a dead zone, is drawn once and as it is.
+    let common =
+        |layer: &Layer| panels.iter().all(|(_, panel)| panel.layers.iter().any(|other| same(layer, other)));
+    layers.extend(panels[0].1.layers.iter().filter(|layer| common(layer)).cloned());
+    for (run, (name, panel)) in panels.iter().enumerate() {
+        let own: Vec<&Layer> = panel.layers.iter().filter(|layer| !common(layer)).collect();
+        // The widest line is what the panel is about.
+        let width = |layer: &Layer| if let Shape::Line(width) = layer.shape { width } else { 0.0 };
+        let main = (0..own.len()).rev().max_by(|a, b| width(own[*a]).total_cmp(&width(own[*b])));
+        let mut lines = 0;
+        let mut told = false;
+        for (place, layer) in own.iter().enumerate() {
+            let mut layer = (*layer).clone();
+            let is_line = matches!(layer.shape, Shape::Line(_) | Shape::Dashes);
+            let shade = if Some(place) == main || !is_line {
+                0.0
+            } else {
+                lines += 1;
+                LIGHTER + 0.2 * f64::from((lines - 1).min(2))
+            };
+            layer.colour = lighter(COLOURS[run % COLOURS.len()], shade);
+            layer.name = match (layer.name.as_str(), named) {
+                (_, true) if layer.points.is_empty() => String::new(),
+                ("", true) if Some(place) == main && !told => (*name).to_owned(),
+                ("", _) => String::new(),
+                (own, _) => format!("{name}, {own}"),
+            };
+            told |= !layer.name.is_empty();
+            layers.push(layer);
+        }
+    }
+    layers
+}
+
+fn lighter(RGBColor(r, g, b): RGBColor, part: f64) -> RGBColor {
+    let mixed = |own: u8| (f64::from(own) + part * (255.0 - f64::from(own))).round() as u8;
+    RGBColor(mixed(r), mixed(g), mixed(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn figure(height: f64, end: f64) -> Figure {
+        let line = vec![(0.0, 0.0), (end, height)];
+        let zone = vec![(0.0, 0.5), (100.0, 0.5)];
+        let layers = vec![
+            Layer::new("dead zone", colour::GREY, Shape::Dashes, zone),
+            Layer::new("", colour::BLUE, Shape::Line(1.2), line),
+        ];
+        let panel =
+            Panel::new(Axis::exact("time", "s", 0.0..end), Axis::exact("angle", "rad", 0.0..height), layers);
+        Figure { title: "one".to_owned(), panels: vec![panel], panel_height: 100 }
+    }
+
+    #[test]
+    fn each_run_has_its_colour_and_what_is_common_its_own() {
+        let runs = vec![("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(3.0, 5.0))];
+        let both = overlaid("angle", runs).expect("alike");
+        assert_eq!(both.title, "angle: a, b");
+        let panel = &both.panels[0];
+        assert_eq!((panel.x.range.clone(), panel.y.range.clone()), (0.0..10.0, 0.0..3.0));
+        let told: Vec<_> = panel.layers.iter().map(|layer| (layer.name.as_str(), layer.colour)).collect();
+        assert_eq!(told, [("dead zone", colour::GREY), ("a", colour::BLUE), ("b", colour::VERMILLION)]);
+    }
+
+    #[test]
+    fn figures_of_other_panels_are_not_mixed() {
+        let mut other = figure(1.0, 1.0);
+        other.panels[0].y.unit = "m";
+        assert!(overlaid("x", vec![("a".to_owned(), figure(1.0, 1.0)), ("b".to_owned(), other)]).is_none());
+    }
+}
