@@ -5,11 +5,14 @@
     reason = "Python's arguments come, and errors are mapped, as values"
 )]
 
+mod arrow;
 mod aside;
 mod campaign;
 mod columns;
 mod damping;
 mod error;
+mod figures;
+mod instants;
 mod sampled;
 
 use std::collections::BTreeMap;
@@ -41,6 +44,8 @@ use error::{allowed, log_error, no_file, scenario_error, simulation_error};
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use super::arrow::{arrow_schema, arrow_stream};
+    #[pymodule_export]
     use super::campaign::{Directory, Work};
     #[pymodule_export]
     use super::damping::{
@@ -49,11 +54,17 @@ mod _native {
     #[pymodule_export]
     use super::error::{LogError, ScenarioError, SimulationError};
     #[pymodule_export]
+    use super::figures::{
+        Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure,
+    };
+    #[pymodule_export]
+    use super::instants::sample;
+    #[pymodule_export]
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
     #[pymodule_export]
     use super::{
-        Log, Scenario, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,
-        schema_json, simulate, to_mcap, write,
+        Log, Scenario, examples, main, meanings_json, metrics_json, plan_json, plan_torque,
+        rigid_cycles_json, rivals_json, schema_json, simulate, to_mcap, write,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -331,6 +342,15 @@ fn schema_json() -> String {
 fn metrics_json() -> String {
     let meaning = |m: &metrics::Meaning| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc}));
     serde_json::Value::Object(metrics::ALL.iter().map(meaning).collect()).to_string()
+}
+
+/// What the metrics of a scenario mean: of a body without inertia some have other units.
+#[pyfunction]
+fn meanings_json(scenario: &Scenario) -> String {
+    let names = metrics::ALL.iter().map(|meaning| meaning.name);
+    let meanings = names.filter_map(|name| metrics::meaning(name, Some(&scenario.inner)));
+    let told = meanings.map(|m| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc})));
+    serde_json::Value::Object(told.collect()).to_string()
 }
 
 #[pyfunction]

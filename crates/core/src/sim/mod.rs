@@ -10,6 +10,7 @@ mod beside;
 mod drive;
 mod events;
 mod failing;
+mod instants;
 mod journal;
 mod plant;
 mod reference;

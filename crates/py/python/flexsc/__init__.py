@@ -25,7 +25,9 @@ from flexsc._damping import identify, observer_margin, observer_region, persiste
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
-from flexsc._scenario import Log, Result, Scenario
+from flexsc._scenario import Log, Result, Samples, Scenario
+from flexsc._topic import Topic
+from flexsc._units import Metrics
 from flexsc.structure import (
     StateSpace,
     Structure,
@@ -39,14 +41,17 @@ from flexsc.structure import (
 __all__ = [
     "Log",
     "LogError",
+    "Metrics",
     "Plan",
     "Result",
+    "Samples",
     "Scenario",
     "ScenarioError",
     "SimulationError",
     "StateSpace",
     "Structure",
     "Table",
+    "Topic",
     "__version__",
     "appendage_from_nastran",
     "campaign",
