@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 FILE = Path(__file__).parent / "python" / "flexsc" / "scenario.py"
-WIDTH = 106
+WIDTH = 108
 # Tables and choices whose names in the schema need a number to differ.
 NAMES = {
     "Drive2": "AppendageDrive",
@@ -52,16 +52,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypedDict, Union
 
 from flexsc._part import Part
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-Vector: TypeAlias = "Sequence[float] | npt.NDArray[Any]"
+Vector: TypeAlias = Union[Sequence[float], "npt.NDArray[Any]"]
 """Numbers in a row: a list, a tuple or an array of shape (n,)."""
-Rows: TypeAlias = "Sequence[Sequence[float]] | npt.NDArray[Any]"
+Rows: TypeAlias = Union[Sequence[Sequence[float]], "npt.NDArray[Any]"]
 """Rows of numbers: lists in a list, or an array of shape (rows, columns)."""
 '''
 
@@ -191,7 +191,7 @@ def told(text: str) -> str:
 
 def docstring(text: str, indent: str) -> str:
     text = told(text)
-    if len(indent) + len(text) + 6 <= WIDTH:
+    if len(indent) + len(text) + 6 <= WIDTH + 1:
         return f'{indent}"""{text}"""\n'
     lines = textwrap.wrap(text, WIDTH - len(indent) - 3, break_long_words=False)
     return f'{indent}"""' + f"\n{indent}".join(lines) + f'\n{indent}"""\n'
@@ -216,7 +216,9 @@ def table(schema: Schema, name: str, of: dict[str, Any], doc: str, tag: str | No
     body += f'\n    _tag: ClassVar[str | None] = "{tag}"\n' if tag else ""
     bare = [key for key, value in of.get("properties", {}).items() if ref(value) in schema.of_kind]
     if bare:
-        body += f"\n    _bare: ClassVar[tuple[str, ...]] = ({', '.join(map(json.dumps, bare))},)\n"
+        body += (
+            f"\n    _bare: ClassVar[tuple[str, ...]] = ({''.join(f'{json.dumps(key)}, ' for key in bare)})\n"
+        )
     needed = of.get("required", [])
     properties = of.get("properties", {})
     order = sorted(properties, key=lambda key: key not in needed)
@@ -249,11 +251,10 @@ def written(schema_of_scenarios: dict[str, Any]) -> str:
                 classes.append((name, wrapped(schema, name, content, doc, tag)))
             names.append(name)
         alias = named(choice)
-        line = f'{alias}: TypeAlias = "{" | ".join(names)}"\n'
+        line = f"{alias}: TypeAlias = {' | '.join(names)}\n"
         if len(line) > WIDTH:
-            parts = textwrap.wrap(" | ".join(names), WIDTH - 10)
-            quoted = "".join(f'    "{part} "\n' for part in parts[:-1]) + f'    "{parts[-1]}"\n'
-            line = f"{alias}: TypeAlias = (\n{quoted})\n"
+            parts = "\n    | ".join(names)
+            line = f"{alias}: TypeAlias = (\n    {parts}\n)\n"
         unions.append((alias, line + docstring(schema.all[choice].get("description", ""), "")))
     for name in schema.tables:
         of = schema.all[name]
@@ -269,8 +270,8 @@ def written(schema_of_scenarios: dict[str, Any]) -> str:
             kind = "datetime" if key == "epoch" else schema.type_of(of)
             keys += f"\n    {key}: {kind}\n" + docstring(of.get("description", ""), "    ")
     text = HEAD.replace("\nVector: TypeAlias", listed + "\nVector: TypeAlias", 1)
-    text += "".join("\n" + union if not i else union for i, (_, union) in enumerate(sorted(unions)))
-    return text + "".join(body for _, body in sorted(classes)) + keys
+    bodies = "".join(body for _, body in sorted(classes))
+    return text + bodies + "\n\n" + "".join(union for _, union in sorted(unions)) + keys
 
 
 if __name__ == "__main__":

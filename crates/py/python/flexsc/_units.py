@@ -36,7 +36,9 @@ _REDUCED = {"N m": "rad/s²", "N m s": "rad/s"}
 
 def meanings(scenario: Scenario | None) -> dict[str, dict[str, str]]:
     """What the metrics mean, of runs of a scenario if it is known: by name, `unit` and `doc`."""
-    text = engine.metrics_json() if scenario is None else engine.meanings_json(scenario._native)
+    # A body with three axes has a moment of inertia.
+    given = None if scenario is None or scenario._native.spatial else scenario._native
+    text = engine.metrics_json() if given is None else engine.meanings_json(given)
     told: dict[str, dict[str, str]] = json.loads(text)
     return told
 
@@ -63,7 +65,7 @@ class Metrics(dict[str, Any]):
     >>> import flexsc
     >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0).simulate()
     >>> run.metrics["switchings"], run.metrics.unit("cycle_period_s")
-    (59, 's')
+    (81, 's')
     """
 
     def __init__(self, values: dict[str, Any], scenario: Scenario) -> None:

@@ -19,6 +19,7 @@ the unit of the label.
 
 from __future__ import annotations
 
+import math
 import os
 from functools import partial
 from importlib.util import find_spec
@@ -108,7 +109,7 @@ def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> A
         ax.set_title(drawn.title, fontsize=14 * _POINT, pad=24)
     # Panels above the last leave the name of the time to it.
     name_below = panels[-1]["x"]["label"]
-    _panel(ax, panels[panel], panels[panel]["x"]["label"] or name_below)
+    _panel(ax, panels[panel], panels[panel]["x"]["label"] or name_below, drawn.panel_height)
     return ax
 
 
@@ -136,7 +137,7 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
     on.suptitle(drawn.title, fontsize=14 * _POINT)
     axes = on.subplots(len(panels), 1, squeeze=False)[:, 0]
     for ax, panel in zip(axes, panels, strict=True):
-        _panel(ax, panel, panel["x"]["label"])
+        _panel(ax, panel, panel["x"]["label"], drawn.panel_height)
     return on
 
 
@@ -180,10 +181,10 @@ def _figure(source: Source, name: str) -> engine.Figure:
     return there[name]
 
 
-def _panel(ax: Axes, panel: dict[str, Any], below: str) -> None:
+def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
     """Draw a panel, in the command's look."""
-    for side, axis in (("x", ax.xaxis), ("y", ax.yaxis)):
-        _axis(ax, side, axis, panel[side])
+    _axis(ax, "x", ax.xaxis, panel["x"], 8)
+    _axis(ax, "y", ax.yaxis, panel["y"], max(2, plot // 28))
     ax.set_xlabel(below, fontsize=12 * _POINT)
     ax.set_ylabel(panel["y"]["label"], fontsize=12 * _POINT)
     ax.tick_params(labelsize=11 * _POINT, length=0, pad=4)
@@ -209,21 +210,27 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str) -> None:
         _bar(ax, *panel["bar"])
 
 
-def _axis(ax: Axes, side: str, axis: Any, told: dict[str, Any]) -> None:
+def _axis(ax: Axes, side: str, axis: Any, told: dict[str, Any], most: int) -> None:
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     if told["logarithmic"]:
         getattr(ax, f"set_{side}scale")("log")
     else:
-        axis.set_major_locator(MaxNLocator(nbins=8 if side == "x" else 7, steps=[1, 2, 5, 10]))
-        if told["factor"] != 1.0:
-            axis.set_major_formatter(FuncFormatter(partial(_number, told["factor"])))
+        axis.set_major_locator(MaxNLocator(nbins=most, steps=[1, 2, 5, 10]))
+        axis.set_major_formatter(FuncFormatter(partial(_number, axis, told["factor"])))
     getattr(ax, f"set_{side}lim")(told["low"], told["high"])
 
 
-def _number(factor: float, value: float, _: int | None = None) -> str:
-    """The number at a tick, in the unit of the label."""
-    return f"{value / factor:.10g}".replace("-", "\N{MINUS SIGN}")
+def _number(axis: Any, factor: float, value: float, _: int | None = None) -> str:
+    """The number at a tick, in the unit of the label, with the decimals that the step between ticks needs."""
+    places = axis.get_majorticklocs()
+    step = abs(places[1] - places[0]) / factor if len(places) > 1 else 1.0
+    decimals = max(0, math.ceil(-1e-9 - math.log10(step)))
+    scaled = value / factor
+    if abs(scaled) < 1e-9 * step:
+        return "0"
+    text = f"{scaled:.{decimals}f}" if decimals <= 6 and abs(scaled) < 1e7 else f"{scaled:.1e}"
+    return text.replace("-", "\N{MINUS SIGN}")
 
 
 def _layer(ax: Axes, layer: dict[str, Any], order: int) -> Any:

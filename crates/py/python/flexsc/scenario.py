@@ -23,7 +23,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypedDict, Union
 
 from flexsc._part import Part
 
@@ -182,47 +182,10 @@ __all__ = [
     "Zvdd",
 ]
 
-Vector: TypeAlias = "Sequence[float] | npt.NDArray[Any]"
+Vector: TypeAlias = Union[Sequence[float], "npt.NDArray[Any]"]
 """Numbers in a row: a list, a tuple or an array of shape (n,)."""
-Rows: TypeAlias = "Sequence[Sequence[float]] | npt.NDArray[Any]"
+Rows: TypeAlias = Union[Sequence[Sequence[float]], "npt.NDArray[Any]"]
 """Rows of numbers: lists in a list, or an array of shape (rows, columns)."""
-
-Actuator: TypeAlias = "Ideal | Hold | Thrusters | Wheel | Wheels | Jets | Magnetorquers"
-"""The kinds of actuator. Those of one angle act on a body with three axes about each."""
-Adaptation: TypeAlias = "RandomSearch"
-"""The kinds of adaptation."""
-Body: TypeAlias = "Planar | Matrices | Panels | Spatial"
-"""The kinds of body."""
-Command: TypeAlias = "SineCommand | Cosine | BangBang | MinimumEnergy | MinimumPeak | Polynomial"
-"""The kinds of command."""
-Distribution: TypeAlias = "Uniform | LogUniform | Normal | RelativeUniform | RelativeNormal | Choice"
-"""The distribution of one key of the scenario."""
-Drift: TypeAlias = "Common | Each"
-"""How the frequencies of a body drift."""
-Estimator: TypeAlias = (
-    "Envelope | Truth | Kalman | ExtendedKalman | UnscentedKalman | AttitudeEstimator | RigidRate | Adaptive"
-)
-"""The kinds of estimator."""
-Extra: TypeAlias = "Gain | Schedule"
-"""The extra loop over the dominant mode: its gain is k_d of the papers."""
-Failure: TypeAlias = "Dead | Scaled | StuckFailure | Added"
-"""A failure of an actuator."""
-Fault: TypeAlias = "StuckFault | Silent"
-"""A failure of the sensor, gyro included."""
-Filter: TypeAlias = "Notch | LowPass | Lead | Biquad"
-"""The kinds of filter."""
-FilterForm: TypeAlias = "Complementary"
-"""How gains are found."""
-Law: TypeAlias = "Relay | Pd | AttitudeLaw | StateSpace | Open | PhasePlane | PerAxis | BDot | Stages"
-"""The kinds of law."""
-ObserverForm: TypeAlias = "Gradient | Recurrence"
-"""The forms of an observer."""
-Profile: TypeAlias = "Ramp | Sinusoid | Table"
-"""A profile of the ratio over time."""
-Sensor: TypeAlias = "Sampled | Gyro | StarTracker | Magnetometer | SunSensor | Tachometer | Accelerometer"
-"""The kinds of sensor."""
-Shaper: TypeAlias = "Zv | Zvd | Zvdd | Ei"
-"""The kinds of shaper."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -238,8 +201,8 @@ class Accelerometer(Part):
     point: str | None = None
     """The point of the structure at which it is; left out, the first of the body's points."""
     along: Rows | None = None
-    """The directions along which it measures, one to three of any length in the hub's axes while nothing
-    is bent; left out, x, y and z.
+    """The directions along which it measures, one to three of any length in the hub's axes while nothing is
+    bent; left out, x, y and z.
     """
     noise: float | Vector | None = None
     """Standard deviation of the white noise along each (m/s²). Default: 0.0."""
@@ -262,9 +225,9 @@ class ActiveDamping(Part):
     """Active damping."""
 
     threshold: Vector | None = None
-    """Elastic rates beyond which the jets push, about each axis (rad/s); left out, 1.5 times the
-    amplitude of the limit cycle that the delay makes, and at least what two whole cycles change, of
-    the mode that a long burn excites most.
+    """Elastic rates beyond which the jets push, about each axis (rad/s); left out, 1.5 times the amplitude
+    of the limit cycle that the delay makes, and at least what two whole cycles change, of the mode that
+    a long burn excites most.
     """
     release: float | None = None
     """Part of the threshold at which they end. Default: 0.5."""
@@ -319,8 +282,7 @@ class Added(Part):
     thruster: str | None = None
     """The thruster that fails, of jets; left out, all do."""
     constant: float | None = None
-    """A constant: a torque (N m), of magnetorquers a moment (A m²), of jets a thrust (N). Default: 0.0.
-    """
+    """A constant: a torque (N m), of magnetorquers a moment (A m²), of jets a thrust (N). Default: 0.0."""
     sines: Sequence[Sine] | None = None
     """Torques that are sines of the time."""
 
@@ -336,8 +298,8 @@ class Appendage(Part):
     centre: Vector | None = None
     """Centre of mass from the root (m), in its own axes."""
     inertia: Rows | None = None
-    """Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; left out, it is a
-    point mass.
+    """Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; left out, it is a point
+    mass.
     """
     at: Vector | None = None
     """Where its root is, from the point O of the spacecraft (m)."""
@@ -477,8 +439,7 @@ class AttitudeLaw(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class AttitudeTarget(Part):
-    """An attitude to turn to: yaw, then pitch about the turned axis, then roll about the one turned
-    twice.
+    """An attitude to turn to: yaw, then pitch about the turned axis, then roll about the one turned twice.
     """
 
     from_: float
@@ -613,8 +574,8 @@ class Complementary(Part):
 @dataclass(frozen=True, kw_only=True)
 class Correlated(Part):
     """Keys of `[uncertain]` that are drawn together. Behind each stands a standard normal number: these
-    numbers have the correlations, and each key keeps its own distribution. Of normal distributions
-    they are the correlations themselves.
+    numbers have the correlations, and each key keeps its own distribution. Of normal distributions they
+    are the correlations themselves.
     """
 
     keys: Sequence[str]
@@ -698,14 +659,14 @@ class Disturbance(Part):
     sines: Sequence[Sine] | None = None
     """Sines of the time in the torque beside it, of a `[spacecraft]`."""
     force: Vector | None = None
-    """In place of a torque, on a body with three axes a force in its axes (N): a leak, a jet that is
-    stuck, a push.
+    """In place of a torque, on a body with three axes a force in its axes (N): a leak, a jet that is stuck,
+    a push.
     """
     point: str | None = None
     """Name of the point at which the force acts; left out, the first."""
     noise: float | None = None
-    """Spectral density of a white noise in the torque beside it ((N m)² s): each draw is held for
-    `period`. Default: 0.0.
+    """Spectral density of a white noise in the torque beside it ((N m)² s): each draw is held for `period`.
+    Default: 0.0.
     """
     pulse: Pulses | None = None
     """Pulses in place of a steady torque or force."""
@@ -794,12 +755,11 @@ class ElasticStates(Part):
     displacement: float | None = None
     """Standard deviation of each displacement at the start (m sqrt(kg)). Default: 0.001."""
     rate: float | None = None
-    """Standard deviation of each rate at the start (m sqrt(kg)/s); left out, that of the displacement
-    times the frequency.
+    """Standard deviation of each rate at the start (m sqrt(kg)/s); left out, that of the displacement times
+    the frequency.
     """
     feeds: Literal["modes", "hub", "rigid"] | None = None
-    """What the law reads: angle and rate as if the body were rigid, or those of the hub; left out, rigid.
-    """
+    """What the law reads: angle and rate as if the body were rigid, or those of the hub; left out, rigid."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -891,8 +851,7 @@ class ExtendedKalman(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Friction(Part):
-    """Friction: c Omega + t sgn Omega of a wheel that turns, and up to its breakaway torque of one at
-    rest.
+    """Friction: c Omega + t sgn Omega of a wheel that turns, and up to its breakaway torque of one at rest.
     """
 
     coulomb: float | Vector | None = None
@@ -940,8 +899,8 @@ class Gradient(Part):
     elastic_gain: float | None = None
     """Gain of each elastic rate; left out, 0.15 for one mode and 0.1 for several."""
     rate: float | None = None
-    """Rate of the identification, 0 for none. Sufficient for its convergence: below 0.05 over the number
-    of modes. Default: 0.02.
+    """Rate of the identification, 0 for none. Sufficient for its convergence: below 0.05 over the number of
+    modes. Default: 0.02.
     """
     gate: float | None = None
     """While a mode's elastic rate is below this amplitude (rad/s), its frequency learns nothing. Default:
@@ -950,8 +909,8 @@ class Gradient(Part):
     influence_bounds: Vector | None = None
     """Between which multiples of its value at the start an influence is looked for."""
     reach: float | None = None
-    """A frequency without bounds of its own is looked for from its value divided by this to its value
-    times this. Default: 2.0.
+    """A frequency without bounds of its own is looked for from its value divided by this to its value times
+    this. Default: 2.0.
     """
 
 
@@ -962,16 +921,15 @@ class GravityGradient(Part):
     orbit_rate: float | None = None
     """Rate of a circular orbit (rad/s); left out, the environment's orbit counts."""
     local: Vector | None = None
-    """How the local axes of that orbit lie at the start, a unit quaternion [w, x, y, z] that turns
-    vectors of the local axes (x along the velocity, y against the orbit's normal, z nadir) into
-    inertial ones; left out, they are the inertial ones then.
+    """How the local axes of that orbit lie at the start, a unit quaternion [w, x, y, z] that turns vectors
+    of the local axes (x along the velocity, y against the orbit's normal, z nadir) into inertial ones;
+    left out, they are the inertial ones then.
     """
 
 
 @dataclass(frozen=True, kw_only=True)
 class Groups(Part):
-    """The groups: for each axis, names of the thrusters that turn the body about it one way and the
-    other.
+    """The groups: for each axis, names of the thrusters that turn the body about it one way and the other.
     """
 
     roll: Pair
@@ -1005,8 +963,8 @@ class Gyro(Part):
     rate_random_walk: float | Vector | None = None
     """Rate random walk of the bias about each axis (rad/s^1.5), of one that integrates."""
     quantum: float | Vector | None = None
-    """Quantum of the angle about each axis (rad), of one that integrates: what is left is counted with
-    the next; 0 for none.
+    """Quantum of the angle about each axis (rad), of one that integrates: what is left is counted with the
+    next; 0 for none.
     """
     scale: float | Vector | None = None
     """Relative error of the scale about each axis."""
@@ -1058,9 +1016,9 @@ class Ideal(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Imbalance(Part):
-    """Imbalance of wheels, as the body feels it at their speed Omega and angle th. Each force and torque
-    is its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1 is z x
-    a of the wheel's axis a, or x of one along z, and e2 is a x e1.
+    """Imbalance of wheels, as the body feels it at their speed Omega and angle th. Each force and torque is
+    its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1 is z x a of
+    the wheel's axis a, or x of one along z, and e2 is a x e1.
     """
 
     static: float | Vector | None = None
@@ -1072,8 +1030,7 @@ class Imbalance(Part):
     harmonics: Sequence[Harmonic] | None = None
     """What there is beside once a turn, alike for all wheels."""
     point: str | None = None
-    """The point of the structure at which the wheels are mounted; left out, the first of the body's
-    points.
+    """The point of the structure at which the wheels are mounted; left out, the first of the body's points.
     """
     positions: Rows | None = None
     """Where each wheel is, from that point (m); left out, at it."""
@@ -1088,8 +1045,7 @@ class Initial(Part):
     rate: float | None = None
     """Of the rigid rate (rad/s). Default: 0.0001."""
     displacement: float | None = None
-    """Of the displacement of the mode with the largest k/w² (rad); of the others a tenth. Default: 0.002.
-    """
+    """Of the displacement of the mode with the largest k/w² (rad); of the others a tenth. Default: 0.002."""
     mode_rate: float | None = None
     """Of the rate of that mode (rad/s); of the others a tenth. Default: 0.0006."""
 
@@ -1204,8 +1160,8 @@ class Log(Part):
     """What a full log holds."""
 
     period: float | None = None
-    """Period at which a full log holds the motion (s); left out, 0.1 or the first of 0.2, 0.5, 1, 2, 5
-    and so on of which the duration has at most 10 000.
+    """Period at which a full log holds the motion (s); left out, 0.1 or the first of 0.2, 0.5, 1, 2, 5 and
+    so on of which the duration has at most 10 000.
     """
     scene: SceneSpec | None = None
     """How a log with a scene draws the run."""
@@ -1240,8 +1196,8 @@ class MagneticField(Part):
     """
 
     coefficients: Vector | None = None
-    """The first coefficients g11, h11 and g10 of the field (T), a vector in axes that turn with the
-    planet: z along its axis, x through its meridian 0; left out, the Earth's of IGRF-13 for 2020.
+    """The first coefficients g11, h11 and g10 of the field (T), a vector in axes that turn with the planet:
+    z along its axis, x through its meridian 0; left out, the Earth's of IGRF-13 for 2020.
     """
     radius: float | None = None
     """The radius a at which they are (m); left out, the Earth's mean one. Default: 6371200.0."""
@@ -1293,7 +1249,7 @@ class Magnetorquers(Part):
 class Manoeuvre(Part):
     """A manoeuvre as a scenario describes it. The body's modes rest at its start."""
 
-    _bare: ClassVar[tuple[str, ...]] = ("model",)
+    _bare: ClassVar[tuple[str, ...]] = ("model", )
 
     angle: float
     """The angle by which the rigid body turns (rad)."""
@@ -1310,8 +1266,8 @@ class Manoeuvre(Part):
     shaper: Shaper | None = None
     """What the command is convolved with; it takes a part of the time."""
     model: Planar | None = None
-    """The body that the plan is made for; left out, the body itself. A campaign that draws keys of the
-    body puts the body as it is written here: the plan does not depend on what is drawn.
+    """The body that the plan is made for; left out, the body itself. A campaign that draws keys of the body
+    puts the body as it is written here: the plan does not depend on what is drawn.
     """
 
 
@@ -1426,8 +1382,7 @@ class Notch(Part):
     depth: float
     """The gain there, below 1."""
     damping: float | None = None
-    """The damping ratio zeta of the denominator: the notch is the wider the larger it is. Default: 0.6.
-    """
+    """The damping ratio zeta of the denominator: the notch is the wider the larger it is. Default: 0.6."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1556,8 +1511,8 @@ class PhasePlane(Part):
     rate_limit: float
     """Largest rate at which the law turns the body (rad/s)."""
     switch_on: float
-    """The jets begin to fire where the rate is further than this from where it should be (rad/s), near
-    and beyond the edges of the dead zone where it is less far.
+    """The jets begin to fire where the rate is further than this from where it should be (rad/s), near and
+    beyond the edges of the dead zone where it is less far.
     """
     switch_off: float
     """They end where it is nearer than this (rad/s), at which rate the body returns at least."""
@@ -1578,8 +1533,8 @@ class Planar(Part):
     _tag: ClassVar[str | None] = "planar"
 
     inertia: float | None = None
-    """Moment of inertia (kg m²). Left out, it is 1, and every torque is a reduced moment (rad/s²).
-    Default: 1.0.
+    """Moment of inertia (kg m²). Left out, it is 1, and every torque is a reduced moment (rad/s²). Default:
+    1.0.
     """
     angle: float | None = None
     """Rigid angle at the start (rad). Default: 0.0."""
@@ -1614,8 +1569,8 @@ class Pointing(Part):
     window: Vector
     """From when to when (s) the angle beyond the target counts, for the metric `pointing_rms_rad`."""
     rms: float | None = None
-    """What its root mean square is to be at most (rad), for the metric `requirement`; left out, nothing
-    is asked.
+    """What its root mean square is to be at most (rad), for the metric `requirement`; left out, nothing is
+    asked.
     """
 
 
@@ -1692,20 +1647,19 @@ class Recurrence(Part):
     active: RecurrenceWeights | None = None
     """W5 to W7, for cycles in which one did."""
     frequency_gain: float | None = None
-    """W4 times the amplitude of the elastic rate, kappa. With the weights as they are left out it
-    converges below 0.043. Default: 0.006.
+    """W4 times the amplitude of the elastic rate, kappa. With the weights as they are left out it converges
+    below 0.043. Default: 0.006.
     """
     influence_gain: float | None = None
     """W8 times the absolute value of what it learns from. Default: 0.25."""
     gate: float | None = None
-    """While the elastic rate is below this amplitude (rad/s), the frequency learns nothing. Default:
-    5e-06.
+    """While the elastic rate is below this amplitude (rad/s), the frequency learns nothing. Default: 5e-06.
     """
     influence_bounds: Vector | None = None
     """Between which multiples of its value at the start the influence is looked for."""
     reach: float | None = None
-    """A frequency without bounds of its own is looked for from its value divided by this to its value
-    times this. Default: 3.0.
+    """A frequency without bounds of its own is looked for from its value divided by this to its value times
+    this. Default: 3.0.
     """
 
 
@@ -1726,8 +1680,8 @@ class Reference(Part):
     """Levels of other runs that the metrics compare with."""
 
     envelope: float | None = None
-    """Mean envelope without adaptation (rad), for the metric `envelope_reduction`; left out, the mean
-    over the run's own first window.
+    """Mean envelope without adaptation (rad), for the metric `envelope_reduction`; left out, the mean over
+    the run's own first window.
     """
     band: float | None = None
     """Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s` and
@@ -1866,8 +1820,8 @@ class SceneSpec(Part):
 
 @dataclass(frozen=True)
 class Schedule(Part):
-    """A gain that follows the estimated frequency: straight lines between points, held before the first
-    and after the last.
+    """A gain that follows the estimated frequency: straight lines between points, held before the first and
+    after the last.
     """
 
     _tag: ClassVar[str | None] = "schedule"
@@ -1948,8 +1902,8 @@ class SineCommand(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Sinusoid(Part):
-    """1 + amplitude (cos(2 pi (t + phase)/period) - cos(2 pi phase/period)): panels that follow the Sun
-    on an orbit.
+    """1 + amplitude (cos(2 pi (t + phase)/period) - cos(2 pi phase/period)): panels that follow the Sun on
+    an orbit.
     """
 
     _tag: ClassVar[str | None] = "sinusoid"
@@ -1978,8 +1932,8 @@ class SolarPressure(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Spacecraft(Part):
-    """A spacecraft: its rigid hub, to which the appendages are clamped. Positions are from a point O of
-    the user's choice, in the axes of the hub, which are the body's.
+    """A spacecraft: its rigid hub, to which the appendages are clamped. Positions are from a point O of the
+    user's choice, in the axes of the hub, which are the body's.
     """
 
     mass: float
@@ -1995,16 +1949,15 @@ class Spacecraft(Part):
     ones.
     """
     rate: Vector | None = None
-    """Rates at the start (rad/s), in the body's axes: of the spacecraft as a whole, which are those of
-    the hub while nothing vibrates.
+    """Rates at the start (rad/s), in the body's axes: of the spacecraft as a whole, which are those of the
+    hub while nothing vibrates.
     """
     whole_damping: bool | None = None
     """Whether the damping of the free modes is kept whole even where what is beside the diagonal of its
     matrix hardly counts.
     """
     points: Sequence[NamedPoint] | None = None
-    """Named points of the hub, at which jets push and gyros look. Left out, there is one at O, named
-    `hub`.
+    """Named points of the hub, at which jets push and gyros look. Left out, there is one at O, named `hub`.
     """
 
 
@@ -2048,8 +2001,7 @@ class SpatialMode(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedBias(Part):
-    """A speed at which four wheels turn beside what the torque asks of them, two one way and two the
-    other.
+    """A speed at which four wheels turn beside what the torque asks of them, two one way and two the other.
     """
 
     speed: float
@@ -2247,8 +2199,8 @@ class Target(Part):
     shift: float | None = None
     """Shift of its frequency, relative to it. Default: 0.0."""
     times: int | None = None
-    """So many times: each time more flattens the spectrum there by one derivative with frequency.
-    Default: 1.
+    """So many times: each time more flattens the spectrum there by one derivative with frequency. Default:
+    1.
     """
 
 
@@ -2319,8 +2271,8 @@ class Truth(Part):
     _tag: ClassVar[str | None] = "truth"
 
     feeds: Literal["modes", "hub", "rigid"] | None = None
-    """What the law reads of it beside the dominant mode: `modes` for angle and rate as measured, `hub`,
-    or `rigid`; left out, `modes` for a law that reads the dominant mode, else `hub`.
+    """What the law reads of it beside the dominant mode: `modes` for angle and rate as measured, `hub`, or
+    `rigid`; left out, `modes` for a law that reads the dominant mode, else `hub`.
     """
 
 
@@ -2348,10 +2300,7 @@ class Uniform(Part):
 class Unloading(Part):
     """How wheels are unloaded: by jets or by magnetorquers."""
 
-    _bare: ClassVar[tuple[str, ...]] = (
-        "jets",
-        "magnetorquers",
-    )
+    _bare: ClassVar[tuple[str, ...]] = ("jets", "magnetorquers", )
 
     above: float
     """Momentum of the wheels together beyond which it begins (N m s)."""
@@ -2473,8 +2422,7 @@ class Wheels(Part):
     there is no limit.
     """
     speed_limit: float | None = None
-    """Largest speed of each (rad/s), at which no torque drives it further; left out, there is no limit.
-    """
+    """Largest speed of each (rad/s), at which no torque drives it further; left out, there is no limit."""
     speeds: Vector | None = None
     """Speed of each at the start, relative to the body (rad/s); left out, 0."""
     friction: Friction | None = None
@@ -2521,6 +2469,51 @@ class Zvdd(Part):
 
     modes: Sequence[int] | None = None
     """Indices of the modes."""
+
+
+Actuator: TypeAlias = Ideal | Hold | Thrusters | Wheel | Wheels | Jets | Magnetorquers
+"""The kinds of actuator. Those of one angle act on a body with three axes about each."""
+Adaptation: TypeAlias = RandomSearch
+"""The kinds of adaptation."""
+Body: TypeAlias = Planar | Matrices | Panels | Spatial
+"""The kinds of body."""
+Command: TypeAlias = SineCommand | Cosine | BangBang | MinimumEnergy | MinimumPeak | Polynomial
+"""The kinds of command."""
+Distribution: TypeAlias = Uniform | LogUniform | Normal | RelativeUniform | RelativeNormal | Choice
+"""The distribution of one key of the scenario."""
+Drift: TypeAlias = Common | Each
+"""How the frequencies of a body drift."""
+Estimator: TypeAlias = (
+    Envelope
+    | Truth
+    | Kalman
+    | ExtendedKalman
+    | UnscentedKalman
+    | AttitudeEstimator
+    | RigidRate
+    | Adaptive
+)
+"""The kinds of estimator."""
+Extra: TypeAlias = Gain | Schedule
+"""The extra loop over the dominant mode: its gain is k_d of the papers."""
+Failure: TypeAlias = Dead | Scaled | StuckFailure | Added
+"""A failure of an actuator."""
+Fault: TypeAlias = StuckFault | Silent
+"""A failure of the sensor, gyro included."""
+Filter: TypeAlias = Notch | LowPass | Lead | Biquad
+"""The kinds of filter."""
+FilterForm: TypeAlias = Complementary
+"""How gains are found."""
+Law: TypeAlias = Relay | Pd | AttitudeLaw | StateSpace | Open | PhasePlane | PerAxis | BDot | Stages
+"""The kinds of law."""
+ObserverForm: TypeAlias = Gradient | Recurrence
+"""The forms of an observer."""
+Profile: TypeAlias = Ramp | Sinusoid | Table
+"""A profile of the ratio over time."""
+Sensor: TypeAlias = Sampled | Gyro | StarTracker | Magnetometer | SunSensor | Tachometer | Accelerometer
+"""The kinds of sensor."""
+Shaper: TypeAlias = Zv | Zvd | Zvdd | Ei
+"""The kinds of shaper."""
 
 
 class Keys(TypedDict, total=False):
@@ -2578,8 +2571,8 @@ class Keys(TypedDict, total=False):
     """What a full log holds."""
 
     target: Sequence[AttitudeTarget]
-    """Attitudes that a body with three axes shall turn to, in the order of their times; before the first
-    it is the inertial one. A law `phase_plane` may have them of its own.
+    """Attitudes that a body with three axes shall turn to, in the order of their times; before the first it
+    is the inertial one. A law `phase_plane` may have them of its own.
     """
 
     reference: Reference
