@@ -45,8 +45,12 @@ def on_page_content(content: str, **_: Any) -> str:
         display = "block" if match[2] == "[" else "inline"
         text = html.unescape(match[3].strip())
         # What the converter does not know, or sets too narrowly.
-        text = text.replace(r"\begin{aligned}", r"\begin{array}{rl}").replace(r"\end{aligned}", r"\end{array}")
-        text = text.replace(r"\begin{bmatrix}", r"{\begin{bmatrix}").replace(r"\end{bmatrix}", r"\end{bmatrix}}")
+        text = text.replace(r"\begin{aligned}", r"\begin{array}{rl}").replace(
+            r"\end{aligned}", r"\end{array}"
+        )
+        text = text.replace(r"\begin{bmatrix}", r"{\begin{bmatrix}").replace(
+            r"\end{bmatrix}", r"\end{bmatrix}}"
+        )
         return convert(text, display=display)
 
     return MATH.sub(formula, content)

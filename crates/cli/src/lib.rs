@@ -9,6 +9,7 @@ mod drawing;
 mod examples;
 mod export;
 mod failure;
+pub mod figures;
 mod files;
 mod grid;
 mod help;

@@ -14,8 +14,13 @@ use crate::stop::Stop;
 /// The log of a scenario's own run in this detail. `path` is what errors call it.
 pub fn logged(scenario: Scenario, path: &Path, detail: Detail) -> Result<Log, Failure> {
     let run = simulate::itself(&Campaign::new(scenario, &path.to_string_lossy(), None)?);
+    of_run(&run, path, detail)
+}
+
+/// The log of a run in this detail.
+pub fn of_run(run: &Run, path: &Path, detail: Detail) -> Result<Log, Failure> {
     let failed = |source| Failure::Run { name: run.scenario.name.clone(), source };
-    Ok(Log::read(path, bytes(&run, detail).map_err(failed)?)?)
+    Ok(Log::read(path, bytes(run, detail).map_err(failed)?)?)
 }
 
 fn bytes(run: &Run, detail: Detail) -> Result<Vec<u8>, SimulationError> {

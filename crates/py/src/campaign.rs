@@ -61,7 +61,7 @@ fn array(py: Python<'_>, column: Column) -> PyResult<Bound<'_, PyAny>> {
 
 /// What makes the rows of a campaign.
 #[pyclass(frozen, module = "flexsc._native")]
-pub struct Work(Arc<Whole>);
+pub struct Work(pub Arc<Whole>);
 
 impl Work {
     /// The work, if a file can describe it.

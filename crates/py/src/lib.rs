@@ -5,12 +5,15 @@
     reason = "Python's arguments come, and errors are mapped, as values"
 )]
 
+mod arrow;
 mod aside;
 mod campaign;
 mod columns;
 mod copies;
 mod damping;
 mod error;
+mod figures;
+mod instants;
 mod linear;
 mod parts;
 mod sampled;
@@ -45,6 +48,8 @@ use error::{allowed, log_error, no_file, scenario_error, simulation_error};
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use super::arrow::{arrow_schema, arrow_stream};
+    #[pymodule_export]
     use super::campaign::{Directory, Work};
     #[pymodule_export]
     use super::copies::Simulators;
@@ -54,6 +59,12 @@ mod _native {
     };
     #[pymodule_export]
     use super::error::{LogError, ScenarioError, SimulationError};
+    #[pymodule_export]
+    use super::figures::{
+        Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure,
+    };
+    #[pymodule_export]
+    use super::instants::sample;
     #[pymodule_export]
     use super::linear::{exponential, linear_json};
     #[pymodule_export]
@@ -67,8 +78,8 @@ mod _native {
     use super::stepping::Simulator;
     #[pymodule_export]
     use super::{
-        Log, Scenario, examples, main, metrics_json, plan_json, plan_torque, rigid_cycles_json, rivals_json,
-        schema_json, simulate, to_mcap, topics_json, write,
+        Log, Scenario, examples, main, meanings_json, metrics_json, plan_json, plan_torque,
+        rigid_cycles_json, rivals_json, schema_json, simulate, to_mcap, topics_json, write,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -373,6 +384,15 @@ fn schema_json() -> String {
 fn metrics_json() -> String {
     let meaning = |m: &metrics::Meaning| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc}));
     serde_json::Value::Object(metrics::ALL.iter().map(meaning).collect()).to_string()
+}
+
+/// What the metrics of a scenario mean: of a body without inertia some have other units.
+#[pyfunction]
+fn meanings_json(scenario: &Scenario) -> String {
+    let names = metrics::ALL.iter().map(|meaning| meaning.name);
+    let meanings = names.filter_map(|name| metrics::meaning(name, Some(&scenario.inner)));
+    let told = meanings.map(|m| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc})));
+    serde_json::Value::Object(told.collect()).to_string()
 }
 
 #[pyfunction]

@@ -33,13 +33,13 @@ mod window;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-#[cfg(feature = "papers")]
 use clap::ValueEnum;
 use flexsc_core::record::Log;
 use flexsc_figure::{Axis, Figure, Layer, Shape, Style, colour, round_to_nice};
 
 use crate::drawing::{Format, Target};
 use crate::failure::Failure;
+pub use campaign::{of_columns, of_directory};
 use motion::Motion;
 use spatial::Cycles;
 use story::Story;
@@ -139,12 +139,16 @@ impl Args {
 ///
 /// # Errors
 /// A figure that the log does not have, and a run that cannot be repeated.
-#[cfg(feature = "papers")]
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> {
     let what = What::from_str(name, false).map_err(Failure::Arguments)?;
     let drawn = drawn(log, path, &[what])?.into_iter().next();
     let nothing = || Failure::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
+}
+
+/// The figures that a log has.
+pub fn there(log: &Log, path: &Path) -> Result<Vec<What>, Failure> {
+    Ok(What::all_in(&Story::read(log, path)?))
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {

@@ -11,6 +11,7 @@ mod drive;
 mod error;
 mod events;
 mod failing;
+mod instants;
 mod journal;
 mod own;
 mod plant;

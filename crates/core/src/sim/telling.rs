@@ -28,7 +28,8 @@ pub struct Telling {
     pub scene: Option<Box<Scene>>,
     /// See `scene`.
     pub next_frames: Option<Instant>,
-    log_period: Span,
+    /// From one row of a dense record to the next.
+    pub log_period: Span,
     next_dense: Option<Instant>,
     next_law: Instant,
     /// The cycles of a body with three axes.
@@ -223,13 +224,13 @@ impl Simulation {
         Ok(axes.map_or(Ok(()), |axes| record.record(now, Sample::Estimates(&Estimates { axes })))?)
     }
 
-    fn law_row(&self) -> record::Law {
+    pub(super) fn law_row(&self) -> record::Law {
         let law = self.laws.about(0);
         record::Law { state: law.state(), torque_nm: self.drive.actuator.asked(0), gain: law.tuned() }
     }
 
     /// The motion of a body with one angle now, for a dense record.
-    fn tell_motion(&self, record: &mut impl Record) -> Result<(), RecordError> {
+    pub(super) fn tell_motion(&self, record: &mut impl Record) -> Result<(), RecordError> {
         let (Plant::Planar(plant), now) = (&self.plant, self.now) else { return Ok(()) };
         let sampled = self.sensing.next.is_some();
         let measured = self.sensing.reading.map_or(0.0, |_| self.sensing.measured[0][0]);
@@ -349,7 +350,7 @@ impl Simulation {
         Ok(())
     }
 
-    fn spatial_motion(&self, plant: &SpatialPlant, truth: &Truth) -> SpatialMotion {
+    pub(super) fn spatial_motion(&self, plant: &SpatialPlant, truth: &Truth) -> SpatialMotion {
         let (rigid, elastic) = plant.rates();
         let axis = |axis: usize| AxisRate {
             rate_rad_s: rigid[axis] + elastic[axis],

@@ -25,8 +25,10 @@ from flexsc._damping import identify, observer_margin, observer_region, persiste
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
-from flexsc._scenario import Log, Result, Scenario
+from flexsc._scenario import Log, Result, Samples, Scenario
 from flexsc._simulator import Quantities, Simulator, Simulators, Snapshot
+from flexsc._topic import Topic
+from flexsc._units import Metrics
 from flexsc.parts import Actuator, Adaptation, Effort, Estimator, Hold, Law, Reading, Sensor
 from flexsc.structure import (
     StateSpace,
@@ -47,10 +49,12 @@ __all__ = [
     "Law",
     "Log",
     "LogError",
+    "Metrics",
     "Plan",
     "Quantities",
     "Reading",
     "Result",
+    "Samples",
     "Scenario",
     "ScenarioError",
     "Sensor",
@@ -61,6 +65,7 @@ __all__ = [
     "StateSpace",
     "Structure",
     "Table",
+    "Topic",
     "__version__",
     "appendage_from_nastran",
     "campaign",

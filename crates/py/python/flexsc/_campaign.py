@@ -8,6 +8,7 @@ from math import prod
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal
 
+from flexsc import _arrow, _html, _units
 from flexsc import _native as engine
 from flexsc._scenario import Scenario, run_number
 from flexsc._values import objects
@@ -43,6 +44,7 @@ class Table:
         self._columns: dict[str, npt.NDArray[Any]] = {}
         self._statistics: dict[str, dict[str, Any]] | None = None
         self._kept: object = None
+        self._work = work
 
     @property
     def columns(self) -> dict[str, npt.NDArray[Any]]:
@@ -81,6 +83,48 @@ class Table:
                 for name, *numbers, quantiles in self._summaries()
             }
         return self._statistics
+
+    def unit(self, column: str) -> str:
+        """The unit of a metric; empty for a count, a ratio, a word, and for keys, whose own text tells it.
+
+        Raises:
+            KeyError: There is no such column.
+        """
+        if column not in self._names:
+            raise KeyError(f"no column {column!r}; there are {', '.join(self._names)}")
+        return self._told()(column)
+
+    def _told(self) -> Callable[[str], str]:
+        told = _units.meanings(self.scenario)
+        return lambda column: told.get(column, {"unit": ""})["unit"]
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Its rows, as Arrow's PyCapsule interface has them: null where a run has no value."""
+        return _arrow.stream(self.columns.items(), self._told(), {"scenario": self.scenario.name})
+
+    def __arrow_c_schema__(self) -> object:
+        """The schema of its rows, as Arrow's PyCapsule interface has it."""
+        return _arrow.schema(self.columns.items(), self._told(), {"scenario": self.scenario.name})
+
+    def _figures(self, kind: str | None, metrics: Sequence[str]) -> list[tuple[str, engine.Figure]]:
+        """The engine's figures of the table, each after its name, as `flexsc.plot` draws them."""
+        columns = {
+            name: values.tolist() if values.dtype.kind == "U" else values
+            for name, values in self.columns.items()
+            if values.dtype.kind == "U" or values.dtype in ("float64", "int64")
+        }
+        return engine.campaign_figures(self._work, columns, kind, list(metrics))
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (name, told["unit"], told["mean"], told["sd"], told["quantiles"][0.05], told["quantiles"][0.95])
+            for name, told in self.statistics().items()
+        ]
+        head = ("metric", "unit", "mean", "sd", "5 %", "95 %")
+        drawn = self._figures(None, ()) if len(self) > 1 else []
+        figure = _html.picture(drawn[0][1]) if drawn else ""
+        statistics = _html.folded(f"{len(rows)} metrics", _html.table(head, rows))
+        return _html.heading(self.scenario.name, f"{len(self)} runs") + figure + statistics
 
     def __repr__(self) -> str:
         return f"<flexsc.Table of {self.scenario.name}: {len(self)} runs>"

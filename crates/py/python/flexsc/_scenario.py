@@ -1,23 +1,29 @@
-"""Scenarios, their results, and logs: topics as dictionaries of columns."""
+"""Scenarios, their results, and logs: topics as mappings of columns."""
 
 from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal, overload
 
+from flexsc import _html
 from flexsc import _native as engine
 from flexsc._plan import Plan
+from flexsc._topic import Topic
+from flexsc._units import Metrics
 from flexsc._values import arrays, document, plain, toml
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
+    from typing_extensions import Unpack
 
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor
+    from flexsc.scenario import Keys
 
 
 class Scenario:
@@ -27,19 +33,31 @@ class Scenario:
         values: The keys of a scenario file, as nested dictionaries. Numbers may be numpy's, lists its arrays;
             the `epoch` is a `datetime`.
         name: The scenario's name if `values` has none, and in errors.
+        keys: Keys beside those of `values`, or in place of them. Parts may be those of `flexsc.scenario`,
+            whose keys an editor completes.
 
     Raises:
         ScenarioError: A key is unknown, missing, or has a value that is not accepted.
+
+    >>> import flexsc
+    >>> from flexsc.scenario import Mode, Open, Planar
+    >>> body = Planar(modes=[Mode(frequency=0.44, gain=0.02, displacement=1e-5)])
+    >>> flexsc.Scenario(name="ringing", duration=100.0, body=body, law=Open())
+    <flexsc.Scenario ringing: 100 s, 1 modes, seed 0>
     """
 
     __slots__ = ("_native",)
     _native: engine.Scenario
 
-    def __init__(self, values: Mapping[str, object], name: str = "scenario") -> None:
-        if not isinstance(values, Mapping):
+    def __init__(
+        self, values: Mapping[str, object] | None = None, name: str = "scenario", **keys: Unpack[Keys]
+    ) -> None:
+        if values is not None and not isinstance(values, Mapping):
             hint = "Scenario.load reads a file, Scenario.parse a text"
             raise TypeError(f"a scenario is made of a dict, not of a {type(values).__name__}; {hint}")
-        self._native = engine.Scenario.from_values(document(name, {"name": name, **values}), name)
+        given = {key: value for key, value in keys.items() if value is not None}
+        text = document(name, {"name": name, **(values or {}), **given})
+        self._native = engine.Scenario.from_values(text, name)
 
     @classmethod
     def _of(cls, native: engine.Scenario) -> Scenario:
@@ -249,19 +267,30 @@ class Scenario:
             SimulationError: The state is no longer finite, or the law switches without end.
             ValueError: The estimate is above these limits, and `yes` is not given.
         """
-        run = run_number(run)
+        run, began = run_number(run), time.perf_counter()
         metrics, topics = engine.simulate(self._native, run, log, yes)
-        return Result(self, run, log, metrics, {name: arrays(columns) for name, columns in topics.items()})
+        took = time.perf_counter() - began
+        final = {name: arrays(columns) for name, columns in topics.items()}
+        return Result(self, run, log, metrics, final, took)
 
     def __eq__(self, other: object) -> bool:
         return self._native == other._native if isinstance(other, Scenario) else NotImplemented
 
-    # Two scenarios are equal with zeros of either sign, but differ as texts: there is no cheap hash.
-    __hash__ = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        # Two scenarios are equal with zeros of either sign, but differ as texts.
+        return hash(self.to_toml().replace("-0.0", "0.0"))
 
     def __repr__(self) -> str:
         modes = self._native.mode_count
         return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes} modes, seed {self.seed}>"
+
+    def _repr_html_(self) -> str:
+        values = self.to_dict()
+        about = f"{self.duration:g} s, {self._native.mode_count} modes, seed {self.seed}"
+        figure = engine.modes_figure(self._native)
+        text = _html.folded("all keys", _html.pre(self.to_toml()))
+        shown = _html.picture(figure) if figure else ""
+        return _html.heading(self.name, about) + _html.line(values.get("about", "")) + shown + text
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = self._native.parts()
@@ -282,7 +311,7 @@ class _Topics:
         """Names of the topics, without the slash that they have in a log file."""
         raise NotImplementedError
 
-    def _columns(self, topic: str) -> dict[str, npt.NDArray[Any]]:
+    def _topic(self, name: str) -> Topic:
         raise NotImplementedError
 
     def __contains__(self, topic: object) -> bool:
@@ -291,8 +320,8 @@ class _Topics:
     def __iter__(self) -> Iterator[str]:
         return iter(self.topics)
 
-    def __getitem__(self, topic: str) -> dict[str, npt.NDArray[Any]]:
-        """The columns of a topic, such as `command`.
+    def __getitem__(self, topic: str) -> Topic:
+        """The columns of a topic, such as `command`, as a mapping that other libraries read through Arrow.
 
         Every column has shape (rows,): numbers as float64, counts as int64, labels such as `state` as str.
         The parts of each row, such as its modes, are columns of shape (rows, modes), such as
@@ -303,18 +332,52 @@ class _Topics:
         """
         if topic not in self:
             raise KeyError(f"no topic {topic!r}; there are {', '.join(self.topics) or 'none'}")
-        return self._columns(topic.removeprefix("/"))
+        return self._topic(topic.removeprefix("/"))
+
+
+class Samples(_Topics):
+    """The motion of a run at times of one's own choice: topics as columns, a row for each time."""
+
+    times: npt.NDArray[np.float64]
+    """The times (s), of shape (rows,)."""
+
+    def __init__(self, times: npt.NDArray[np.float64], topics: dict[str, Topic]) -> None:
+        self.times = times
+        self._topics = topics
+
+    @property
+    def topics(self) -> list[str]:
+        """Names of the topics."""
+        return list(self._topics)
+
+    def _topic(self, name: str) -> Topic:
+        return self._topics[name]
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __repr__(self) -> str:
+        return f"<flexsc.Samples at {len(self)} times: {', '.join(self.topics)}>"
 
 
 class Result(_Topics):
-    """What a run came to: its metrics, and its topics as columns."""
+    """What a run came to: its metrics, and its topics as columns.
+
+    >>> import flexsc
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate(log="full")
+    >>> run["attitude"]["angle_rad"].shape == run["attitude"]["time_s"].shape
+    True
+    >>> round(run.at(12.5)["attitude"]["angle_rad"], 9)
+    0.000472441
+    """
 
     scenario: Scenario
     """What was simulated."""
     run: int
     """The number of the run."""
-    metrics: dict[str, Any]
-    """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is none."""
+    metrics: Metrics
+    """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is none.
+    `metrics.unit(name)` tells their units."""
 
     def __init__(
         self,
@@ -323,20 +386,90 @@ class Result(_Topics):
         log: str,
         metrics: dict[str, Any],
         topics: dict[str, dict[str, npt.NDArray[Any]]],
+        took: float,
     ) -> None:
         self.scenario = scenario
         self.run = run
-        self.metrics = metrics
+        self.metrics = Metrics(metrics, scenario)
         self._log = log
-        self._topics = topics
+        self._topics = self._named(topics)
+        self._took = took
+        self._drawn: engine.Log | None = None
+
+    def _named(self, topics: dict[str, dict[str, npt.NDArray[Any]]]) -> dict[str, Topic]:
+        about = {"scenario": self.scenario.name, "seed": str(self.scenario.seed), "run": str(self.run)}
+        return {name: Topic(name, columns, self.scenario, about) for name, columns in topics.items()}
 
     @property
     def topics(self) -> list[str]:
         """Names of the topics."""
         return list(self._topics)
 
-    def _columns(self, topic: str) -> dict[str, npt.NDArray[Any]]:
-        return self._topics[topic]
+    def _topic(self, name: str) -> Topic:
+        return self._topics[name]
+
+    def sample(self, times: npt.ArrayLike) -> Samples:
+        """The motion at times (s) of one's own choice, exactly, whatever the log of the run holds.
+
+        The run is simulated again, up to the last time, and its exact motion is read at each: nothing is
+        interpolated. At the time of a row of a log with all detail, such as a switching, the values are those
+        of the row to the bit.
+
+        Args:
+            times: Of shape (times,), in any order, from 0 to the duration.
+
+        Returns:
+            The topics of the motion, of one angle such as `attitude` and `law`, of three axes such as
+            `pointing`, each with a row for each time, in the order of `times`.
+
+        Raises:
+            ValueError: A time is not within the run.
+        """
+        import numpy as np
+
+        asked = np.asarray(times, dtype=np.float64)
+        if asked.ndim != 1:
+            raise ValueError(f"times must be of shape (times,), got {asked.shape}")
+        duration = self.scenario.duration
+        within = (asked >= 0.0) & (asked <= duration)
+        if not within.all():
+            wrong = asked[~within][0].item()
+            raise ValueError(f"times must be from 0 to the duration, {duration:g} s, got {wrong:g}")
+        order = np.argsort(asked, kind="stable")
+        back = np.empty_like(order)
+        back[order] = np.arange(len(order))
+        topics = engine.sample(self.scenario._native, self.run, asked[order].tolist())
+        seen = {
+            name: {column: values[back] for column, values in arrays(columns).items()}
+            for name, columns in topics.items()
+        }
+        for columns in seen.values():
+            columns["time_s"] = asked.copy()
+        return Samples(asked.copy(), self._named(seen))
+
+    def at(self, time: float) -> dict[str, dict[str, Any]]:
+        """The motion at a time (s), exactly: the row of each topic that `sample` has, as plain numbers.
+
+        The parts of a row, such as its modes, are arrays of shape (parts,). `sample` takes many times.
+
+        Raises:
+            ValueError: The time is not within the run.
+        """
+        seen = self.sample([time])
+
+        def plain_cell(values: npt.NDArray[Any]) -> Any:
+            return values[0].item() if values.ndim == 1 and values.dtype != object else values[0]
+
+        return {name: {c: plain_cell(v) for c, v in seen[name].items()} for name in seen}
+
+    def _native_log(self) -> engine.Log:
+        """The log of the run with its events, which figures are drawn from."""
+        if self._drawn is None:
+            self._drawn = engine.log_of(self.scenario._native, self.run)
+        return self._drawn
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_drawn": None}
 
     def to_mcap(
         self, path: str | os.PathLike[str], log: Literal["events", "full", "scene"] | None = None
@@ -356,6 +489,15 @@ class Result(_Topics):
         topics = ", ".join(self.topics) or "metrics only"
         return f"<flexsc.Result of {self.scenario.name}, run {self.run}: {topics}>"
 
+    def _repr_html_(self) -> str:
+        about = f"run {self.run}, {self.scenario.duration:g} s, seed {self.scenario.seed}"
+        rows = [(name, value, self.metrics.unit(name)) for name, value in self.metrics.items()]
+        metrics = _html.folded(f"{len(rows)} metrics", _html.table(("metric", "value", "unit"), rows))
+        topics = [(name, self[name].rows, ", ".join(self[name])) for name in self]
+        held = _html.folded(f"{len(topics)} topics", _html.table(("topic", "rows", "columns"), topics))
+        figure = _html.of_log(self._native_log()) if self._took < _html.SOON_S else ""
+        return _html.heading(self.scenario.name, about) + figure + metrics + held
+
 
 class Log(_Topics):
     """A log file in memory."""
@@ -363,7 +505,7 @@ class Log(_Topics):
     def __init__(self, native: engine.Log) -> None:
         self._native = native
         self._names = {name.removeprefix("/"): name for name in native.topics}
-        self._read: dict[str, dict[str, npt.NDArray[Any]]] = {}
+        self._read: dict[str, Topic] = {}
 
     @property
     def topics(self) -> list[str]:
@@ -385,10 +527,18 @@ class Log(_Topics):
         text = self._native.scenario
         return None if text is None else Scenario.parse(text, self.metadata.get("scenario", "scenario"))
 
-    def _columns(self, topic: str) -> dict[str, npt.NDArray[Any]]:
-        if topic not in self._read:
-            self._read[topic] = arrays(self._native.columns(self._names[topic]))
-        return self._read[topic]
+    def _topic(self, name: str) -> Topic:
+        if name not in self._read:
+            columns = arrays(self._native.columns(self._names[name]))
+            about = {key: text for key in ("scenario", "seed", "run") if (text := self.metadata.get(key))}
+            self._read[name] = Topic(name, columns, self._known(), about)
+        return self._read[name]
+
+    def _known(self) -> Scenario | None:
+        try:
+            return self.scenario
+        except engine.ScenarioError:
+            return None
 
     def __repr__(self) -> str:
         return f"<flexsc.Log: {', '.join(self.topics)}>"

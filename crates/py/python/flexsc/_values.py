@@ -9,6 +9,7 @@ from datetime import date, datetime, time
 from typing import TYPE_CHECKING, Any
 
 from flexsc._native import ScenarioError
+from flexsc._part import Part
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -40,6 +41,8 @@ def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
         return _quoted(value, refused)
     if isinstance(value, (date, time)):
         return value.isoformat()
+    if isinstance(value, Part):
+        return toml(origin, key, value.to_dict(), depth + 1)
     if isinstance(value, Mapping):
         pairs = []
         for name, inner in value.items():

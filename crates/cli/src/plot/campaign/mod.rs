@@ -13,7 +13,8 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-use flexsc_figure::Figure;
+use flexsc_core::campaign::{Column, Work};
+use flexsc_figure::{Figure, Named};
 
 use super::Args;
 use super::what::{What, chosen};
@@ -55,7 +56,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     })?;
     let mut figures = Vec::new();
     for runs in &tables {
-        let metrics = metrics(args, runs)?;
+        let metrics = metrics(&args.metric, &args.path, runs)?;
         let natural = natural(runs);
         let wanted = |what: &&What| !args.what.is_empty() || natural.contains(what);
         for what in drawable(runs).iter().filter(|what| all.contains(what)).filter(wanted) {
@@ -83,6 +84,52 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     target.save(&figures, args.style()?, args.json)
+}
+
+/// The figures of a campaign whose columns are at hand: of one kind, or the natural ones.
+pub fn of_columns(
+    work: &Work,
+    column: &dyn Fn(&str) -> Option<Column>,
+    kind: Option<What>,
+    metric: &[String],
+) -> Result<Vec<Named>, Failure> {
+    let path = Path::new(&work.campaign.scenario().name);
+    let read = |names: &[&str]| Ok(names.iter().map(|name| column(name)).collect());
+    of_runs(&parts::of(work, read, path, metric)?, kind.as_slice(), metric, path)
+}
+
+/// The figures of the campaigns in a directory, and of its logs.
+pub fn of_directory(directory: &Path, kinds: &[What], metric: &[String]) -> Result<Vec<Named>, Failure> {
+    let files = files(directory)?;
+    let mut tables = table::read(directory, &files)?;
+    tables.extend(parts::read(directory, &files, metric)?);
+    let mut figures = Vec::new();
+    if kinds.is_empty() || kinds.iter().any(|kind| *kind != What::Fan) {
+        for runs in &tables {
+            figures.extend(of_runs(runs, kinds, metric, directory)?);
+        }
+    }
+    if kinds.is_empty() || kinds.contains(&What::Fan) {
+        for (name, paths) in fan::logs(directory, &files, false)? {
+            figures.push((format!("{name}-fan"), fan::figure(&name, &paths)?));
+        }
+    }
+    Ok(figures)
+}
+
+fn of_runs(runs: &Runs, kinds: &[What], metric: &[String], path: &Path) -> Result<Vec<Named>, Failure> {
+    let (metrics, natural, all) = (metrics(metric, path, runs)?, natural(runs), drawable(runs));
+    let kinds = if kinds.is_empty() { &natural } else { kinds };
+    if let Some(missing) = kinds.iter().find(|kind| !all.contains(kind)) {
+        let names: Vec<_> = all.iter().map(|what| what.name()).collect();
+        return Err(Failure::Arguments(format!(
+            "{}: there is no figure `{}` of it\n\nhint: it has {}",
+            path.display(),
+            missing.name(),
+            names.join(", ")
+        )));
+    }
+    Ok(all.iter().filter(|what| kinds.contains(what)).flat_map(|what| drawn(*what, runs, &metrics)).collect())
 }
 
 /// The names of the files in a directory, sorted.
@@ -120,9 +167,9 @@ fn natural(runs: &Runs) -> Vec<What> {
 }
 
 /// The metrics that are named, or else the main ones that vary.
-fn metrics<'a>(args: &Args, runs: &'a Runs) -> Result<Vec<&'a Metric>, Failure> {
+fn metrics<'a>(asked: &[String], path: &Path, runs: &'a Runs) -> Result<Vec<&'a Metric>, Failure> {
     let named = |name: &str| runs.metrics.iter().find(|metric| metric.meaning.name == name);
-    if args.metric.is_empty() {
+    if asked.is_empty() {
         // What only repeats a key is left out.
         let tells =
             |metric: &&Metric| metric.varies() && runs.keys.iter().all(|key| key.values != metric.values);
@@ -134,13 +181,13 @@ fn metrics<'a>(args: &Args, runs: &'a Runs) -> Result<Vec<&'a Metric>, Failure> 
     let metric = |name: &String| {
         named(name).ok_or_else(|| {
             let names: Vec<_> = runs.metrics.iter().map(|metric| metric.meaning.name).collect();
-            let (path, names) = (args.path.display(), names.join(", "));
+            let (path, names) = (path.display(), names.join(", "));
             Failure::Arguments(format!(
                 "{path}: there is no metric `{name}` that is a number\n\nhint: it has {names}"
             ))
         })
     };
-    args.metric.iter().map(metric).collect()
+    asked.iter().map(metric).collect()
 }
 
 /// The figures of a kind, with their names.

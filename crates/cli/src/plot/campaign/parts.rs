@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flexsc_core::campaign::{Column, Directory, ERROR, Field, Kind, RUN};
+use flexsc_core::campaign::{Column, Directory, ERROR, Field, Kind, RUN, Work};
 use flexsc_core::metrics::{self, goal};
 
 use super::table::{Key, Metric, Runs, Source, Texts};
@@ -22,9 +22,17 @@ pub fn read(directory: &Path, files: &[String], named: &[String]) -> Result<Vec<
 
 fn runs(path: &Path, named: &[String]) -> Result<Runs, Failure> {
     let directory = Directory::open(path).map_err(parts::failure)?;
-    let work = directory.work();
+    of(directory.work(), |names| directory.columns(names).map_err(parts::failure), path, named)
+}
+
+/// The runs of a campaign, whose columns are read by their names; `path` is where they are.
+pub fn of(
+    work: &Work,
+    read: impl Fn(&[&str]) -> Result<Vec<Option<Column>>, Failure>,
+    path: &Path,
+    named: &[String],
+) -> Result<Runs, Failure> {
     let (campaign, scenario) = (&work.campaign, work.campaign.scenario());
-    let read = |names: &[&str]| directory.columns(names).map_err(parts::failure);
     let mut about = read(&[RUN, ERROR])?.into_iter();
     let (Some(Some(Column::Integers(numbers))), Some(Some(Column::Words(errors)))) =
         (about.next(), about.next())

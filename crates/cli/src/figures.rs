@@ -1,0 +1,82 @@
+//! The figures of `flexsc plot` as data, for who draws them elsewhere.
+
+use std::path::Path;
+
+use clap::ValueEnum;
+use flexsc_core::campaign::{Column, Run, Work};
+use flexsc_core::record::{Detail, Log};
+use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Shape, colour};
+
+use crate::failure::Failure;
+use crate::logged;
+use crate::plot::{self, What};
+
+/// The log of a run in memory, with its events.
+///
+/// # Errors
+/// A run that fails.
+pub fn log_of(run: &Run) -> Result<Log, String> {
+    logged::of_run(run, Path::new(&run.scenario.name), Detail::Events).map_err(text)
+}
+
+/// The names of the figures that a log has.
+///
+/// # Errors
+/// A log that is not accepted.
+pub fn names(log: &Log, path: &Path) -> Result<Vec<String>, String> {
+    let there = plot::there(log, path).map_err(text)?;
+    Ok(there.into_iter().map(What::name).collect())
+}
+
+/// A figure of a log by its name.
+///
+/// # Errors
+/// A figure that the log does not have, and a run that cannot be repeated.
+pub fn of_log(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
+    plot::figure_of(log, path, name).map_err(text)
+}
+
+/// The figures of a campaign whose columns are at hand, each after its name: of the kind that is named, else the natural
+/// ones; of the metrics that are named, else of the main ones that vary.
+///
+/// # Errors
+/// A figure or a metric that the campaign does not have.
+pub fn of_columns(
+    work: &Work,
+    column: &dyn Fn(&str) -> Option<Column>,
+    kind: Option<&str>,
+    metrics: &[String],
+) -> Result<Vec<Named>, String> {
+    let kind = kind.map(|kind| What::from_str(kind, false)).transpose()?;
+    plot::of_columns(work, column, kind, metrics).map_err(text)
+}
+
+/// The figures of the campaigns in a directory, each after its name, as [`of_columns`] has them, and a `fan` of their logs.
+///
+/// # Errors
+/// A directory without a campaign, and a figure or a metric that they do not have.
+pub fn of_directory(path: &Path, kind: Option<&str>, metrics: &[String]) -> Result<Vec<Named>, String> {
+    let kinds: Vec<What> = kind.map(|kind| What::from_str(kind, false)).transpose()?.into_iter().collect();
+    plot::of_directory(path, &kinds, metrics).map_err(text)
+}
+
+/// The natural frequencies of a scenario with what moves them, which tells it from others at a glance; none without modes.
+pub fn modes(frequencies: &[f64], weights: &[f64], (name, unit): (&str, &'static str)) -> Option<Figure> {
+    if frequencies.is_empty() {
+        return None;
+    }
+    let x = Axis::decades("natural frequency", "rad/s", frequencies.iter().copied());
+    let y = Axis::from_zero(name, unit, weights.iter().copied());
+    let points: Vec<_> = frequencies.iter().copied().zip(weights.iter().copied()).collect();
+    let stems = points.iter().flat_map(|(w, height)| [(*w, 0.0), (*w, *height), (f64::NAN, f64::NAN)]);
+    let layers = vec![
+        Layer::new("", colour::GREY, Shape::Line(1.0), stems.collect()),
+        Layer::new("", colour::BLUE, Shape::Disc, points),
+    ];
+    let title = format!("{} elastic modes", frequencies.len());
+    Some(Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 160 })
+}
+
+fn text(failure: Failure) -> String {
+    failure.to_string()
+}

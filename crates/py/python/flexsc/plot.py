@@ -1,0 +1,280 @@
+"""Every figure of `flexsc plot`, drawn with Matplotlib on axes of one's own (`pip install flexsc[plot]`).
+
+    >>> import matplotlib; matplotlib.use("agg")
+    >>> import flexsc, flexsc.plot
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 3000.0).simulate()
+    >>> flexsc.plot.figures(run)
+    ['phase-plane', 'torque', 'angle', 'envelope', 'modes']
+    >>> axes = flexsc.plot.draw(run, "angle")
+    >>> axes.get_ylabel()
+    'angle x, µrad'
+    >>> figure = flexsc.plot.figure(run, "envelope")
+    >>> len(figure.axes)
+    2
+
+What is drawn, its colours, names and units are the engine's own: both ways a figure looks the same. Axes
+hold values in SI units, so that one's own data join them as they are; only the numbers at the ticks are in
+the unit of the label.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from flexsc import _native as engine
+from flexsc._campaign import Table
+from flexsc._scenario import Log, Result
+
+if find_spec("matplotlib") is None:
+    raise ImportError("flexsc.plot needs Matplotlib: pip install 'flexsc[plot]'")
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+__all__ = ["Source", "draw", "figure", "figures"]
+
+Source: TypeAlias = "Result | Log | Table | str | os.PathLike[str]"
+"""A run, a log, a campaign or a sweep, or the path of a log file or of a campaign's directory."""
+
+# Pixels of the command's figures in inches, and in points.
+_INCH = 1.0 / 96.0
+_POINT = 0.75
+_WIDTH = 800
+_GRID = "#e1e1e1"
+_FRAME = "#787878"
+# Matplotlib's markers, and how wide each is in pixels.
+_MARKS = {
+    "disc": ("o", 6.4),
+    "dot": ("o", 3.2),
+    "ring": ("o", 7.6),
+    "triangle": ("^", 7.2),
+    "square": ("s", 5.8),
+    "diamond": ("D", 6.2),
+}
+
+
+def figures(source: Source, metrics: Sequence[str] = ()) -> list[str]:
+    """The names of the figures that there are, as `flexsc plot` has them.
+
+    Args:
+        source: What is drawn.
+        metrics: Of a campaign, the metrics that count; left out, the main ones that vary.
+
+    Returns:
+        Of a run and a log such as `angle`, of a campaign such as `distribution-gain_final`. The names of a
+        directory begin with that of the scenario; with logs it has a `fan`, too.
+
+    Raises:
+        ValueError: There is nothing to draw.
+        KeyError: There is no such metric.
+    """
+    log = _log(source)
+    if log is not None:
+        return engine.log_figures(log)
+    return list(_of_campaign(source, None, metrics))
+
+
+def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> Axes:
+    """Draw a panel of a figure on axes.
+
+    Args:
+        source: What is drawn.
+        name: One of `figures(source)`; of a campaign also that of another metric, such as `scatter-duty`.
+        ax: Where; left out, on a figure of its own.
+        panel: Which of the figure's panels, from the top; `figure` draws all of them.
+
+    Returns:
+        The axes, in SI units: `axes.plot(time_s, angle_rad)` adds to them.
+
+    Raises:
+        ValueError: There is no such figure or panel.
+    """
+    drawn = _figure(source, name)
+    panels = drawn.panels()
+    if not 0 <= panel < len(panels):
+        raise ValueError(f"figure {name!r} has panels 0 to {len(panels) - 1}, got {panel}")
+    if ax is None:
+        from matplotlib import pyplot
+
+        height = (drawn.panel_height + 100) * _INCH
+        _, ax = pyplot.subplots(figsize=(_WIDTH * _INCH, height), layout="constrained")
+        ax.set_title(drawn.title, fontsize=14 * _POINT, pad=24)
+    # Panels above the last leave the name of the time to it.
+    name_below = panels[-1]["x"]["label"]
+    _panel(ax, panels[panel], panels[panel]["x"]["label"] or name_below, drawn.panel_height)
+    return ax
+
+
+def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
+    """Draw a figure with all of its panels.
+
+    Args:
+        source: What is drawn.
+        name: One of `figures(source)`.
+        on: An empty figure or subfigure; left out, one of the size that the command's has.
+
+    Returns:
+        The figure; its `axes` are the panels, from the top.
+
+    Raises:
+        ValueError: There is no such figure.
+    """
+    drawn = _figure(source, name)
+    panels = drawn.panels()
+    if on is None:
+        from matplotlib import pyplot
+
+        height = 30 + sum(_height(panel, drawn.panel_height) for panel in panels)
+        on = pyplot.figure(figsize=(_WIDTH * _INCH, height * _INCH), layout="constrained")
+    on.suptitle(drawn.title, fontsize=14 * _POINT)
+    axes = on.subplots(len(panels), 1, squeeze=False)[:, 0]
+    for ax, panel in zip(axes, panels, strict=True):
+        _panel(ax, panel, panel["x"]["label"], drawn.panel_height)
+    return on
+
+
+def _height(panel: dict[str, Any], plot: int) -> int:
+    """The height of a panel with its legend, numbers and name (pixels)."""
+    return plot + 22 + 24 + (18 if panel["x"]["label"] else 0) + (30 if panel["bar"] else 0)
+
+
+def _log(source: Source) -> engine.Log | None:
+    """The log of a run, if the source is one."""
+    if isinstance(source, Result):
+        return source._native_log()
+    if isinstance(source, Log):
+        return source._native
+    if isinstance(source, Table) or Path(source).is_dir():
+        return None
+    return engine.Log.open(source)
+
+
+def _of_campaign(source: Source, kind: str | None, metrics: Sequence[str]) -> dict[str, engine.Figure]:
+    """The figures of a campaign, by names without that of the scenario if there is one only."""
+    if isinstance(source, Table):
+        drawn = source._figures(kind, metrics)
+        before = f"{source.scenario.name}-"
+        return {name.removeprefix(before): figure for name, figure in drawn}
+    assert not isinstance(source, (Result, Log))
+    drawn = engine.directory_figures(source, kind, list(metrics))
+    return dict(drawn)
+
+
+def _figure(source: Source, name: str) -> engine.Figure:
+    log = _log(source)
+    if log is not None:
+        return engine.log_figure(log, name)
+    there = _of_campaign(source, None, ())
+    if name not in there and isinstance(source, Table):
+        kind, _, metric = name.partition("-")
+        there = _of_campaign(source, kind, [metric] if metric else [])
+    if name not in there:
+        raise ValueError(f"there is no figure {name!r} of it; it has {', '.join(there)}")
+    return there[name]
+
+
+def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
+    """Draw a panel, in the command's look."""
+    _axis(ax, "x", ax.xaxis, panel["x"], 8)
+    _axis(ax, "y", ax.yaxis, panel["y"], max(2, plot // 28))
+    ax.set_xlabel(below, fontsize=12 * _POINT)
+    ax.set_ylabel(panel["y"]["label"], fontsize=12 * _POINT)
+    ax.tick_params(labelsize=11 * _POINT, length=0, pad=4)
+    ax.grid(color=_GRID, linewidth=0.6 * _POINT)
+    ax.set_axisbelow(True)
+    for spine in ax.spines.values():
+        spine.set(color=_FRAME, linewidth=0.8 * _POINT)
+    handles = [(_layer(ax, layer, order), layer["name"]) for order, layer in enumerate(panel["layers"], 2)]
+    named = [(handle, name) for handle, name in handles if name and handle is not None]
+    if named:
+        ax.legend(
+            *zip(*named, strict=True),
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.0),
+            ncols=len(named),
+            frameon=False,
+            borderaxespad=0.1,
+            fontsize=11 * _POINT,
+            handlelength=1.6,
+            columnspacing=1.4,
+        )
+    if panel["bar"]:
+        _bar(ax, *panel["bar"])
+
+
+def _axis(ax: Axes, side: str, axis: Any, told: dict[str, Any], most: int) -> None:
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    if told["logarithmic"]:
+        getattr(ax, f"set_{side}scale")("log")
+    else:
+        axis.set_major_locator(MaxNLocator(nbins=most, steps=[1, 2, 5, 10]))
+        axis.set_major_formatter(FuncFormatter(partial(_number, axis, told["factor"])))
+    getattr(ax, f"set_{side}lim")(told["low"], told["high"])
+
+
+def _number(axis: Any, factor: float, value: float, _: int | None = None) -> str:
+    """The number at a tick, in the unit of the label, with the decimals that the step between ticks needs."""
+    places = axis.get_majorticklocs()
+    step = abs(places[1] - places[0]) / factor if len(places) > 1 else 1.0
+    decimals = max(0, math.ceil(-1e-9 - math.log10(step)))
+    scaled = value / factor
+    if abs(scaled) < 1e-9 * step:
+        return "0"
+    text = f"{scaled:.{decimals}f}" if decimals <= 6 and abs(scaled) < 1e7 else f"{scaled:.1e}"
+    return text.replace("-", "\N{MINUS SIGN}")
+
+
+def _layer(ax: Axes, layer: dict[str, Any], order: int) -> Any:
+    """Draw a layer; what stands for it in the legend."""
+    x, y = layer["points"]
+    if not len(x):
+        return None
+    shape, colour, size = layer["shape"], layer["colour"], layer["size"]
+    if shape == "line":
+        return ax.plot(x, y, color=colour, linewidth=size * _POINT, zorder=order)[0]
+    if shape == "dashes":
+        return ax.plot(x, y, color=colour, linewidth=_POINT, linestyle=(0, (5, 4)), zorder=order)[0]
+    if shape == "area":
+        return _area(ax, layer, order)
+    marker, across = _MARKS[shape]
+    style: dict[str, Any] = {"markersize": across * _POINT, "markeredgewidth": 0.0, "color": colour}
+    if shape == "ring":
+        style |= {"markerfacecolor": "none", "markeredgecolor": colour, "markeredgewidth": 1.2 * _POINT}
+    return ax.plot(x, y, linestyle="none", marker=marker, zorder=order, **style)[0]
+
+
+def _area(ax: Axes, layer: dict[str, Any], order: int) -> Any:
+    """Draw the polygons between gaps, which other axes cut off at their limits."""
+    import numpy as np
+    from matplotlib.collections import PolyCollection
+    from matplotlib.patches import Patch
+
+    points = layer["points"].T
+    gaps = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    parts = [part[np.isfinite(part).all(axis=1)] for part in np.split(points, gaps)]
+    look = {"facecolor": layer["colour"], "alpha": layer["size"], "linewidth": 0.0}
+    ax.add_collection(PolyCollection([p for p in parts if len(p) > 2], zorder=order, **look), autolim=False)
+    return Patch(**look)
+
+
+def _bar(ax: Axes, name: str, colours: list[str], edges: list[str]) -> None:
+    """Draw what the colours of a map stand for, above it."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    classes = len(colours)
+    shades = ScalarMappable(BoundaryNorm(range(classes + 1), classes), ListedColormap(colours))
+    bar = ax.figure.colorbar(shades, ax=ax, location="top", shrink=0.6, aspect=40, pad=0.12)
+    bar.set_ticks(list(range(1, classes)), labels=edges)
+    bar.ax.tick_params(labelsize=10 * _POINT, length=0)
+    bar.outline.set_visible(False)
+    bar.set_label(name, fontsize=11 * _POINT)

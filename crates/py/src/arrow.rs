@@ -1,0 +1,97 @@
+//! Columns for other libraries, through Arrow's C data interface in Python's capsules.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use ::arrow_schema::ffi::FFI_ArrowSchema;
+use ::arrow_schema::{ArrowError, Field, Schema};
+use arrow_array::ffi_stream::FFI_ArrowArrayStream;
+use arrow_array::{
+    Array, ArrayRef, FixedSizeListArray, Float64Array, Int64Array, ListArray, RecordBatch,
+    RecordBatchIterator, StringArray, UInt64Array,
+};
+use arrow_buffer::{OffsetBuffer, ScalarBuffer};
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyCapsule;
+
+/// Name, unit, width of rows within each row, or else where each begins and ends, and the values.
+type Given<'py> = (String, String, Option<i32>, Option<Vec<i32>>, Bound<'py, PyAny>);
+
+fn refused(error: ArrowError) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// Numbers, where NaN stands for none, whole numbers, or texts.
+fn values(given: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
+    if let Ok(numbers) = given.extract::<PyReadonlyArray1<'_, f64>>() {
+        let numbers = numbers.as_array();
+        return Ok(if numbers.iter().any(|number| number.is_nan()) {
+            Arc::new(
+                numbers.iter().map(|number| (!number.is_nan()).then_some(*number)).collect::<Float64Array>(),
+            )
+        } else {
+            Arc::new(Float64Array::from(numbers.to_vec()))
+        });
+    }
+    if let Ok(integers) = given.extract::<PyReadonlyArray1<'_, i64>>() {
+        return Ok(Arc::new(Int64Array::from(integers.as_array().to_vec())));
+    }
+    if let Ok(counts) = given.extract::<PyReadonlyArray1<'_, u64>>() {
+        return Ok(Arc::new(UInt64Array::from(counts.as_array().to_vec())));
+    }
+    match given.extract::<Vec<String>>() {
+        Ok(texts) => Ok(Arc::new(StringArray::from(texts))),
+        Err(_) => Err(PyTypeError::new_err(format!("no column of {}", given.get_type()))),
+    }
+}
+
+fn batch(columns: Vec<Given<'_>>, about: HashMap<String, String>) -> PyResult<RecordBatch> {
+    let (mut fields, mut arrays) = (Vec::new(), Vec::<ArrayRef>::new());
+    for (name, unit, width, offsets, given) in columns {
+        let inner = values(&given)?;
+        let item = Arc::new(Field::new("item", inner.data_type().clone(), true));
+        let array: ArrayRef = match (width, offsets) {
+            (Some(width), _) => {
+                Arc::new(FixedSizeListArray::try_new(item, width, inner, None).map_err(refused)?)
+            }
+            (None, Some(offsets)) => {
+                let offsets = OffsetBuffer::new(ScalarBuffer::from(offsets));
+                Arc::new(ListArray::try_new(item, offsets, inner, None).map_err(refused)?)
+            }
+            (None, None) => inner,
+        };
+        let field = Field::new(name, array.data_type().clone(), true);
+        let told: HashMap<_, _> = (!unit.is_empty()).then(|| ("unit".to_owned(), unit)).into_iter().collect();
+        fields.push(field.with_metadata(told));
+        arrays.push(array);
+    }
+    let schema = Arc::new(Schema::new_with_metadata(fields, about));
+    RecordBatch::try_new(schema, arrays).map_err(refused)
+}
+
+/// A stream of one batch of columns; `about` is the metadata of its schema.
+#[pyfunction]
+pub fn arrow_stream<'py>(
+    py: Python<'py>,
+    columns: Vec<Given<'py>>,
+    about: HashMap<String, String>,
+) -> PyResult<Bound<'py, PyCapsule>> {
+    let batch = batch(columns, about)?;
+    let schema = batch.schema();
+    let stream = FFI_ArrowArrayStream::new(Box::new(RecordBatchIterator::new([Ok(batch)], schema)));
+    PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
+}
+
+/// The schema of such a stream.
+#[pyfunction]
+pub fn arrow_schema<'py>(
+    py: Python<'py>,
+    columns: Vec<Given<'py>>,
+    about: HashMap<String, String>,
+) -> PyResult<Bound<'py, PyCapsule>> {
+    let schema = batch(columns, about)?.schema();
+    let told = FFI_ArrowSchema::try_from(schema.as_ref()).map_err(refused)?;
+    PyCapsule::new_with_value(py, told, c"arrow_schema")
+}

@@ -1,0 +1,188 @@
+//! The figures of the command, as SVG and as what they consist of.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use flexsc_cli::figures;
+use flexsc_core::analysis::influence::Influences;
+use flexsc_core::analysis::modal::Modal;
+use flexsc_core::campaign::Column;
+use flexsc_figure::{Axis, Layer, Named, Panel, RGBColor, Scale, Shape};
+use numpy::{PyArray2, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::aside::aside;
+use super::campaign::Work;
+use super::{Log, Scenario};
+
+/// A figure.
+#[pyclass(frozen, module = "flexsc._native")]
+pub struct Figure(Arc<flexsc_figure::Figure>);
+
+fn shared(figures: Vec<Named>) -> Vec<(String, Figure)> {
+    figures.into_iter().map(|(name, figure)| (name, Figure(Arc::new(figure)))).collect()
+}
+
+fn hex(RGBColor(red, green, blue): RGBColor) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+#[pymethods]
+impl Figure {
+    #[getter]
+    fn title(&self) -> &str {
+        &self.0.title
+    }
+
+    /// Height of each panel's plot in pixels; every figure is 800 wide.
+    #[getter]
+    fn panel_height(&self) -> u32 {
+        self.0.panel_height
+    }
+
+    fn svg(&self) -> PyResult<String> {
+        self.0.svg().map_err(PyValueError::new_err)
+    }
+
+    /// The panels, from top to bottom.
+    fn panels<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        self.0.panels.iter().map(|of| panel(py, of)).collect()
+    }
+}
+
+fn panel<'py>(py: Python<'py>, panel: &Panel) -> PyResult<Bound<'py, PyDict>> {
+    let told = PyDict::new(py);
+    told.set_item("x", axis(py, &panel.x)?)?;
+    told.set_item("y", axis(py, &panel.y)?)?;
+    let layers = panel.layers.iter().map(|of| layer(py, of)).collect::<PyResult<Vec<_>>>()?;
+    told.set_item("layers", layers)?;
+    let bar = panel.bar.as_ref().map(|bar| {
+        (bar.name.as_str(), bar.colours.iter().copied().map(hex).collect::<Vec<_>>(), bar.edges.clone())
+    });
+    told.set_item("bar", bar)?;
+    Ok(told)
+}
+
+fn axis<'py>(py: Python<'py>, axis: &Axis) -> PyResult<Bound<'py, PyDict>> {
+    let told = PyDict::new(py);
+    told.set_item("label", axis.label())?;
+    told.set_item("unit", axis.unit)?;
+    told.set_item("low", axis.range.start)?;
+    told.set_item("high", axis.range.end)?;
+    told.set_item("factor", axis.factor())?;
+    told.set_item("logarithmic", axis.scale == Scale::Logarithmic)?;
+    Ok(told)
+}
+
+fn layer<'py>(py: Python<'py>, layer: &Layer) -> PyResult<Bound<'py, PyDict>> {
+    let (shape, size) = match layer.shape {
+        Shape::Line(width) => ("line", width),
+        Shape::Dashes => ("dashes", 1.0),
+        Shape::Area(opacity) => ("area", opacity),
+        Shape::Disc => ("disc", 1.0),
+        Shape::Dot => ("dot", 1.0),
+        Shape::Ring => ("ring", 1.0),
+        Shape::Triangle => ("triangle", 1.0),
+        Shape::Square => ("square", 1.0),
+        Shape::Diamond => ("diamond", 1.0),
+    };
+    let told = PyDict::new(py);
+    told.set_item("name", &layer.name)?;
+    told.set_item("colour", hex(layer.colour))?;
+    told.set_item("shape", shape)?;
+    told.set_item("size", size)?;
+    let points: Vec<Vec<f64>> =
+        [|p: &(f64, f64)| p.0, |p: &(f64, f64)| p.1].map(|of| layer.points.iter().map(of).collect()).into();
+    told.set_item("points", PyArray2::from_vec2(py, &points)?)?;
+    Ok(told)
+}
+
+/// The name that a log's errors give it.
+fn place(log: &Log) -> PathBuf {
+    log.0.metadata().get("scenario").map_or("log", String::as_str).into()
+}
+
+/// A log of a run in memory, with its events.
+#[pyfunction]
+pub fn log_of(py: Python<'_>, scenario: &Scenario, run: u64) -> PyResult<Log> {
+    let run = scenario.run(run);
+    let log = aside(py, move |_| figures::log_of(&run))?.map_err(PyValueError::new_err)?;
+    Ok(Log(Arc::new(log)))
+}
+
+/// The names of the figures that a log has.
+#[pyfunction]
+pub fn log_figures(py: Python<'_>, log: &Log) -> PyResult<Vec<String>> {
+    let (path, log) = (place(log), log.0.clone());
+    aside(py, move |_| figures::names(&log, &path))?.map_err(PyValueError::new_err)
+}
+
+#[pyfunction]
+pub fn log_figure(py: Python<'_>, log: &Log, name: String) -> PyResult<Figure> {
+    let (path, log) = (place(log), log.0.clone());
+    let figure = aside(py, move |_| figures::of_log(&log, &path, &name))?.map_err(PyValueError::new_err)?;
+    Ok(Figure(Arc::new(figure)))
+}
+
+/// A column of a table, as the engine has it.
+fn column(given: &Bound<'_, PyAny>) -> PyResult<Column> {
+    if let Ok(numbers) = given.extract::<PyReadonlyArray1<'_, f64>>() {
+        return Ok(Column::Numbers(numbers.as_array().to_vec()));
+    }
+    if let Ok(integers) = given.extract::<PyReadonlyArray1<'_, i64>>() {
+        return Ok(Column::Integers(integers.as_array().iter().copied().map(Some).collect()));
+    }
+    Ok(Column::Words(given.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
+}
+
+/// The figures of a campaign's columns: of a kind, or the natural ones.
+#[pyfunction]
+pub fn campaign_figures(
+    py: Python<'_>,
+    work: &Work,
+    columns: HashMap<String, Bound<'_, PyAny>>,
+    kind: Option<String>,
+    metrics: Vec<String>,
+) -> PyResult<Vec<(String, Figure)>> {
+    let columns: HashMap<String, Column> =
+        columns.iter().map(|(name, given)| Ok((name.clone(), column(given)?))).collect::<PyResult<_>>()?;
+    let work = work.0.clone();
+    let drawn = aside(py, move |_| {
+        figures::of_columns(&work, &|name| columns.get(name).cloned(), kind.as_deref(), &metrics)
+    })?;
+    Ok(shared(drawn.map_err(PyValueError::new_err)?))
+}
+
+/// The figures of the campaigns in a directory.
+#[pyfunction]
+pub fn directory_figures(
+    py: Python<'_>,
+    path: PathBuf,
+    kind: Option<String>,
+    metrics: Vec<String>,
+) -> PyResult<Vec<(String, Figure)>> {
+    let drawn = aside(py, move |_| figures::of_directory(Path::new(&path), kind.as_deref(), &metrics))?;
+    Ok(shared(drawn.map_err(PyValueError::new_err)?))
+}
+
+/// The modes of a scenario; none of a rigid body.
+#[pyfunction]
+pub fn modes_figure(scenario: &Scenario) -> Option<Figure> {
+    let size = |values: &[f64]| values.iter().map(|value| value.abs()).collect::<Vec<_>>();
+    let figure = match scenario.inner.body.spatial() {
+        None => {
+            let modal = Modal::of(&scenario.inner.model);
+            figures::modes(&modal.frequencies_rad_s, &size(&modal.gains), ("modal gain", ""))
+        }
+        Some(body) => {
+            let of = Influences::of(&scenario.inner, body);
+            let most = |mode: usize| of.influences.iter().map(|axis| axis[mode].abs()).fold(0.0, f64::max);
+            let most: Vec<f64> = (0..of.frequencies_rad_s.len()).map(most).collect();
+            figures::modes(&of.frequencies_rad_s, &most, ("influence", ""))
+        }
+    };
+    figure.map(|figure| Figure(Arc::new(figure)))
+}

@@ -1,0 +1,61 @@
+"""What is shown: metrics with units, texts, and HTML with a figure."""
+
+import json
+import pickle
+from xml.etree import ElementTree
+
+import flexsc
+import pytest
+from conftest import shipped
+from flexsc import Scenario
+
+
+def figures(html: str) -> list[ElementTree.Element]:
+    """The SVG within some HTML, which is whole."""
+    start = [at for at in range(len(html)) if html.startswith("<svg", at)]
+    return [ElementTree.fromstring(html[at : html.index("</svg>", at) + 6]) for at in start]
+
+
+def test_metrics_know_their_units(fixed: Scenario) -> None:
+    metrics = fixed.with_("duration", 600.0).simulate().metrics
+    assert metrics.unit("cycle_period_s") == "s"
+    assert metrics.unit("switchings") == ""
+    # The body has no moment of inertia.
+    assert metrics.unit("torque_impulse_per_hour_nm_s") == "rad/s"
+    assert "cycle" in metrics.doc("cycle_period_s")
+    assert set(metrics) <= set(flexsc.metrics())
+    assert "switchings: 81" in repr(metrics)
+    with pytest.raises(KeyError, match="no metric 'speed'; there are "):
+        metrics.unit("speed")
+    again = pickle.loads(pickle.dumps(metrics))
+    assert dict(again)["switchings"] == 81
+    assert again.unit("cycle_period_s") == "s"
+    assert json.loads(json.dumps({"switchings": metrics["switchings"]})) == {"switchings": 81}
+
+
+@pytest.mark.parametrize("name", ["relay-fixed", "rotation-sine", "iss-manoeuvre"])
+def test_runs_are_shown_with_a_figure(name: str) -> None:
+    scenario = shipped(name)
+    run = scenario.with_("duration", min(scenario.duration, 300.0)).simulate()
+    html = run._repr_html_()
+    [figure] = figures(html)
+    assert "width:560px" in figure.get("style", "")
+    text = " ".join(element.text or "" for element in figure.iter() if element.tag.endswith("text"))
+    assert name in text
+    for metric in run.metrics:
+        assert f"<td>{metric}</td>" in html
+    # A run that takes long is not repeated for it.
+    run._took = 60.0
+    assert figures(run._repr_html_()) == []
+
+
+def test_scenarios_and_tables_are_shown(sampled: Scenario) -> None:
+    [figure] = figures(sampled._repr_html_())
+    assert "elastic modes" in "".join(figure.itertext())
+    assert "&lt;b&gt;" in sampled.with_("about", "<b>")._repr_html_()
+    rigid = shipped("relay-fixed").with_("body.planar.modes", [])
+    assert figures(rigid._repr_html_()) == []
+    table = flexsc.campaign(sampled, runs=8)
+    [figure] = figures(table._repr_html_())
+    assert "8 runs" in "".join(figure.itertext())
+    assert figures(flexsc.campaign(sampled, runs=1)._repr_html_()) == []
