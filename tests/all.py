@@ -28,6 +28,8 @@ EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
 # So many inputs, the same on every machine: about 12 s each.
 FUZZED = {"scenarios": "2500", "structures": "15000", "logs": "1000", "arguments": "1100", "live": "3500"}
+# What codespell reads; its exceptions are in pyproject.toml.
+WORDS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs", "scenarios", "site")
 # What the runners of tests say at their ends.
 SUMMARY = re.compile(r"^(test result: .*|(?:=+ )?\d+ (?:passed|failed).* in [\d.]+ ?s.*)$", re.MULTILINE)
 SUMMARIES: list[str] = []
@@ -80,9 +82,10 @@ def environment(path: Path) -> Path:
 def form() -> None:
     python = environment(ENVIRONMENT)
     run("cargo", "fmt", "--all", "--check")
-    run(python, *PIP, "install", "ruff")
+    run(python, *PIP, "install", "codespell", "ruff")
     run(python, "-m", "ruff", "check", ".")
     run(python, "-m", "ruff", "format", "--check", ".")
+    run(python, "-m", "codespell_lib", *WORDS)
 
 
 def crates() -> None:
@@ -157,6 +160,11 @@ def python() -> str:
     return tally(run(python, "-m", "pytest", "tests/python", "-q"))
 
 
+def site() -> None:
+    """The documentation: every tutorial runs, every link leads somewhere."""
+    run(sys.executable, "site/build.py")
+
+
 def nastran() -> str:
     """The tests that need pyNastran, where it can be installed."""
     python = environment(NASTRAN)
@@ -172,7 +180,7 @@ def nastran() -> str:
 
 
 STEPS = [
-    Step("form of the code: rustfmt, ruff", 10, form, quick=True),
+    Step("form of the code: rustfmt, ruff, spelling", 15, form, quick=True),
     Step("licences, sources and duplicates of all crates", 5, crates, quick=True),
     Step("clippy of everything", 180, lint),
     Step("clippy of the light build", 50, lint_light),
@@ -183,13 +191,14 @@ STEPS = [
     Step("the wheel", 55, wheel),
     Step("Python tests", 70, python),
     Step("Python tests with pyNastran", 30, nastran),
+    Step("the documentation site, with its tutorials", 80, site),
 ]
 QUICK = [
     *(step for step in STEPS if step.quick),
     Step("Rust tests of the light build", 150, rust_light),
 ]
 LEFT_OUT = """left out: clippy, the features `matrices`, `papers` and `png` with their tests, docs/papers.md,
-the fuzzer, the wheel and the Python tests"""
+the fuzzer, the wheel, the Python tests and the documentation site"""
 
 
 def perform(steps: Sequence[Step]) -> None:

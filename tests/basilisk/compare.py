@@ -9,7 +9,7 @@ Kutta's method of order 4. flexsc takes them as clamped modes with their first m
 
 - `tumble`: nothing acts and the wheels turn freely, for 200 s at 0.006 to 0.06 of the lowest frequency. What
   is left grows as the fourth power of that part, for modes are linear and hinges are not.
-- `slew`: the motors' torques of a turn of 60 degrees, as flexsc's law has commanded them, are given to
+- `slew`: the motors' torques of a slew of 54 degrees, as flexsc's law has commanded them, are given to
   Basilisk 4 times a second.
 - `pointing`: so are those of 600 s of fine pointing, from small rates.
 

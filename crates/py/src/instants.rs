@@ -23,7 +23,7 @@ pub fn sample<'py>(
         let (mut simulation, mut trace) = (Simulation::new(&inner, run), Trace::new(Detail::Full));
         for time in times {
             simulation.run_to(time, &mut stop)?;
-            simulation.look(&mut trace)?;
+            simulation.tell_now(&mut trace)?;
         }
         Ok(trace)
     })?;

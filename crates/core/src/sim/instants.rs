@@ -40,7 +40,7 @@ impl Simulation {
     ///
     /// # Errors
     /// A state that is no longer finite, and a record that cannot be kept.
-    pub fn look(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub fn tell_now(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         let (now, truth) = (self.now, self.plant.view(self.now)?);
         match &self.plant {
             Plant::Planar(_) => {
@@ -97,7 +97,7 @@ mod tests {
         let places: Vec<usize> = (0..times.len()).step_by(every).collect();
         for place in &places {
             simulation.run_to(times[*place], &mut ()).expect("a run");
-            simulation.look(&mut seen).expect("a look");
+            simulation.tell_now(&mut seen).expect("a look");
         }
         for topic in topics {
             let (rows, seen) = (columns(&whole, topic), columns(&seen, topic));
