@@ -1,4 +1,4 @@
-"""Parts written in Python: the same switchings and beliefs as those of the engine, errors, copies, campaigns."""
+"""Parts written in Python: the switchings and beliefs of the engine's, errors, copies, campaigns."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conftest import shipped
 from flexsc.parts import Event
-from own import AlphaBeta, Descent, Encoder, Mekf, Notes, Pd, Relay, Servo, turn, times
+from own import AlphaBeta, Descent, Encoder, Mekf, Notes, Pd, Relay, Servo, times, turn
 
 SMALL = """
 duration = 200.0
@@ -227,7 +227,7 @@ def test_campaigns_run_them_in_this_process(tmp_path: Path) -> None:
     assert set(one["error"]) == {""}
     assert len(set(one["body.planar.rate"])) == 6
     run = scenario.draw(3).simulate(run=3, log="none")
-    assert run.metrics["angle_rms_rad"] == one["angle_rms_rad"][3] != one["angle_rms_rad"][2]
+    assert run.metrics["itae"] == one["itae"][3] != one["itae"][2]
     with pytest.raises(ValueError, match="in this process alone"):
         flexsc.campaign(scenario, runs=2, out=tmp_path / "rows")
 

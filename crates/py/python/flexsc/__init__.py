@@ -22,11 +22,12 @@ from typing import Any
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
+from flexsc._linear import Linear, Signal
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._scenario import Log, Result, Scenario
-from flexsc.parts import Actuator, Adaptation, Effort, Estimator, Hold, Law, Reading, Sensor
+from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor
 from flexsc.structure import (
     StateSpace,
     Structure,
@@ -40,10 +41,12 @@ from flexsc.structure import (
 __all__ = [
     "Actuator",
     "Adaptation",
+    "CompiledLaw",
     "Effort",
     "Estimator",
     "Hold",
     "Law",
+    "Linear",
     "Log",
     "LogError",
     "Plan",
@@ -52,6 +55,7 @@ __all__ = [
     "Scenario",
     "ScenarioError",
     "Sensor",
+    "Signal",
     "SimulationError",
     "StateSpace",
     "Structure",

@@ -30,8 +30,10 @@ __all__ = [
     "Work",
     "__version__",
     "examples",
+    "exponential",
     "gain_regions_json",
     "identify_json",
+    "linear_json",
     "main",
     "metrics_json",
     "observer_margin_json",
@@ -214,7 +216,7 @@ class Event:
         """The dominant mode: displacement (rad), its rate (rad/s) and frequency (rad/s)."""
     @property
     def elastic(self) -> list[_Three]:
-        """The elastic modes: rate (rad/s), frequency (rad/s), and its jump for each jump of the rigid rate."""
+        """The elastic modes: rate (rad/s), frequency (rad/s), its jump for each jump of the rigid rate."""
     @property
     def trusted(self) -> bool:
         """Whether the elastic modes may be acted on."""
@@ -225,8 +227,9 @@ class Hold:
 
     `Hold(torque)` holds a torque (N m; rad/s² on a body without inertia; of a wheel, units of its command);
     `acceleration` (rad/s²), `change` of the rigid rate (rad/s) and `moment` (A m²) take its place. The law is
-    asked again `after` so many seconds, or at the instant `until`, or when the angle is `at_least` or `at_most` a
-    level (rad), whichever is first; without a time after the law's `period`. `state` is what the log calls it.
+    asked again `after` so many seconds, or at the instant `until`, or when the angle is `at_least` or
+    `at_most` a level (rad), whichever is first; without a time after the law's `period`. `state` is what the
+    log calls it.
     """
 
     def __new__(
@@ -277,7 +280,8 @@ class Truth:
         """The angle with its elastic part (rad), of a body with one."""
     @property
     def attitude(self) -> _Four | None:
-        """The attitude (w, x, y, z), which turns vectors of the body's axes into inertial ones, of one with three axes."""
+        """The attitude (w, x, y, z), which turns vectors of the body's axes into inertial ones, of one with
+        three axes."""
     @property
     def elastic(self) -> _Three:
         """The elastic rotations at the sensor beside the attitude (rad)."""
@@ -301,8 +305,9 @@ class Truth:
 
 @final
 class Reading:
-    """What a sensor measured: the `angle` (rad) or the `attitude` (w, x, y, z), the true one of a sensor that tells neither;
-    the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with what it is in `inertial` ones."""
+    """What a sensor measured: the `angle` (rad) or the `attitude` (w, x, y, z), the true one of a sensor that
+    tells neither; the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with what it is in
+    `inertial` ones."""
 
     def __new__(
         cls,
@@ -372,7 +377,8 @@ class Taken:
         """Angle beyond the target (rad) and rate (rad/s) about each axis; None of a sensor that is silent."""
     @property
     def readings(self) -> list[Reading | None]:
-        """What each sensor measured now, in the order of the scenario; None of one that was not due, or silent."""
+        """What each sensor measured now, in the order of the scenario; None of one that was not due, or
+        silent."""
     @property
     def origin_angle(self) -> float | None:
         """From where angles count (rad), of a body with one angle."""
@@ -381,7 +387,7 @@ class Taken:
         """The target (w, x, y, z), of a body with three axes."""
     @property
     def truth(self) -> list[tuple[float, float]]:
-        """The true rigid angle beyond the target (rad) and rate (rad/s) about each axis, for ideal observers."""
+        """The true rigid angle beyond the target (rad) and rate (rad/s) about each axis, for observers."""
     @property
     def torque(self) -> list[float]:
         """The torque that the actuator holds about each axis (N m)."""
@@ -546,6 +552,8 @@ def identify_json(
 ) -> str: ...
 def persistence(sensitivities: npt.NDArray[np.float64]) -> float: ...
 def write(path: str | os.PathLike[str], text: str) -> None: ...
+def linear_json(scenario: Scenario, at: float) -> str: ...
+def exponential(matrix: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
 def examples() -> list[tuple[str, str]]: ...
 def schema_json() -> str: ...
 def metrics_json() -> str: ...
