@@ -182,9 +182,11 @@ def test_a_closed_loop_moves_as_the_simulated_one(law: str, sensor: str) -> None
         motion = [start]
         for _ in range(60):
             motion.append(closed.a @ motion[-1])
-        at, first = np.unique(result["attitude"]["time_s"], return_index=True)
+        _, first = np.unique(result["attitude"]["time_s"], return_index=True)
         expected = np.array(motion)[:, [0, 2, 4]].sum(axis=1)
-        np.testing.assert_allclose(result["attitude"]["angle_rad"][first], expected, atol=1e-9 * angle, rtol=0)
+        np.testing.assert_allclose(
+            result["attitude"]["angle_rad"][first], expected, atol=1e-9 * angle, rtol=0
+        )
 
 
 def test_the_loop_of_a_wheel_has_its_delay() -> None:
@@ -211,12 +213,16 @@ def test_three_axes_close_by_the_whole_inertia() -> None:
     keys = shipped("earth-observer").to_dict()
     for key in ("target", "estimator"):
         keys.pop(key, None)
-    keys |= {"sensor": "continuous", "duration": 10.0, "law": {"attitude": {"bandwidth": 0.1, "period": 0.25}}}
+    keys |= {
+        "sensor": "continuous",
+        "duration": 10.0,
+        "law": {"attitude": {"bandwidth": 0.1, "period": 0.25}},
+    }
     scenario = flexsc.Scenario(keys, "craft")
     closed = scenario.linearise(loop="command").closed()
-    slow = np.sort(closed.eigenfrequencies())[:6]
+    slow = np.sort(closed.eigenfrequencies())[:3]
     # Rigid poles of all axes near the bandwidth that the law asks for.
-    assert np.all((slow > 0.07) & (slow < 0.14))
+    np.testing.assert_allclose(slow, 0.1, rtol=0.02)
     assert np.abs(np.linalg.eigvals(closed.a)).max() < 1.0
 
 
@@ -227,7 +233,7 @@ def test_controllers_come_back_in() -> None:
     torque = [run.simulate(log="full")["torque"]["feedback_nm"] for run in (pd, same)]
     np.testing.assert_allclose(torque[1], torque[0], rtol=1e-12)
     # A lead filter of continuous time, held and by Tustin's rule, is what SciPy makes of it.
-    lead = ([[-3.0]], [[1.0]], [[-200.0]], [[100.0]])
+    lead = tuple(np.array([[each]]) for each in (-3.0, 1.0, -200.0, 100.0))
     for method, name in [("held", "zoh"), ("tustin", "bilinear")]:
         discrete = cont2discrete(lead, 0.5, name)[:4]
         with_held = scenario.with_law(lead, 0.5, method=method)  # type: ignore[arg-type]
@@ -299,4 +305,3 @@ def test_python_control_takes_and_gives_models() -> None:
         for run in (scenario.with_law(discrete), scenario.with_law(lead, 0.5, method="tustin"))
     ]
     np.testing.assert_allclose(runs[0], runs[1], rtol=1e-9, atol=1e-12)
-

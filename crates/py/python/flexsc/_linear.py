@@ -226,8 +226,9 @@ def linearise(
     )
     body = Linear(a, b.reshape(len(a), -1), c, np.zeros((len(c), b.shape[1])), states, inputs, outputs)
     keys = scenario.to_dict()
-    wheel = keys.get("actuator", {}).get("wheel", {})
-    late = float(wheel.get("delay", 0.0)) if delay is None else delay
+    kind, wheel = _kind(keys["actuator"])
+    own = float(wheel["delay"]) if kind == "wheel" else 0.0
+    late = own if delay is None else delay
     if loop is not None:
         if period is not None:
             raise ValueError("period is the law's own where a loop is cut open")
@@ -239,6 +240,11 @@ def linearise(
     return body.sampled(period, late)
 
 
+def _kind(part: str | Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """The kind of a part and its keys: one without keys is a word."""
+    return (part, {}) if isinstance(part, str) else next(iter(part.items()))
+
+
 def _refused(name: str, why: str) -> ValueError:
     return ValueError(f"{name}: {why}")
 
@@ -248,7 +254,7 @@ def _law(name: str, keys: Mapping[str, Any], axis: int) -> tuple[str, dict[str, 
     law = keys["law"]
     if "per_axis" in law:
         law = law["per_axis"][_AXES[axis]]
-    kind, own = next(iter(law.items()))
+    kind, own = _kind(law)
     if kind not in ("pd", "attitude", "state_space"):
         raise _refused(name, f"the law `{kind}` is not linear: a loop has `pd`, `attitude` or `state_space`")
     for key in ("extra", "filters", "integral"):
@@ -320,14 +326,14 @@ def _loop(name: str, keys: Mapping[str, Any], body: Linear, delay: float, loop: 
     if loop not in ("command", "torque", "measurement"):
         raise ValueError(f"loop must be 'command', 'torque' or 'measurement', got {loop!r}")
     if keys.get("estimator") and "envelope" not in keys["estimator"]:
-        kind = next(iter(keys["estimator"]))
+        kind, _ = _kind(keys["estimator"])
         raise _refused(name, f"the estimator `{kind}` is no part of linear loops: leave it out")
-    kind_of_actuator = next(iter(keys.get("actuator", {"ideal": {}})))
+    kind_of_actuator, own_keys = _kind(keys["actuator"])
     if kind_of_actuator not in ("ideal", "wheel", "wheels"):
         why = f"the actuator `{kind_of_actuator}` is not linear: a loop has `ideal`, `wheel` or `wheels`"
         raise _refused(name, why)
     count = len(body.inputs)
-    gain = float(keys["actuator"]["wheel"]["gain"]) if kind_of_actuator == "wheel" else 1.0
+    gain = float(own_keys["gain"]) if kind_of_actuator == "wheel" else 1.0
     laws = [_law(name, keys, axis) for axis in range(count)]
     parts = [_feedback(kind, own) for kind, own in laws]
     period = parts[0][0]
@@ -385,16 +391,17 @@ def _loop(name: str, keys: Mapping[str, Any], body: Linear, delay: float, loop: 
 
 def _differs(name: str, keys: Mapping[str, Any], period: float) -> tuple[bool, float]:
     """Whether rates are differences of measured angles, and over which period (s)."""
-    sensor = keys.get("sensor", "continuous")
+    sensor = keys["sensor"]
     if isinstance(sensor, list):
-        sensor = sensor[0] if len(sensor) == 1 else {"several": {}}
-    if sensor == "continuous" or "gyro" in sensor:
+        if len(sensor) > 1:
+            raise _refused(name, "several sensors are no part of linear loops: take one")
+        sensor = sensor[0]
+    kind, own = _kind(sensor)
+    if kind in ("continuous", "gyro"):
         return False, period
-    if "sampled" not in sensor:
-        kind = next(iter(sensor))
+    if kind != "sampled":
         why = f"the sensor `{kind}` is no part of linear loops: take `continuous`, `sampled` or `gyro`"
         raise _refused(name, why)
-    own = sensor["sampled"]
     if float(own["period"]) != period:
         raise _refused(name, "the sensor and the law have periods that differ: a linear loop has one")
     return own.get("rate_noise") is None, period

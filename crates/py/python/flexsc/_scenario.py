@@ -206,12 +206,12 @@ class Scenario:
                 found = part.__name__ if isinstance(part, type) else type(part).__name__
                 raise TypeError(f"{role} must be an object of a flexsc.{kind.__name__}, got {found}")
             brought.append((role, part))
-        return self._of(self._native.with_parts(brought))
+        return self._of(engine.with_parts(self._native, brought))
 
     @property
     def parts(self) -> dict[str, object]:
         """The parts of your own by role; sensors as `sensor 0`."""
-        return dict(self._native.parts())
+        return dict(engine.parts_of(self._native))
 
     def linearise(
         self,
@@ -336,14 +336,14 @@ class Scenario:
         return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes} modes, seed {self.seed}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        parts = self._native.parts()
+        parts = engine.parts_of(self._native)
         if parts:
-            return _beside, (self._native.text_beside(), self.name, parts)
+            return _beside, (engine.text_beside_parts(self._native), self.name, parts)
         return Scenario.parse, (self.to_toml(), self.name)
 
 
 def _beside(text: str, name: str, parts: list[tuple[str, object]]) -> Scenario:
-    return Scenario._of(engine.Scenario.beside(text, name, parts))
+    return Scenario._of(engine.beside_parts(text, name, parts))
 
 
 class _Topics:

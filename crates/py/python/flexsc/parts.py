@@ -119,7 +119,7 @@ class CompiledLaw(Law):
         void law(double now, double since, double cause, double angle, double rate,
                  double goal_angle, double goal_rate, double *states, double *hold);
 
-    `now` is the time (s), `since` that since its last call, without rounding before the difference. `cause` is
+    `now` is the time (s), `since` that since its last call, rounded once. `cause` is
     0 at the start, 1 at the time of the last hold, 2 and 3 when the angle is at least and at most its level.
     `states` are its own from call to call. It writes `hold`: torque (N m), time until it is asked again (s),
     and the least and most angle (rad) at which it is asked; those that it leaves NaN, as they come, are none.
