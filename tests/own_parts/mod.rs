@@ -1,6 +1,7 @@
 //! Parts from outside the engine's crate: a kind of each role, in a file each, and a loop that they close together.
 
 mod actuator;
+mod adaptation;
 mod estimator;
 mod law;
 mod sensor;
@@ -8,14 +9,16 @@ mod sensor;
 use std::sync::Arc;
 
 use flexsc_core::actuator::Actuator;
+use flexsc_core::adaptation::Adaptation;
 use flexsc_core::campaign::Campaign;
 use flexsc_core::document::Parts;
 use flexsc_core::estimator::Estimator;
 use flexsc_core::law::Law;
 use flexsc_core::own::Own;
 use flexsc_core::record::{Column, Detail, Trace};
+use flexsc_core::scenario::OwnParts;
 use flexsc_core::sensor::Sensor;
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::{Document, Scenario, Simulation, SimulationError};
 
 const ONE_ANGLE: &str = "duration = 200.0\nseed = 5\n[law.open]\n[body.planar]\ninertia = 100.0\nangle = 2e-3\n\
                          modes = [{ frequency = 1.3, gain = 0.2, damping = 0.02 }]\n\
@@ -73,4 +76,54 @@ fn parts_from_outside_hold_three_axes() {
     let state = simulation.spatial_state().expect("three axes");
     let off = state.turn.attitude.vector().norm();
     assert!(off < 1e-5, "{off}");
+}
+
+const RELAY: &str = "duration = 3000.0\n[law.relay]\ndead_zone = 5e-4\nhysteresis = 1e-4\nstrong = 4e-5\nweak = 1e-6\n\
+                     k_t = 0.31\n[body.planar]\nangle = 4.5e-4\nmodes = [{ frequency = 0.44, gain = 0.02 }]\n\
+                     [estimator.envelope]\nwindow = 500.0";
+
+#[test]
+fn an_adaptation_from_outside_tunes_and_what_cannot_go_on_ends_the_run() {
+    let plain = Scenario::parse("relay.toml", RELAY).expect("a scenario");
+    let climbing = |most| {
+        let own: Own<dyn flexsc_core::adaptation::Adapt> =
+            Own::new(Arc::new(adaptation::Climber { step: 0.01, most }));
+        plain.bringing(OwnParts { adaptation: Some(own), ..OwnParts::default() }).expect("it fits")
+    };
+    let study = climbing(1.0);
+    assert!(matches!(study.adaptation, Some(Adaptation::Own(_))) && study.has_own_parts());
+    let mut simulation = Simulation::new(&study, 0);
+    let mut trace = Trace::new(Detail::Events);
+    simulation.run(&mut trace).expect("a run");
+    let Some(Column::Numbers(gains)) = trace.topic("/adaptation").and_then(|rows| rows.get("gain").cloned())
+    else {
+        panic!("gains")
+    };
+    assert_eq!(gains.len(), 6);
+    assert!((gains[5] - 0.37).abs() < 1e-12, "{gains:?}");
+    let ends = Simulation::new(&climbing(0.325), 0).run(&mut ()).expect_err("too far");
+    let SimulationError::Own { at, role, ref source } = ends else { panic!("{ends}") };
+    assert!(at.seconds() == 1000.0 && role == "adaptation", "{ends}");
+    assert!(source.downcast::<std::io::Error>().is_some());
+    assert_eq!(ends.to_string(), "the adaptation at t = 1000.000000000000000 s: too far");
+}
+
+#[test]
+fn own_parts_stay_where_keys_change_and_stand_beside_a_text() {
+    let study = of_own_parts(ONE_ANGLE);
+    let parts = study.own_parts();
+    assert_eq!(parts.each(), ["law", "sensor", "estimator", "actuator"]);
+    let mut document = Document::from_table("own.toml", study.table_beside_own_parts());
+    document.set_text("duration", "100.0").expect("a key");
+    let shorter = Scenario::from_document_like(&document, &study).expect("a scenario");
+    assert_eq!(shorter.own_parts(), parts);
+    assert_eq!(Scenario::from_document_beside(&document, &parts).expect("a scenario"), shorter);
+    document.set_text("law", "{ pd = { k_p = 4.0, k_d = 30.0, period = 0.25 } }").expect("a law");
+    let built_in = Scenario::from_document_like(&document, &study).expect("a scenario");
+    assert!(built_in.own_parts().law.is_none() && built_in.own_parts().estimator.is_some());
+    // A place that is not there.
+    let elsewhere = parts.sensors.iter().map(|(_, sensor)| (3, sensor.clone())).collect();
+    let fault =
+        built_in.bringing(OwnParts { sensors: elsewhere, ..OwnParts::default() }).expect_err("no place");
+    assert!(fault.to_string().contains("sensor[3]: is not there: the scenario has 1 sensor"), "{fault}");
 }

@@ -1,4 +1,5 @@
-"""Parts written in Python that the tests bring: the relay law again, an attitude filter in NumPy, and small ones."""
+"""Parts written in Python that the tests bring: the relay law again, an attitude filter in NumPy, and small
+ones."""
 
 from __future__ import annotations
 
@@ -114,8 +115,8 @@ def beyond(goal: Array, q: Array) -> Array:
 class Mekf(flexsc.Estimator):
     """A multiplicative extended Kalman filter of attitude and gyro bias ([LeffertsMarkleyShuster82]).
 
-    Attitudes arrive late: the filter keeps what it was at each gyro reading, and filters again from the exposure on. Transition and
-    added noise are exponentials of matrices ([VanLoan78]).
+    Attitudes arrive late: the filter keeps what it was at each gyro reading, and filters again from the
+    exposure on. Transition and added noise are exponentials of matrices ([VanLoan78]).
     """
 
     def __init__(

@@ -1,20 +1,25 @@
-"""Parts written in Python: the same switchings and beliefs as those of the engine, errors, copies, campaigns."""
+"""Parts written in Python: the switchings and beliefs of the engine's, errors, copies, campaigns."""
 
 from __future__ import annotations
 
 import _thread
+import ctypes
+import doctest
 import pickle
+import shutil
+import subprocess
 import threading
 import time
 import traceback
 from pathlib import Path
+from typing import Any
 
 import flexsc
 import numpy as np
 import pytest
 from conftest import shipped
 from flexsc.parts import Event
-from own import AlphaBeta, Descent, Encoder, Mekf, Notes, Pd, Relay, Servo, turn, times
+from own import AlphaBeta, Descent, Encoder, Mekf, Notes, Pd, Relay, Servo, times, turn
 
 SMALL = """
 duration = 200.0
@@ -227,7 +232,7 @@ def test_campaigns_run_them_in_this_process(tmp_path: Path) -> None:
     assert set(one["error"]) == {""}
     assert len(set(one["body.planar.rate"])) == 6
     run = scenario.draw(3).simulate(run=3, log="none")
-    assert run.metrics["angle_rms_rad"] == one["angle_rms_rad"][3] != one["angle_rms_rad"][2]
+    assert run.metrics["itae"] == one["itae"][3] != one["itae"][2]
     with pytest.raises(ValueError, match="in this process alone"):
         flexsc.campaign(scenario, runs=2, out=tmp_path / "rows")
 
@@ -273,6 +278,100 @@ def test_ctrl_c_ends_a_run() -> None:
     with pytest.raises(KeyboardInterrupt):
         scenario.simulate()
     assert time.monotonic() - began < 2.0
+
+
+RELAY_IN_C = """
+#include <math.h>
+void relay(double now, double since, double cause, double angle, double rate,
+           double goal_angle, double goal_rate, double *state, double *hold)
+{
+    const double zone = 5e-4, back = 5e-4 - 1e-4, strong = 4e-5, weak = 1e-6, k_t = 0.31;
+    int phase = (int)state[0];
+    if (phase == 1 || phase == 4) {
+        hold[0] = phase == 1 ? strong : -strong;
+        hold[1] = k_t * since;
+        state[0] = phase + 1;
+        return;
+    }
+    if (phase == 2 || phase == 5 || (phase == 0 && fabs(angle) < zone)) {
+        hold[0] = phase == 5 ? -weak : weak;
+        hold[2] = zone;
+        hold[3] = -zone;
+        state[0] = phase == 0 ? 3 : phase + 1;
+        return;
+    }
+    int right = cause == 2.0 || (cause == 0.0 && angle > 0.0);
+    hold[0] = right ? -strong : strong;
+    hold[right ? 3 : 2] = right ? back : -back;
+    state[0] = right ? 1 : 4;
+}
+"""
+
+
+def test_a_relay_in_c_switches_at_the_same_instants(tmp_path: Path) -> None:
+    compiler = shutil.which("cc")
+    if compiler is None:
+        pytest.skip("there is no C compiler")
+    (tmp_path / "relay.c").write_text(RELAY_IN_C)
+    library = tmp_path / "relay.so"
+    subprocess.run([compiler, "-shared", "-fPIC", "-O2", "relay.c", "-o", library], cwd=tmp_path, check=True)
+    scenario = shipped("relay-fixed")
+    law = flexsc.CompiledLaw(ctypes.CDLL(str(library)).relay, states=[0.0], promise=6e-4, switches=True)
+    own = scenario.with_parts(law=law)
+    mine, theirs = own.simulate()["command"], scenario.simulate()["command"]
+    for column in ("time_s", "angle_rad", "torque_nm"):
+        np.testing.assert_array_equal(mine[column], theirs[column])
+    np.testing.assert_array_equal(own.simulate()["command"]["time_s"], theirs["time_s"])
+    with pytest.raises(TypeError, match="cannot be pickled"):
+        pickle.dumps(own)
+    with pytest.raises(ValueError, match="address must be that of a function"):
+        scenario.with_parts(law=flexsc.CompiledLaw(0))
+
+
+def test_numba_makes_laws() -> None:
+    numba: Any = pytest.importorskip("numba")
+    double, several = numba.types.double, numba.types.CPointer(numba.types.double)
+
+    @numba.cfunc(numba.types.void(*[double] * 7, several, several))  # type: ignore[untyped-decorator]
+    def damper(now, since, cause, angle, rate, goal_angle, goal_rate, states, hold):  # type: ignore
+        hold[0] = -4.0 * angle - 30.0 * rate
+
+    scenario = flexsc.Scenario.parse(SMALL, "own")
+    own = scenario.with_parts(law=flexsc.CompiledLaw(damper, period=0.25))
+    pd = scenario.with_("law", {"pd": {"k_p": 4.0, "k_d": 30.0, "period": 0.25}})
+    np.testing.assert_allclose(told(own), told(pd), rtol=1e-12)
+
+
+def test_a_compiled_law_that_tells_no_number_ends_the_run() -> None:
+    numbers = ctypes.POINTER(ctypes.c_double)
+    kind = ctypes.CFUNCTYPE(None, *[ctypes.c_double] * 7, numbers, numbers)
+
+    @kind
+    def wrong(*arguments: Any) -> None:
+        arguments[8][0] = float("inf") if arguments[0] > 3.0 else 0.0
+
+    law = flexsc.CompiledLaw(wrong, period=1.0)
+    with pytest.raises(RuntimeError, match="gave a torque of inf"):
+        flexsc.Scenario.parse(SMALL, "own").with_parts(law=law).simulate()
+
+
+def test_the_examples_of_docstrings_run() -> None:
+    from flexsc import _linear, _native, parts
+
+    for module in (parts, _linear):
+        assert doctest.testmod(module, extraglobs={"flexsc": flexsc, "numpy": np}).failed == 0
+    finder, runner = doctest.DocTestFinder(), doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
+    found = 0
+    scenario = flexsc.Scenario
+    objects = [_native.Hold, _native.Instant, _native.Reading, _native.Effort]
+    for thing in [*objects, scenario.with_parts, scenario.linearise, scenario.with_law]:
+        for test in finder.find(thing, thing.__name__, globs={"flexsc": flexsc, "numpy": np}):
+            runner.run(test)
+            found += len(test.examples)
+    assert runner.failures == 0
+    assert found >= 10
+    for name in parts.__all__:
+        assert getattr(parts, name).__doc__
 
 
 def test_turns_are_rotations() -> None:

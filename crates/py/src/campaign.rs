@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, Column, Design, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest, Rows, SECONDS,
-    Sampling, Work as Whole,
+    Campaign, Column, Design, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest, Rows, Run,
+    SECONDS, Sampling, Work as Whole,
 };
 use flexsc_core::metrics::Selection;
 use flexsc_core::statistics::{QUANTILES, Statistics};
@@ -18,6 +18,7 @@ use pyo3::types::{PyBytes, PyDict, PyList};
 use super::Scenario;
 use super::aside::aside;
 use super::error::{allowed, no_file, scenario_error};
+use super::parts::known_thread;
 
 /// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
 type Summary = (&'static str, &'static str, usize, f64, f64, Vec<(f64, f64)>);
@@ -181,7 +182,11 @@ impl Work {
     ) -> PyResult<(Bound<'py, PyDict>, Vec<Summary>)> {
         let work = self.0.clone();
         let (rows, statistics) = aside(py, move |stop| {
-            let rows = work.make(runs.0..runs.1, jobs, stop)?;
+            let is_own = work.campaign.scenario().has_own_parts();
+            let simulate = move |run: &Run, selection: &Selection, stop| {
+                known_thread(is_own, || Campaign::simulate_for(run, selection, stop))
+            };
+            let rows = work.make_by(runs.0..runs.1, jobs, stop, simulate)?;
             let columns = |names: &[&str]| -> Result<_, DirectoryError> {
                 Ok(names.iter().map(|name| rows.column(name).cloned()).collect())
             };

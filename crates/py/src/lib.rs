@@ -70,7 +70,7 @@ mod _native {
     #[pymodule_export]
     use super::parts::{
         Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Reading, Setting, Stream, Taken,
-        Truth,
+        Truth, beside_parts, parts_of, text_beside_parts, with_parts,
     };
     #[pymodule_export]
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
@@ -150,29 +150,6 @@ impl Scenario {
             document.set_text(&key, &value).map_err(scenario_error)?;
         }
         Self::new(&self.origin, flexsc_core::Scenario::from_document_like(&document, &self.inner))
-    }
-
-    /// The scenario with parts written in Python in place of its own, each with its role.
-    fn with_parts(&self, py: Python<'_>, parts: Vec<parts::Named>) -> PyResult<Self> {
-        Self::new(&self.origin, self.inner.bringing(parts::own_parts(py, parts)?))
-    }
-
-    /// A scenario of a text beside which parts stand that are written in Python.
-    #[staticmethod]
-    fn beside(py: Python<'_>, text: &str, name: &str, parts: Vec<parts::Named>) -> PyResult<Self> {
-        let document = Document::parse(name, text.to_owned()).map_err(scenario_error)?;
-        let own = parts::own_parts(py, parts)?;
-        Self::new(name, flexsc_core::Scenario::from_document_beside(&document, &own))
-    }
-
-    /// Its parts that are written in Python, each with its role.
-    fn parts(&self, py: Python<'_>) -> Vec<parts::Named> {
-        parts::named(py, &self.inner.own_parts())
-    }
-
-    /// The text of what is not written in Python.
-    fn text_beside(&self) -> String {
-        toml::to_string(&self.inner.table_beside_own_parts()).unwrap_or_default()
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {

@@ -73,11 +73,21 @@ impl Work {
         threads: usize,
         poll: impl Record + Clone + Send + Sync + 'static,
     ) -> Result<Rows, DirectoryError> {
+        self.make_by(runs, threads, poll, Campaign::simulate_for)
+    }
+
+    /// The same where something else simulates a run, and comes to what [`Campaign::simulate_for`] does.
+    pub fn make_by<R: Record + Clone + Send + Sync + 'static>(
+        &self,
+        runs: Range<u64>,
+        threads: usize,
+        poll: R,
+        simulate: impl Fn(&Run, &Selection, R) -> Result<Metrics, SimulationError> + Send + Sync + 'static,
+    ) -> Result<Rows, DirectoryError> {
         let mut rows = self.rows();
         let (selection, record) = (self.selection.clone(), poll.clone());
-        let work = move |run: &Run| -> Result<Metrics, RunError> {
-            Ok(Campaign::simulate_for(run, &selection, record.clone())?)
-        };
+        let work =
+            move |run: &Run| -> Result<Metrics, RunError> { Ok(simulate(run, &selection, record.clone())?) };
         let mut poll = poll;
         self.campaign.each_beside(runs, threads, &self.selection, work, |outcome: Option<Outcome>| {
             poll.poll().map_err(|_| DirectoryError::Interrupted)?;

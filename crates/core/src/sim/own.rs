@@ -1,6 +1,7 @@
 //! Parts of a program's own in a run: where one cannot go on, the run ends.
 
 use super::{Simulation, SimulationError};
+use crate::estimator::Monitor;
 
 impl Simulation {
     /// Ends a run with a part of a program's own that cannot go on.
@@ -9,7 +10,7 @@ impl Simulation {
             return Ok(());
         }
         let halted = || {
-            let adaptation = self.monitor.as_ref().and_then(|monitor| monitor.halted());
+            let adaptation = self.monitor.as_ref().and_then(Monitor::halted);
             let all = [
                 ("sensor", self.sensing.halted()),
                 ("estimator", self.estimator.halted()),

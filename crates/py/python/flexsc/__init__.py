@@ -22,6 +22,7 @@ from typing import Any
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
+from flexsc._linear import Linear, Signal
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
@@ -29,7 +30,7 @@ from flexsc._scenario import Log, Result, Samples, Scenario
 from flexsc._simulator import Quantities, Simulator, Simulators, Snapshot
 from flexsc._topic import Topic
 from flexsc._units import Metrics
-from flexsc.parts import Actuator, Adaptation, Effort, Estimator, Hold, Law, Reading, Sensor
+from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor
 from flexsc.structure import (
     StateSpace,
     Structure,
@@ -43,10 +44,12 @@ from flexsc.structure import (
 __all__ = [
     "Actuator",
     "Adaptation",
+    "CompiledLaw",
     "Effort",
     "Estimator",
     "Hold",
     "Law",
+    "Linear",
     "Log",
     "LogError",
     "Metrics",
@@ -58,6 +61,7 @@ __all__ = [
     "Scenario",
     "ScenarioError",
     "Sensor",
+    "Signal",
     "SimulationError",
     "Simulator",
     "Simulators",

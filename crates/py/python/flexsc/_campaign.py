@@ -154,7 +154,8 @@ def campaign(
     Args:
         scenario: What the runs are drawn from.
         runs: Their number, or their range (of step 1).
-        jobs: Threads, at most 1024; left out, one for each core, and in each task of an executor one.
+        jobs: Threads, at most 1024; left out, one for each core, and in each task of an executor one. Parts
+            written in Python run one at a time, whatever their threads: with them one is the default.
         seed: Seed, instead of the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
         metrics: The metrics that the table has; left out, all of them.
@@ -186,6 +187,8 @@ def campaign(
     if seed is not None:
         scenario = scenario.with_("seed", seed)
     span = (run_number(numbers.start), run_number(numbers.stop))
+    if jobs is None and scenario.parts:
+        jobs = 1
     names = None if metrics is None else list(metrics)
     part_s = None if executor is None else task_s
     work = engine.Work.of(scenario._native, span, [], sample, replicas, names, part_s, yes)
@@ -243,6 +246,8 @@ def sweep(
     if seed is not None:
         scenario = scenario.with_("seed", seed)
     runs = replicas * prod(len(numbers) for _, numbers in grids)
+    if jobs is None and scenario.parts:
+        jobs = 1
     names = None if metrics is None else list(metrics)
     work = engine.Work.of(scenario._native, (0, runs), grids, "random", replicas, names, None, yes)
     return _made(work, jobs)

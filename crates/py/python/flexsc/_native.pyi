@@ -34,11 +34,14 @@ __all__ = [
     "__version__",
     "arrow_schema",
     "arrow_stream",
+    "beside_parts",
     "campaign_figures",
     "directory_figures",
     "examples",
+    "exponential",
     "gain_regions_json",
     "identify_json",
+    "linear_json",
     "log_figure",
     "log_figures",
     "log_of",
@@ -48,6 +51,7 @@ __all__ = [
     "modes_figure",
     "observer_margin_json",
     "observer_region_json",
+    "parts_of",
     "persistence",
     "plan_json",
     "plan_torque",
@@ -59,8 +63,10 @@ __all__ = [
     "schema_json",
     "simulate",
     "stability_map_json",
+    "text_beside_parts",
     "to_mcap",
     "topics_json",
+    "with_parts",
     "write",
 ]
 
@@ -97,11 +103,6 @@ class Scenario:
     @staticmethod
     def from_values(text: str, name: str) -> Scenario: ...
     def with_keys(self, keys: Sequence[tuple[str, str]]) -> Scenario: ...
-    def with_parts(self, parts: Sequence[tuple[str, object]]) -> Scenario: ...
-    @staticmethod
-    def beside(text: str, name: str, parts: Sequence[tuple[str, object]]) -> Scenario: ...
-    def parts(self) -> list[tuple[str, Any]]: ...
-    def text_beside(self) -> str: ...
     def draw(self, run: int) -> Scenario: ...
     @property
     def name(self) -> str: ...
@@ -228,7 +229,7 @@ class Event:
         """The dominant mode: displacement (rad), its rate (rad/s) and frequency (rad/s)."""
     @property
     def elastic(self) -> list[_Three]:
-        """The elastic modes: rate (rad/s), frequency (rad/s), and its jump for each jump of the rigid rate."""
+        """The elastic modes: rate (rad/s), frequency (rad/s), its jump for each jump of the rigid rate."""
     @property
     def trusted(self) -> bool:
         """Whether the elastic modes may be acted on."""
@@ -239,8 +240,9 @@ class Hold:
 
     `Hold(torque)` holds a torque (N m; rad/s² on a body without inertia; of a wheel, units of its command);
     `acceleration` (rad/s²), `change` of the rigid rate (rad/s) and `moment` (A m²) take its place. The law is
-    asked again `after` so many seconds, or at the instant `until`, or when the angle is `at_least` or `at_most` a
-    level (rad), whichever is first; without a time after the law's `period`. `state` is what the log calls it.
+    asked again `after` so many seconds, or at the instant `until`, or when the angle is `at_least` or
+    `at_most` a level (rad), whichever is first; without a time after the law's `period`. `state` is what the
+    log calls it.
     """
 
     def __new__(
@@ -291,7 +293,8 @@ class Truth:
         """The angle with its elastic part (rad), of a body with one."""
     @property
     def attitude(self) -> _Four | None:
-        """The attitude (w, x, y, z), which turns vectors of the body's axes into inertial ones, of one with three axes."""
+        """The attitude (w, x, y, z), which turns vectors of the body's axes into inertial ones, of one with
+        three axes."""
     @property
     def elastic(self) -> _Three:
         """The elastic rotations at the sensor beside the attitude (rad)."""
@@ -315,8 +318,9 @@ class Truth:
 
 @final
 class Reading:
-    """What a sensor measured: the `angle` (rad) or the `attitude` (w, x, y, z), the true one of a sensor that tells neither;
-    the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with what it is in `inertial` ones."""
+    """What a sensor measured: the `angle` (rad) or the `attitude` (w, x, y, z), the true one of a sensor that
+    tells neither; the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with what it is in
+    `inertial` ones."""
 
     def __new__(
         cls,
@@ -386,7 +390,8 @@ class Taken:
         """Angle beyond the target (rad) and rate (rad/s) about each axis; None of a sensor that is silent."""
     @property
     def readings(self) -> list[Reading | None]:
-        """What each sensor measured now, in the order of the scenario; None of one that was not due, or silent."""
+        """What each sensor measured now, in the order of the scenario; None of one that was not due, or
+        silent."""
     @property
     def origin_angle(self) -> float | None:
         """From where angles count (rad), of a body with one angle."""
@@ -395,7 +400,7 @@ class Taken:
         """The target (w, x, y, z), of a body with three axes."""
     @property
     def truth(self) -> list[tuple[float, float]]:
-        """The true rigid angle beyond the target (rad) and rate (rad/s) about each axis, for ideal observers."""
+        """The true rigid angle beyond the target (rad) and rate (rad/s) about each axis, for observers."""
     @property
     def torque(self) -> list[float]:
         """The torque that the actuator holds about each axis (N m)."""
@@ -635,6 +640,12 @@ def identify_json(
 ) -> str: ...
 def persistence(sensitivities: npt.NDArray[np.float64]) -> float: ...
 def write(path: str | os.PathLike[str], text: str) -> None: ...
+def with_parts(scenario: Scenario, parts: Sequence[tuple[str, object]]) -> Scenario: ...
+def beside_parts(text: str, name: str, parts: Sequence[tuple[str, object]]) -> Scenario: ...
+def parts_of(scenario: Scenario) -> list[tuple[str, Any]]: ...
+def text_beside_parts(scenario: Scenario) -> str: ...
+def linear_json(scenario: Scenario, at: float) -> str: ...
+def exponential(matrix: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
 def examples() -> list[tuple[str, str]]: ...
 def schema_json() -> str: ...
 def meanings_json(scenario: Scenario) -> str: ...

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Unpack
 
+    from flexsc._linear import Break, Linear
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor
     from flexsc.scenario import Keys
 
@@ -191,9 +192,9 @@ class Scenario:
         """A scenario with parts of your own in the place of its own, as `flexsc.parts` describes them.
 
         The objects are copied: what happens to them later does not change the scenario. Several sensors are
-        given by their places in the scenario's list, `sensor={1: MyTracker()}`; one alone takes the place of the
-        first. No file can hold such parts: `to_toml` has empty tables for them, a log of a run does not repeat
-        alone, and campaigns run in this process only.
+        given by their places in the scenario's list, `sensor={1: MyTracker()}`; one alone takes the place of
+        the first. No file can hold such parts: `to_toml` has empty tables for them, a log of a run does not
+        repeat alone, and campaigns run in this process only.
 
         >>> class Off(flexsc.Law):
         ...     def decide(self, event):
@@ -223,12 +224,83 @@ class Scenario:
                 found = part.__name__ if isinstance(part, type) else type(part).__name__
                 raise TypeError(f"{role} must be an object of a flexsc.{kind.__name__}, got {found}")
             brought.append((role, part))
-        return self._of(self._native.with_parts(brought))
+        return self._of(engine.with_parts(self._native, brought))
 
     @property
     def parts(self) -> dict[str, object]:
         """The parts of your own by role; sensors as `sensor 0`."""
-        return dict(self._native.parts())
+        return dict(engine.parts_of(self._native))
+
+    def linearise(
+        self,
+        at: float = 0.0,
+        *,
+        period: float | None = None,
+        delay: float | None = None,
+        loop: Break | None = None,
+    ) -> Linear:
+        """The scenario's body at rest as a linear model, or its loop cut open.
+
+        States are rigid motion and modes, inputs the torques of the actuator (N m), outputs what is measured:
+        angles and rates at the sensor with their elastic parts, then all states. Wheels' momentum couples the
+        axes; surroundings and limits are left out.
+
+        Args:
+            at: The time (s) at which natural frequencies that drift are taken.
+            period: Period of samples (s), at which inputs change and are held; None for continuous time.
+            delay: How late inputs act (s); None for the delay of the scenario's wheel.
+            loop: Cuts the loop of a linear law (`pd`, `attitude`, `state_space`) open, sampled with its
+            period:
+                at what it commands, at the actuator's torque, or at the measured angles and rates. The signs
+                are those of negative feedback: `closed()` closes it again.
+
+        >>> flexsc.Scenario.example("relay-fixed").linearise(period=0.5).a.shape
+        (6, 6)
+
+        Raises:
+            ScenarioError: The body is no linear system: drives turn its appendages.
+            ValueError: The loop is not linear, or a time is not accepted.
+        """
+        from flexsc._linear import linearise
+
+        return linearise(self, at, period, delay, loop)
+
+    def with_law(
+        self,
+        controller: object,
+        period: float | None = None,
+        *,
+        method: Literal["held", "tustin"] = "held",
+        command: Literal["torque", "acceleration"] = "torque",
+        limit: float | None = None,
+        track: bool = False,
+    ) -> Scenario:
+        """A scenario with a linear controller as its law, `[law.state_space]`.
+
+        Args:
+            controller: Matrices (A, B, C, D), or what has them, as `control.ss` and `scipy.signal.StateSpace`
+            do;
+                for three axes one for all, or a dict of one for `roll`, `pitch` and `yaw`. Its inputs are the
+                errors of the angle (rad) and, if there are two, of the rate (rad/s): what is wanted less what
+                is believed; its output is the command.
+            period: Period of its samples (s), of a controller of continuous time; one of discrete time has
+            it. method: How continuous time is sampled: with errors `held` over a period exactly, or by
+            `tustin`. command: Whether the output is a torque (N m) or an acceleration (rad/s²).
+            limit: Largest command; None without a limit.
+            track: Whether it follows a manoeuvre while it lasts.
+
+        >>> scenario = flexsc.Scenario.example("relay-fixed")
+        >>> pd = scenario.with_law(([], [], [], [[0.04, 0.3]]), 0.25)
+        >>> pd.to_dict()["law"]["state_space"]["d"]
+        [[0.04, 0.3]]
+
+        Raises:
+            ScenarioError: The matrices are not accepted, or do not go with the other parts.
+            ValueError: The period is missing, or there is more than one output.
+        """
+        from flexsc._linear import law_of
+
+        return self.with_("law", law_of(controller, period, method, command, limit, track))
 
     def draw(self, run: int) -> Scenario:
         """The scenario of one run of a campaign: its `[uncertain]` keys drawn and set.
@@ -293,14 +365,14 @@ class Scenario:
         return _html.heading(self.name, about) + _html.line(values.get("about", "")) + shown + text
 
     def __reduce__(self) -> tuple[Any, ...]:
-        parts = self._native.parts()
+        parts = engine.parts_of(self._native)
         if parts:
-            return _beside, (self._native.text_beside(), self.name, parts)
+            return _beside, (engine.text_beside_parts(self._native), self.name, parts)
         return Scenario.parse, (self.to_toml(), self.name)
 
 
 def _beside(text: str, name: str, parts: list[tuple[str, object]]) -> Scenario:
-    return Scenario._of(engine.Scenario.beside(text, name, parts))
+    return Scenario._of(engine.beside_parts(text, name, parts))
 
 
 class _Topics:

@@ -1,7 +1,7 @@
 """Parts of your own: a law, an estimator, a sensor, an actuator or an adaptation as an object of Python.
 
-A part is asked at events and at samples alone; between them the motion is exact. `Scenario.with_parts` puts it
-in the place of the scenario's own, beside all other kinds:
+A part is asked at events and at samples alone; between them the motion is exact. `Scenario.with_parts` puts
+it in the place of the scenario's own, beside all other kinds:
 
 >>> import flexsc
 >>> class Damper(flexsc.Law):
@@ -12,17 +12,19 @@ in the place of the scenario's own, beside all other kinds:
 >>> scenario.with_parts(law=Damper()).simulate().metrics["switchings"]
 241
 
-Each run begins with copies of the objects, so that runs repeat: `copy` makes them, by `copy.deepcopy` unless a
-class says otherwise. An exception ends the run, and comes out of `simulate` as it was raised; in a campaign it is
-the `error` of its row. Numbers are in SI units.
+Each run begins with copies of the objects, so that runs repeat: `copy` makes them, by `copy.deepcopy` unless
+a class says otherwise. An exception ends the run, and comes out of `simulate` as it was raised; in a campaign
+it is the `error` of its row. Numbers are in SI units.
 """
 
 from __future__ import annotations
 
 import copy
+import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, TypeVar
+from types import MappingProxyType
+from typing import Literal, TypeVar
 
 from flexsc._native import (
     Authority,
@@ -40,13 +42,11 @@ from flexsc._native import (
     Truth,
 )
 
-if TYPE_CHECKING:
-    from types import MappingProxyType
-
 __all__ = [
     "Actuator",
     "Adaptation",
     "Authority",
+    "CompiledLaw",
     "Demanded",
     "Draws",
     "Effort",
@@ -67,8 +67,8 @@ __all__ = [
 _Self = TypeVar("_Self", bound="_Part")
 
 
-class _Part(ABC):
-    """What all parts have."""
+class _Part(ABC):  # noqa: B024
+    """What all parts have: roles have the methods."""
 
     def copy(self: _Self) -> _Self:
         """Make a part in the same state that shares nothing with this one: by `copy.deepcopy`."""
@@ -93,7 +93,7 @@ class Law(_Part):
     """Whether the torque changes with the state that a hold names alone, as a relay's does."""
     tracks: bool = False
     """Whether it follows a manoeuvre while it lasts; else its goal is where the manoeuvre ends."""
-    tunable: Mapping[str, float] | MappingProxyType[str, float] = {}
+    tunable: Mapping[str, float] = MappingProxyType({})
     """The numbers that an adaptation may tune, by name, with their values at the start."""
 
     def start(self, authority: Authority) -> None:
@@ -109,6 +109,71 @@ class Law(_Part):
 
     def tune(self, key: str, value: float) -> None:
         """Take over a number of `tunable` that an adaptation has changed."""
+
+
+class CompiledLaw(Law):
+    """A law that is a compiled function, called without Python: what numba's `cfunc` or a C compiler makes.
+
+    The function takes nine arguments and returns nothing; all numbers are doubles:
+
+        void law(double now, double since, double cause, double angle, double rate,
+                 double goal_angle, double goal_rate, double *states, double *hold);
+
+    `now` is the time (s), `since` that since its last call, rounded once. `cause` is
+    0 at the start, 1 at the time of the last hold, 2 and 3 when the angle is at least and at most its level.
+    `states` are its own from call to call. It writes `hold`: torque (N m), time until it is asked again (s),
+    and the least and most angle (rad) at which it is asked; those that it leaves NaN, as they come, are none.
+
+    >>> import ctypes
+    >>> kind = ctypes.CFUNCTYPE(None, *[ctypes.c_double] * 7, *[ctypes.POINTER(ctypes.c_double)] * 2)
+    >>> @kind
+    ... def damper(now, since, cause, angle, rate, goal_angle, goal_rate, states, hold):
+    ...     hold[0] = -4.0 * (angle - goal_angle) - 30.0 * (rate - goal_rate)
+    >>> CompiledLaw(damper, period=0.25).period
+    0.25
+
+    Args:
+        function: A function of numba's `cfunc`, one of `ctypes`, or its address. A wrong address ends the
+        process. period: Period (s) at which it is asked again if a hold has no time; None of a function that
+        gives them all. states: Its states at the start of a run.
+        promise: How near to the goal it promises to stay (rad); None if it promises nothing.
+        switches: Whether its torque changes with its state alone, as a relay's does.
+    """
+
+    address: int
+    """Where the function is."""
+    states: tuple[float, ...]
+    """Its states at the start of a run."""
+
+    def __init__(
+        self,
+        function: object,
+        *,
+        period: float | None = None,
+        states: Sequence[float] = (),
+        promise: float | None = None,
+        switches: bool = False,
+    ) -> None:
+        self._function = function
+        if isinstance(function, int):
+            self.address = function
+        elif isinstance(address := getattr(function, "address", None), int):
+            self.address = address
+        else:
+            self.address = ctypes.cast(function, ctypes.c_void_p).value or 0  # type: ignore[arg-type]
+        self.period, self.states = period, tuple(float(state) for state in states)
+        self.promise, self.switches = promise, switches
+
+    def decide(self, event: Event) -> Hold:
+        """The function decides: this is never called."""
+        raise NotImplementedError("a compiled law is called by its address")
+
+    def copy(self) -> CompiledLaw:
+        """The law itself: its states are copied for each run."""
+        return self
+
+    def __reduce__(self) -> tuple[object, ...]:
+        raise TypeError("a compiled law is a place in this process: it cannot be pickled")
 
 
 class Estimator(_Part):
@@ -164,7 +229,7 @@ class Sensor(_Part):
     """The same of the measured rate (rad/s); None of a sensor that measures none."""
 
     def start(self, axes: int, draws: Draws) -> None:
-        """Begin a run of a body with 1 or 3 axes; noise comes from streams of `draws`, so that runs repeat."""
+        """Begin a run of a body with 1 or 3 axes; noise comes from streams of `draws`: runs repeat."""
 
     @abstractmethod
     def read(self, truth: Truth) -> Reading | None:

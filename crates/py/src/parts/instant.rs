@@ -52,8 +52,8 @@ impl Instant {
         Ok(Self(self.0 + span(seconds, "what is added")?))
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (u64, u64))> {
-        Ok((py.get_type::<Self>().into_any(), self.0.parts()))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyAny>, (u64, u64)) {
+        (py.get_type::<Self>().into_any(), self.0.parts())
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {

@@ -10,7 +10,7 @@ use flexsc_core::law::{
 };
 use flexsc_core::own::Halt;
 use flexsc_core::time::{Instant as Exact, Span};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::hold::Hold;
@@ -285,13 +285,12 @@ impl Control for Deciding {
         let event = Event { now, cause, goal: *goal, belief: belief.clone() };
         let told = Python::attach(|py| {
             let argument = || Ok(Bound::new(py, event)?.into_any());
-            self.method.call(py, argument, |told| match told.cast::<Hold>() {
-                Ok(hold) => Ok(*hold.get()),
-                Err(_) => {
-                    let kind = told.get_type().name()?;
-                    let why = format!("decide must return a flexsc.Hold, got {kind}");
-                    Err(pyo3::exceptions::PyTypeError::new_err(why))
+            self.method.call(py, argument, |told| {
+                if let Ok(hold) = told.cast::<Hold>() {
+                    return Ok(*hold.get());
                 }
+                let kind = told.get_type().name()?;
+                Err(PyTypeError::new_err(format!("decide must return a flexsc.Hold, got {kind}")))
             })
         });
         let Some(hold) = told else { return Held::NONE };

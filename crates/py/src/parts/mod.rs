@@ -2,6 +2,7 @@
 
 mod actuator;
 mod adaptation;
+mod bring;
 mod compiled;
 mod draws;
 mod estimator;
@@ -20,6 +21,7 @@ use flexsc_core::scenario::OwnParts;
 use pyo3::prelude::*;
 
 pub use actuator::{Demanded, Effort, Setting};
+pub use bring::{beside_parts, parts_of, text_beside_parts, with_parts};
 pub use draws::{Draws, Stream};
 pub use estimator::{Known, Taken};
 pub use hold::Hold;

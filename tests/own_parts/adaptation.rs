@@ -1,0 +1,44 @@
+//! An adaptation from outside: it moves a number of the law on after each window, and ends the run where it has gone too far.
+
+use std::io;
+
+use flexsc_core::adaptation::{Adapt, Decision, Learn, Step};
+use flexsc_core::own::Halt;
+use flexsc_core::random::Seed;
+use flexsc_core::time::Instant;
+
+/// The climber: its step, and the value that it may not pass.
+#[derive(Copy, Clone, Debug)]
+pub struct Climber {
+    pub step: f64,
+    pub most: f64,
+}
+
+/// The climber at work, with the value.
+#[derive(Clone, Debug)]
+struct Climbing(Climber, f64);
+
+impl Adapt for Climber {
+    fn tunes(&self) -> &'static str {
+        "k_t"
+    }
+
+    fn start(&self, value: f64, _: Seed) -> Box<dyn Learn> {
+        Box::new(Climbing(*self, value))
+    }
+}
+
+impl Learn for Climbing {
+    fn learn(&mut self, _: Instant, _: f64) -> Option<Step> {
+        self.1 += self.0.step;
+        Some(Step { decision: Decision::Keep, change: 0.0, draw: 1.0, gain: self.1, settled: 0 })
+    }
+
+    fn halted(&self) -> Option<Halt> {
+        (self.1 > self.0.most).then(|| Halt::new(io::Error::other("too far")))
+    }
+
+    fn copy(&self) -> Box<dyn Learn> {
+        Box::new(self.clone())
+    }
+}
