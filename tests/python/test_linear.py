@@ -10,8 +10,8 @@ import numpy.typing as npt
 import pytest
 from conftest import shipped
 from flexsc.parts import Authority, Event
-from scipy.linalg import expm
-from scipy.signal import StateSpace, cont2discrete
+from scipy.linalg import expm  # type: ignore[import-untyped]
+from scipy.signal import StateSpace, cont2discrete  # type: ignore[import-untyped]
 
 PLANAR = """
 duration = 30.0
@@ -163,7 +163,7 @@ def test_a_closed_loop_moves_as_the_simulated_one(law: str, sensor: str) -> None
     result = scenario.simulate(log="full")
     poles = []
     for loop in ("command", "torque", "measurement"):
-        opened = scenario.linearise(loop=loop)  # type: ignore[arg-type]
+        opened = scenario.linearise(loop=loop)
         closed = opened.closed()
         poles.append(np.sort(np.abs(np.linalg.eigvals(closed.a))))
         np.testing.assert_allclose(poles[-1], poles[0], atol=1e-8)
