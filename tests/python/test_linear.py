@@ -224,6 +224,21 @@ def test_three_axes_close_by_the_whole_inertia() -> None:
     # Rigid poles of all axes near the bandwidth that the law asks for.
     np.testing.assert_allclose(slow, 0.1, rtol=0.02)
     assert np.abs(np.linalg.eigvals(closed.a)).max() < 1.0
+    # And it moves as the run does, which wheels of different speeds turn.
+    begins = 1e-6 * np.array([1.0, -0.5, 0.7])
+    speeds = [300.0, 100.0, 250.0, 50.0]
+    changed = {"actuator.wheels.speeds": speeds, "log.period": 0.25}
+    scenario = scenario.with_({"spacecraft.attitude": [1.0, *(0.5 * begins)], **changed})
+    pointing = scenario.simulate(log="full")["pointing"]
+    _, first = np.unique(pointing["time_s"], return_index=True)
+    closed = scenario.linearise(loop="command").closed()
+    motion = [np.concatenate([begins, np.zeros(len(closed.a) - 3)])]
+    for _ in range(40):
+        motion.append(closed.a @ motion[-1])
+    seen = scenario.linearise().select(outputs=["roll", "pitch", "yaw"]).c
+    expected = np.array(motion)[:, : seen.shape[1]] @ seen.T
+    found = 2.0 * np.stack([pointing[f"q_{axis}"][first] for axis in "xyz"], axis=1)
+    np.testing.assert_allclose(found, expected, atol=1e-6 * 1e-6)
 
 
 def test_controllers_come_back_in() -> None:
