@@ -10,7 +10,7 @@ import flexsc
 import numpy as np
 import numpy.typing as npt
 from flexsc.parts import Authority, Demanded, Draws, Event, Instant, Known, Setting, Stream, Taken, Truth
-from scipy.linalg import expm
+from scipy.linalg import expm  # type: ignore[import-untyped]
 
 Array = npt.NDArray[np.float64]
 
@@ -25,12 +25,12 @@ class Relay(flexsc.Law):
         self.promise = dead_zone + hysteresis
         self.strong, self.k_t, self.dead_zone = strong, k_t, dead_zone
         self.state = "start"
+        self.pushed = Instant(0, 0)
         back = dead_zone - hysteresis
         self.right = flexsc.Hold(-strong, at_most=back, state="RACC")
         self.left = flexsc.Hold(strong, at_least=-back, state="LACC")
-        rest = {"at_least": dead_zone, "at_most": -dead_zone}
         self.weak = {
-            state: flexsc.Hold(torque, state=state, **rest)
+            state: flexsc.Hold(torque, state=state, at_least=dead_zone, at_most=-dead_zone)
             for state, torque in [("W0", weak), ("W+", weak), ("W-", -weak)]
         }
 
@@ -109,7 +109,8 @@ def turn(by: Array) -> Array:
 
 def beyond(goal: Array, q: Array) -> Array:
     off = times(goal * [1, -1, -1, -1], q)
-    return 2.0 * off[1:] * np.sign(off[0])
+    vector: Array = 2.0 * off[1:] * np.sign(off[0])
+    return vector
 
 
 class Mekf(flexsc.Estimator):
@@ -193,7 +194,7 @@ class Mekf(flexsc.Estimator):
         angles = beyond(np.array(taken.origin_attitude), q)
         return list(zip(angles.tolist(), (self.rate - bias).tolist(), strict=True))
 
-    def carry(self, taken: Taken) -> Sequence[Sequence[float]]:
+    def carry(self, taken: Taken) -> Sequence[Sequence[float]] | None:
         return self.believed(taken)
 
 

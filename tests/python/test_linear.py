@@ -10,8 +10,8 @@ import numpy.typing as npt
 import pytest
 from conftest import shipped
 from flexsc.parts import Authority, Event
-from scipy.linalg import expm
-from scipy.signal import StateSpace, cont2discrete
+from scipy.linalg import expm  # type: ignore[import-untyped]
+from scipy.signal import StateSpace, cont2discrete  # type: ignore[import-untyped]
 
 PLANAR = """
 duration = 30.0
@@ -163,7 +163,7 @@ def test_a_closed_loop_moves_as_the_simulated_one(law: str, sensor: str) -> None
     result = scenario.simulate(log="full")
     poles = []
     for loop in ("command", "torque", "measurement"):
-        opened = scenario.linearise(loop=loop)  # type: ignore[arg-type]
+        opened = scenario.linearise(loop=loop)
         closed = opened.closed()
         poles.append(np.sort(np.abs(np.linalg.eigvals(closed.a))))
         np.testing.assert_allclose(poles[-1], poles[0], atol=1e-8)
@@ -224,6 +224,21 @@ def test_three_axes_close_by_the_whole_inertia() -> None:
     # Rigid poles of all axes near the bandwidth that the law asks for.
     np.testing.assert_allclose(slow, 0.1, rtol=0.02)
     assert np.abs(np.linalg.eigvals(closed.a)).max() < 1.0
+    # And it moves as the run does, which wheels of different speeds turn.
+    begins = 1e-6 * np.array([1.0, -0.5, 0.7])
+    speeds = [300.0, 100.0, 250.0, 50.0]
+    changed = {"actuator.wheels.speeds": speeds, "log.period": 0.25}
+    scenario = scenario.with_({"spacecraft.attitude": [1.0, *(0.5 * begins)], **changed})
+    pointing = scenario.simulate(log="full")["pointing"]
+    _, first = np.unique(pointing["time_s"], return_index=True)
+    closed = scenario.linearise(loop="command").closed()
+    motion = [np.concatenate([begins, np.zeros(len(closed.a) - 3)])]
+    for _ in range(40):
+        motion.append(closed.a @ motion[-1])
+    seen = scenario.linearise().select(outputs=["roll", "pitch", "yaw"]).c
+    expected = np.array(motion)[:, : seen.shape[1]] @ seen.T
+    found = 2.0 * np.stack([pointing[f"q_{axis}"][first] for axis in "xyz"], axis=1)
+    np.testing.assert_allclose(found, expected, atol=1e-6 * 1e-6)
 
 
 def test_controllers_come_back_in() -> None:

@@ -84,10 +84,10 @@ def mekf() -> Mekf:
 def test_an_attitude_filter_in_numpy_believes_the_same() -> None:
     scenario = shipped("earth-observer").with_("duration", 120.0)
     told = []
-    for parts in [{}, {"estimator": mekf()}]:
+    for estimator in [None, mekf()]:
         notes = Notes()
         law = Pd(0.25, 40.0, 250.0, notes)
-        scenario.with_parts(law=law, **parts).simulate(log="none")
+        scenario.with_parts(law=law, estimator=estimator).simulate(log="none")
         told.append(np.array(sorted(notes.rows)))
     built_in, own = told
     assert built_in.shape == own.shape == (3 * 481, 4)
@@ -332,7 +332,7 @@ def test_numba_makes_laws() -> None:
     numba: Any = pytest.importorskip("numba")
     double, several = numba.types.double, numba.types.CPointer(numba.types.double)
 
-    @numba.cfunc(numba.types.void(*[double] * 7, several, several))  # type: ignore[untyped-decorator]
+    @numba.cfunc(numba.types.void(*[double] * 7, several, several))
     def damper(now, since, cause, angle, rate, goal_angle, goal_rate, states, hold):  # type: ignore
         hold[0] = -4.0 * angle - 30.0 * rate
 
@@ -346,7 +346,7 @@ def test_a_compiled_law_that_tells_no_number_ends_the_run() -> None:
     numbers = ctypes.POINTER(ctypes.c_double)
     kind = ctypes.CFUNCTYPE(None, *[ctypes.c_double] * 7, numbers, numbers)
 
-    @kind
+    @kind  # type: ignore[untyped-decorator]
     def wrong(*arguments: Any) -> None:
         arguments[8][0] = float("inf") if arguments[0] > 3.0 else 0.0
 
@@ -363,7 +363,7 @@ def test_the_examples_of_docstrings_run() -> None:
     finder, runner = doctest.DocTestFinder(), doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
     found = 0
     scenario = flexsc.Scenario
-    objects = [_native.Hold, _native.Instant, _native.Reading, _native.Effort]
+    objects: list[Any] = [_native.Hold, _native.Instant, _native.Reading, _native.Effort]
     for thing in [*objects, scenario.with_parts, scenario.linearise, scenario.with_law]:
         for test in finder.find(thing, thing.__name__, globs={"flexsc": flexsc, "numpy": np}):
             runner.run(test)

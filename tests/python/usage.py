@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import flexsc
+import flexsc.parts
 import numpy as np
 import numpy.typing as npt
 
@@ -48,3 +49,19 @@ except flexsc.ScenarioError as error:
     message: str = str(error)
 else:
     raise AssertionError("a scenario needs a body")
+
+
+class Damper(flexsc.Law):
+    period = 0.5
+
+    def decide(self, event: flexsc.parts.Event) -> flexsc.Hold:
+        return flexsc.Hold(-1e-3 * event.angle - 1e-2 * event.rate, after=0.25)
+
+
+own: flexsc.Scenario = scenario.with_parts(law=Damper())
+brought: object = own.parts["law"]
+held: float | None = flexsc.Hold(1e-3).torque
+linear: flexsc.Linear = scenario.linearise(period=0.5)
+system: npt.NDArray[np.float64] = linear.a
+names: list[str] = [signal.name for signal in linear.states]
+led: flexsc.Scenario = scenario.with_law(([], [], [], [[1e-3, 1e-2]]), period=0.5)

@@ -339,6 +339,10 @@ def _loop(name: str, keys: Mapping[str, Any], body: Linear, delay: float, loop: 
     period = parts[0][0]
     if any(part[0] != period for part in parts):
         raise _refused(name, "the laws of the axes have periods that differ: a linear loop has one")
+    if any(part[2] != parts[0][2] for part in parts):
+        raise _refused(
+            name, "the laws of the axes command torques and accelerations: a linear loop has one kind"
+        )
     # From angles and rates, axis by axis, to commands.
     a, b, c, d = (_diagonal([part[1][k] for part in parts]) for k in range(4))
     if parts[0][2]:
@@ -348,6 +352,10 @@ def _loop(name: str, keys: Mapping[str, Any], body: Linear, delay: float, loop: 
         own = laws[0][1].get("inertia")
         inertia = inertia if own is None else np.array(own, dtype=np.float64)
         c, d = inertia @ c, inertia @ d
+        if count == 3:
+            # Accelerations become torques J a + w x (J w + h), and J times this block is the cross of h.
+            own_inertia = np.linalg.inv(body.b[3:6])
+            d[:, 1::2] -= own_inertia @ body.a[3:6, 3:6]
     names = ["angle", "rate"] if count == 1 else [f"{axis}{what}" for axis in _AXES for what in ("", "_rate")]
     plant = body.select(outputs=names).sampled(period, delay)
     states = [f"law{k}" for k in range(len(a))]
