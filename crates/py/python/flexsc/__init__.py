@@ -17,7 +17,8 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, read_campaign, sweep
@@ -28,15 +29,18 @@ from flexsc._plan import Plan
 from flexsc._scenario import Log, Result, Samples, Scenario
 from flexsc._topic import Topic
 from flexsc._units import Metrics
-from flexsc.structure import (
-    StateSpace,
-    Structure,
-    appendage_from_nastran,
-    from_csv,
-    from_nastran,
-    from_state_space,
-    write_scenario,
-)
+
+if TYPE_CHECKING:
+    from flexsc import plot, scenario, structure
+    from flexsc.structure import (
+        StateSpace,
+        Structure,
+        appendage_from_nastran,
+        from_csv,
+        from_nastran,
+        from_state_space,
+        write_scenario,
+    )
 
 __all__ = [
     "Log",
@@ -65,16 +69,46 @@ __all__ = [
     "observer_margin",
     "observer_region",
     "persistence",
+    "plot",
     "read_campaign",
     "read_log",
     "relay_damping",
     "rigid_cycles",
     "robust_gains",
+    "scenario",
     "schema",
     "stability_map",
+    "structure",
     "sweep",
     "write_scenario",
 ]
+
+# What is imported when it is first asked for, so that `import flexsc` stays quick.
+_MODULES = ("plot", "scenario", "structure")
+_OF_STRUCTURE = (
+    "StateSpace",
+    "Structure",
+    "appendage_from_nastran",
+    "from_csv",
+    "from_nastran",
+    "from_state_space",
+    "write_scenario",
+)
+
+
+# A type checker knows what there is, and would take any name for one of these.
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        if name in _MODULES:
+            return import_module(f"flexsc.{name}")
+        if name in _OF_STRUCTURE:
+            return getattr(import_module("flexsc.structure"), name)
+        raise AttributeError(f"module 'flexsc' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
 
 
 def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:

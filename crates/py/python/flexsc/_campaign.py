@@ -8,7 +8,7 @@ from math import prod
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal
 
-from flexsc import _arrow, _html, _units
+from flexsc import _arrow, _units
 from flexsc import _native as engine
 from flexsc._scenario import Scenario, run_number
 from flexsc._values import objects
@@ -116,6 +116,8 @@ class Table:
         return engine.campaign_figures(self._work, columns, kind, list(metrics))
 
     def _repr_html_(self) -> str:
+        from flexsc import _html
+
         rows = [
             (name, told["unit"], told["mean"], told["sd"], told["quantiles"][0.05], told["quantiles"][0.95])
             for name, told in self.statistics().items()

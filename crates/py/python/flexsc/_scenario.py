@@ -10,7 +10,6 @@ from functools import cached_property
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from flexsc import _html
 from flexsc import _native as engine
 from flexsc._plan import Plan
 from flexsc._topic import Topic
@@ -233,6 +232,8 @@ class Scenario:
         return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes} modes, seed {self.seed}>"
 
     def _repr_html_(self) -> str:
+        from flexsc import _html
+
         values = self.to_dict()
         about = f"{self.duration:g} s, {self._native.mode_count} modes, seed {self.seed}"
         figure = engine.modes_figure(self._native)
@@ -327,7 +328,7 @@ class Result(_Topics):
         log: str,
         metrics: dict[str, Any],
         topics: dict[str, dict[str, npt.NDArray[Any]]],
-        took: float,
+        took: float = 0.0,
     ) -> None:
         self.scenario = scenario
         self.run = run
@@ -431,6 +432,8 @@ class Result(_Topics):
         return f"<flexsc.Result of {self.scenario.name}, run {self.run}: {topics}>"
 
     def _repr_html_(self) -> str:
+        from flexsc import _html
+
         about = f"run {self.run}, {self.scenario.duration:g} s, seed {self.scenario.seed}"
         rows = [(name, value, self.metrics.unit(name)) for name, value in self.metrics.items()]
         metrics = _html.folded(f"{len(rows)} metrics", _html.table(("metric", "value", "unit"), rows))

@@ -96,9 +96,9 @@ def _modes(a: Numbers, b: Numbers, tolerance: float) -> list[tuple[float, float,
     modes = []
     for group in _alike(poles, upper):
         count, frequency = len(group), float(np.abs(poles[group]).mean())
-        decay = float(-2.0 * poles[group].real.mean())
+        decay = float(-2.0 * np.real(poles[group]).mean())
         # Where the inputs push in the space of these poles: along as many rates as there are modes.
-        push = 2.0 * (right[:, group] @ (left[group] @ b)).real
+        push = 2.0 * np.real(right[:, group] @ (left[group] @ b))
         directions, sizes, amounts = np.linalg.svd(push, full_matrices=False)
         beside = sizes[count] if len(sizes) > count else 0.0
         if beside > max(tolerance * sizes[0], _ROUNDING * condition * largest):
