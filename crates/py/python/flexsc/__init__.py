@@ -2,12 +2,18 @@
 
 A scenario goes in, columns come out:
 
-    >>> import flexsc
-    >>> scenario = flexsc.Scenario.load("scenarios/relay-adaptive.toml")
+    >>> import flexsc, numpy
+    >>> scenario = flexsc.Scenario.example("relay-adaptive")
     >>> result = scenario.simulate()
-    >>> result.metrics["gain_final"]
-    >>> result["command"]["time_s"], result["command"]["state"]
-    >>> flexsc.sweep(scenario, "law.relay.k_t", numpy.linspace(0.28, 0.40, 25))["envelope_late_mean_rad"]
+    >>> round(result.metrics["gain_final"], 4), result.metrics.unit("cycle_period_s")
+    (0.3389, 's')
+    >>> result["command"]["time_s"].shape == result["command"]["state"].shape
+    True
+    >>> round(result.at(12.5)["attitude"]["angle_rad"], 9)
+    9.298e-06
+    >>> table = flexsc.sweep(scenario, "law.relay.k_t", numpy.linspace(0.28, 0.40, 3))
+    >>> table["envelope_late_mean_rad"].shape
+    (3,)
 
 All numbers are in SI units, which the names of columns and metrics end with. A run depends on its scenario,
 its seed and its number alone: its numbers are the same on every machine, on any number of threads.
@@ -117,6 +123,11 @@ def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
     Returns:
         `cycles`, those that exist at the law's gain, and `resonances`, the gains at which an odd harmonic of
         the two-sided cycle meets a mode. Units are in the names.
+
+    >>> import flexsc
+    >>> told = flexsc.rigid_cycles(flexsc.Scenario.example("relay-fixed"))
+    >>> round(told["cycles"][0]["period_s"], 2)
+    44.14
     """
     told: dict[str, list[dict[str, Any]]] = json.loads(engine.rigid_cycles_json(scenario._native))
     return told
@@ -127,6 +138,14 @@ def read_log(path: str | os.PathLike[str]) -> Log:
 
     Raises:
         LogError: The file cannot be read, or is torn or damaged.
+
+    >>> import flexsc, pathlib, tempfile
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     size = run.to_mcap(pathlib.Path(out) / "run.mcap")
+    ...     log = flexsc.read_log(pathlib.Path(out) / "run.mcap")
+    >>> log.topics
+    ['command', 'law', 'log', 'metrics', 'params', 'summary']
     """
     return Log(engine.Log.open(path))
 
@@ -134,6 +153,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
 def examples() -> dict[str, str]:
     """The shipped scenarios: for each name what it is about. `Scenario.example(name)` reads one.
 
+    >>> import flexsc
     >>> "relay-fixed" in flexsc.examples()
     True
     """
@@ -141,12 +161,22 @@ def examples() -> dict[str, str]:
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of scenarios."""
+    """The JSON Schema of scenarios.
+
+    >>> import flexsc
+    >>> flexsc.schema()["properties"]["duration"]["description"]
+    'Simulated time (s).'
+    """
     told: dict[str, Any] = json.loads(engine.schema_json())
     return told
 
 
 def metrics() -> dict[str, dict[str, str]]:
-    """What the metrics mean: by name, the `unit` (empty for a count, a ratio or a word) and the `doc`."""
+    """What the metrics mean: by name, the `unit` (empty for a count, a ratio or a word) and the `doc`.
+
+    >>> import flexsc
+    >>> flexsc.metrics()["cycle_period_s"]["unit"]
+    's'
+    """
     told: dict[str, dict[str, str]] = json.loads(engine.metrics_json())
     return told

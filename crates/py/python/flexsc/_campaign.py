@@ -23,7 +23,14 @@ Sample = Literal["random", "latin-hypercube", "sobol"]
 
 
 class Table:
-    """The results of a campaign: a row for each run."""
+    """The results of a campaign: a row for each run.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
+    >>> table = flexsc.campaign(scenario, runs=4)
+    >>> table["run"].tolist(), table.unit("cycle_period_s")
+    ([0, 1, 2, 3], 's')
+    """
 
     scenario: Scenario
     """What the runs were drawn from."""
@@ -175,6 +182,14 @@ def campaign(
         ScenarioError: The scenario cannot vary so. A single run that fails is a row with an `error`.
         ValueError: There are more than 100 000 000 runs, `yes` is needed, or `out` holds another campaign.
         OSError: `out` cannot be written, or another process is at work there.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 600.0)
+    >>> table = flexsc.campaign(scenario, runs=8, metrics=["switchings", "duty"])
+    >>> len(table), table["switchings"].shape
+    (8, (8,))
+    >>> round(table.statistics()["duty"]["mean"], 3)
+    0.041
     """
     numbers = runs if isinstance(runs, range) else range(index(runs))
     if numbers.step != 1 or not numbers:
@@ -227,6 +242,11 @@ def sweep(
     Raises:
         ScenarioError: There is no such key, it does not accept the first or the last value, or a value is not
             finite. Any other value that is not accepted is a row with an `error`.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0)
+    >>> flexsc.sweep(scenario, "law.relay.k_t", [0.30, 0.31, 0.32])["switchings"].tolist()
+    [82.0, 81.0, 81.0]
     """
     import numpy as np
 
@@ -259,6 +279,14 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
     Raises:
         ValueError: It is no directory of a campaign, or holds what is none of it.
         OSError: It cannot be read.
+
+    >>> import flexsc, tempfile
+    >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 600.0)
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     made = flexsc.campaign(scenario, runs=4, out=out)
+    ...     same = flexsc.read_campaign(out)["switchings"] == made["switchings"]
+    >>> same.tolist()
+    [True, True, True, True]
     """
     from flexsc._executor import place
 

@@ -43,6 +43,11 @@ def from_state_space(
 
     Raises:
         ValueError: The matrices are not those of damped modes that inputs push; the text says why.
+
+    >>> import flexsc
+    >>> model = flexsc.from_state_space([[0, 1], [-4, -0.02]], [[0], [1]], [[0, 1]])
+    >>> [round(float(frequency), 6) for frequency in model.frequencies]
+    [2.0]
     """
     import numpy as np
 
