@@ -157,6 +157,11 @@ def python() -> str:
     return tally(run(python, "-m", "pytest", "tests/python", "-q"))
 
 
+def extras() -> None:
+    """Those of pyNastran are tested in an environment of their own."""
+    run(sys.executable, "tests/extras.py", built(), "", "plot", "dask", "matlab")
+
+
 def nastran() -> str:
     """The tests that need pyNastran, where it can be installed."""
     python = environment(NASTRAN)
@@ -182,6 +187,7 @@ STEPS = [
     Step("fuzzing", 65, fuzz),
     Step("the wheel", 55, wheel),
     Step("Python tests", 70, python),
+    Step("each extra of the wheel alone", 60, extras),
     Step("Python tests with pyNastran", 30, nastran),
 ]
 QUICK = [
