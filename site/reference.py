@@ -186,8 +186,8 @@ def metrics() -> str:
 def topics() -> str:
     text = (
         "# Every topic of a log\n\n`--log events` keeps what changes, `--log full` the motion too, "
-        "`--log scene` also what viewers draw ([viewers](../viewers.md)). Each row has the time of its message. "
-        "Names of fields end with their units. `flexsc schema --topics` prints this list.\n\n"
+        "`--log scene` also what viewers draw ([viewers](../viewers.md)). Each row has the time of its "
+        "message. Names of fields end with their units. `flexsc schema --topics` prints this list.\n\n"
     )
     for name, told in flexsc.topics().items():
         text += f"## `/{name}`\n\n{told['doc']}\n\n" + table(

@@ -160,6 +160,11 @@ def python() -> str:
     return tally(run(python, "-m", "pytest", "tests/python", "-q"))
 
 
+def extras() -> None:
+    """Those of pyNastran are tested in an environment of their own."""
+    run(sys.executable, "tests/extras.py", built(), "", "control", "dask", "gym", "matlab", "plot")
+
+
 def site() -> None:
     """The documentation: every tutorial runs, every link leads somewhere."""
     run(sys.executable, "site/build.py")
@@ -190,6 +195,7 @@ STEPS = [
     Step("fuzzing", 65, fuzz),
     Step("the wheel", 55, wheel),
     Step("Python tests", 70, python),
+    Step("each extra of the wheel alone", 60, extras),
     Step("Python tests with pyNastran", 30, nastran),
     Step("the documentation site, with its tutorials", 80, site),
 ]

@@ -267,8 +267,8 @@ def written(schema_of_scenarios: dict[str, Any]) -> str:
     )
     for key, of in schema.root["properties"].items():
         if key != "name":
-            kind = "datetime" if key == "epoch" else schema.type_of(of)
-            keys += f"\n    {key}: {kind}\n" + docstring(of.get("description", ""), "    ")
+            type_ = "datetime" if key == "epoch" else schema.type_of(of)
+            keys += f"\n    {key}: {type_}\n" + docstring(of.get("description", ""), "    ")
     text = HEAD.replace("\nVector: TypeAlias", listed + "\nVector: TypeAlias", 1)
     bodies = "".join(body for _, body in sorted(classes))
     return text + bodies + "\n\n" + "".join(union for _, union in sorted(unions)) + keys

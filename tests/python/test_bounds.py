@@ -21,13 +21,14 @@ def log_of(path: Path, name: str, schema: bytes, messages: list[bytes]) -> None:
         for index, message in enumerate(messages):
             time = index * 10**9
             writer.add_message(channel_id=channel, log_time=time, publish_time=time, data=message)
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
 
 
 def schema_of(message: Any) -> bytes:
     files = descriptor_pb2.FileDescriptorSet()
     message.DESCRIPTOR.file.CopyToProto(files.file.add())
-    return files.SerializeToString()
+    data: bytes = files.SerializeToString()
+    return data
 
 
 def test_a_struct_is_refused_for_its_topic_alone(tmp_path: Path) -> None:
@@ -56,9 +57,10 @@ def test_lists_maps_and_signs_are_columns(tmp_path: Path) -> None:
 
 def test_long_work_needs_a_yes() -> None:
     long = shipped("wheel-ekf").with_("sensor.sampled.period", 1e-8)
+    log: Any
     for log in ("none", "events"):
         with pytest.raises(ValueError, match=r"makes .* steps: about .* on one core(.|\n)*`yes=True`"):
-            long.simulate(log=log)  # type: ignore[arg-type]
+            long.simulate(log=log)
     with pytest.raises(ValueError, match="steps in each of 10 runs"):
         flexsc.campaign(long, 10)
     with pytest.raises(ValueError, match="at most 100000000 runs, got 1000000000000"):

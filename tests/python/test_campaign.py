@@ -131,12 +131,14 @@ def test_a_sweep_takes_several_keys(fixed: Scenario) -> None:
     assert table["body.planar.angle"].reshape(2, 3)[1].tolist() == angles
     alone = short.with_({"law.relay.k_t": 0.34, "body.planar.angle": 2e-4}).simulate(log="none")
     assert table["envelope_mean_rad"].reshape(2, 3)[1, 1] == alone.metrics["envelope_mean_rad"]
+    wrong: Any
     for wrong in ({}, {"law.relay.k_t": []}):
         with pytest.raises(ValueError, match=r"needs a key|must be of shape"):
             flexsc.sweep(short, wrong)
+    arguments: Any
     for arguments in (("law.relay.k_t",), ({"law.relay.k_t": gains}, angles)):
         with pytest.raises(ValueError, match="with a single key, and with no mapping"):
-            flexsc.sweep(short, *arguments)  # type: ignore[arg-type]
+            flexsc.sweep(short, *arguments)
 
 
 def test_a_value_that_is_not_accepted_is_a_row(fixed: Scenario) -> None:

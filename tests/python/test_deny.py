@@ -2,6 +2,7 @@
 
 import importlib.util
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,13 +13,15 @@ assert spec.loader is not None
 deny = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(deny)
 
-RULES = {
+RULES: dict[str, Any] = {
     "licenses": {"allow": ["MIT", "Zlib", "Apache-2.0 WITH LLVM-exception"]},
     "bans": {"skip": [{"crate": "old@0.2"}]},
 }
 
 
-def crate(name, version="1.0.0", licence="MIT", source=deny.CRATES_IO):
+def crate(
+    name: str, version: str = "1.0.0", licence: str | None = "MIT", source: str | None = deny.CRATES_IO
+) -> dict[str, str | None]:
     return {"name": name, "version": version, "license": licence, "source": source}
 
 
@@ -39,11 +42,11 @@ GOOD = [crate("a"), crate("ours", source=None), crate("old", "0.2.7"), crate("ol
         ("Apache-2.0 WITH LLVM-exception OR GPL-3.0", True),
     ],
 )
-def test_licences(expression, allowed):
+def test_licences(expression: str, allowed: bool) -> None:
     assert deny.allows(expression, RULES["licenses"]["allow"]) == allowed
 
 
-def test_what_keeps_to_the_rules():
+def test_what_keeps_to_the_rules() -> None:
     assert deny.faults(RULES, GOOD) == []
 
 
@@ -58,10 +61,10 @@ def test_what_keeps_to_the_rules():
         (crate("old", "0.20.0"), "old is there in several versions: 0.3.0, 0.20.0"),
     ],
 )
-def test_what_breaks_the_rules(bad, words):
+def test_what_breaks_the_rules(bad: dict[str, str | None], words: str) -> None:
     (fault,) = deny.faults(RULES, [*GOOD, bad])
     assert words in fault
 
 
-def test_a_rule_for_nothing():
+def test_a_rule_for_nothing() -> None:
     assert deny.faults(RULES, GOOD[:2]) == ["deny.toml skips old@0.2, which is not there"]

@@ -50,7 +50,7 @@ def test_the_foreign_reader_sees_the_same_numbers(dense: Result, path: Path) -> 
         messages = topics[f"/{name}"]
         for column, values in dense[name].items():
             if column == "time_s" and name != "command":
-                told = [time / 1e9 for time, _ in messages]
+                told: list[Any] = [time / 1e9 for time, _ in messages]
                 np.testing.assert_allclose(told, values, rtol=0, atol=1.1e-9)
                 continue
             outer, _, inner = column.partition(".")

@@ -169,7 +169,7 @@ def test_offsets_inertias_coordinate_systems_and_units(tmp_path: Path, system: s
     axes = b6 if system == "turned" else np.eye(3)
     mean = masses @ points / masses.sum()
     arms = points - mean
-    tensor = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(masses, arms, strict=True))
+    tensor: Any = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(masses, arms, strict=True))
     at = mean + grid if system == "place" else mean
     number = {"turned": 6, "place": -1}.get(system, 0)
     products = (tensor[0, 0], -tensor[1, 0], tensor[1, 1], -tensor[2, 0], -tensor[2, 1], tensor[2, 2])

@@ -39,7 +39,7 @@ def integrated_switchings(count: int) -> list[tuple[float, str]]:
     }
     # Rigid angle and rate, then displacement and rate of each mode.
     y, now, state, pushed_at = np.array([4.5e-4, 2.2e-5, 2.75e-6, 0.0, 0.0, 0.0]), 0.0, "W0", 0.0
-    switchings = []
+    switchings: list[tuple[Any, ...]] = []
     while len(switchings) < count:
         torque, guards = states[state]
 

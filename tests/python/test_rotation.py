@@ -1,6 +1,9 @@
 """Rotations against direct integration of the generalised coordinates by SciPy."""
 
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 import pytest
 from conftest import shipped
 from scipy.integrate import solve_ivp
@@ -25,7 +28,7 @@ K[1:, 1:] = [
 LENGTH = 2.5
 
 
-def integrate(field, breaks, t, start):
+def integrate(field: Any, breaks: list[float], t: npt.NDArray[Any], start: Any) -> npt.NDArray[Any]:
     """A solution at the times t, restarted where the torque breaks."""
     states, state, begin = [], start, 0.0
     for end in [*breaks, t[-1]]:
@@ -37,17 +40,17 @@ def integrate(field, breaks, t, start):
     return np.hstack(states)
 
 
-def linear(torque, breaks, t):
+def linear(torque: Any, breaks: list[float], t: npt.NDArray[Any]) -> npt.NDArray[Any]:
     inverse = np.linalg.inv(M)
 
-    def field(time, y):
+    def field(time: float, y: Any) -> Any:
         return np.concatenate([y[5:], inverse @ (np.array([torque(time), 0, 0, 0, 0]) - K @ y[:5])])
 
     return integrate(field, breaks, t, np.zeros(10))
 
 
 @pytest.mark.parametrize("name", ["rotation-sine", "rotation-cosine", "rotation-spin-up"])
-def test_the_exact_response_is_that_of_the_generalised_coordinates(name):
+def test_the_exact_response_is_that_of_the_generalised_coordinates(name: str) -> None:
     scenario = shipped(name)
     run = scenario.simulate(log="full")
     plan = scenario.plan()
@@ -61,7 +64,7 @@ def test_the_exact_response_is_that_of_the_generalised_coordinates(name):
     np.testing.assert_allclose(run["outputs"]["outputs.value"], sections, rtol=0, atol=1e-10)
 
 
-def test_the_exact_chain_is_that_of_finite_angles():
+def test_the_exact_chain_is_that_of_finite_angles() -> None:
     scenario = shipped("rotation-nonlinear").with_("duration", 16.0)
     run = scenario.simulate(log="full")
     plan = scenario.plan()
@@ -72,7 +75,7 @@ def test_the_exact_chain_is_that_of_finite_angles():
         to_nodes[k, 0] = -k * LENGTH
     a, stiffness = to_nodes.T @ M @ to_nodes, to_nodes.T @ K @ to_nodes
 
-    def field(time, y):
+    def field(time: float, y: Any) -> Any:
         psi, rate = y[:5], y[5:]
         difference = psi[:, None] - psi[None, :]
         torque = float(plan.torque(np.array([time]))[0]) if time < 12.0 else 0.0

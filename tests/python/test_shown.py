@@ -42,8 +42,10 @@ def test_runs_are_shown_with_a_figure(name: str) -> None:
     assert "width:560px" in figure.get("style", "")
     text = " ".join(element.text or "" for element in figure.iter() if element.tag.endswith("text"))
     assert name in text
-    for metric in run.metrics:
-        assert f"<td>{metric}</td>" in html
+    # The whole is well-formed, and has a row for each metric and each topic.
+    whole = ElementTree.fromstring(f"<div>{html}</div>")
+    first = [row[0].text for table in whole.iter("table") for row in table.iter("tr")]
+    assert first == ["metric", *run.metrics, "topic", *run.topics]
     # A run that takes long is not repeated for it.
     run._took = 60.0
     assert figures(run._repr_html_()) == []

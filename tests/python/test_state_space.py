@@ -1,5 +1,7 @@
 """A compensator from a design program as the law of a scenario, beside the same loop in NumPy."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from flexsc import Scenario, ScenarioError
@@ -24,7 +26,8 @@ def study() -> Scenario:
 def test_a_design_becomes_a_law() -> None:
     # 0.8 + 5 s/(1 + 0.4 s), in continuous time.
     lead = np.array([[-2.5]]), np.array([[2.5]]), np.array([[-12.5]]), np.array([[13.3]])
-    a, b, c, d, _ = cont2discrete(lead, PERIOD, "bilinear")
+    sampled: Any = cont2discrete(lead, PERIOD, "bilinear")
+    a, b, c, d, _ = sampled
     law = {"period": PERIOD, "a": a, "b": b, "c": c, "d": d}
     run = Scenario({**study().to_dict(), "law": {"state_space": law}}).simulate(log="full")
     # The same by flexsc's own rule.

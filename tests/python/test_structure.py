@@ -37,7 +37,8 @@ def mixed(change: Numbers) -> tuple[Numbers, Numbers, Numbers]:
 
 def test_modes_of_a_second_order_form_come_back() -> None:
     a, b, c = second_order()
-    model = flexsc.from_state_space(a, csc_matrix(b), c, np.zeros((3, 3)))
+    sparse: Any = csc_matrix(b)
+    model = flexsc.from_state_space(a, sparse, c, np.zeros((3, 3)))
     np.testing.assert_allclose(model.frequencies, W, rtol=1e-12)
     np.testing.assert_allclose(model.dampings, ZETA, rtol=1e-9)
     assert model.deviation < 1e-10

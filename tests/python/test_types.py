@@ -4,6 +4,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+ROOT = Path(__file__).parents[2]
 USAGE = Path(__file__).with_name("usage.py")
 
 
@@ -21,6 +24,18 @@ def test_the_stub_is_that_of_the_engine() -> None:
 def test_the_package_and_its_usage_are_typed() -> None:
     run("mypy", "--strict", "--package", "flexsc")
     run("mypy", "--strict", USAGE)
+
+
+def test_the_tests_are_typed() -> None:
+    run(
+        "mypy", "--strict", *sorted(USAGE.parent.glob("*.py")), ROOT / "crates" / "py" / "scenario_classes.py"
+    )
+
+
+def test_pyright_agrees() -> None:
+    # It brings a Node.js of its own, and is no requirement of the tests.
+    pytest.importorskip("pyright")
+    run("pyright", "--project", ROOT, "--pythonpath", sys.executable)
 
 
 def test_the_usage_runs() -> None:

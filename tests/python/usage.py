@@ -23,6 +23,23 @@ with tempfile.TemporaryDirectory() as directory:
     size: int = result.to_mcap(Path(directory) / "run.mcap", log="events")
     log: flexsc.Log = flexsc.read_log(Path(directory) / "run.mcap")
 end: str = log.metadata["end"]
+unit: str = result.metrics.unit("switchings")
+row: dict[str, dict[str, Any]] = result.at(12.5)
+samples: flexsc.Samples = result.sample(np.linspace(0.0, 10.0, 5))
+topic: flexsc.Topic = samples["attitude"]
+capsule: object = topic.__arrow_c_stream__()
+built: flexsc.Scenario = flexsc.Scenario(
+    name="ringing",
+    duration=100.0,
+    body=flexsc.scenario.Planar(modes=[flexsc.scenario.Mode(frequency=0.44, gain=0.02, displacement=1e-5)]),
+    law=flexsc.scenario.Open(),
+    sensor=[flexsc.scenario.Sampled(period=0.5)],
+)
+built = built.with_("law", flexsc.scenario.Pd(k_p=1.0, k_d=1.0, period=0.5))
+hashed: int = hash(built)
+figures: list[str] = flexsc.plot.figures(result)
+axes = flexsc.plot.draw(result, figures[0])
+axes.set_title("mine")
 again: flexsc.Scenario | None = log.scenario
 
 table: flexsc.Table = flexsc.campaign(scenario, runs=range(4), jobs=2, seed=1)
@@ -30,7 +47,7 @@ mean: float = table.statistics()["duty"]["mean"]
 duty: npt.NDArray[Any] = flexsc.sweep(scenario, "law.relay.k_t", np.linspace(0.3, 0.35, 3))["duty"]
 swept: flexsc.Table = flexsc.sweep(scenario, "law.relay.k_t", [0.3, 0.35])
 both: flexsc.Table = flexsc.sweep(scenario, {"law.relay.k_t": [0.3], "body.planar.angle": np.zeros(2)})
-unit: str = flexsc.metrics()["duty"]["unit"]
+unit = flexsc.metrics()["duty"]["unit"]
 turn: flexsc.Scenario = flexsc.Scenario.load(path.with_name("rotation-sine.toml"))
 turn = turn.with_({"manoeuvre.command": {"sine": {"suppress": 1}}, "manoeuvre.time": 40.0})
 plan: flexsc.Plan = turn.plan(band=0.05)

@@ -14,10 +14,39 @@ pyo3::create_exception!(
     PyValueError,
     "A scenario, or a key of it, that is not accepted. `mistakes` has a dictionary for each: `line` and `column` in the text \
      and the path of the `key`, each None where there is none, the `message`, and as `suggestion` the key or the word that was \
-     probably meant, or None."
+     probably meant, or None.\n\n\
+     >>> import flexsc\n\
+     >>> try:\n\
+     ...     flexsc.Scenario({\"durations\": 3.0})\n\
+     ... except flexsc.ScenarioError as error:\n\
+     ...     print(error.mistakes[0][\"suggestion\"])\n\
+     duration\n"
 );
-pyo3::create_exception!(flexsc, SimulationError, PyRuntimeError, "A simulation that cannot go on.");
-pyo3::create_exception!(flexsc, LogError, PyOSError, "A log that cannot be read or written.");
+pyo3::create_exception!(
+    flexsc,
+    SimulationError,
+    PyRuntimeError,
+    "A simulation that cannot go on: its state is no longer finite, or its law switches without end.\n\n\
+     >>> import flexsc\n\
+     >>> far = flexsc.Scenario.example(\"relay-fixed\").with_(\"body.planar.angle\", 1e308)\n\
+     >>> try:\n\
+     ...     far.with_(\"body.planar.rate\", 1e308).simulate()\n\
+     ... except flexsc.SimulationError as error:\n\
+     ...     print(str(error)[:42])\n\
+     relay-fixed: the state is no longer finite\n"
+);
+pyo3::create_exception!(
+    flexsc,
+    LogError,
+    PyOSError,
+    "A log that cannot be read or written.\n\n\
+     >>> import flexsc\n\
+     >>> try:\n\
+     ...     flexsc.read_log(\"nowhere.mcap\")\n\
+     ... except flexsc.LogError as error:\n\
+     ...     print(\"nowhere.mcap\" in str(error))\n\
+     True\n"
+);
 
 /// The exception of a scenario that is not accepted; its `mistakes` are a dictionary each.
 pub fn scenario_error(error: flexsc_core::ScenarioError) -> PyErr {

@@ -2,12 +2,18 @@
 
 A scenario goes in, columns come out:
 
-    >>> import flexsc
-    >>> scenario = flexsc.Scenario.load("scenarios/relay-adaptive.toml")
+    >>> import flexsc, numpy
+    >>> scenario = flexsc.Scenario.example("relay-adaptive")
     >>> result = scenario.simulate()
-    >>> result.metrics["gain_final"]
-    >>> result["command"]["time_s"], result["command"]["state"]
-    >>> flexsc.sweep(scenario, "law.relay.k_t", numpy.linspace(0.28, 0.40, 25))["envelope_late_mean_rad"]
+    >>> round(result.metrics["gain_final"], 4), result.metrics.unit("cycle_period_s")
+    (0.3389, 's')
+    >>> result["command"]["time_s"].shape == result["command"]["state"].shape
+    True
+    >>> round(result.at(12.5)["attitude"]["angle_rad"], 9)
+    9.298e-06
+    >>> table = flexsc.sweep(scenario, "law.relay.k_t", numpy.linspace(0.28, 0.40, 3))
+    >>> table["envelope_late_mean_rad"].shape
+    (3,)
 
 All numbers are in SI units, which the names of columns and metrics end with. A run depends on its scenario,
 its seed and its number alone: its numbers are the same on every machine, on any number of threads.
@@ -17,7 +23,8 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, read_campaign, sweep
@@ -31,15 +38,18 @@ from flexsc._simulator import Quantities, Simulator, Simulators, Snapshot
 from flexsc._topic import Topic
 from flexsc._units import Metrics
 from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor
-from flexsc.structure import (
-    StateSpace,
-    Structure,
-    appendage_from_nastran,
-    from_csv,
-    from_nastran,
-    from_state_space,
-    write_scenario,
-)
+
+if TYPE_CHECKING:
+    from flexsc import plot, scenario, structure
+    from flexsc.structure import (
+        StateSpace,
+        Structure,
+        appendage_from_nastran,
+        from_csv,
+        from_nastran,
+        from_state_space,
+        write_scenario,
+    )
 
 __all__ = [
     "Actuator",
@@ -83,17 +93,47 @@ __all__ = [
     "observer_margin",
     "observer_region",
     "persistence",
+    "plot",
     "read_campaign",
     "read_log",
     "relay_damping",
     "rigid_cycles",
     "robust_gains",
+    "scenario",
     "schema",
     "stability_map",
+    "structure",
     "sweep",
     "topics",
     "write_scenario",
 ]
+
+# What is imported when it is first asked for, so that `import flexsc` stays quick.
+_MODULES = ("plot", "scenario", "structure")
+_OF_STRUCTURE = (
+    "StateSpace",
+    "Structure",
+    "appendage_from_nastran",
+    "from_csv",
+    "from_nastran",
+    "from_state_space",
+    "write_scenario",
+)
+
+
+# A type checker knows what there is, and would take any name for one of these.
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        if name in _MODULES:
+            return import_module(f"flexsc.{name}")
+        if name in _OF_STRUCTURE:
+            return getattr(import_module("flexsc.structure"), name)
+        raise AttributeError(f"module 'flexsc' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
 
 
 def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
@@ -102,6 +142,11 @@ def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
     Returns:
         `cycles`, those that exist at the law's gain, and `resonances`, the gains at which an odd harmonic of
         the two-sided cycle meets a mode. Units are in the names.
+
+    >>> import flexsc
+    >>> told = flexsc.rigid_cycles(flexsc.Scenario.example("relay-fixed"))
+    >>> round(told["cycles"][0]["period_s"], 2)
+    44.14
     """
     told: dict[str, list[dict[str, Any]]] = json.loads(engine.rigid_cycles_json(scenario._native))
     return told
@@ -112,6 +157,14 @@ def read_log(path: str | os.PathLike[str]) -> Log:
 
     Raises:
         LogError: The file cannot be read, or is torn or damaged.
+
+    >>> import flexsc, pathlib, tempfile
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     size = run.to_mcap(pathlib.Path(out) / "run.mcap")
+    ...     log = flexsc.read_log(pathlib.Path(out) / "run.mcap")
+    >>> log.topics
+    ['command', 'law', 'log', 'metrics', 'params', 'summary']
     """
     return Log(engine.Log.open(path))
 
@@ -119,6 +172,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
 def examples() -> dict[str, str]:
     """The shipped scenarios: for each name what it is about. `Scenario.example(name)` reads one.
 
+    >>> import flexsc
     >>> "relay-fixed" in flexsc.examples()
     True
     """
@@ -126,13 +180,23 @@ def examples() -> dict[str, str]:
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of scenarios."""
+    """The JSON Schema of scenarios.
+
+    >>> import flexsc
+    >>> flexsc.schema()["properties"]["duration"]["description"]
+    'Simulated time (s).'
+    """
     told: dict[str, Any] = json.loads(engine.schema_json())
     return told
 
 
 def metrics() -> dict[str, dict[str, str]]:
-    """What the metrics mean: by name, the `unit` (empty for a count, a ratio or a word) and the `doc`."""
+    """What the metrics mean: by name, the `unit` (empty for a count, a ratio or a word) and the `doc`.
+
+    >>> import flexsc
+    >>> flexsc.metrics()["cycle_period_s"]["unit"]
+    's'
+    """
     told: dict[str, dict[str, str]] = json.loads(engine.metrics_json())
     return told
 
@@ -140,6 +204,7 @@ def metrics() -> dict[str, dict[str, str]]:
 def topics() -> dict[str, dict[str, Any]]:
     """What the topics of a log hold: by name the `doc` and the `fields`, each with `name`, `doc` and `kind`.
 
+    >>> import flexsc
     >>> flexsc.topics()["rate"]["fields"][0]
     {'name': 'rate_rad_s', 'doc': 'Rate, elastic part included (rad/s).', 'kind': 'number'}
     """

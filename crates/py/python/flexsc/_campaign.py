@@ -8,7 +8,7 @@ from math import prod
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal
 
-from flexsc import _arrow, _html, _units
+from flexsc import _arrow, _units
 from flexsc import _native as engine
 from flexsc._scenario import Scenario, run_number
 from flexsc._values import objects
@@ -23,7 +23,14 @@ Sample = Literal["random", "latin-hypercube", "sobol"]
 
 
 class Table:
-    """The results of a campaign: a row for each run."""
+    """The results of a campaign: a row for each run.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
+    >>> table = flexsc.campaign(scenario, runs=4)
+    >>> table["run"].tolist(), table.unit("cycle_period_s")
+    ([0, 1, 2, 3], 's')
+    """
 
     scenario: Scenario
     """What the runs were drawn from."""
@@ -116,6 +123,8 @@ class Table:
         return engine.campaign_figures(self._work, columns, kind, list(metrics))
 
     def _repr_html_(self) -> str:
+        from flexsc import _html
+
         rows = [
             (name, told["unit"], told["mean"], told["sd"], told["quantiles"][0.05], told["quantiles"][0.95])
             for name, told in self.statistics().items()
@@ -174,6 +183,14 @@ def campaign(
         ScenarioError: The scenario cannot vary so. A single run that fails is a row with an `error`.
         ValueError: There are more than 100 000 000 runs, `yes` is needed, or `out` holds another campaign.
         OSError: `out` cannot be written, or another process is at work there.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 600.0)
+    >>> table = flexsc.campaign(scenario, runs=8, metrics=["switchings", "duty"])
+    >>> len(table), table["switchings"].shape
+    (8, (8,))
+    >>> round(table.statistics()["duty"]["mean"], 3)
+    0.041
     """
     numbers = runs if isinstance(runs, range) else range(index(runs))
     if numbers.step != 1 or not numbers:
@@ -228,6 +245,11 @@ def sweep(
     Raises:
         ScenarioError: There is no such key, it does not accept the first or the last value, or a value is not
             finite. Any other value that is not accepted is a row with an `error`.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0)
+    >>> flexsc.sweep(scenario, "law.relay.k_t", [0.30, 0.31, 0.32])["switchings"].tolist()
+    [82.0, 81.0, 81.0]
     """
     import numpy as np
 
@@ -262,6 +284,14 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
     Raises:
         ValueError: It is no directory of a campaign, or holds what is none of it.
         OSError: It cannot be read.
+
+    >>> import flexsc, tempfile
+    >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 600.0)
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     made = flexsc.campaign(scenario, runs=4, out=out)
+    ...     same = flexsc.read_campaign(out)["switchings"] == made["switchings"]
+    >>> same.tolist()
+    [True, True, True, True]
     """
     from flexsc._executor import place
 

@@ -49,6 +49,11 @@ def relay_damping(
 
     Raises:
         ValueError: A number is out of its range.
+
+    >>> import flexsc
+    >>> damped = flexsc.relay_damping([0.86, 4.5], 1e-6, delay=0.2, amplitude=1e-4)
+    >>> [round(float(factor), 3) for factor in damped["phase_factor"]]
+    [0.966, 0.212]
     """
     relay = (period, delay, period if on_time is None else on_time)
     mode, amplitudes = (damping, acceleration), (amplitude, threshold)
@@ -80,6 +85,11 @@ def observer_region(
 
     Raises:
         ValueError: A number is out of its range.
+
+    >>> import flexsc
+    >>> region = flexsc.observer_region(1.26, [0.6, 2.1], kappa=1.5)
+    >>> round(region["area"], 2), region["next_min"].shape
+    (1.35, (2,))
     """
     observer = ((rigid, 0.0, 0.0), frequency, period, damping)
     found = json.loads(engine.observer_region_json(observer, kappa, _floats(elastic)))
@@ -114,6 +124,11 @@ def observer_margin(
 
     Raises:
         ValueError: A number is out of its range.
+
+    >>> import flexsc
+    >>> margin = flexsc.observer_margin(1.26, [0.1, 0.2])
+    >>> margin["gain_best"] < margin["gain_max"], margin["radii"].shape
+    (True, (2,))
     """
     import numpy as np
 
@@ -158,6 +173,11 @@ def identify(
 
     Raises:
         ValueError: A number is out of its range, or `yes` is needed.
+
+    >>> import flexsc
+    >>> found = flexsc.identify([(1.2, 0.5)], [0.1], runs=10)
+    >>> found["runs"].tolist(), found["converged"].shape
+    ([10.0], (1,))
     """
     import numpy as np
 
@@ -183,6 +203,10 @@ def persistence(sensitivities: npt.ArrayLike) -> float:
     Returns:
         The least eigenvalue of their Gram matrix, each column normalised: 1 at best, 0 where a combination of
         parameters does not show; NaN if a parameter was never excited.
+
+    >>> import flexsc
+    >>> flexsc.persistence([[1.0, 0.0], [0.0, 1.0]])
+    1.0
     """
     import numpy as np
 

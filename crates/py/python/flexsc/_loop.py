@@ -48,6 +48,12 @@ def gain_region(
     Raises:
         ScenarioError: The scenario has no loop of this kind.
         ValueError: A number is out of its range, or `yes` is needed.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("wheel-fixed-gain")
+    >>> region = flexsc.gain_region(scenario, [0.3], gains=(-2.0, 6.0, 0.5))
+    >>> bool(region["gain_min"][0] < region["midpoint"][0] < region["gain_max"][0])
+    True
     """
     settled = (band, horizon, dominant_alone, yes)
     rows = json.loads(engine.gain_regions_json(scenario._native, _floats(frequencies), gains, limit, settled))
@@ -90,6 +96,12 @@ def robust_gains(
     Raises:
         ScenarioError: The scenario has no loop of this kind.
         ValueError: A number is out of its range, or `yes` is needed.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("wheel-fixed-gain")
+    >>> best = flexsc.robust_gains(scenario, [0.3], off=0.05, gains=(0.0, 3.0, 0.5))
+    >>> best["gain"].shape, bool(best["spectral_radius"][0] < 1.0)
+    ((1,), True)
     """
     rows = json.loads(
         engine.robust_gains_json(
@@ -131,6 +143,12 @@ def stability_map(
     Raises:
         ScenarioError: The scenario has no loop of this kind.
         ValueError: A number is out of its range, or `yes` is needed.
+
+    >>> import flexsc
+    >>> scenario = flexsc.Scenario.example("wheel-fixed-gain")
+    >>> cells = flexsc.stability_map(scenario, [0.2, 0.3], [0.1, 0.3, 0.5])
+    >>> cells["spectral_radius"].shape
+    (2, 3)
     """
     settled = (band, horizon, dominant_alone, yes)
     rows, columns = _floats(frequencies), _floats(periods)

@@ -16,6 +16,13 @@ class Plan(Mapping[str, Any]):
     """The plan of a scenario's manoeuvre, with the names of `flexsc plan --json`.
 
     Units are in the names: `plan["peak_torque_nm"]`, `plan["residual_rad"]["angle"]`.
+
+    >>> import flexsc
+    >>> plan = flexsc.Scenario.example("rotation-sine").plan(band=0.1)
+    >>> plan
+    <flexsc.Plan: 1.5708 rad in 12 s>
+    >>> plan.torque([0.0, 3.0]).shape, len(plan.compare()) > 3
+    ((2,), True)
     """
 
     def __init__(self, scenario: engine.Scenario, band: float) -> None:

@@ -53,8 +53,9 @@ def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
     if isinstance(value, (list, tuple)):
         items = (toml(origin, f"{key}[{index}]", inner, depth + 1) for index, inner in enumerate(value))
         return f"[{', '.join(items)}]"
-    if hasattr(value, "tolist"):  # an array or a scalar of numpy
-        return toml(origin, key, value.tolist(), depth + 1)
+    as_list = getattr(value, "tolist", None)
+    if as_list is not None:  # an array or a scalar of numpy
+        return toml(origin, key, as_list(), depth + 1)
     found = "None; a key without a value is left out" if value is None else type(value).__name__
     raise refused(f"expected a number, a bool, a str, a list or a dict, found {found}")
 

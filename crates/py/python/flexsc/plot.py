@@ -73,8 +73,8 @@ def figures(source: Source, metrics: Sequence[str] = ()) -> list[str]:
         directory begin with that of the scenario; with logs it has a `fan`, too.
 
     Raises:
-        ValueError: There is nothing to draw.
-        KeyError: There is no such metric.
+        ValueError: There is nothing to draw, or no such metric.
+        LogError: The log file cannot be read.
     """
     log = _log(source)
     if log is not None:

@@ -28,6 +28,14 @@ def from_csv(
     Raises:
         OSError: The file cannot be read.
         ValueError: A line is not a mode; the text names it.
+
+    >>> import flexsc, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     path = pathlib.Path(out) / "modes.csv"
+    ...     size = path.write_text("\\n".join(["frequency,damping,tip.ty", "1.3,0.005,0.1"]))
+    ...     structure = flexsc.from_csv(path, {"tip": (5.0, 0.0, 0.0)})
+    >>> structure.shapes["tip"].tolist()
+    [[0.0, 0.1, 0.0, 0.0, 0.0, 0.0]]
     """
     import numpy as np
 
@@ -86,6 +94,14 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> Path:
     Raises:
         ValueError: The body is not a spatial one with modes.
         OSError: A file cannot be written.
+
+    >>> import flexsc, numpy, pathlib, tempfile
+    >>> model = flexsc.from_state_space([[0, 1], [-4, -0.02]], [[0], [1]], [[0, 1]])
+    >>> scenario = model.scenario(numpy.eye(3), thrust=1.0, arm=2.0, inputs=("yaw",), outputs=("yaw",))
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     modes = flexsc.write_scenario(scenario, pathlib.Path(out) / "station.toml")
+    >>> modes.name
+    'station-modes.csv'
     """
     values = scenario.to_dict()
     if "spacecraft" in values:

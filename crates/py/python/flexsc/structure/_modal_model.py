@@ -23,7 +23,13 @@ _FORCE, _ARM = (2, 0, 1), (1, 2, 0)
 
 @dataclass(frozen=True, eq=False)
 class StateSpace:
-    """A modal model, q_i'' + 2 zeta_i w_i q_i' + w_i² q_i = sum_j b_ij u_j, y = P q + V q'."""
+    """A modal model, q_i'' + 2 zeta_i w_i q_i' + w_i² q_i = sum_j b_ij u_j, y = P q + V q'.
+
+    >>> import flexsc
+    >>> model = flexsc.from_state_space([[0, 1], [-4, -0.02]], [[0], [1]], [[0, 1]])
+    >>> [round(float(damping), 6) for damping in model.dampings]
+    [0.005]
+    """
 
     frequencies: Numbers
     """Natural frequencies w (rad/s), increasing, shape (modes,)."""

@@ -43,6 +43,11 @@ def from_state_space(
 
     Raises:
         ValueError: The matrices are not those of damped modes that inputs push; the text says why.
+
+    >>> import flexsc
+    >>> model = flexsc.from_state_space([[0, 1], [-4, -0.02]], [[0], [1]], [[0, 1]])
+    >>> [round(float(frequency), 6) for frequency in model.frequencies]
+    [2.0]
     """
     import numpy as np
 
@@ -96,9 +101,9 @@ def _modes(a: Numbers, b: Numbers, tolerance: float) -> list[tuple[float, float,
     modes = []
     for group in _alike(poles, upper):
         count, frequency = len(group), float(np.abs(poles[group]).mean())
-        decay = float(-2.0 * poles[group].real.mean())
+        decay = float(-2.0 * np.real(poles[group]).mean())
         # Where the inputs push in the space of these poles: along as many rates as there are modes.
-        push = 2.0 * (right[:, group] @ (left[group] @ b)).real
+        push = 2.0 * np.real(right[:, group] @ (left[group] @ b))
         directions, sizes, amounts = np.linalg.svd(push, full_matrices=False)
         beside = sizes[count] if len(sizes) > count else 0.0
         if beside > max(tolerance * sizes[0], _ROUNDING * condition * largest):

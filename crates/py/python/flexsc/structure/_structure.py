@@ -38,6 +38,12 @@ class Structure:
 
     Raises:
         ValueError: The arrays do not fit each other.
+
+    >>> import flexsc, numpy
+    >>> tip = {"tip": numpy.array([[0.0, 0.1, 0.0, 0.0, 0.0, 0.02]])}
+    >>> structure = flexsc.Structure(numpy.array([1.3]), numpy.array([0.005]), {"tip": (5, 0, 0)}, tip)
+    >>> structure.keep([0]).frequencies.tolist()
+    [1.3]
     """
 
     frequencies: Numbers
