@@ -42,7 +42,7 @@ fn distributions_have_the_quantiles_of_the_table() {
         [("gain_initial", "gain initial", 1.0), ("envelope_late_mean_rad", "envelope late mean (µrad)", 1e-6)]
     {
         let drawing = Drawing::read(&dir, &format!("u-distribution-{metric}"));
-        drawing.shows(&["median", "5 and 95 %", "part of the runs", "runs", label]);
+        drawing.shows(&["median", "5 and 95 %", "fraction of runs", "runs", label]);
         let values = column(&dir, "out/runs.csv", metric);
         let range = quantile(&values, 1.0) - quantile(&values, 0.0);
         // Upright lines: beside those of the legends, two of the median, and dashes of the others.
@@ -78,7 +78,7 @@ fn scatters_show_what_was_drawn_and_fans_what_was_logged() {
     assert!(told.contains("flexsc simulate out/scenario.toml --runs "), "{told}");
     assert!(dir.names("figures").contains(&"u-fan.svg".to_owned()), "{:?}", dir.names("figures"));
     let scatter = Drawing::read(&dir, "u-scatter-envelope_late_mean_rad");
-    scatter.shows(&["law.relay.k_t", "body.planar.rate", "envelope late mean (µrad)"]);
+    scatter.shows(&["law.relay.k_t", "body.planar.rate (rad/s)", "envelope late mean (µrad)"]);
     let dots = scatter
         .each(|node| (node.has_tag_name("circle") && node.attribute("fill") == Some(BLUE)).then_some(()));
     // Two panels with a legend each.
@@ -127,7 +127,7 @@ fn sweeps_have_curves_and_maps() {
     dir.run(&format!("{sweep} --vary law.relay.weak=8e-7:1.6e-6:5 --table csv -o two")).exits(0);
     dir.run("plot two -o two.svg --metric envelope_late_mean_rad").exits(0);
     let map = Drawing::at(&dir, "two.svg");
-    map.shows(&["law.relay.k_t", "law.relay.weak", "least", "envelope late mean (µrad)"]);
+    map.shows(&["law.relay.k_t", "law.relay.weak (rad/s²)", "least", "envelope late mean (µrad)"]);
     let rows = table(&dir, "two/runs.csv");
     let number = |row: usize, name: &str| rows[row][name].parse::<f64>().expect("a number");
     let least = (0..rows.len()).min_by(|a, b| {

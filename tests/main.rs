@@ -62,6 +62,7 @@ mod newcomers;
 mod outside;
 mod own_parts;
 #[cfg(feature = "parquet")]
+mod paper_figures;
 mod parts;
 #[cfg(all(unix, feature = "parquet"))]
 mod parts_killed;

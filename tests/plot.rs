@@ -112,7 +112,7 @@ fn rotations_have_figures_of_their_own() {
     let dir = Dir::with(&["rotation-robust", "rotation-thrusters"]);
     let axes = [
         ("torque", ["torque (N m)", "time (s)"]),
-        ("angle", ["angle (rad)", "beyond the goal (mrad)"]),
+        ("angle", ["angle (rad)", "error (rad)"]),
         ("outputs", ["section_4 (mrad)", "time (s)"]),
         ("modes", ["displacement (mrad)", "time (s)"]),
     ];

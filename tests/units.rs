@@ -3,7 +3,7 @@
 use flexsc_core::{Document, Scenario};
 use toml::Value;
 
-use crate::util::{Dir, SCENARIOS};
+use crate::util::{Dir, SCENARIOS, UNCERTAIN};
 
 const PLAIN: &str = r#"
 duration = 120.0
@@ -63,6 +63,25 @@ fn wrong_units_are_told_all_at_once_with_their_places() {
         assert!(told.contains(words), "no `{words}` in\n{told}");
     }
     assert_eq!(told.matches('^').count(), 6 + 14 + 8, "{told}");
+}
+
+#[test]
+fn the_units_of_keys_are_known() {
+    let reduced = Scenario::parse("x", UNCERTAIN).unwrap_or_else(|error| panic!("{error}"));
+    let spacecraft = Scenario::parse("x", PLAIN).unwrap_or_else(|error| panic!("{error}"));
+    for (key, unit) in [
+        ("duration", Some("s")),
+        ("body.planar.modes[0].frequency", Some("rad/s")),
+        ("body.planar.rate", Some("rad/s")),
+        ("law.relay.weak", Some("rad/s\u{b2}")),
+        ("law.relay.k_t", None),
+        ("seed", None),
+        ("no.such", None),
+    ] {
+        assert_eq!(reduced.unit_of(key), unit, "{key}");
+    }
+    assert_eq!(spacecraft.unit_of("appendage[0].modes[0].frequency"), Some("rad/s"));
+    assert_eq!(spacecraft.unit_of("spacecraft.inertia[0][0]"), Some("kg m\u{b2}"));
 }
 
 /// Every number of the shipped scenarios, with one of these units, is what it was or is refused for its unit.

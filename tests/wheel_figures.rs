@@ -40,7 +40,8 @@ fn the_extra_gain_follows_the_frequency() {
     extra.shows(&["gain k_d", "frequency read (rad/s)"]);
     // 0.3 rad/s at the start, 0.2 after 100 s, 0.1 from 200 s on: gains 1.4, 0.1 and -0.6.
     let lines = extra.shapes("polyline", "stroke", BLUE);
-    let gain = lines.iter().find(|line| line.len() > 1).expect("a line");
+    // The first is that of the legend.
+    let gain = lines.iter().find(|line| line.len() > 2).expect("a line");
     for (t, k) in [(0.0, 1.4), (100.0, 0.1), (220.0, -0.6)] {
         let at = gain.iter().min_by(|a, b| {
             let off = |p: &Point| (extra.across(p.0, ["0", "200"]) - t).abs();

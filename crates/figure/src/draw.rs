@@ -206,14 +206,14 @@ fn draw_axes(area: &Area<'_>, (across, up): (&Axis, &Axis), plot: &Plot) -> Resu
     let opposite = plot.place((x.end, y.end));
     let gap = 5 * UNITS as i32;
     let (grid, frame) = (stroke(GRID, 0.6), stroke(colour::GREY, 0.8));
-    let ticks = across.ticks((plot.across / 85).max(3));
+    let ticks = across.ticks(if plot.across < 400 { plot.across / 55 } else { plot.across / 85 });
     for (place, label) in
         ticks.at.iter().map(|at| (plot.place((across.place(*at), y.start)).0, ticks.text(*at)))
     {
         area.draw(&PathElement::new([(place, corner.1), (place, opposite.1)], grid))?;
         area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (place, corner.1 + gap))?;
     }
-    let ticks = up.ticks(plot.height / 28);
+    let ticks = up.ticks(if plot.height < 120 { plot.height / 20 } else { plot.height / 28 });
     for (place, label) in ticks.at.iter().map(|at| (plot.place((x.start, up.place(*at))).1, ticks.text(*at)))
     {
         area.draw(&PathElement::new([(corner.0, place), (opposite.0, place)], grid))?;

@@ -8,8 +8,10 @@ mod draw;
 #[cfg(feature = "png")]
 mod image;
 mod line;
+pub mod palette;
 #[cfg(feature = "png")]
 mod pdf;
+mod refine;
 mod sheet;
 mod style;
 mod svg;

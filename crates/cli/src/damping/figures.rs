@@ -4,6 +4,15 @@
 use flexsc_core::analysis::damping::Damped;
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
+/// Values that lie no further apart are shown in proportion.
+const NEAR: f64 = 10.0;
+
+fn scaled(name: &str, unit: &'static str, values: Vec<f64>) -> Axis {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(*v), high.max(*v)));
+    if high <= NEAR * low { Axis::from_zero(name, unit, values) } else { Axis::decades(name, unit, values) }
+}
+
 /// The figure; `limit` is the frequency (rad/s) above which the relay drives the modes.
 pub fn figure(rows: &[Damped], limit: f64) -> Figure {
     let (low, high) = (rows.first(), rows.last());
@@ -19,17 +28,18 @@ pub fn figure(rows: &[Damped], limit: f64) -> Figure {
         |of: &[Point]| of.iter().map(|point| point.1).filter(|v| v.is_finite()).collect::<Vec<f64>>();
     let panel = |x: Axis, y: Axis, points: Vec<Point>, name: &str| {
         let mut layers = Vec::new();
+        let label = y.name.split(" (").next().unwrap_or_default().to_owned();
         if limit < range.end {
             let edge = y.range.clone();
             let at = vec![(limit, edge.start), (limit, edge.end)];
             layers.push(Layer::new(name, colour::VERMILLION, Shape::Dashes, at));
         }
-        layers.push(Layer::new("", colour::BLUE, Shape::Line(1.6), points));
+        layers.push(Layer::new(&label, colour::BLUE, Shape::Line(1.6), points));
         Panel::new(x, y, layers)
     };
-    let factor = Axis::around("part of the full effect", "", values(&part).into_iter().chain([0.0, 1.0]));
-    let gains = Axis::decades("gain limit (1/s)", "", values(&gain));
-    let cycles = Axis::decades("limit cycle", "rad/s", values(&cycle));
+    let factor = Axis::around("phase factor", "", values(&part).into_iter().chain([0.0, 1.0]));
+    let gains = scaled("gain limit (1/s)", "", values(&gain));
+    let cycles = scaled("limit cycle", "rad/s", values(&cycle));
     let mut panels = vec![panel(x("").unnamed(), factor, part, "beyond this the relay drives the mode")];
     if !values(&gain).is_empty() {
         panels.push(panel(x("").unnamed(), gains, gain, ""));
@@ -40,5 +50,5 @@ pub fn figure(rows: &[Damped], limit: f64) -> Figure {
     if let Some(last) = panels.last_mut() {
         last.x = x("natural frequency");
     }
-    Figure { title: "a relay against elastic modes".to_owned(), panels, panel_height: 200 }
+    Figure { title: "active damping by a relay".to_owned(), panels, panel_height: 200 }
 }

@@ -1,11 +1,12 @@
 //! The map of the spectral radius over the frequency of the dominant mode and the period of the samples.
 
 use flexsc_core::analysis::sampled_loop::Cell;
+use flexsc_figure::palette::between;
 use flexsc_figure::{Axis, Bar, Field, Figure, Layer, Panel, Point, RGBColor, Shape, colour};
 
-/// The values between the classes: finest near 1, where stability ends.
+/// The values that the bar tells: finest near 1, where stability ends.
 const EDGES: [f64; 13] = [0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1.0, 1.001, 1.003, 1.01, 1.03, 1.1, 1.3];
-/// The colours of the classes: blue where the loop is stable, orange where it is not, darker farther from 1 (after Brewer).
+/// The colours between them: blue where the loop is stable, orange where it is not, darker farther from 1 (after Brewer).
 const COLOURS: [RGBColor; 14] = [
     RGBColor(8, 69, 148),
     RGBColor(33, 113, 181),
@@ -23,29 +24,64 @@ const COLOURS: [RGBColor; 14] = [
     RGBColor(140, 45, 4),
 ];
 
+/// So many shades are between two edges.
+const SHADES: usize = 3;
+/// No axis of the finer grid has more points.
+const FINE: usize = 160;
+/// How far from 1 radii lie in proportion; farther ones by their logarithms.
+const NEAR: f64 = 1e-3;
+
+/// The place of a radius on the scale of the map: what is no number lies at its end.
+fn place(radius: f64) -> f64 {
+    if radius.is_finite() { ((radius - 1.0) / NEAR).asinh() } else { f64::INFINITY }
+}
+
+/// The limits of the shades by their places, and the text of each that is an edge.
+fn limits() -> Vec<(f64, String)> {
+    let mut limits: Vec<(f64, String)> = Vec::new();
+    for pair in EDGES.windows(2) {
+        limits.push((place(pair[0]), pair[0].to_string()));
+        let step = (place(pair[1]) - place(pair[0])) / SHADES as f64;
+        limits.extend((1..SHADES).map(|shade| (place(pair[0]) + shade as f64 * step, String::new())));
+    }
+    let last = EDGES[EDGES.len() - 1];
+    limits.push((place(last), last.to_string()));
+    limits
+}
+
+/// The colour of a shade: 0 lies below all limits.
+fn shade(index: usize) -> RGBColor {
+    let place = if index == 0 { 0.0 } else { 0.5 + (index as f64 - 0.5) / SHADES as f64 };
+    between(&COLOURS, place)
+}
+
 /// The map: cells in rows of one frequency each, and where the scenario itself lies, frequency (rad/s) and period (s).
 pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
     let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
     frequencies.dedup();
     let periods = cells.iter().take(cells.len() / frequencies.len().max(1)).map(|cell| cell.period_s);
-    let radii: Vec<f64> = cells.iter().map(|cell| cell.spectral_radius).collect();
+    let number = |radius: f64| if radius.is_nan() { f64::INFINITY } else { radius };
+    let radii: Vec<f64> = cells.iter().map(|cell| number(cell.spectral_radius)).collect();
     let ends = |values: &[f64]| values[0]..values[values.len() - 1];
     let field = Field { y: periods.collect(), x: frequencies, values: radii };
     let x = Axis::exact("frequency of the dominant mode (rad/s)", "", ends(&field.x));
     let y = Axis::exact("period of the samples (s)", "", ends(&field.y));
 
-    // The classes that there are.
-    let class = |radius: f64| EDGES.iter().filter(|edge| radius >= **edge).count();
-    let number = |radius: &f64| if radius.is_nan() { f64::INFINITY } else { *radius };
-    let classes = || field.values.iter().map(number).map(class);
+    // The shades that there are.
+    let limits = limits();
+    let class = |radius: &f64| limits.iter().filter(|(limit, _)| place(*radius) >= *limit).count();
+    let classes = || field.values.iter().map(class);
     let (lowest, highest) = (classes().min().unwrap_or(0), classes().max().unwrap_or(0));
-    let mut layers = regions(&field, lowest, highest);
-    layers.push(Layer::new("limit of stability", colour::BLACK, Shape::Line(1.8), field.lines(1.0)));
+    let steps = FINE / field.x.len().max(field.y.len()).max(1);
+    let mut fine = field.refined(steps);
+    fine.values.iter_mut().for_each(|radius| *radius = place(*radius));
+    let mut layers = regions(&fine, &limits, lowest, highest);
+    layers.push(Layer::new("limit of stability", colour::BLACK, Shape::Line(1.8), fine.lines(0.0)));
     layers.push(Layer::new("scenario", colour::BLACK, Shape::Diamond, vec![own]));
     let bar = Bar {
         name: "spectral radius".to_owned(),
-        colours: COLOURS[lowest..=highest].to_vec(),
-        edges: EDGES[lowest..highest].iter().map(f64::to_string).collect(),
+        colours: (lowest..=highest).map(shade).collect(),
+        edges: limits[lowest..highest].iter().map(|(_, text)| text.clone()).collect(),
     };
     let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
     let title = format!("{name}: stability of the sampled loop");
@@ -54,23 +90,23 @@ pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
 
 /// The map in colours. Curves of constant radius do not cross: drawn from the largest to the smallest, each is filled with
 /// the class just within it.
-fn regions(field: &Field, lowest: usize, highest: usize) -> Vec<Layer> {
+fn regions(field: &Field, limits: &[(f64, String)], lowest: usize, highest: usize) -> Vec<Layer> {
     let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| {
         let end = |axis: &[f64], last: usize| axis[last * (axis.len() - 1)];
         (end(&field.x, i), end(&field.y, j))
     });
     let mut rings: Vec<(f64, usize, usize, Vec<Point>)> = vec![(f64::INFINITY, 0, lowest, corners.to_vec())];
     for above in lowest + 1..=highest {
-        for ring in field.rings(EDGES[above - 1]) {
+        for ring in field.rings(limits[above - 1].0) {
             let area = ring.area();
             // Of two that coincide, the steeper class comes last.
-            let (class, order) = if area > 0.0 { (above, above) } else { (above - 1, EDGES.len() - above) };
+            let (class, order) = if area > 0.0 { (above, above) } else { (above - 1, limits.len() - above) };
             rings.push((area.abs(), order, class, ring.points));
         }
     }
     rings.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let layer = |(_, _, class, points): (f64, usize, usize, Vec<Point>)| {
-        Layer::new("", COLOURS[class], Shape::Area(1.0), points)
+        Layer::new("", shade(class), Shape::Area(1.0), points)
     };
     rings.into_iter().map(layer).collect()
 }

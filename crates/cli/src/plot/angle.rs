@@ -23,9 +23,9 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         let whole = Axis::around("angle", "rad", motion.angle.iter().chain(&motion.goal).copied());
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let beyond = if largest(&error) > ROUNDING * largest(&motion.goal) {
-            Axis::around("beyond the goal", "rad", error.iter().copied())
+            Axis::around("error", "rad", error.iter().copied())
         } else {
-            Axis::exact("beyond the goal", "rad", -SMALL..SMALL)
+            Axis::exact("error", "rad", -SMALL..SMALL)
         };
         let mut above: Vec<Layer> = arrival(story, &whole).into_iter().collect();
         above.extend([
@@ -33,7 +33,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
             Layer::new("goal of a rigid body", colour::ORANGE, Shape::Dashes, over_time(&motion.goal)),
         ]);
         let mut below: Vec<Layer> = arrival(story, &beyond).into_iter().chain(marks(&beyond)).collect();
-        below.push(Layer::new("", colour::BLUE, Shape::Line(1.2), over_time(&error)));
+        below.push(Layer::new("hub less goal", colour::BLUE, Shape::Line(1.2), over_time(&error)));
         vec![Panel::new(x.unnamed(), whole, above), Panel::new(x, beyond, below)]
     } else {
         let whole = Axis::around("angle", "rad", motion.angle.iter().copied());

@@ -39,7 +39,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
             Shape::Area(0.2),
             band(&level(INSIDE[0]), &level(INSIDE[1])),
         ),
-        Layer::new("", colour::BLUE, Shape::Line(1.0), nees),
+        Layer::new("NEES", colour::BLUE, Shape::Line(1.0), nees),
     ];
     panels.push(Panel::new(time(0.0..story.end), y, layers));
     Figure { title: title(story, "consistency of the attitude filter"), panels, panel_height: 160 }

@@ -8,8 +8,15 @@ use super::story::Story;
 use super::{time, title};
 
 /// Colours of drives and modes, again from the first after the last.
-const COLOURS: [plotters::style::RGBColor; 5] =
-    [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
+const COLOURS: [plotters::style::RGBColor; 7] = [
+    colour::BLUE,
+    colour::VERMILLION,
+    colour::GREEN,
+    colour::ORANGE,
+    colour::SKY,
+    colour::BLACK,
+    colour::GREY,
+];
 
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let line = |of: &dyn Fn(&DrivesMotion) -> f64| -> Vec<Point> {
@@ -26,7 +33,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     };
     let x = time(0.0..story.end);
     let angles = (0..drives)
-        .map(|drive| (format!("drive {}", drive + 1), line(&|row| row.drives[drive].angle_rad)))
+        .map(|drive| (format!("drive {}", drive + 1), unwrapped(line(&|row| row.drives[drive].angle_rad))))
         .collect();
     let highest = |mode: usize| {
         cycles.drives.iter().map(|(_, row)| row.modes[mode].frequency_rad_s).fold(0.0, f64::max)
@@ -45,4 +52,16 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         last.x = x;
     }
     Figure { title: title(story, "drives and natural frequencies"), panels, panel_height: 240 }
+}
+
+/// A line with a gap where an angle goes on at the other end of its turn.
+fn unwrapped(line: Vec<Point>) -> Vec<Point> {
+    let mut parted: Vec<Point> = Vec::new();
+    for point in line {
+        if parted.last().is_some_and(|last| (point.1 - last.1).abs() > std::f64::consts::PI) {
+            parted.push((point.0, f64::NAN));
+        }
+        parted.push(point);
+    }
+    parted
 }

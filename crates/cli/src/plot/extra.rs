@@ -28,7 +28,8 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let panel = |x: Axis, name: &str, line: Vec<Point>, named: bool| {
         let y = Axis::around(name, "", line.iter().map(|point| point.1));
         let mut layers = lock::spans(motion, &y, named);
-        layers.push(Layer::new("", colour::BLUE, Shape::Line(1.4), line));
+        let (label, _) = name.split_once(" (").unwrap_or((name, ""));
+        layers.push(Layer::new(label, colour::BLUE, Shape::Line(1.4), line));
         Panel::new(x, y, layers)
     };
     let panels =

@@ -22,6 +22,8 @@ mod orbit;
 mod outputs;
 mod overlay;
 mod phase_plane;
+mod pointing;
+mod smooth;
 mod spatial;
 mod story;
 mod torque;
@@ -252,7 +254,7 @@ fn unit_of_torque(story: &Story) -> &'static str {
 fn arrival(story: &Story, y: &Axis) -> Option<Layer> {
     let plan = story.scenario.plan.as_ref()?;
     let ends = vec![(plan.time, y.range.start), (plan.time, y.range.end)];
-    Some(Layer::new("", colour::GREY, Shape::Dashes, ends))
+    Some(Layer::new("end of the manoeuvre", colour::GREY, Shape::Dashes, ends))
 }
 
 /// What figures of the modes show: the whole run, or of a law that switches about seven periods of the slowest mode at

@@ -50,7 +50,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     if let Some(last) = panels.last_mut() {
         last.x = time(0.0..story.end);
     }
-    Figure { title: title(story, "field, planet and Sun in the body's axes"), panels, panel_height: 160 }
+    Figure { title: title(story, "magnetic field, nadir and Sun in body axes"), panels, panel_height: 160 }
 }
 
 /// The stretches of the log in shadow (s).

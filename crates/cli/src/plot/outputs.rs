@@ -17,7 +17,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         let (name, unit) = name_and_unit(&output.name, &output.unit);
         let y = Axis::around(&name, unit, values.iter().copied());
         let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
-        let line = Layer::new("", colour::BLUE, Shape::Line(1.2), line);
+        let line = Layer::new(&output.name, colour::BLUE, Shape::Line(1.2), line);
         let x = if index + 1 == motion.outputs.len() { x } else { x.unnamed() };
         let layers = arrival(story, &y).into_iter().chain([line]).collect();
         Panel::new(x, y, layers)

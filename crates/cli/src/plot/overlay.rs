@@ -29,7 +29,13 @@ pub fn overlaid(what: &str, runs: Vec<(String, Figure)>) -> Option<Figure> {
         let panels: Vec<(&str, &Panel)> =
             runs.iter().map(|(name, figure)| (name.as_str(), &figure.panels[index])).collect();
         let (x, y) = (axis(&panels, |panel| &panel.x), axis(&panels, |panel| &panel.y));
-        Panel::new(x, y, layers(&panels, index == 0))
+        let mut layers = layers(&panels, index == 0);
+        // A line straight up is as high as the panel.
+        for layer in layers.iter_mut().filter(|layer| upright(layer).is_some()) {
+            let [first, last] = &mut layer.points[..] else { continue };
+            (first.1, last.1) = (y.range.start, y.range.end);
+        }
+        Panel::new(x, y, layers)
     };
     Some(Figure { title, panels: (0..count).map(panel).collect(), panel_height })
 }
@@ -44,9 +50,20 @@ fn axis(panels: &[(&str, &Panel)], of: fn(&Panel) -> &Axis) -> Axis {
     all
 }
 
+/// Where a line of two points goes straight up.
+fn upright(layer: &Layer) -> Option<f64> {
+    match layer.points[..] {
+        [(from, _), (to, _)] if from == to => Some(from),
+        _ => None,
+    }
+}
+
 fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
     let mut layers: Vec<Layer> = Vec::new();
-    let same = |a: &Layer, b: &Layer| a.shape == b.shape && a.name == b.name && a.points == b.points;
+    let same = |a: &Layer, b: &Layer| {
+        let alike = a.points == b.points || (upright(a).is_some() && upright(a) == upright(b));
+        a.shape == b.shape && a.name == b.name && alike
+    };
     // What all runs have alike, such as a dead zone, is drawn once and as it is.
     let common =
         |layer: &Layer| panels.iter().all(|(_, panel)| panel.layers.iter().any(|other| same(layer, other)));
@@ -55,7 +72,7 @@ fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
         let own: Vec<&Layer> = panel.layers.iter().filter(|layer| !common(layer)).collect();
         // The widest line is what the panel is about.
         let width = |layer: &Layer| if let Shape::Line(width) = layer.shape { width } else { 0.0 };
-        let main = (0..own.len()).rev().max_by(|a, b| width(own[*a]).total_cmp(&width(own[*b])));
+        let main = (0..own.len()).max_by(|a, b| width(own[*a]).total_cmp(&width(own[*b])));
         let mut lines = 0;
         let mut told = false;
         for (place, layer) in own.iter().enumerate() {

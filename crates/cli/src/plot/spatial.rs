@@ -1,4 +1,4 @@
-//! Figures of a spatial body: `pointing`, `rates`, `energy`, `position`, `jets`, and of its adaptive observers `tracking` and `damping`,
+//! Figures of a spatial body: `rates`, `energy`, `position`, `jets`, and of its adaptive observers `tracking` and `damping`,
 //! from its run repeated.
 
 use std::path::Path;
@@ -113,19 +113,6 @@ pub fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<La
     AXES.iter().enumerate().map(panel).collect()
 }
 
-/// Angles beyond the target.
-pub fn pointing(story: &Story, cycles: &Cycles) -> Figure {
-    let line = |axis: usize| {
-        let points = cycles.over_time(|cycle| cycle.error_rad[axis]);
-        vec![Layer::new("", colour::BLUE, Shape::Line(1.2), points)]
-    };
-    Figure {
-        title: title(story, "angles beyond the target"),
-        panels: panels(story, "rad", line),
-        panel_height: 160,
-    }
-}
-
 /// Rigid rates, and with their elastic part what a perfect gyro would see.
 pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
     let lines = |axis: usize| {
@@ -169,16 +156,18 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     let panel = |x: Axis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
         x,
         y: Axis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
-        layers: vec![Layer::new("", colour::BLUE, Shape::Line(1.2), points)],
+        layers: vec![Layer::new(name, colour::BLUE, Shape::Line(1.2), points)],
         bar: None,
     };
     let x = time(0.0..story.end);
     let fires = fuel.iter().any(|(_, used)| used.is_finite());
     let below = if fires { x.unnamed() } else { x.clone() };
     let mut energies = panel(below, "elastic energy", "J", elastic);
+    // Where both are one, the wider line shows beside the other.
+    energies.layers[0].shape = Shape::Line(2.4);
     "all modes".clone_into(&mut energies.layers[0].name);
     let visible = cycles.over_time(|cycle| cycle.visible_energy_j);
-    energies.layers.push(Layer::new("modes that the gyro sees", colour::ORANGE, Shape::Line(1.2), visible));
+    energies.layers.push(Layer::new("modes that the gyro sees", colour::ORANGE, Shape::Line(1.0), visible));
     let mut panels = vec![energies];
     if fires {
         panels.push(panel(x, "propellant", "kg", fuel));
@@ -205,7 +194,12 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
         let zero = vec![(0.0, 0.0), (story.end, 0.0)];
         vec![
             Layer::new("", colour::GREY, Shape::Line(0.8), zero),
-            Layer::new("", colour::VERMILLION, Shape::Line(0.8), points),
+            Layer::new(
+                if axis == 0 { "firing time" } else { "" },
+                colour::VERMILLION,
+                Shape::Line(0.8),
+                points,
+            ),
         ]
     };
     // One scale for all axes: one whose jets do not fire has none of its own.
@@ -215,11 +209,7 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
     for panel in &mut panels {
         panel.y = Axis::exact(&panel.y.name, "s", -longest..longest);
     }
-    Figure {
-        title: title(story, "time to fire in each cycle, with the sign of the push"),
-        panels,
-        panel_height: 160,
-    }
+    Figure { title: title(story, "firing time of the jets in each cycle"), panels, panel_height: 160 }
 }
 
 /// Natural frequencies of the tracked modes as estimated, and as they are.
@@ -287,7 +277,7 @@ pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
         ]
     };
     Figure {
-        title: title(story, "elastic rates that active damping acts on"),
+        title: title(story, "elastic rates for active damping"),
         panels: panels(story, "rad/s", lines),
         panel_height: 180,
     }

@@ -87,7 +87,7 @@ impl Story {
     /// motion up to `early` and from `late` on only, and the envelope always.
     pub fn motion(&self, log: &Log, path: &Path, early: f64, late: f64) -> Result<Motion, Failure> {
         if log.topics().iter().any(|topic| topic == "/attitude") {
-            return Motion::read(log);
+            return Ok(self.smooth(Motion::read(log)?));
         }
         if let Some(why) = self.scenario.cost(None, true).excess() {
             let why = format!(
@@ -115,7 +115,17 @@ impl Story {
                 ),
             ));
         }
-        Ok(repeat.motion)
+        Ok(self.smooth(repeat.motion))
+    }
+
+    /// The motion under a law that switches, with points between its rows.
+    fn smooth(&self, mut motion: Motion) -> Motion {
+        if self.switches() {
+            let frequencies = self.scenario.model.modes.iter().map(|mode| mode.frequency.get());
+            let period = self.scenario.log.period_for(self.scenario.duration).seconds();
+            motion.smoothed(period, frequencies.fold(0.0, f64::max));
+        }
+        motion
     }
 
     /// Whether the law is one that switches.

@@ -9,7 +9,7 @@ use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
     accelerations, angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra,
-    frequency, gain, magnetorquers, modes, orbit, outputs, phase_plane, torque, wheel, wheels,
+    frequency, gain, magnetorquers, modes, orbit, outputs, phase_plane, pointing, torque, wheel, wheels,
 };
 
 /// A figure.
@@ -29,7 +29,7 @@ pub enum What {
     Gain,
     /// Each elastic mode: under a law that switches at the end of the run, else over all of it
     Modes,
-    /// Of a spatial body: angles beyond the target
+    /// Of a spatial body: pointing error about each axis, with its goal and dead zone
     Pointing,
     /// Of a spatial body: rates, rigid and at the sensor
     Rates,
@@ -41,7 +41,7 @@ pub enum What {
     Jets,
     /// Of a spatial body: natural frequencies as adaptive observers estimate them, and as they are
     Tracking,
-    /// Of a spatial body: elastic rates that active damping acts on, its thresholds, and its pulses
+    /// Of a spatial body: elastic rates for active damping, its thresholds, and its pulses
     Damping,
     /// Speed and momentum of the flywheel, or speed and torque of each wheel of a spatial body, with their limits
     Wheel,
@@ -126,7 +126,7 @@ impl What {
             Self::Envelope => envelope::figure(story, motion),
             Self::Gain => gain::figure(story),
             Self::Modes => modes::figure(story, motion),
-            Self::Pointing => spatial::pointing(story, cycles),
+            Self::Pointing => pointing::figure(story, cycles),
             Self::Rates => spatial::rates(story, cycles),
             Self::Energy => spatial::energy(story, cycles),
             Self::Position => spatial::position(story, cycles),

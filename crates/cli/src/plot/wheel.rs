@@ -27,7 +27,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
             Layer::new(name, colour::VERMILLION, Shape::Dashes, vec![(0.0, *height), (story.end, *height)])
         };
         let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
-        layers.push(Layer::new("", colour::BLACK, Shape::Line(1.2), line));
+        layers.push(Layer::new(name, colour::BLACK, Shape::Line(1.2), line));
         Panel::new(x, y, layers)
     };
     // On a body without inertia a momentum is a rate.

@@ -25,6 +25,7 @@ pub use fault::Fault;
 pub use mistake::{Mistake, Place};
 pub use nearest::meant as nearest;
 pub use parts::Parts;
+pub use quantity::unit_at;
 pub use reader::{DATE, read_value};
 pub use wrong::Wrong;
 

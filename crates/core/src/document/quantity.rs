@@ -35,6 +35,21 @@ pub fn to_si(table: &mut Table, schema: &Json) -> Vec<Fault> {
     faults
 }
 
+/// The unit of a key by its path, such as `body.planar.modes[0].frequency`.
+pub fn unit_at<'a>(schema: &'a Json, key: &str) -> Option<&'a str> {
+    let mut nodes = vec![Node { schema, unit: None }];
+    for part in key.split('.') {
+        let (name, places) =
+            part.split_once('[').map_or((part, 0), |(name, rest)| (name, 1 + rest.matches('[').count()));
+        nodes = within(schema, &nodes, Some(name));
+        for _ in 0..places {
+            nodes = within(schema, &nodes, None);
+        }
+    }
+    let ends = flat(schema, &nodes);
+    ends.iter().filter(|node| of_type(node.schema, "number")).find_map(|node| node.unit)
+}
+
 /// A place in the schema, and the unit that the descriptions on the way to it say.
 #[derive(Copy, Clone)]
 struct Node<'a> {

@@ -339,6 +339,13 @@ impl Scenario {
         schemars::schema_for!(Scenario).to_value()
     }
 
+    /// The unit of a key, such as rad/s of `body.planar.rate`; none of a ratio.
+    pub fn unit_of(&self, key: &str) -> Option<&'static str> {
+        let unit = crate::document::unit_at(units(), key)?;
+        let reduced = self.axis_count() == 1 && self.model.has_unit_inertia();
+        Some(if unit == "N m" && reduced { "rad/s²" } else { unit })
+    }
+
     /// Whether the torque is more than the switchings of a law.
     pub fn tells_torque(&self) -> bool {
         !self.law.switches() || !self.disturbance.is_empty() || !self.actuator.is_ideal()

@@ -15,7 +15,7 @@ pub fn figure(runs: &Runs, metrics: &[&Metric], key: &Key) -> Figure {
         let line: Vec<Point> = order.iter().map(|run| (key.values[*run], metric.values[*run])).collect();
         let ends = order.first().map_or(0.0, |run| key.values[*run])
             ..order.last().map_or(1.0, |run| key.values[*run]);
-        let x = Axis::exact(&key.name, "", ends);
+        let x = Axis::exact(&runs.label_of(key), "", ends);
         let mut layers = vec![Layer::new("", colour::BLUE, Shape::Line(1.2), line.clone())];
         if line.len() <= MARKS {
             layers.push(Layer::new("", colour::BLUE, Shape::Dot, line));

@@ -19,7 +19,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     // Numbers of runs are whole.
     let highest = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(LOWEST);
     let counts = Axis::from_zero("runs", "", [highest as f64]);
-    let parts = Axis::exact("part of the runs", "", 0.0..1.0);
+    let parts = Axis::exact("fraction of runs", "", 0.0..1.0);
     let outline = bars.iter().flat_map(|((from, to), count)| {
         let height = *count as f64;
         let corners = [(*from, 0.0), (*from, height), (*to, height), (*to, 0.0)];

@@ -1,25 +1,17 @@
 //! Figure `region`: a metric of a sweep over two keys, as a map.
 
+use flexsc_figure::palette::viridis;
 use flexsc_figure::{Axis, Bar, Figure, Layer, Panel, Point, RGBColor, Shape, colour};
 
 use super::table::{Metric, Runs};
 
-/// The colours of the classes, darker for larger values also in print without colours (after Brewer).
-const COLOURS: [RGBColor; 8] = [
-    RGBColor(247, 251, 255),
-    RGBColor(222, 235, 247),
-    RGBColor(198, 219, 239),
-    RGBColor(158, 202, 225),
-    RGBColor(107, 174, 214),
-    RGBColor(66, 146, 198),
-    RGBColor(33, 113, 181),
-    RGBColor(8, 69, 148),
-];
+/// So many shades.
+const SHADES: usize = 48;
 /// Where there is no value.
 const NONE: RGBColor = RGBColor(170, 170, 170);
 /// Part of a cell by which it reaches into the next.
 const SEAM: f64 = 0.02;
-/// Positive values that lie further apart have classes of equal ratios.
+/// Positive values that lie further apart have shades of equal ratios.
 const FAR: f64 = 50.0;
 
 /// None if the values of two keys do not make up a grid.
@@ -35,9 +27,9 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
         let (i, j) = (place(&columns, *x)?, place(&rows, *y)?);
         cells[i * rows.len() + j] = Some(*value);
     }
-    let class = |value: f64| if value.is_finite() { classes.of_value(value) } else { COLOURS.len() };
+    let class = |value: f64| if value.is_finite() { classes.of_value(value) } else { SHADES };
     let (across, up) = (borders(&columns), borders(&rows));
-    let mut areas: Vec<Vec<Point>> = vec![Vec::new(); COLOURS.len() + 1];
+    let mut areas: Vec<Vec<Point>> = vec![Vec::new(); SHADES + 1];
     for (i, column) in cells.chunks(rows.len()).enumerate() {
         let mut from = 0;
         for alike in column.chunk_by(|a, b| a.map(class) == b.map(class)) {
@@ -52,8 +44,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
         }
     }
     let none = areas.pop().unwrap_or_default();
-    let used = classes.edges.len() + 1;
-    let shades = areas.into_iter().zip(spread(used));
+    let shades = areas.into_iter().zip(viridis(SHADES));
     let mut layers: Vec<Layer> =
         shades.map(|(points, shade)| Layer::new("", shade, Shape::Area(1.0), points)).collect();
     layers.push(Layer::new("no value", NONE, Shape::Area(1.0), none));
@@ -61,56 +52,63 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
     let least = least.map(|run| (first.values[run], second.values[run]));
     layers.push(Layer::new("least", colour::VERMILLION, Shape::Diamond, least.into_iter().collect()));
     let ends = |borders: &[f64]| borders[0]..borders[borders.len() - 1];
-    let (x, y) = (Axis::exact(&first.name, "", ends(&across)), Axis::exact(&second.name, "", ends(&up)));
-    let bar = Bar { name: classes.axis.label(), colours: spread(used), edges: classes.texts() };
+    let (x, y) = (
+        Axis::exact(&runs.label_of(first), "", ends(&across)),
+        Axis::exact(&runs.label_of(second), "", ends(&up)),
+    );
+    let bar = Bar { name: classes.axis.label(), colours: viridis(SHADES), edges: classes.texts() };
     let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
     let title = format!("{}: {name} ({} runs)", runs.name, runs.numbers.len());
     Some(Figure { title, panels: vec![panel], panel_height: 420 })
 }
 
-/// The colours of so many classes, from the lightest to the darkest.
-fn spread(classes: usize) -> Vec<RGBColor> {
-    let last = COLOURS.len() - 1;
-    (0..classes).map(|class| COLOURS[(class * last).checked_div(classes - 1).unwrap_or(last / 2)]).collect()
-}
-
-/// Classes of values, and the axis with their unit.
+/// Shades of values, and the axis with their unit.
 struct Classes {
     axis: Axis,
-    edges: Vec<f64>,
+    /// The least and the largest value, or their logarithms.
+    ends: [f64; 2],
+    by_ratio: bool,
 }
 
 impl Classes {
     fn of(sorted: &[f64], name: &str, unit: &'static str) -> Self {
         let (low, high) = (sorted.first().copied().unwrap_or(0.0), sorted.last().copied().unwrap_or(0.0));
-        let most = COLOURS.len() - 1;
-        let axis = Axis::exact(name, unit, low..high);
-        let inside = |edge: &f64| *edge > low && *edge < high;
-        let edges: Vec<f64> = if low > 0.0 && high / low > FAR {
-            let all = (-20..20).flat_map(|power| [1.0, 2.0, 5.0].map(|nice| nice * 10_f64.powi(power)));
-            let nice: Vec<f64> = all.filter(inside).collect();
-            let step = nice.len().div_ceil(most).max(1);
-            nice.into_iter().step_by(step).collect()
-        } else {
-            let ticks = (3..=most as u32).rev().map(|most| axis.ticks(most).at.into_iter().filter(inside));
-            ticks.map(Iterator::collect::<Vec<f64>>).find(|edges| edges.len() <= most).unwrap_or_default()
-        };
-        Self { axis, edges }
+        let by_ratio = low > 0.0 && high / low > FAR;
+        let ends = if by_ratio { [low.log10(), high.log10()] } else { [low, high] };
+        Self { axis: Axis::exact(name, unit, low..high), ends, by_ratio }
+    }
+
+    /// Where a value lies, from 0 to 1.
+    fn place(&self, value: f64) -> f64 {
+        let [low, high] = self.ends;
+        let value = if self.by_ratio { value.log10() } else { value };
+        if high > low { (value - low) / (high - low) } else { 0.5 }
     }
 
     fn of_value(&self, value: f64) -> usize {
-        self.edges.iter().filter(|edge| value >= **edge).count()
+        ((self.place(value) * SHADES as f64) as usize).min(SHADES - 1)
     }
 
-    /// The edges in the unit of the axis.
+    /// The nice values, each at the limit of two shades that is nearest.
     fn texts(&self) -> Vec<String> {
-        let scale = self.axis.factor();
-        let text = |edge: &f64| {
-            let value = edge / scale;
-            // Nice numbers have few digits, but for rounding.
-            format!("{}", (value * 1e6).round() / 1e6).replace('-', "−")
+        let nice: Vec<f64> = if self.by_ratio {
+            (-20..20).flat_map(|power| [1.0, 2.0, 5.0].map(|nice| nice * 10_f64.powi(power))).collect()
+        } else {
+            self.axis.ticks(7).at
         };
-        self.edges.iter().map(text).collect()
+        let mut texts = vec![String::new(); SHADES - 1];
+        let scale = self.axis.factor();
+        for value in nice {
+            let limit = (self.place(value) * SHADES as f64).round();
+            if (1.0..SHADES as f64).contains(&limit) {
+                let shown = value / scale;
+                // Nice numbers have few digits, but for rounding.
+                let few = (shown * 1e6).round() / 1e6;
+                let text = if few == 0.0 && shown != 0.0 { format!("{shown:.0e}") } else { few.to_string() };
+                texts[limit as usize - 1] = text.replace('-', "−");
+            }
+        }
+        texts
     }
 }
 

@@ -16,7 +16,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     let more = keys.len().saturating_sub(PANELS);
     let panel = |(r, key): (f64, &Key)| {
         let points: Vec<Point> = key.values.iter().copied().zip(metric.values.iter().copied()).collect();
-        let x = Axis::around(&key.name, "", key.values.iter().copied());
+        let x = Axis::around(&runs.label_of(key), "", key.values.iter().copied());
         let y = Axis::around(&name, unit, metric.values.iter().copied());
         let told =
             if r.is_nan() { String::new() } else { format!("rank correlation {r:+.2}").replace('-', "−") };
@@ -24,7 +24,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     };
     let panels = keys.into_iter().take(PANELS).map(panel).collect();
     let left = if more > 0 { format!(", keys left out: {more}") } else { String::new() };
-    let title = format!("{}: {name} against what varies{left}", runs.name);
+    let title = format!("{}: {name} against the keys that vary{left}", runs.name);
     Figure { title, panels, panel_height: 180 }
 }
 

@@ -208,6 +208,12 @@ impl Runs {
         self.keys.iter().filter(|key| key.swept).collect()
     }
 
+    /// What an axis along a key is called: its name and its unit.
+    pub fn label_of(&self, key: &Key) -> String {
+        let unit = self.scenario.as_ref().and_then(|(scenario, _)| scenario.unit_of(&key.name));
+        unit.map_or_else(|| key.name.clone(), |unit| format!("{} ({unit})", key.name))
+    }
+
     /// The keys that are drawn.
     pub fn drawn(&self) -> Vec<&Key> {
         self.keys.iter().filter(|key| !key.swept).collect()

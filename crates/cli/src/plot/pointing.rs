@@ -1,0 +1,59 @@
+//! Figure `pointing` of three axes: how far the body is from its target about each axis, with its goal and its dead zone.
+
+use flexsc_core::law::Law;
+use flexsc_figure::{Axis, Figure, Layer, Shape, band, colour};
+
+use super::spatial::{Cycles, panels};
+use super::story::Story;
+use super::title;
+
+/// A band that is so many times as wide as the errors does not set the height of a panel.
+const WIDE: f64 = 3.0;
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let line = |axis: usize| {
+        let points = cycles.over_time(|cycle| cycle.error_rad[axis]);
+        let name = if axis == 0 { "pointing error" } else { "" };
+        vec![Layer::new(name, colour::BLUE, Shape::Line(1.2), points)]
+    };
+    let mut panels = panels(story, "rad", line);
+    for (axis, panel) in panels.iter_mut().enumerate() {
+        let [goal, zone] = bands(story, axis);
+        let largest = panel.layers[0].points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+        let shown =
+            [goal, zone].into_iter().flatten().filter(|half| *half <= WIDE * largest).fold(0.0, f64::max);
+        let values: Vec<f64> = panel.layers[0].points.iter().map(|point| point.1).collect();
+        if shown > 0.0 {
+            panel.y = Axis::around(&panel.y.name, "rad", values.into_iter().chain([-shown, shown]));
+        }
+        let level = |height: f64| [(0.0, height), (story.end, height)];
+        let wide = |what: &str, half: f64| format!("{what} ±{} mrad", super::short(1e3 * half));
+        let mut below = Vec::new();
+        if let Some(half) = goal {
+            let area = band(&level(-half), &level(half));
+            below.push(Layer::new(&wide("goal band", half), colour::GREEN, Shape::Area(0.2), area));
+        }
+        let target = if axis == 0 { "target" } else { "" };
+        below.push(Layer::new(target, colour::GREY, Shape::Line(0.8), level(0.0).to_vec()));
+        if let Some(half) = zone {
+            let edges =
+                [(0.0, half), (story.end, half), (f64::NAN, f64::NAN), (0.0, -half), (story.end, -half)];
+            below.push(Layer::new(&wide("dead zone", half), colour::GREY, Shape::Dashes, edges.to_vec()));
+        }
+        below.append(&mut panel.layers);
+        panel.layers = below;
+    }
+    Figure { title: title(story, "pointing error"), panels, panel_height: 160 }
+}
+
+/// Half widths about an axis: of the goal, and of the law's dead zone (rad).
+fn bands(story: &Story, axis: usize) -> [Option<f64>; 2] {
+    let scenario = &story.scenario;
+    let own = scenario.study.bands.get(axis).copied().flatten();
+    let goal = scenario.reference.band.map(flexsc_core::quantity::Positive::get).or(own);
+    let zone = match scenario.law.about(axis) {
+        Law::PhasePlane(law) => Some(law.dead_zone.get()),
+        _ => None,
+    };
+    [goal.filter(|half| *half > 0.0), zone.filter(|half| *half > 0.0)]
+}
