@@ -17,9 +17,9 @@ RUN = "run = flexsc.Scenario.example('relay-fixed').with_('duration', 600.0).sim
 USES = {
     "": f"import flexsc; {RUN}; assert run.at(12.5)",
     "plot": f"import flexsc, flexsc.plot; {RUN}; assert flexsc.plot.draw(run, 'angle')",
-    "control": "import flexsc; s = flexsc.Scenario.example('rotation-robust'); assert s.linearise().control()",
+    "control": "import flexsc; assert flexsc.Scenario.example('rotation-robust').linearise().control()",
     "dask": "import flexsc.dask",
-    "gym": "import flexsc.gym; flexsc.gym.SpacecraftEnv('four-clamped-modes').reset()",
+    "gym": "import flexsc.gym; flexsc.gym.SpacecraftEnv('earth-observer').reset()",
     "matlab": "import flexsc, scipy.io",
     "nastran": "import flexsc, pyNastran",
 }

@@ -1,5 +1,6 @@
 """Environments: accepted by the checkers, many as each alone, ends of episodes, a study's table."""
 
+import doctest
 import warnings
 from collections.abc import Iterator
 from typing import Any
@@ -88,10 +89,10 @@ def test_many_are_what_each_is_alone(uncertain: flexsc.Scenario, mode: str) -> N
         actions = random.uniform(-1.2, 1.2, (6, 3)).astype(np.float32)
         if mode == "Disabled" and ended.any():
             observations, info = many.reset(options={"reset_mask": ended})
-            for index in np.flatnonzero(ended):
-                observation, told = each[index].reset()
-                np.testing.assert_array_equal(observations[index], observation)
-                assert info["run"][index] == told["run"]
+            for place in np.flatnonzero(ended):
+                observation, told = each[place].reset()
+                np.testing.assert_array_equal(observations[place], observation)
+                assert info["run"][place] == told["run"]
             ended[:] = False
         told_all = many.step(actions)
         for index, env in enumerate(each):
@@ -203,3 +204,9 @@ def test_the_law_of_a_study_as_an_agent() -> None:
     exact = [-0.08445766623, -0.01487397736, 0.06782833490]
     np.testing.assert_allclose(state["rate"], [exact] * 3, rtol=2e-9)
     assert most == pytest.approx(0.08445766623, rel=2e-9)
+
+
+def test_the_examples_of_the_docstrings_run() -> None:
+    told = doctest.testmod(flexsc.gym, extraglobs={"flexsc": flexsc})
+    assert told.attempted > 8
+    assert not told.failed

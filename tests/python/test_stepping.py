@@ -1,6 +1,7 @@
 """Runs in steps: the same as whole runs, snapshots, clones, many together, and what is refused."""
 
 import copy
+import doctest
 import pickle
 from typing import Any
 
@@ -8,7 +9,7 @@ import flexsc
 import numpy as np
 import pytest
 from conftest import shipped
-from flexsc import Simulator, Simulators
+from flexsc import Simulator, Simulators, _simulator
 
 UNCERTAIN = {
     "name": "uncertain",
@@ -309,3 +310,9 @@ def test_bad_arguments_are_told(uncertain: flexsc.Scenario) -> None:
         Simulators(uncertain, 1, jobs=0)
     assert sim.time == 1.0
     assert (sims.time == 0.0).all(), "nothing moved"
+
+
+def test_the_examples_of_the_docstrings_run() -> None:
+    told = doctest.testmod(_simulator, extraglobs={"flexsc": flexsc, "numpy": np})
+    assert told.attempted > 5
+    assert not told.failed

@@ -48,6 +48,16 @@ duty: npt.NDArray[Any] = flexsc.sweep(scenario, "law.relay.k_t", np.linspace(0.3
 swept: flexsc.Table = flexsc.sweep(scenario, "law.relay.k_t", [0.3, 0.35])
 both: flexsc.Table = flexsc.sweep(scenario, {"law.relay.k_t": [0.3], "body.planar.angle": np.zeros(2)})
 unit = flexsc.metrics()["duty"]["unit"]
+unit: str = flexsc.metrics()["duty"]["unit"]
+sim: flexsc.Simulator = flexsc.Simulator(scenario, run=1)
+switched: bool = sim.run_until("switching", limit=100.0)
+before: flexsc.Snapshot = sim.snapshot()
+sim.step(1e-6, 0.5)
+angle: float = float(sim.clone().state["angle"])
+sim.restore(before)
+sims: flexsc.Simulators = flexsc.Simulators(scenario, 4, jobs=1)
+moved: flexsc.Quantities = sims.step(np.zeros(4), 0.5)
+angles: npt.NDArray[np.float64] = sims.reset(sims.done)["angle"]
 turn: flexsc.Scenario = flexsc.Scenario.load(path.with_name("rotation-sine.toml"))
 turn = turn.with_({"manoeuvre.command": {"sine": {"suppress": 1}}, "manoeuvre.time": 40.0})
 plan: flexsc.Plan = turn.plan(band=0.05)

@@ -46,9 +46,15 @@ impl Controls {
 
     /// Commands in the place of the laws from now on, which nobody asks any more.
     pub fn steer(&mut self, commands: [Command; 3]) {
-        self.steered = Some(commands);
-        self.until = None;
-        self.axes.iter_mut().for_each(|held| held.hold = Hold::NONE);
+        if self.steered.replace(commands).is_none() {
+            self.until = None;
+            self.axes.iter_mut().for_each(|held| held.hold = Hold::NONE);
+        }
+    }
+
+    /// Whether commands come from outside.
+    pub fn are_steered(&self) -> bool {
+        self.steered.is_some()
     }
 
     /// Asks the laws that an event concerns; tells the cause for the first of them that answers.
@@ -60,9 +66,6 @@ impl Controls {
         beliefs: &[Belief],
     ) -> Option<Cause> {
         let mut first = None;
-        if self.steered.is_some() {
-            return first;
-        }
         for (axis, (held, belief)) in self.axes.iter_mut().zip(beliefs).enumerate() {
             let timeout = held.hold.until.filter(|until| *until == now).map(|_| Cause::Timeout);
             let cause = match event {

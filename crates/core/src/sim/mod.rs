@@ -284,6 +284,9 @@ impl Simulation {
     /// Asks the laws that an event concerns; tells the cause.
     fn ask(&mut self, event: Event) -> Option<Cause> {
         let Self { reference, now, laws, beliefs, .. } = self;
+        if laws.are_steered() {
+            return None;
+        }
         if beliefs.len() > 1 {
             let square: f64 = beliefs.iter().map(|belief| belief.angle * belief.angle).sum();
             for belief in beliefs.iter_mut() {

@@ -107,6 +107,7 @@ impl Simulation {
             };
             self.unanswered = Some(event);
             if (came || self.now == until) && !self.is_done() {
+                self.plant.view(self.now)?;
                 return Ok(came);
             }
             // What comes at the end is answered there.
