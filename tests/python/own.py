@@ -197,6 +197,12 @@ class Mekf(flexsc.Estimator):
     def carry(self, taken: Taken) -> Sequence[Sequence[float]] | None:
         return self.believed(taken)
 
+    def attitude(self, now: Instant) -> tuple[Any, Any, Any] | None:
+        if not self.past:
+            return None
+        q, bias, p = self.past[-1][3:]
+        return times(q, turn((self.rate - bias) * (now.seconds - self.since))), bias, p
+
 
 class Encoder(flexsc.Sensor):
     """An angle in whole steps, or small rotations of an attitude, with noise."""

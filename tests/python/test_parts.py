@@ -97,6 +97,16 @@ def test_an_attitude_filter_in_numpy_believes_the_same() -> None:
     np.testing.assert_allclose(own[:, 2:], built_in[:, 2:], rtol=0.0, atol=1e-12)
 
 
+def test_an_attitude_filter_in_numpy_is_logged() -> None:
+    scenario = shipped("earth-observer").with_("duration", 20.0)
+    theirs = scenario.simulate(log="full")["attitude_filter"]
+    mine = scenario.with_parts(estimator=mekf()).simulate(log="full")["attitude_filter"]
+    np.testing.assert_array_equal(mine["time_s"], theirs["time_s"])
+    for column in ("axes.angle_error_rad", "axes.angle_sd_rad", "axes.bias_rad_s", "axes.bias_sd_rad_s"):
+        np.testing.assert_allclose(mine[column], theirs[column], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(mine["nees"], theirs["nees"], rtol=1e-6)
+
+
 def all_own(text: str = SMALL) -> flexsc.Scenario:
     return flexsc.Scenario.parse(text, "own").with_parts(
         law=Pd(0.25, 4.0, 30.0, Notes()),
@@ -286,22 +296,26 @@ void relay(double now, double since, double cause, double angle, double rate,
            double goal_angle, double goal_rate, double *state, double *hold)
 {
     const double zone = 5e-4, back = 5e-4 - 1e-4, strong = 4e-5, weak = 1e-6, k_t = 0.31;
+    const double labels[] = {2, 3, 4, 5, 6, 7, 8};  /* W0, RACC, RBRK, W+, LACC, LBRK, W- */
     int phase = (int)state[0];
     if (phase == 1 || phase == 4) {
         hold[0] = phase == 1 ? strong : -strong;
         hold[1] = k_t * since;
         state[0] = phase + 1;
+        hold[4] = labels[phase + 1];
         return;
     }
     if (phase == 2 || phase == 5 || (phase == 0 && fabs(angle) < zone)) {
         hold[0] = phase == 5 ? -weak : weak;
         hold[2] = zone;
         hold[3] = -zone;
+        hold[4] = phase == 0 ? 2 : labels[phase + 1];
         state[0] = phase == 0 ? 3 : phase + 1;
         return;
     }
     int right = cause == 2.0 || (cause == 0.0 && angle > 0.0);
     hold[0] = right ? -strong : strong;
+    hold[4] = labels[right ? 1 : 4];
     hold[right ? 3 : 2] = right ? back : -back;
     state[0] = right ? 1 : 4;
 }
@@ -319,7 +333,7 @@ def test_a_relay_in_c_switches_at_the_same_instants(tmp_path: Path) -> None:
     law = flexsc.CompiledLaw(ctypes.CDLL(str(library)).relay, states=[0.0], promise=6e-4, switches=True)
     own = scenario.with_parts(law=law)
     mine, theirs = own.simulate()["command"], scenario.simulate()["command"]
-    for column in ("time_s", "angle_rad", "torque_nm"):
+    for column in ("time_s", "time_fs", "state", "angle_rad", "torque_nm"):
         np.testing.assert_array_equal(mine[column], theirs[column])
     np.testing.assert_array_equal(own.simulate()["command"]["time_s"], theirs["time_s"])
     with pytest.raises(TypeError, match="cannot be pickled"):

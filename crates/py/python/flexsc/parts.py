@@ -9,8 +9,8 @@ it in the place of the scenario's own, beside all other kinds:
 ...     def decide(self, event):
 ...         return flexsc.Hold(-4.0 * event.angle - 30.0 * event.rate)
 >>> scenario = flexsc.Scenario({"duration": 60.0, "law": {"open": {}}, "body": {"planar": {"angle": 1e-3}}})
->>> scenario.with_parts(law=Damper()).simulate().metrics["switchings"]
-241
+>>> scenario.with_parts(law=Damper()).simulate().metrics["peak_torque_nm"]
+0.004
 
 Each run begins with copies of the objects, so that runs repeat: `copy` makes them, by `copy.deepcopy` unless
 a class says otherwise. An exception ends the run, and comes out of `simulate` as it was raised; in a campaign
@@ -122,7 +122,8 @@ class CompiledLaw(Law):
     `now` is the time (s), `since` that since its last call, rounded once. `cause` is
     0 at the start, 1 at the time of the last hold, 2 and 3 when the angle is at least and at most its level.
     `states` are its own from call to call. It writes `hold`: torque (N m), time until it is asked again (s),
-    and the least and most angle (rad) at which it is asked; those that it leaves NaN, as they come, are none.
+    the least and most angle (rad) at which it is asked, and its state for the log: 0 to 11 for OPEN, PD, W0,
+    RACC, RBRK, W+, LACC, LBRK, W-, COAST, FIRE and BDOT. Those that it leaves NaN, as they come, are none.
 
     >>> import ctypes
     >>> kind = ctypes.CFUNCTYPE(None, *[ctypes.c_double] * 7, *[ctypes.POINTER(ctypes.c_double)] * 2)
@@ -205,6 +206,17 @@ class Estimator(_Part):
 
         `taken` has the time and the target, and nothing that was measured. Returns what `take` does. It must
         not change the estimator.
+        """
+        return None
+
+    def attitude(
+        self, now: Instant
+    ) -> tuple[Sequence[float], Sequence[float], Sequence[Sequence[float]]] | None:
+        """What an attitude filter knows after a sample, for the log `attitude_filter` with errors and NEES.
+
+        Returns:
+            The attitude now (w, x, y, z), the bias of the gyro (rad/s) of shape (3,), and the covariance of
+            their errors, of shape (6, 6), rad² and rad²/s²; arrays will do. None of an estimator without.
         """
         return None
 

@@ -10,6 +10,7 @@ use flexsc_core::time::{Instant, Span};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
+use super::hold::PHASES;
 use super::law::positive;
 use super::object::Object;
 
@@ -60,6 +61,7 @@ impl Rule for Brought {
             states: self.states.clone(),
             last: None,
             above: true,
+            phase: Phase::Open,
             halted: None,
         })
     }
@@ -90,6 +92,7 @@ struct Deciding {
     last: Option<Instant>,
     /// Whether the first guard is one of at least an angle.
     above: bool,
+    phase: Phase,
     halted: Option<Halt>,
 }
 
@@ -104,9 +107,9 @@ impl Control for Deciding {
         };
         let since = self.last.replace(now).map_or(0.0, |last| now.since(last).seconds());
         let (angle, rate) = goal.at(now);
-        // Torque, time, least and most angle.
-        let mut hold = [0.0, f64::NAN, f64::NAN, f64::NAN];
-        // SAFETY: the states are as many as the law said, the hold has four numbers, and both outlive the call.
+        // Torque, time, least and most angle, state.
+        let mut hold = [0.0, f64::NAN, f64::NAN, f64::NAN, f64::NAN];
+        // SAFETY: the states are as many as the law said, the hold has five numbers, and both outlive the call.
         unsafe {
             let (states, hold) = (self.states.as_mut_ptr(), hold.as_mut_ptr());
             (self.function)(
@@ -121,12 +124,17 @@ impl Control for Deciding {
                 hold,
             );
         }
-        let [torque, after, above, below] = hold;
+        let [torque, after, above, below, state] = hold;
         if !torque.is_finite() || after < 0.0 || after.is_infinite() {
             let why = format!("a compiled law gave a torque of {torque} and a time of {after} s");
             self.halted = Some(Halt::new(PyRuntimeError::new_err(why)));
             return Hold::NONE;
         }
+        self.phase = if state.is_nan() {
+            Phase::Feedback
+        } else {
+            PHASES.get(state as usize).copied().unwrap_or(Phase::Feedback)
+        };
         self.above = !above.is_nan();
         let guards = match (above.is_nan(), below.is_nan()) {
             (false, false) => Guards::two(Guard::at_least(above), Guard::at_most(below)),
@@ -139,7 +147,7 @@ impl Control for Deciding {
     }
 
     fn state(&self) -> Phase {
-        if self.last.is_some() { Phase::Feedback } else { Phase::Open }
+        self.phase
     }
 
     fn halted(&self) -> Option<Halt> {

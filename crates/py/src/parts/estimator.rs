@@ -6,6 +6,7 @@ use flexsc_core::belief::{Belief, Dominant, Reads};
 use flexsc_core::estimator::{Estimate, Known as EngineKnown, Observe, Taken as EngineTaken};
 use flexsc_core::own::Halt;
 use flexsc_core::random::Seed;
+use flexsc_core::record::AttitudeEstimate;
 use flexsc_core::sensor::Orientation;
 use flexsc_core::time::{Instant as Exact, Span};
 use pyo3::exceptions::PyValueError;
@@ -156,17 +157,24 @@ pub struct Brought {
 
 /// The methods that its class has beside `take`.
 #[derive(Copy, Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "a yes or no for each method")]
 struct Also {
     given: bool,
     carry: bool,
     shift: bool,
+    attitude: bool,
 }
 
 impl Brought {
     /// Reads what an estimator says of itself.
     pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let has = |method| overrides(part, "Estimator", method);
-        let also = Also { given: has("given")?, carry: has("carry")?, shift: has("shift")? };
+        let also = Also {
+            given: has("given")?,
+            carry: has("carry")?,
+            shift: has("shift")?,
+            attitude: has("attitude")?,
+        };
         Ok(Self { object: Object::new(part), also })
     }
 }
@@ -292,6 +300,16 @@ impl Estimate for Observing {
                 self.method.other(py, |part| part.call_method1("shift", (by,)).map(drop));
             });
         }
+    }
+
+    fn attitude(&self, now: Exact, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+        if !self.also.attitude {
+            return None;
+        }
+        let told =
+            |part: &Bound<'_, PyAny>| super::attitude::told(&part.call_method1("attitude", (Instant(now),))?);
+        let filter = Python::attach(|py| self.method.other(py, told))??;
+        super::attitude::row(&filter, truth, bias)
     }
 
     fn halted(&self) -> Option<Halt> {

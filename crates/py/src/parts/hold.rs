@@ -31,7 +31,7 @@ pub struct Hold {
 }
 
 /// The states of laws.
-const PHASES: [Phase; 12] = [
+pub const PHASES: [Phase; 12] = [
     Phase::Open,
     Phase::Feedback,
     Phase::Start,

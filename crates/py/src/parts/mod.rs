@@ -2,6 +2,7 @@
 
 mod actuator;
 mod adaptation;
+mod attitude;
 mod bring;
 mod compiled;
 mod draws;
