@@ -10,7 +10,7 @@ import flexsc
 import numpy as np
 import numpy.typing as npt
 from flexsc.parts import Authority, Demanded, Draws, Event, Instant, Known, Setting, Stream, Taken, Truth
-from scipy.linalg import expm  # type: ignore[import-untyped]
+from scipy.linalg import expm
 
 Array = npt.NDArray[np.float64]
 

@@ -9,6 +9,7 @@ from types import ModuleType
 from typing import Any
 
 import flexsc
+import numpy
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -35,8 +36,9 @@ def test_every_name_has_an_example_that_runs(name: str) -> None:
     assert len(text) > 20, name
     if name in OF_FILES:
         return
+    # An example shows what it is about: what every reader has imported may be left out.
     finder = doctest.DocTestFinder(recurse=inspect.isclass(thing))
-    found = finder.find(thing, name, module=False, globs={})
+    found = finder.find(thing, name, module=False, globs={**vars(flexsc), "flexsc": flexsc, "numpy": numpy})
     assert run(found) > 0, name
     for method, inner in vars(thing).items() if inspect.isclass(thing) else ():
         if not method.startswith("_") and (callable(inner) or isinstance(inner, property)):

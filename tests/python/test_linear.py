@@ -10,8 +10,8 @@ import numpy.typing as npt
 import pytest
 from conftest import shipped
 from flexsc.parts import Authority, Event
-from scipy.linalg import expm  # type: ignore[import-untyped]
-from scipy.signal import StateSpace, cont2discrete  # type: ignore[import-untyped]
+from scipy.linalg import expm
+from scipy.signal import StateSpace, cont2discrete
 
 PLANAR = """
 duration = 30.0
@@ -253,7 +253,8 @@ def test_controllers_come_back_in() -> None:
         discrete = cont2discrete(lead, 0.5, name)[:4]
         with_held = scenario.with_law(lead, 0.5, method=method)  # type: ignore[arg-type]
         by_scipy = scenario.with_law(StateSpace(*discrete, dt=0.5))
-        assert by_scipy.to_dict()["law"]["state_space"]["period"] == 0.5
+        law: Any = by_scipy.to_dict()["law"]
+        assert law["state_space"]["period"] == 0.5
         torque = [run.simulate(log="full")["torque"]["feedback_nm"] for run in (with_held, by_scipy)]
         np.testing.assert_allclose(torque[1], torque[0], rtol=1e-9, atol=1e-12)
     with pytest.raises(ValueError, match="needs a period"):

@@ -122,7 +122,7 @@ pub fn svg(figure: &Figure, width: u32) -> Result<String, Error> {
             head.draw_text(line, &text(size, HPos::Center, VPos::Center), place)?;
         }
         let mut rest = body;
-        let upward = Axis::stacked(figure.panels.iter().map(|panel| &panel.y));
+        let upward = figure.upward();
         for (panel, y) in figure.panels.iter().zip(&upward) {
             let (area, below) = rest.split_vertically(layout.panel(panel) * UNITS);
             let (key, area) = area.split_vertically(bar_height(panel) * UNITS);

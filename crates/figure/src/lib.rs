@@ -114,6 +114,11 @@ impl Figure {
         self.laid_out(&Style::default())
     }
 
+    /// The vertical axes of the panels as they are drawn: those of one unit have one prefix.
+    pub fn upward(&self) -> Vec<Axis> {
+        Axis::stacked(self.panels.iter().map(|panel| &panel.y))
+    }
+
     /// The figure as SVG, laid out for a style but in pixels of its own: [`Style::sized`] gives it its size.
     pub fn laid_out(&self, style: &Style) -> Result<String, String> {
         draw::svg(self, style.layout_width()).map_err(|error| error.to_string())

@@ -49,14 +49,14 @@ impl Figure {
 
     /// The panels, from top to bottom.
     fn panels<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        self.0.panels.iter().map(|of| panel(py, of)).collect()
+        self.0.panels.iter().zip(&self.0.upward()).map(|(of, y)| panel(py, of, y)).collect()
     }
 }
 
-fn panel<'py>(py: Python<'py>, panel: &Panel) -> PyResult<Bound<'py, PyDict>> {
+fn panel<'py>(py: Python<'py>, panel: &Panel, y: &Axis) -> PyResult<Bound<'py, PyDict>> {
     let told = PyDict::new(py);
     told.set_item("x", axis(py, &panel.x)?)?;
-    told.set_item("y", axis(py, &panel.y)?)?;
+    told.set_item("y", axis(py, y)?)?;
     let layers = panel.layers.iter().map(|of| layer(py, of)).collect::<PyResult<Vec<_>>>()?;
     told.set_item("layers", layers)?;
     let bar = panel.bar.as_ref().map(|bar| {

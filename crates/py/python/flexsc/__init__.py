@@ -29,7 +29,6 @@ from typing import TYPE_CHECKING, Any
 from flexsc import _native as engine
 from flexsc._campaign import Table, campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
-from flexsc._linear import Linear, Signal
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
@@ -40,7 +39,8 @@ from flexsc._units import Metrics
 from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor
 
 if TYPE_CHECKING:
-    from flexsc import plot, scenario, structure
+    from flexsc import parts, plot, scenario, structure
+    from flexsc._linear import Linear, Signal
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -110,15 +110,17 @@ __all__ = [
 
 # What is imported when it is first asked for, so that `import flexsc` stays quick.
 _MODULES = ("plot", "scenario", "structure")
-_OF_STRUCTURE = (
-    "StateSpace",
-    "Structure",
-    "appendage_from_nastran",
-    "from_csv",
-    "from_nastran",
-    "from_state_space",
-    "write_scenario",
-)
+_LATER = {
+    "Linear": "_linear",
+    "Signal": "_linear",
+    "StateSpace": "structure",
+    "Structure": "structure",
+    "appendage_from_nastran": "structure",
+    "from_csv": "structure",
+    "from_nastran": "structure",
+    "from_state_space": "structure",
+    "write_scenario": "structure",
+}
 
 
 # A type checker knows what there is, and would take any name for one of these.
@@ -127,8 +129,8 @@ if not TYPE_CHECKING:
     def __getattr__(name: str) -> Any:
         if name in _MODULES:
             return import_module(f"flexsc.{name}")
-        if name in _OF_STRUCTURE:
-            return getattr(import_module("flexsc.structure"), name)
+        if name in _LATER:
+            return getattr(import_module(f"flexsc.{_LATER[name]}"), name)
         raise AttributeError(f"module 'flexsc' has no attribute {name!r}")
 
 

@@ -7,7 +7,7 @@
     ['phase-plane', 'torque', 'angle', 'envelope', 'modes']
     >>> axes = flexsc.plot.draw(run, "angle")
     >>> axes.get_ylabel()
-    'angle x, µrad'
+    'angle x (µrad)'
     >>> figure = flexsc.plot.figure(run, "envelope")
     >>> len(figure.axes)
     2
