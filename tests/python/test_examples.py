@@ -15,7 +15,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 # They read files of other programs: the page about imports has examples, and tests of their own run them.
 OF_FILES = {"appendage_from_nastran", "from_nastran"}
-MODULES = {"plot", "scenario", "structure"}
+MODULES = {"parts", "plot", "scenario", "structure"}
 PAGES = ["results.md"]
 
 

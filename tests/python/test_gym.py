@@ -85,6 +85,7 @@ def test_many_are_what_each_is_alone(uncertain: flexsc.Scenario, mode: str) -> N
     random = np.random.default_rng(5)
     ended = np.zeros(6, dtype=bool)
     ends, terminations = 0, 0
+    told_all: Any = None
     for _ in range(30):
         actions = random.uniform(-1.2, 1.2, (6, 3)).astype(np.float32)
         if mode == "Disabled" and ended.any():

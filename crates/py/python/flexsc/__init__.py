@@ -92,6 +92,7 @@ __all__ = [
     "metrics",
     "observer_margin",
     "observer_region",
+    "parts",
     "persistence",
     "plot",
     "read_campaign",
@@ -109,7 +110,7 @@ __all__ = [
 ]
 
 # What is imported when it is first asked for, so that `import flexsc` stays quick.
-_MODULES = ("plot", "scenario", "structure")
+_MODULES = ("parts", "plot", "scenario", "structure")
 _LATER = {
     "Linear": "_linear",
     "Signal": "_linear",

@@ -73,7 +73,16 @@ class _Fields:
 
 
 class Snapshot:
-    """Where a run stands, to return to: made by `Simulator.snapshot`. It cannot be pickled."""
+    """The state of a run at an instant, to return to: made by `Simulator.snapshot`. It cannot be pickled.
+
+    >>> sim = flexsc.Simulator(flexsc.Scenario.example("relay-fixed"))
+    >>> before = sim.snapshot()
+    >>> sim.run_until(100.0)
+    True
+    >>> sim.restore(before)
+    >>> sim.time == before.time == 0.0
+    True
+    """
 
     __slots__ = ("_native", "run", "scenario")
 
