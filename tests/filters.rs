@@ -270,7 +270,7 @@ fn a_filter_that_is_read_does_not_watch_only() {
     // What watches changes nothing, and the summary says so.
     let dir = Dir::new();
     dir.write("loop.toml", looped("extended_kalman]").to_toml());
-    dir.run("simulate loop.toml --log none --set duration=3").exits(0).says(&["watches only"]);
+    dir.run("simulate loop.toml --log none --set duration=3").exits(0).says(&["not used by the law"]);
     let mut alone: toml::Table = looped("extended_kalman]").to_toml().parse().expect("TOML");
     alone.remove("estimator");
     let alone = metrics(Scenario::parse("alone", &alone.to_string()).expect("valid"));

@@ -153,7 +153,7 @@ fn metrics_are_exported_as_a_table_for_people() {
     for name in ["switchings", "duty", "envelope_mean_rad"] {
         assert_eq!(of(name)[1].parse::<f64>().ok(), metrics[name].as_f64(), "{name}");
     }
-    assert_eq!(of("switchings")[3], "Switchings of the law in the run");
+    assert_eq!(of("switchings")[3], "Number of switchings of the law");
     assert_eq!(
         (of("envelope_mean_rad")[2].as_str(), of("goal")[1].as_str()),
         ("rad", metrics["goal"].as_str().expect("a word"))

@@ -109,7 +109,7 @@ fn examples_are_all_there_and_a_new_scenario_runs() {
     assert_eq!(listed.out.lines().count(), count);
     dir.run("new mine --like relay-fixed").exits(0);
     dir.run("simulate mine.toml --log none").exits(0);
-    dir.run("new mine").exits(2).says(&["is there already", "--force"]);
+    dir.run("new mine").exits(2).says(&["already exists", "--force"]);
     dir.run("new other --like relay-fixd").exits(2).says(&["did you mean `relay-fixed`?"]);
 }
 

@@ -184,9 +184,12 @@ fn the_map_is_drawn_with_the_limit_of_stability() {
     // The longest periods: 1.75, 1.4, 1.1 and 0.75 s at 0.1, 0.15, 0.2 and 0.3 rad/s.
     let limit = map.line(BLACK);
     for (w, longest) in [(0.1, 1.75), (0.15, 1.4), (0.2, 1.1), (0.3, 0.75)] {
-        let off = |p: &&Point| (map.across(p.0, ["0.10", "0.30"]) - w).abs();
-        let at = limit.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a point");
-        near(map.up(at.1, ["0.4", "1.4"]), longest, 0.03);
+        let place = |p: &Point| map.across(p.0, ["0.10", "0.30"]) - w;
+        let around =
+            limit.windows(2).find(|pair| place(&pair[0]) * place(&pair[1]) <= 0.0).expect("w is met");
+        let part = place(&around[0]) / (place(&around[0]) - place(&around[1]));
+        let height = around[0].1 + part * (around[1].1 - around[0].1);
+        near(map.up(height, ["0.4", "1.4"]), longest, 0.03);
     }
     dir.run(&format!("map wheel-fast-mode.toml {grid} --format svg")).exits(2);
 }

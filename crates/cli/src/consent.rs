@@ -8,7 +8,7 @@ use crate::failure::Failure;
 #[derive(clap::Args, Copy, Clone)]
 #[group(skip)]
 pub struct Consent {
-    /// Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs
+    /// Run even if it is estimated to take over 10 h on one core, 4 GB of memory or 20 GB of logs
     #[arg(long)]
     yes: bool,
 }

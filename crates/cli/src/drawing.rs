@@ -23,7 +23,7 @@ const OTHERS: [&str; 13] =
 #[derive(clap::Args)]
 #[group(skip)]
 pub struct Drawing {
-    /// Draw the figures: into a directory, created if missing, or as one FILE.svg, .png or .pdf
+    /// Plot the results: directory, created if missing, or one FILE.svg, .png or .pdf
     #[arg(short = 'o', long = "out", visible_alias = "figures", value_name = "DIR|FILE")]
     pub figures: Option<PathBuf>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
@@ -47,9 +47,9 @@ impl Drawing {
 pub enum Format {
     /// Vector graphics
     Svg,
-    /// Pixels
+    /// Raster graphics
     Png,
-    /// Vector graphics with their fonts, for LaTeX
+    /// Vector graphics with embedded fonts, for LaTeX
     Pdf,
     /// SVG and PNG
     Both,

@@ -72,16 +72,16 @@ const START: &str = "attitude-hold";
 /// Copies of examples.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Examples to copy; without a name, all are listed
+    /// Examples to copy [default: list all]
     #[arg(value_name = "NAME")]
     names: Vec<String>,
     /// Directory for the copies
     #[arg(short, long, alias = "output", value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// Replace files that are there
+    /// Overwrite existing files
     #[arg(long)]
     force: bool,
-    /// Print the list as JSON on stdout
+    /// Print the list as JSON to stdout
     #[arg(long)]
     json: bool,
 }
@@ -91,10 +91,10 @@ pub struct Args {
 pub struct NewArgs {
     /// Name of the scenario, or path of its file
     name: PathBuf,
-    /// The example to begin with
+    /// Example to start from
     #[arg(long, value_name = "EXAMPLE", default_value = START)]
     like: String,
-    /// Replace a file that is there
+    /// Overwrite an existing file
     #[arg(long)]
     force: bool,
 }
@@ -154,7 +154,7 @@ fn refuse_existing(path: &Path, force: bool) -> Result<(), Failure> {
     if force || !path.exists() {
         return Ok(());
     }
-    Err(Failure::Arguments(format!("{}: is there already\n\nhint: --force replaces it", path.display())))
+    Err(Failure::Arguments(format!("{}: already exists\n\nhint: --force overwrites it", path.display())))
 }
 
 /// Prints each name with what the example is about.

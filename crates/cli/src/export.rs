@@ -17,13 +17,13 @@ use crate::files;
 pub struct Args {
     /// Log file
     log: PathBuf,
-    /// Topic, such as /command; left out, the topics of the log are listed
+    /// Topic, such as /command [default: list the topics of the log]
     #[arg(long, value_name = "TOPIC")]
     topic: Option<String>,
     /// Format of the table
     #[arg(long, value_enum, default_value = "csv")]
     format: Format,
-    /// File to write, instead of stdout
+    /// File to write [default: stdout]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

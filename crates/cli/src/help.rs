@@ -16,10 +16,10 @@ const GROUPS: [(&str, &[Verb]); 4] = [
             (
                 "simulate",
                 [
-                    ("flexsc simulate relay-adaptive.toml", "one run; its log is relay-adaptive.mcap"),
+                    ("flexsc simulate relay-adaptive.toml", "one run, logged to relay-adaptive.mcap"),
                     (
                         "flexsc simulate earth-observer.toml --runs 20 -o monte-carlo",
-                        "20 runs with other noise, as a table with statistics",
+                        "20 runs with different noise: a table and its statistics",
                     ),
                 ],
             ),
@@ -28,19 +28,19 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 [
                     (
                         "flexsc sweep relay-fixed.toml --vary law.relay.k_t=0.28:0.40:25 -o gains",
-                        "25 gains, and the metrics of each",
+                        "25 gains, with the metrics of each run",
                     ),
                     (
                         "flexsc sweep relay-fixed.toml --vary law.relay.k_t=0.3:0.4:5 --vary seed=1:4:4",
-                        "every combination with 4 seeds",
+                        "5 gains times 4 seeds",
                     ),
                 ],
             ),
             (
                 "merge",
                 [
-                    ("flexsc merge monte-carlo -o all", "the runs of a directory, or of several, in one"),
-                    ("flexsc merge monte-carlo all -o once", "runs that are in both are taken once"),
+                    ("flexsc merge monte-carlo -o all", "all runs of one or more directories"),
+                    ("flexsc merge monte-carlo all -o once", "runs found in both are taken once"),
                 ],
             ),
         ],
@@ -51,15 +51,15 @@ const GROUPS: [(&str, &[Verb]); 4] = [
             (
                 "top",
                 [
-                    ("flexsc top monte-carlo", "how far a campaign is, and its statistics so far"),
-                    ("flexsc top monte-carlo --json", "the same once, as JSON"),
+                    ("flexsc top monte-carlo", "progress and statistics so far"),
+                    ("flexsc top monte-carlo --json", "the same as JSON, once"),
                 ],
             ),
             (
                 "plot",
                 [
-                    ("flexsc plot relay-adaptive.mcap -o figures", "every figure that the log has"),
-                    ("flexsc plot gains -o gains.svg", "the figures of a campaign or a sweep, on one sheet"),
+                    ("flexsc plot relay-adaptive.mcap -o figures", "all figures of the log"),
+                    ("flexsc plot gains -o gains.svg", "all figures of a sweep on one sheet"),
                 ],
             ),
             (
@@ -77,7 +77,7 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 [
                     (
                         "flexsc layout relay-adaptive.mcap -o layout.json",
-                        "a layout for Foxglove and Lichtblick that shows this log",
+                        "a layout of this log for Foxglove and Lichtblick",
                     ),
                     (
                         "flexsc layout earth-observer.toml -o live.json",
@@ -88,10 +88,10 @@ const GROUPS: [(&str, &[Verb]); 4] = [
             (
                 "log",
                 [
-                    ("flexsc log scenario relay-adaptive.mcap", "the scenario that a log was made from"),
+                    ("flexsc log scenario relay-adaptive.mcap", "the scenario of a log"),
                     (
                         "flexsc log recover relay-adaptive.mcap -o whole.mcap",
-                        "what a killed run has left, as a whole log",
+                        "a complete log from what a killed run left",
                     ),
                 ],
             ),
@@ -117,17 +117,23 @@ const GROUPS: [(&str, &[Verb]); 4] = [
             (
                 "plan",
                 [
-                    ("flexsc plan rotation-cosine.toml", "the manoeuvre with its modes at rest at the end"),
-                    ("flexsc plan rotation-cosine.toml --compare", "the same beside every other command"),
+                    ("flexsc plan rotation-cosine.toml", "a manoeuvre that leaves the modes at rest"),
+                    (
+                        "flexsc plan rotation-cosine.toml --compare",
+                        "the same compared with all other commands",
+                    ),
                 ],
             ),
             (
                 "tune",
                 [
-                    ("flexsc tune wheel-scheduled-gain.toml", "the gains that settle, over frequency"),
+                    (
+                        "flexsc tune wheel-scheduled-gain.toml",
+                        "the gains that settle in time, over frequency",
+                    ),
                     (
                         "flexsc tune wheel-scheduled-gain.toml --schedule",
-                        "the best of them as keys of a scenario",
+                        "the best of them as a gain schedule",
                     ),
                 ],
             ),
@@ -149,7 +155,7 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 [
                     (
                         "flexsc damping --frequency 0.5:8:16 --acceleration 4e-5",
-                        "which modes thrusters damp, with samples every 0.2 s",
+                        "the modes that thrusters damp, sampled every 0.2 s",
                     ),
                     (
                         "flexsc damping --frequency 0.5:8:16 --acceleration 4e-5 --delay 0.1",
@@ -160,8 +166,11 @@ const GROUPS: [(&str, &[Verb]); 4] = [
             (
                 "observer",
                 [
-                    ("flexsc observer --frequency 1.556", "the weights for which an observer converges"),
-                    ("flexsc observer --frequency 1.556 --weights 0.05,0.3,0.2", "whether these weights do"),
+                    ("flexsc observer --frequency 1.556", "the weights for which the observer converges"),
+                    (
+                        "flexsc observer --frequency 1.556 --weights 0.05,0.3,0.2",
+                        "whether it converges for these weights",
+                    ),
                 ],
             ),
             (
@@ -169,11 +178,11 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 [
                     (
                         "flexsc identify --runs 20 --off 0.1",
-                        "how often 20 runs identify frequencies 10 % off",
+                        "success rate of 20 runs from frequencies 10 % off",
                     ),
                     (
                         "flexsc identify --runs 20 --off 0.1 --modes 1.556:2.89,3.77:3.0",
-                        "the same of these two modes",
+                        "the same for two other modes",
                     ),
                 ],
             ),
@@ -185,29 +194,29 @@ const GROUPS: [(&str, &[Verb]); 4] = [
             (
                 "new",
                 [
-                    ("flexsc new my-satellite", "a commented scenario to begin with"),
+                    ("flexsc new my-satellite", "a commented scenario to start from"),
                     ("flexsc new slew --like earth-observer", "the same from another example"),
                 ],
             ),
             (
                 "examples",
                 [
-                    ("flexsc examples", "the shipped scenarios, a line each"),
+                    ("flexsc examples", "all examples, one line each"),
                     ("flexsc examples wheel-ekf sun-tracking -o copies", "copies of two of them"),
                 ],
             ),
             (
                 "check",
                 [
-                    ("flexsc check my-satellite.toml", "every mistake in a scenario, before it is run"),
-                    ("flexsc check my-satellite.toml slew.toml --json", "the same for programs"),
+                    ("flexsc check my-satellite.toml", "every mistake in a scenario"),
+                    ("flexsc check my-satellite.toml slew.toml --json", "the same as JSON"),
                 ],
             ),
             (
                 "schema",
                 [
                     ("flexsc schema > scenario.schema.json", "the JSON Schema of scenarios, for editors"),
-                    ("flexsc schema --metrics", "the metrics, their units and what they mean"),
+                    ("flexsc schema --metrics", "metrics with their units and meanings"),
                 ],
             ),
             (
@@ -239,7 +248,7 @@ pub fn completed(command: Command) -> Command {
             let _ = writeln!(verbs, "  {name:<12} {about}");
         }
     }
-    let hint = "`flexsc VERB --help` shows the options of a verb, and two examples.";
+    let hint = "Run `flexsc VERB --help` for the options of a verb and two examples.";
     let template =
         format!("{{about}}\n\n{{usage-heading}} {{usage}}\n{verbs}\nOptions:\n{{options}}\n\n{hint}\n");
     let all = GROUPS.into_iter().flat_map(|(_, members)| members);

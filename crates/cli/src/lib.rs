@@ -52,7 +52,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use examples::EXAMPLES;
 use failure::Failure;
 
-/// Attitude control of flexible spacecraft, simulated exactly, fast and reproducibly.
+/// Exact, fast and reproducible simulation of the attitude control of flexible spacecraft
 #[derive(Parser)]
 #[command(name = "flexsc", version, max_term_width = 100)]
 struct Cli {
@@ -62,59 +62,59 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Verb {
-    /// Simulate scenarios once, or many times as a Monte Carlo study
+    /// Run scenarios, once each or as a Monte Carlo campaign
     Simulate(simulate::Args),
-    /// Simulate a scenario once for each value of a key
+    /// Run a scenario over a grid or a sample of key values
     Sweep(sweep::Args),
-    /// Join the runs of one campaign from several directories
+    /// Merge parts of a campaign into one directory
     Merge(merge::Args),
-    /// Show how far a campaign is, and what its runs come to so far
+    /// Show the progress and the statistics of a running campaign
     Top(top::Args),
     /// Print the elastic modes of a spacecraft
     Modes(scenario::Args),
-    /// Print the limit cycles of a relay law, and its resonances
+    /// Print the limit cycles and resonances of a relay law
     ///
-    /// On the body without its modes, in closed form; a resonance is a gain at which an odd harmonic of the cycle meets a mode.
+    /// In closed form, for the rigid body. A resonance is a gain at which an odd harmonic of the limit cycle matches a mode.
     Cycle(scenario::Args),
-    /// Plan a manoeuvre that leaves modes at rest, or compare plans
+    /// Plan a manoeuvre without residual vibration, or compare plans
     Plan(plan::Args),
-    /// Find gains of a sampled loop that are stable and settle in time
+    /// Find stable, fast gains of a sampled loop
     ///
-    /// Over the frequency of the dominant mode; as a region, a schedule, or robust gains.
+    /// Over the frequency of the dominant mode: a region of gains, a gain schedule, or robust gains.
     Tune(tune::Args),
-    /// Map the stability of a sampled loop over frequency and period
+    /// Map the stability of a sampled loop
     ///
-    /// The frequency is that of the dominant mode, the period that of the samples.
+    /// Spectral radius and settling time over the frequency of the dominant mode and the sampling period.
     Map(map::Args),
     /// Analyse active damping by thrusters
     ///
-    /// Which modes a relay of thrusters damps, how fast, and its limit cycle with a delay.
+    /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
     Damping(damping::Args),
     /// Measure how well an adaptive observer identifies modes
     ///
-    /// How often and how fast, over many runs.
+    /// Success rate and time over many runs.
     Identify(identify::Args),
-    /// Find the weights for which an observer of a mode converges
+    /// Find the weights for which a modal observer converges
     Observer(observer::Args),
-    /// Draw the figures of a log or a campaign
+    /// Plot a log, a campaign or a sweep
     Plot(plot::Args),
-    /// Reproduce the papers behind the studies, on one HTML page
+    /// Reproduce the results of the papers on one HTML page
     Reproduce(reproduce::Args),
-    /// Print a topic of a log as a table
+    /// Export a topic of a log as CSV or JSON
     Export(export::Args),
-    /// Inspect logs, and recover incomplete ones
+    /// Inspect a log, or recover an incomplete one
     Log(log::Args),
-    /// Write a layout for viewers, of a log or a scenario
+    /// Write a viewer layout for a log or a scenario
     Layout(layout::Args),
     /// Check scenario files without running them
     Check(check::Args),
-    /// Write a new scenario, a commented copy of an example
+    /// Create a scenario from a commented example
     New(examples::NewArgs),
-    /// List the shipped scenarios, or copy some
+    /// List the example scenarios, or copy some
     Examples(examples::Args),
-    /// Print the JSON Schema of scenarios, or what metrics mean
+    /// Print the JSON Schema of scenarios, or the list of metrics
     Schema(schema::Args),
-    /// Print a completion script for a shell
+    /// Print a shell completion script
     Completions {
         /// The shell
         shell: clap_complete::Shell,

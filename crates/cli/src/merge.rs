@@ -11,10 +11,10 @@ use crate::{say, stop};
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Directories of one campaign, each with some of its runs
+    /// Directories with parts of one campaign
     #[arg(required = true, value_name = "DIR")]
     directories: Vec<PathBuf>,
-    /// The directory that has all of them, made if missing
+    /// Directory for all runs, created if missing
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
 }

@@ -15,10 +15,10 @@ pub struct Settled {
     /// Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the start
     #[arg(long, value_name = "ANGLE")]
     band: Option<f64>,
-    /// How long each loop is simulated (s)
+    /// Simulated time of each loop (s)
     #[arg(long, value_name = "TIME", default_value_t = 2000.0)]
     horizon: f64,
-    /// Change the frequency of the dominant mode alone, not of all modes by one ratio
+    /// Change only the frequency of the dominant mode [default: scale all modes]
     #[arg(long)]
     dominant_alone: bool,
     #[command(flatten)]

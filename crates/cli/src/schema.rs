@@ -10,7 +10,7 @@ use crate::print;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// What the metrics mean, instead of the form of scenarios
+    /// Print the metrics with their units and meanings instead
     #[arg(long)]
     metrics: bool,
     /// The topics of logs with their fields, instead of the form of scenarios

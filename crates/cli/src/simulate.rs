@@ -27,34 +27,34 @@ pub struct Args {
     /// Scenario files
     #[arg(required_unless_present = "from", value_name = "SCENARIO")]
     pub scenarios: Vec<PathBuf>,
-    /// Repeat a run of a campaign's directory, with its log
+    /// Repeat a run of the campaign in this directory, with a full log
     #[arg(long, value_name = "DIR", requires = "row", conflicts_with_all = ["scenarios", "runs", "set", "seed"])]
     from: Option<PathBuf>,
-    /// The number of that run
+    /// Number of the run to repeat
     #[arg(long, value_name = "N", requires = "from")]
     row: Option<u64>,
-    /// Directory for logs and tables, created if missing [default: this one, for logs only]
+    /// Directory for logs and tables, created if missing [default: the current one, for logs only]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Set a key of the scenario, such as law.relay.k_t=0.34
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Monte Carlo over the scenario's [uncertain] keys and seeds: N runs, or runs LO to HI - 1
+    /// Monte Carlo campaign over the [uncertain] keys and the noise: N runs, or runs LO to HI - 1
     #[arg(long, value_name = "N|LO:HI", value_parser = runs)]
     pub runs: Option<Runs>,
-    /// Seed, instead of the scenario's
+    /// Seed [default: the scenario's]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
     pub seed: Option<u64>,
-    /// Threads [default: one for each core]
+    /// Number of threads [default: one per core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Detail of the logs [default: events; none in a campaign]
     #[arg(long, value_name = "DETAIL")]
     log: Option<LogDetail>,
-    /// Replace logs of other settings and tables of other campaigns
+    /// Overwrite logs of other settings and tables of other campaigns
     #[arg(long)]
     force: bool,
-    /// Print one JSON object for each run on stdout
+    /// Print one JSON object per run to stdout
     #[arg(long)]
     json: bool,
     #[command(flatten)]

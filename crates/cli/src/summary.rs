@@ -40,7 +40,7 @@ fn spatial(metrics: &Metrics, bends: bool) {
     }
     if number("friction_heat_j").is_finite() {
         say!(
-            "  wheels         {} passages through zero speed, {} stops, {:.1} J of friction",
+            "  wheels         {} zero crossings, {} stops, {:.1} J of friction heat",
             number("wheel_zero_crossings"),
             number("wheel_stops"),
             number("friction_heat_j"),
@@ -52,25 +52,28 @@ fn spatial(metrics: &Metrics, bends: bool) {
     };
     if bends {
         say!(
-            "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end, {:.3e} J of it in modes that the sensor sees",
+            "  elastic        at most {:.3e} J{}{}, {:.3e} J at the end ({:.3e} J in modes visible to the gyro)",
             number("elastic_energy_peak_j"),
             below("energy_below_10pct_at_s", "10 %"),
             below("energy_below_1pct_at_s", "1 %"),
             number("elastic_energy_end_j"),
             number("visible_energy_end_j"),
         );
-        say!("  at the sensor  {:.3e} rad/s rms over the last 200 s", number("elastic_rate_rms_rad_s"));
+        say!(
+            "  elastic rate   {:.3e} rad/s rms at the gyro over the last 200 s",
+            number("elastic_rate_rms_rad_s")
+        );
     }
     if number("attitude_estimate_error_rms_rad").is_finite() {
         say!(
-            "  filter         off by {:.3e} rad rms; NEES {:.2}, NIS {:.2} of what it expects",
+            "  filter         error {:.3e} rad rms; NEES {:.2}, NIS {:.2} (1 if consistent)",
             number("attitude_estimate_error_rms_rad"),
             number("nees_mean"),
             number("nis_mean"),
         );
     }
     let error = number("pointing_error_end_rad");
-    say!("  pointing       {error:.3e} rad from the target at the end, the root sum of squares of the axes");
+    say!("  pointing       {error:.3e} rad error at the end (root sum of squares of the axes)");
     if let (rms, Some(Value::Word(word))) = (number("pointing_rms_rad"), metrics.get("requirement")) {
         say!("  requirement    {word}: {rms:.3e} rad rms in its window");
     }
@@ -149,7 +152,7 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
     let of_it = if feedback == 0.0 { String::new() } else { format!(", of the law {feedback:.4e} {unit}") };
     say!("  {name:<14} at most {:.4e} {unit}{of_it}", number("peak_torque_nm"));
     say!(
-        "  angle          at most {:.3e} rad from the goal after it, {:.3e} rad over the last 5 s",
+        "  angle          at most {:.3e} rad off the goal after the manoeuvre, {:.3e} rad over the last 5 s",
         number("angle_error_peak_rad"),
         number("angle_error_late_rad"),
     );
@@ -167,7 +170,7 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
     }
     if metrics.number("lock_lost").is_some() {
         if scenario.estimator.as_ref().is_some_and(Estimator::watches_only) {
-            say!("  filter         watches only: no law reads it");
+            say!("  filter         not used by the law");
         }
         filter(metrics);
     }
@@ -191,11 +194,11 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
 fn filter(metrics: &Metrics) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     if !number("nees_mean").is_finite() {
-        say!("  filter         not assessed: the run ends before the time to `assess` it begins");
+        say!("  filter         not assessed: the run ends before `assess`");
         return;
     }
     say!(
-        "  filter         frequency off by {:.4e} rad/s rms, at most {:.4e}; NEES {:.2}, NIS {:.2} of what it expects",
+        "  filter         frequency error {:.4e} rad/s rms, at most {:.4e}; NEES {:.2}, NIS {:.2} (1 if consistent)",
         number("frequency_error_rms_rad_s"),
         number("frequency_error_max_rad_s"),
         number("nees_mean"),
@@ -205,10 +208,10 @@ fn filter(metrics: &Metrics) {
     if lost.is_finite() {
         // Of innovations that are as expected it lost what it cannot see.
         let hint = if number("nis_mean") > 2.0 {
-            ": what it takes for noise is more than its `moment_noise` and the sensor's"
+            ": the innovations exceed its `moment_noise` and sensor noise"
         } else {
             ""
         };
-        say!("  filter         has lost the body at {lost} s{hint}");
+        say!("  filter         diverged at {lost} s{hint}");
     }
 }

@@ -24,14 +24,14 @@ const MOST_VALUES: u32 = 10_000_000;
 pub struct Args {
     /// Scenario file
     pub scenario: PathBuf,
-    /// A key and its values: LO:HI:COUNT, evenly apart, such as law.relay.k_t=0.28:0.40:2401; a list A,B,C; or a range
-    /// LO:HI for --sample. Given again, every combination with the values of another key; ranges are sampled together
+    /// A key and its values: LO:HI:COUNT for evenly spaced values, such as law.relay.k_t=0.28:0.40:2401; a list A,B,C; or a
+    /// range LO:HI for --sample. Repeat it for more keys: grids and lists are combined, ranges are sampled together
     #[arg(long, required_unless_present = "points", value_name = "KEY=VALUES", value_parser = varied)]
     vary: Vec<Varied>,
-    /// A table of points, as CSV: a column for each key, a row for each point; combined with the values of --vary
+    /// CSV file of points: one column per key, one row per point; combined with --vary
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
-    /// Only the runs LO to HI - 1 of the sweep
+    /// Only runs LO to HI - 1 of the sweep
     #[arg(long, value_name = "LO:HI", value_parser = runs)]
     runs: Option<Runs>,
     /// Directory for the tables, created if missing
@@ -40,19 +40,19 @@ pub struct Args {
     /// Set a key of the scenario, such as duration=1e4
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Seed, instead of the scenario's
+    /// Seed [default: the scenario's]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
     pub seed: Option<u64>,
-    /// Threads [default: one for each core]
+    /// Number of threads [default: one per core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Replace tables of another campaign in DIR, and logs of other settings
+    /// Overwrite logs of other settings and tables of other campaigns
     #[arg(long)]
     force: bool,
-    /// Print one JSON object for each run on stdout
+    /// Print one JSON object per run to stdout
     #[arg(long)]
     json: bool,
-    /// Detail of a log for each run, NAME-RUN.mcap in DIR [default: none]
+    /// Write a log per run, NAME-RUN.mcap in DIR, with this detail [default: none]
     #[arg(long, value_name = "DETAIL")]
     log: Option<LogDetail>,
     #[command(flatten)]

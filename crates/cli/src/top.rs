@@ -28,16 +28,16 @@ pub struct Args {
     /// Directory of a campaign
     #[arg(value_name = "DIR")]
     directory: PathBuf,
-    /// Look again so often (s)
+    /// Refresh interval (s)
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     every: f64,
-    /// Look once, as where the output is no terminal
+    /// Print once and exit, as when the output is not a terminal
     #[arg(long)]
     once: bool,
     /// Metrics to show [default: the main ones]
     #[arg(long, value_name = "NAME")]
     metric: Vec<String>,
-    /// Print one JSON object, once
+    /// Print one JSON object and exit
     #[arg(long)]
     json: bool,
 }

@@ -28,7 +28,7 @@ pub struct Disturbance {
     /// In place of a torque, on a body with three axes a force in its axes (N): a leak, a jet that is stuck, a push.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<[Finite; 3]>,
-    /// Name of the point at which the force acts; left out, the first.
+    /// Name of the point at which the force acts; default: the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Spectral density of a white noise in the torque beside it ((N m)² s): each draw is held for `period`.
@@ -43,7 +43,7 @@ pub struct Disturbance {
     /// When it begins (s).
     #[serde(default)]
     pub from: Time,
-    /// When it ends (s); left out, with the run.
+    /// When it ends (s); default: with the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<Time>,
 }

@@ -13,7 +13,7 @@ use crate::time::{Instant, Span};
 pub struct Outage {
     /// When it begins (s).
     pub from: Time,
-    /// When it ends (s); left out, with the run.
+    /// When it ends (s); default: with the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<Time>,
 }

@@ -20,11 +20,11 @@ use crate::stop::{self, Stop};
 pub enum LogDetail {
     /// No log
     None,
-    /// All that changes: switchings, window means, adaptation
+    /// Events: switchings, window means, adaptation
     Events,
-    /// Also the motion at each period of the scenario's log, and at every switching
+    /// Events, and the motion at every log period and every switching
     Full,
-    /// Also the scene for viewers in three dimensions: frames, shapes, plumes
+    /// All of this, and the 3-D scene for viewers: frames, shapes, plumes
     Scene,
 }
 

@@ -17,22 +17,22 @@ const MOST_REPLICAS: u64 = 1_000_000;
 #[derive(clap::Args, Clone)]
 #[group(skip)]
 pub struct Options {
-    /// How the rows are kept in DIR [default: parquet, or csv in a build without]
+    /// Format of the table in DIR [default: parquet; csv in a build without it]
     #[arg(long, value_name = "TABLE", requires = "out")]
     table: Option<Kind>,
-    /// Metrics that the rows have, parted by commas [default: all]
+    /// Metrics to keep, separated by commas [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     metrics: Option<Vec<String>>,
-    /// Stop at the first run that fails, instead of noting why in its row
+    /// Stop at the first run that fails [default: record the error in its row]
     #[arg(long)]
     pub fail_fast: bool,
-    /// How values are spread over the [uncertain] keys, and over ranges of a sweep: random, latin-hypercube or sobol
+    /// Sampling of [uncertain] keys and of the ranges of a sweep: random, latin-hypercube or sobol
     #[arg(long, value_name = "METHOD[:POINTS]", value_parser = sample)]
     sample: Option<Sample>,
-    /// Make the runs on the workers of a Dask scheduler, which reach DIR by the same path; needs `pip install flexsc[dask]`
+    /// Run on the workers of a Dask scheduler, which share DIR; needs `pip install flexsc[dask]`
     #[arg(long, value_name = "ADDRESS", requires = "out")]
     pub scheduler: Option<String>,
-    /// Make so many runs of each point, which differ in their noise only
+    /// Runs per point, which differ only in their noise
     #[arg(long, value_name = "R", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=MOST_REPLICAS))]
     pub replicas: u64,
 }
@@ -40,7 +40,7 @@ pub struct Options {
 /// The form of a campaign's rows.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
-    /// A directory of parts, which is continued after any stop
+    /// A directory of Parquet files; an interrupted campaign resumes
     Parquet,
     /// One file, runs.csv
     Csv,

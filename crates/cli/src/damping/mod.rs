@@ -32,7 +32,7 @@ pub struct Args {
     /// Delay from a sample to its push (s)
     #[arg(long, value_name = "TIME", default_value_t = 0.0)]
     delay: f64,
-    /// How long a push lasts (s); left out, the whole period
+    /// Duration of a push (s) [default: the whole period]
     #[arg(long, value_name = "TIME")]
     on_time: Option<f64>,
     /// Damping ratio of the modes
@@ -46,7 +46,7 @@ pub struct Args {
     threshold: f64,
     #[command(flatten)]
     drawing: Drawing,
-    /// Print one JSON object on stdout
+    /// Print one JSON object to stdout
     #[arg(long)]
     json: bool,
 }

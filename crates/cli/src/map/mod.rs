@@ -26,16 +26,16 @@ pub struct Args {
     /// Frequencies of the dominant mode (rad/s)
     #[arg(long, value_name = "LO:HI:COUNT")]
     frequency: Even,
-    /// Periods of the samples (s); a delay of the wheel keeps its part of the period
+    /// Sampling periods (s); the delay of the wheel scales with the period
     #[arg(long, value_name = "LO:HI:COUNT")]
     period: Even,
-    /// Gain of the extra loop; left out, the scenario's
+    /// Gain of the extra loop [default: the scenario's]
     #[arg(long, value_name = "GAIN", allow_hyphen_values = true)]
     gain: Option<f64>,
-    /// CSV file to write, or FILE.svg, .png or .pdf to draw; left out, the table is printed
+    /// CSV file for the table, or FILE.svg, .png or .pdf for the map [default: print the table]
     #[arg(short, long, alias = "output", value_name = "FILE", conflicts_with = "json")]
     out: Option<PathBuf>,
-    /// Draw the map: into a directory, created if missing, or as one FILE.svg, .png or .pdf
+    /// Plot the map: directory, created if missing, or one FILE.svg, .png or .pdf
     #[arg(long, value_name = "DIR|FILE")]
     figures: Option<PathBuf>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]

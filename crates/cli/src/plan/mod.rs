@@ -24,23 +24,23 @@ use planned::Planned;
 pub struct Args {
     #[command(flatten)]
     pub scenario: scenario::Args,
-    /// Compare with every other command on the same body; JSON lines with --json
+    /// Compare with all other commands for the same body; JSON lines with --json
     #[arg(long, group = "views")]
     compare: bool,
-    /// Largest relative error of the frequencies
+    /// Largest relative error of the frequencies to allow for
     #[arg(long, default_value_t = 0.1, value_name = "PART")]
     band: f64,
-    /// Plan for this peak torque (N m), each command in its own time, instead of the scenario's time
+    /// Plan for this peak torque (N m) instead of the scenario's time
     #[arg(long, value_name = "TORQUE")]
     peak_torque: Option<f64>,
-    /// Draw the command beside those that suppress fewer modes, or the rigid bang-bang: into a directory, created if missing,
-    /// or as one FILE.svg, .png or .pdf
+    /// Plot the command with those that suppress fewer modes, or with the rigid bang-bang: directory, created if missing, or
+    /// one FILE.svg, .png or .pdf
     #[arg(short = 'o', long = "out", visible_alias = "figures", value_name = "DIR|FILE", group = "views")]
     figures: Option<PathBuf>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum, requires = "figures")]
     format: Option<Format>,
-    /// The coordinate that a comparison and figures show: `angle` or an output; the last output if left out
+    /// Coordinate to compare and to plot: `angle` or an output [default: the last output]
     #[arg(long, alias = "output", value_name = "NAME", requires = "views")]
     coordinate: Option<String>,
 }

@@ -52,38 +52,38 @@ pub struct Args {
     /// Log file, or directory of a campaign
     #[arg(value_name = "LOG|DIR")]
     path: PathBuf,
-    /// More logs: their figures over those of the first, a colour for each
+    /// More logs, overlaid on the first with one colour per log
     #[arg(value_name = "LOG")]
     others: Vec<PathBuf>,
-    /// Directory for the figures, created if missing, or one FILE.svg, .png or .pdf for all of them [default: where the
-    /// log or the campaign is]
+    /// Directory for the figures, created if missing, or one FILE.svg, .png or .pdf for all of them [default: beside the
+    /// log or in the campaign's directory]
     #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
-    /// Figures to draw [default: all that the log has; the natural ones of a campaign]
+    /// Figures to draw [default: all of a log; the usual ones of a campaign]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
     what: Vec<What>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Width of each figure on paper, such as 85 for a column [default: as on a screen]
+    /// Width of each figure on paper, such as 85 for one column [default: 800 px]
     #[arg(long, value_name = "MM")]
     width: Option<f64>,
-    /// Size of the letters on paper: that of the axes' names [default: 8 with --width]
+    /// Font size of the axis labels on paper [default: 8 with --width]
     #[arg(long, value_name = "PT")]
     font: Option<f64>,
-    /// Show each log from this time on (s) [default: all of it, or what a figure is about]
+    /// Start of the time range to show (s) [default: chosen by the figure]
     #[arg(long, value_name = "TIME")]
     from: Option<f64>,
-    /// Show each log up to this time (s) [default: its end]
+    /// End of the time range to show (s) [default: the end of the run]
     #[arg(long, value_name = "TIME")]
     to: Option<f64>,
-    /// Of a campaign: metrics to draw, and to list the worst runs of [default: the main ones that vary]
+    /// Campaigns: metrics to plot and to list the worst runs of [default: the main ones that vary]
     #[arg(long, value_delimiter = ',', value_name = "METRICS")]
     metric: Vec<String>,
-    /// Of a campaign: how many of the worst runs are listed for each metric [default: 3]
+    /// Campaigns: number of worst runs to list per metric [default: 3]
     #[arg(long, value_name = "N")]
     worst: Option<usize>,
-    /// Print one JSON object on stdout for each file, and for each of the worst runs
+    /// Print one JSON object per file and per worst run to stdout
     #[arg(long)]
     json: bool,
 }

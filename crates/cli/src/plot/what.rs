@@ -17,59 +17,59 @@ use super::{
 pub enum What {
     /// Rate against angle, with the law's switching lines
     PhasePlane,
-    /// Torque: of a law that switches at the end of the run, else over all of it
+    /// Torque; with a switching law, at the end of the run
     Torque,
-    /// Angle of the hub: under a law that switches at the end of the run, else with its goal and when it has settled
+    /// Angle of the hub, with its goal and settling time; with a switching law, at the end of the run
     Angle,
     /// Each observed coordinate
     Outputs,
-    /// Envelope of the elastic modes with its window means, and the elastic angle at the end of the run
+    /// Envelope of the elastic modes with its window means, and the elastic angle
     Envelope,
-    /// What the adaptation decided, and the gain
+    /// Gain and decisions of the adaptation
     Gain,
-    /// Each elastic mode: under a law that switches at the end of the run, else over all of it
+    /// Each elastic mode; with a switching law, at the end of the run
     Modes,
-    /// Of a spatial body: pointing error about each axis, with its goal and dead zone
+    /// Three axes: pointing error, with its goal band and dead zone
     Pointing,
-    /// Of a spatial body: rates, rigid and at the sensor
+    /// Three axes: rates, rigid and at the gyro
     Rates,
-    /// Of a spatial body: energy of the elastic modes, and propellant
+    /// Three axes: energy of the elastic modes, and propellant
     Energy,
-    /// Of a spacecraft that jets or forces push: where its first point is, and its velocity
+    /// Three axes: position and velocity, where jets or forces move the spacecraft
     Position,
-    /// Of a spatial body: for how long the jets fire
+    /// Three axes: firing times of the jets
     Jets,
-    /// Of a spatial body: natural frequencies as adaptive observers estimate them, and as they are
+    /// Three axes: natural frequencies estimated by adaptive observers, and the true ones
     Tracking,
-    /// Of a spatial body: elastic rates for active damping, its thresholds, and its pulses
+    /// Three axes: elastic rates for active damping, its thresholds and pulses
     Damping,
-    /// Speed and momentum of the flywheel, or speed and torque of each wheel of a spatial body, with their limits
+    /// Speed and momentum of the flywheel, or speed and torque of each wheel, with limits
     Wheel,
-    /// Of a spatial body: magnetic moments of its torquers, and the momentum of its wheels or its rate
+    /// Three axes: magnetic moments, and the momentum of the wheels or the rate
     Magnetorquers,
-    /// Of a spacecraft: what accelerometers tell
+    /// Three axes: readings of the accelerometers
     Accelerations,
-    /// Of a spatial body on an orbit: magnetic field, planet and Sun in its axes, and the shadow
+    /// Three axes in orbit: magnetic field, nadir and Sun in body axes, and the eclipse
     Orbit,
-    /// Of a spacecraft whose appendages turn: angles of the drives, and natural frequencies
+    /// Rotating appendages: drive angles and natural frequencies
     Drives,
-    /// Frequency of the dominant mode as a filter estimates it, and what it really is
+    /// Frequency of the dominant mode, estimated and true
     Frequency,
-    /// Displacement of the dominant mode as a filter estimates it, and what it really is
+    /// Displacement of the dominant mode, estimated and true
     Estimate,
-    /// Consistency of a filter: NIS and NEES with their 95 % bands; of an attitude filter its errors and NEES
+    /// Consistency of a filter: NIS and NEES with 95 % bands; of an attitude filter, errors and NEES
     Consistency,
-    /// Gain of the extra loop, and the frequency that it follows
+    /// Gain of the extra loop, and the frequency it is scheduled on
     Extra,
-    /// Of a campaign: histogram and empirical distribution of each metric, with its median and its 5 and 95 %
+    /// Campaigns: histogram and empirical distribution of each metric, with median, 5 % and 95 %
     Distribution,
-    /// Of a campaign: each metric against the keys that were drawn
+    /// Campaigns: each metric against the keys that were drawn
     Scatter,
-    /// Of a campaign: median, 25 to 75 % and 5 to 95 % of the main signals over time, from its logs
+    /// Campaigns with logs: median, 25 to 75 % and 5 to 95 % of the main signals over time
     Fan,
-    /// Of a sweep over one key: each metric over it
+    /// Sweeps over one key: each metric over the key
     Curve,
-    /// Of a sweep over two keys: each metric as a map
+    /// Sweeps over two keys: each metric as a map
     Region,
 }
 

@@ -23,29 +23,29 @@ pub struct Args {
     pub scenario: scenario::Args,
     #[command(flatten)]
     settled: Settled,
-    /// Frequencies of the dominant mode (rad/s); left out, 36 from a sixth of its own to four thirds
+    /// Frequencies of the dominant mode (rad/s) [default: 36, from 1/6 to 4/3 of its own]
     #[arg(long, value_name = "LO:HI:COUNT")]
     frequency: Option<Even>,
     /// Gains to try
     #[arg(long, value_name = "LO:HI:COUNT", default_value = "-2:6:161", allow_hyphen_values = true)]
     gain: Tried,
-    /// The longest settling time of the region (s)
+    /// Longest settling time to accept (s)
     #[arg(long, value_name = "TIME", default_value_t = 200.0)]
     limit: f64,
-    /// Instead of the region, the gains that settle soonest with frequencies, modal gains and the actuator's gain off by up
-    /// to this part, such as 0.1
+    /// Find robust gains instead: those that settle fastest with frequencies, modal gains and the actuator gain off by up to
+    /// this fraction, such as 0.1
     #[arg(long, value_name = "PART")]
     robust: Option<f64>,
-    /// Additional delay of the command to allow for (s)
+    /// Additional command delay to allow for (s)
     #[arg(long, value_name = "TIME", default_value_t = 0.0, requires = "robust")]
     delay: f64,
-    /// Margin by which every spectral radius stays below 1
+    /// Margin of every spectral radius below 1
     #[arg(long, value_name = "PART", default_value_t = 0.0, requires = "robust")]
     margin: f64,
-    /// The quantile of the perturbed loops that counts; 1 is the worst
+    /// Quantile of the perturbed loops to optimise; 1 is the worst case
     #[arg(long, value_name = "PART", default_value_t = 1.0, requires = "robust")]
     quantile: f64,
-    /// Minimise the integral of time times angle, which is smooth, instead of the settling time
+    /// Minimise the integral of time times absolute error instead of the settling time
     #[arg(long, requires = "robust")]
     itae: bool,
     /// Print the schedule as `[law.pd.extra]` of a scenario

@@ -22,16 +22,16 @@ macro_rules! kinds {
             pub struct $name {
                 /// When it begins (s).
                 pub from: Time,
-                /// When it ends (s); left out, with the run.
+                /// When it ends (s); default: with the run.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub to: Option<Time>,
-                /// The axis of which it fails, on a body with three; left out, of all.
+                /// The axis of which it fails, on a body with three; default: of all.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub about: Option<Axis>,
-                /// The wheel that fails, counted from 1; left out, all do.
+                /// The wheel that fails, counted from 1; default: all do.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub wheel: Option<NonZeroU32>,
-                /// The thruster that fails, of jets; left out, all do.
+                /// The thruster that fails, of jets; default: all do.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub thruster: Option<String>,
                 $($(#[$meta])* pub $field: $of),*
@@ -57,7 +57,7 @@ kinds! {
     }
     /// The same is given all the time.
     Stuck {
-        /// What: a torque (N m), of magnetorquers a moment (A m²), of jets the part of their thrust; left out, what is given when
+        /// What: a torque (N m), of magnetorquers a moment (A m²), of jets the part of their thrust; default: what is given when
         /// it begins.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at: Option<Finite>,

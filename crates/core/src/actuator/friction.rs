@@ -17,7 +17,7 @@ pub struct Friction {
     /// Viscous friction c (N m s/rad), of each or of all.
     #[serde(default)]
     pub viscous: PerWheel<NonNegative>,
-    /// Torque up to which the bearing holds a wheel at rest (N m); left out, that of Coulomb.
+    /// Torque up to which the bearing holds a wheel at rest (N m); default: that of Coulomb.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breakaway: Option<PerWheel<NonNegative>>,
 }

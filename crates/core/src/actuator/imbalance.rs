@@ -30,10 +30,10 @@ pub struct Imbalance {
     /// What there is beside once a turn, alike for all wheels.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub harmonics: Vec<Harmonic>,
-    /// The point of the structure at which the wheels are mounted; left out, the first of the body's points.
+    /// The point of the structure at which the wheels are mounted; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
-    /// Where each wheel is, from that point (m); left out, at it.
+    /// Where each wheel is, from that point (m); default: at it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<[Finite; 3]>,
 }

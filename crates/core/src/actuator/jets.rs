@@ -24,7 +24,7 @@ pub struct Jets {
     /// Quantum of a pulse's length (s); 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
-    /// Period of the pulses (s); left out, that of the law.
+    /// Period of the pulses (s); default: that of the law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
     /// Specific impulse (s).

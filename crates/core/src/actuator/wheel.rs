@@ -31,7 +31,7 @@ pub struct Wheel {
     /// Quantum of the command; 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
-    /// Largest command; left out, there is no limit.
+    /// Largest command; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
     /// Time from a sample to the command that is computed from it (s).
@@ -62,7 +62,7 @@ pub struct Rotor {
     /// Speed at the start (rad/s).
     #[serde(default)]
     pub speed: Finite,
-    /// Largest speed (rad/s), at which no torque drives it further; left out, there is no limit.
+    /// Largest speed (rad/s), at which no torque drives it further; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_limit: Option<Positive>,
 }

@@ -20,10 +20,10 @@ use crate::quantity::{Finite, NonNegative, Positive};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wheels {
-    /// How they are arranged; left out, their `axes` are given.
+    /// How they are arranged; default: their `axes` are given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arrangement: Option<Arrangement>,
-    /// Of a pyramid, the angle of each axis above the plane of x and y (rad); left out, the one with equal torques about all
+    /// Of a pyramid, the angle of each axis above the plane of x and y (rad); default: the one with equal torques about all
     /// three axes, 0.6155 rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cant: Option<Finite>,
@@ -32,35 +32,35 @@ pub struct Wheels {
     pub axes: Vec<[Finite; 3]>,
     /// Moment of inertia of each about its axis (kg m²).
     pub inertia: Positive,
-    /// Largest torque of each motor (N m); left out, there is no limit. A torque that asks more of one is made smaller as a
+    /// Largest torque of each motor (N m); no limit by default. A torque that asks more of one is made smaller as a
     /// whole: it keeps its axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub torque: Option<Positive>,
-    /// Largest momentum of each about its axis (N m s), at which no torque drives it further; left out, there is no limit.
+    /// Largest momentum of each about its axis (N m s), at which no torque drives it further; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub momentum: Option<Positive>,
-    /// Largest speed of each (rad/s), at which no torque drives it further; left out, there is no limit.
+    /// Largest speed of each (rad/s), at which no torque drives it further; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_limit: Option<Positive>,
-    /// Speed of each at the start, relative to the body (rad/s); left out, 0.
+    /// Speed of each at the start, relative to the body (rad/s); default: 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub speeds: Vec<Finite>,
-    /// Friction in their bearings; left out, there is none.
+    /// Friction in their bearings; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Box<Friction>>,
-    /// Torque that their drives add against friction, by the speeds that they know; left out, none.
+    /// Torque that their drives add against friction, by the speeds that they know; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compensation: Option<Box<Compensation>>,
-    /// Imbalance; left out, they have none.
+    /// Imbalance; default: they have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imbalance: Option<Box<Imbalance>>,
     /// Which of all torques that give what is wanted are taken.
     #[serde(default)]
     pub allocation: Choice,
-    /// Of four wheels, a speed that torques which cancel each other keep; left out, none.
+    /// Of four wheels, a speed that torques which cancel each other keep; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_bias: Option<SpeedBias>,
-    /// How jets or magnetorquers unload them; left out, none do.
+    /// How jets or magnetorquers unload them; default: none do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unloading: Option<Box<Unloading>>,
     /// Times at which their motors fail.

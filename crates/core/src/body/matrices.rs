@@ -19,13 +19,13 @@ pub struct Matrices {
     pub mass: Matrix,
     /// Stiffness matrix, symmetric, without strain in the rotation only (N m/rad for angles, N/m for displacements).
     pub stiffness: Matrix,
-    /// Names of the coordinates; left out, `q0`, `q1` and so on.
+    /// Names of the coordinates; default: `q0`, `q1` and so on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub coordinates: Vec<String>,
     /// Index of the coordinate that is the hub's angle, counted from 0.
     #[serde(default)]
     pub hub: u32,
-    /// Displacement of each coordinate under a unit rigid rotation; left out, only the hub's angle turns, and all other
+    /// Displacement of each coordinate under a unit rigid rotation; default: only the hub's angle turns, and all other
     /// coordinates are relative to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Vec<Finite>>,
@@ -39,7 +39,7 @@ pub struct Matrices {
     /// adds to those ratios, and may couple the modes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_matrix: Option<Matrix>,
-    /// How many of the lowest modes are kept; left out, all up to 1e3 rad/s.
+    /// How many of the lowest modes are kept; default: all up to 1e3 rad/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<u32>,
     /// Rigid angle at the start (rad).

@@ -47,7 +47,7 @@ pub struct Panels {
     /// Damping ratio of all modes, or one for each that is kept.
     #[serde(default)]
     pub damping: Damping,
-    /// How many of the lowest modes are kept; left out, all up to 1e3 rad/s.
+    /// How many of the lowest modes are kept; default: all up to 1e3 rad/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<u32>,
     /// Rigid angle at the start (rad).

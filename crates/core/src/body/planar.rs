@@ -16,7 +16,7 @@ use crate::quantity::{Finite, Positive};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Planar {
-    /// Moment of inertia (kg m²). Left out, it is 1, and every torque is a reduced moment (rad/s²).
+    /// Moment of inertia (kg m²). By default, it is 1, and every torque is a reduced moment (rad/s²).
     #[serde(default = "unit")]
     pub inertia: Positive,
     /// Rigid angle at the start (rad).

@@ -35,7 +35,7 @@ pub struct Manifest {
     pub to: u64,
     /// How many runs a part has, which begins at a multiple of it.
     pub part: u64,
-    /// The metrics that the rows have; left out, all.
+    /// The metrics that the rows have; default: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub metrics: Option<Vec<String>>,
     /// The scenario, which needs no file.

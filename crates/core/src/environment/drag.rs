@@ -19,13 +19,13 @@ use crate::quantity::{Finite, Positive};
 pub struct Drag {
     /// Density at a distance of the orbit's semi-major axis (kg/m³).
     pub density: Positive,
-    /// Height in which it falls to 1/e (m); left out, it is the same everywhere.
+    /// Height in which it falls to 1/e (m); default: it is the same everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale_height: Option<Positive>,
     /// Drag coefficient.
     #[serde(default = "coefficient")]
     pub coefficient: Positive,
-    /// How fast the atmosphere turns with the planet (rad/s); left out, as the Earth does.
+    /// How fast the atmosphere turns with the planet (rad/s); default: as the Earth does.
     #[serde(default = "rotation")]
     pub rotation: Finite,
     /// The plates.

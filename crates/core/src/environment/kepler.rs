@@ -34,10 +34,10 @@ pub struct Kepler {
     /// Mean anomaly at the start (rad), of a circular orbit the angle from the perigee.
     #[serde(default)]
     pub anomaly: Finite,
-    /// The planet's gravity (m³/s²); left out, the Earth's.
+    /// The planet's gravity (m³/s²); default: the Earth's.
     #[serde(default = "earth_gravity")]
     pub gravity: Positive,
-    /// Radius of the planet (m), which throws the shadow; left out, the Earth's at its equator.
+    /// Radius of the planet (m), which throws the shadow; default: the Earth's at its equator.
     #[serde(default = "earth_radius")]
     pub planet_radius: Positive,
 }

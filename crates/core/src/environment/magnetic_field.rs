@@ -11,11 +11,11 @@ use crate::quantity::{Finite, Positive};
 #[serde(deny_unknown_fields, default)]
 pub struct MagneticField {
     /// The first coefficients g11, h11 and g10 of the field (T), a vector in axes that turn with the planet: z along its axis, x
-    /// through its meridian 0; left out, the Earth's of IGRF-13 for 2020.
+    /// through its meridian 0; default: the Earth's of IGRF-13 for 2020.
     pub coefficients: [Finite; 3],
-    /// The radius a at which they are (m); left out, the Earth's mean one.
+    /// The radius a at which they are (m); default: the Earth's mean one.
     pub radius: Positive,
-    /// How fast the planet turns (rad/s); left out, the Earth's.
+    /// How fast the planet turns (rad/s); default: the Earth's.
     pub rotation: Finite,
     /// Angle from the inertial x to the meridian 0 at the start (rad).
     pub meridian: Finite,

@@ -34,7 +34,7 @@ pub use sun::Sun;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Environment {
-    /// The orbit on which the body is; left out, there is none, or one of those below.
+    /// The orbit on which the body is; default: there is none, or one of those below.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orbit: Option<Kepler>,
     /// The magnetic field of the orbit's planet.

@@ -23,7 +23,7 @@ pub struct Envelope {
     pub form: Form,
     /// Length of the windows over which the envelope is averaged (s).
     pub window: Span,
-    /// The modes of the monitor's model; left out, they are the body's own.
+    /// The modes of the monitor's model; default: they are the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
 }

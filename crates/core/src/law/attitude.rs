@@ -27,16 +27,16 @@ pub struct AttitudeLaw {
     /// Damping ratio zeta of the error.
     #[serde(default = "damping")]
     pub damping: Positive,
-    /// The inertia tensor that the law takes a body with three axes to have (kg m²), row by row; left out, that which it has.
+    /// The inertia tensor that the law takes a body with three axes to have (kg m²), row by row; default: that which it has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertia: Option<[[Finite; 3]; 3]>,
     /// How a rotation counts as an error, on a body with three axes.
     #[serde(default, skip_serializing_if = "Measure::is_default")]
     pub error: Measure,
-    /// The integral of the error; left out, there is none.
+    /// The integral of the error; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integral: Option<Integral>,
-    /// Largest rate at which an error is taken back (rad/s); left out, there is no limit.
+    /// Largest rate at which an error is taken back (rad/s); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_limit: Option<Positive>,
     /// What the fed-back acceleration goes through, in this order.

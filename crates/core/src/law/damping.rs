@@ -29,7 +29,7 @@ const CYCLES: f64 = 2.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ActiveDamping {
-    /// Elastic rates beyond which the jets push, about each axis (rad/s); left out, 1.5 times the amplitude of the limit
+    /// Elastic rates beyond which the jets push, about each axis (rad/s); default: 1.5 times the amplitude of the limit
     /// cycle that the delay makes, and at least what two whole cycles change, of the mode that a long burn excites most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<[Positive; 3]>,

@@ -30,7 +30,7 @@ pub struct Pd {
     /// The extra loop over the dominant mode.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extra: Option<Extra>,
-    /// Largest torque (N m); left out, there is no limit.
+    /// Largest torque (N m); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
     /// Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends.

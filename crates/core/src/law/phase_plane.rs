@@ -43,7 +43,7 @@ pub struct PhasePlane {
     /// Attitudes to turn to, in the order of their times; before the first it is the inertial one.
     #[serde(default)]
     pub targets: Vec<Target>,
-    /// What the jets do against elastic motion while they have nothing else to do; left out, nothing.
+    /// What the jets do against elastic motion while they have nothing else to do; default: nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<ActiveDamping>,
 }
@@ -74,10 +74,10 @@ pub struct Target {
     /// Yaw (rad).
     #[serde(default)]
     pub yaw: Finite,
-    /// Largest acceleration of a turn about one axis to it (rad/s²); left out, it is there at once.
+    /// Largest acceleration of a turn about one axis to it (rad/s²); default: it is there at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<Positive>,
-    /// Largest rate of that turn (rad/s); left out, there is no limit.
+    /// Largest rate of that turn (rad/s); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_limit: Option<Positive>,
     /// How the rate of that turn rises and falls.

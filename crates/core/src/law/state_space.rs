@@ -24,7 +24,7 @@ const MOST: usize = 64;
 pub struct StateSpace {
     /// Period of its samples (s).
     pub period: Span,
-    /// Matrix A, row by row; left out, there are no states.
+    /// Matrix A, row by row; default: there are no states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub a: Vec<Vec<Finite>>,
     /// Matrix B: a row for each state, a column for the error of the angle (rad) and, if there are two, of the rate (rad/s).
@@ -33,7 +33,7 @@ pub struct StateSpace {
     /// Matrix C: one row.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub c: Vec<Vec<Finite>>,
-    /// Matrix D: one row; left out, it is zero.
+    /// Matrix D: one row; default: it is zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub d: Vec<Vec<Finite>>,
     /// What the matrices are of.
@@ -42,7 +42,7 @@ pub struct StateSpace {
     /// What it commands.
     #[serde(default)]
     pub command: Commands,
-    /// Largest command, in its unit; left out, there is no limit.
+    /// Largest command, in its unit; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
     /// Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends.

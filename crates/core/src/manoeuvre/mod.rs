@@ -54,7 +54,7 @@ use planner::Planner;
 pub struct Manoeuvre {
     /// The angle by which the rigid body turns (rad).
     pub angle: Finite,
-    /// Time of the manoeuvre (s). Left out, the shortest that the peak torque allows.
+    /// Time of the manoeuvre (s). By default, the shortest that the peak torque allows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<Span>,
     /// Largest torque (N m); beside a time, a limit that the plan has to keep.
@@ -71,7 +71,7 @@ pub struct Manoeuvre {
     /// What the command is convolved with; it takes a part of the time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shaper: Option<Shaper>,
-    /// The body that the plan is made for; left out, the body itself. A campaign that draws keys of the body puts the
+    /// The body that the plan is made for; default: the body itself. A campaign that draws keys of the body puts the
     /// body as it is written here: the plan does not depend on what is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<Planar>,

@@ -37,7 +37,7 @@ macro_rules! metrics {
 }
 
 metrics! {
-    SWITCHINGS = "switchings", "", "Switchings of the law in the run";
+    SWITCHINGS = "switchings", "", "Number of switchings of the law";
     PUSHES_RIGHT = "pushes_right", "", "Strong pushes back from the right boundary of the dead zone";
     PUSHES_LEFT = "pushes_left", "", "Strong pushes back from the left boundary of the dead zone";
     DUTY = "duty", "", "Fraction of the run under strong torque";
@@ -50,15 +50,15 @@ metrics! {
         "Mean of the total envelope over the windows that begin in the second half of the run";
     ENVELOPE_FINAL = "envelope_final_rad", "rad", "Mean of the total envelope over the last whole window";
     REDUCTION = "envelope_reduction", "",
-        "How many times smaller envelope_final_rad is than the scenario's reference.envelope, or than the first window";
-    GAIN_INITIAL = "gain_initial", "", "The law's tunable parameter at the start (k_t of the relay law)";
-    GAIN_FINAL = "gain_final", "", "The law's tunable parameter at the end";
-    GAIN_FROZEN_AT = "gain_frozen_at_s", "s", "When the adaptation froze the gain; null if it did not";
+        "Ratio of reference.envelope, or of the mean of the first window, to envelope_final_rad";
+    GAIN_INITIAL = "gain_initial", "", "Tunable gain of the law at the start (k_t of the relay law)";
+    GAIN_FINAL = "gain_final", "", "Tunable gain of the law at the end";
+    GAIN_FROZEN_AT = "gain_frozen_at_s", "s", "Time at which the adaptation froze the gain; null if it did not";
     GAIN_FROZEN = "gain_frozen", "", "The frozen gain; null if the adaptation did not freeze it";
     ENVELOPE_FROZEN = "envelope_frozen_rad", "rad",
         "Mean of the total envelope over the whole windows after the freeze (the last one, if it came at the end); null without a freeze";
     FROZEN_REDUCTION = "envelope_frozen_reduction", "",
-        "How many times smaller envelope_frozen_rad is than what envelope_reduction compares with; null without a freeze";
+        "Ratio of the same reference to envelope_frozen_rad; null without a freeze";
     CYCLE_KIND = "cycle_kind", "",
         "The limit cycle at the end of the run: two-sided, one-sided, mixed, or none if the run is not periodic";
     CYCLE_PERIOD = "cycle_period_s", "s", "Period of that cycle; null without one";
@@ -74,93 +74,93 @@ metrics! {
         "Arguments of the same multipliers";
     CYCLE_MULTIPLIER_MAX = "cycle_multiplier_max", "",
         "Largest absolute value among the multipliers: below 1 the cycle attracts; null without a cycle";
-    ARRIVAL_ANGLE = "arrival_angle_error_rad", "rad", "Hub angle beyond the goal at the end of the manoeuvre";
-    ARRIVAL_RATE = "arrival_rate_error_rad_s", "rad/s", "Hub rate beyond the goal at the end of the manoeuvre";
+    ARRIVAL_ANGLE = "arrival_angle_error_rad", "rad", "Error of the hub angle at the end of the manoeuvre";
+    ARRIVAL_RATE = "arrival_rate_error_rad_s", "rad/s", "Error of the hub rate at the end of the manoeuvre";
     ANGLE_RESIDUAL = "angle_residual_rad", "rad",
-        "Vibration of the hub's angle that the manoeuvre leaves: the sum of the modes' amplitudes at its end";
+        "Residual vibration of the hub angle: the sum of the modal amplitudes at the end of the manoeuvre";
     OUTPUT_RESIDUALS = "output_residuals", "",
         "The same for each observed coordinate, in its own unit";
     RESIDUAL_ENERGY = "residual_energy_j", "J",
-        "Elastic energy of motion and deformation that the manoeuvre leaves; for each kg m² of a body without inertia";
+        "Residual elastic energy, kinetic and potential, after the manoeuvre; per kg m² for a body without inertia";
     PEAK_TORQUE = "peak_torque_nm", "N m",
         "Largest torque of the actuator, to rounding; in rad/s² on a body without inertia, or where the hub's motion is commanded";
-    PEAK_FEEDBACK = "peak_feedback_torque_nm", "N m", "Largest torque that the law asks for, of a wheel its gain times the command; in rad/s² as peak_torque_nm";
+    PEAK_FEEDBACK = "peak_feedback_torque_nm", "N m", "Largest torque commanded by the law (for a wheel, its gain times the command); in rad/s² as peak_torque_nm";
     PEAK_OUTPUTS = "output_peaks", "",
         "Largest absolute value of each observed coordinate, in its own unit, to rounding";
     ANGLE_ERROR_PEAK = "angle_error_peak_rad", "rad",
         "Largest distance of the hub's angle from the goal after the manoeuvre, to rounding; null if the run ends before";
     SETTLING_TIME = "settling_time_s", "s",
-        "Last time at which the hub's angle is outside goal_band_rad of the goal, to rounding, or when the goal begins if it never is; null if it is so at the end, or without a band";
+        "Last time at which the hub angle is outside goal_band_rad of the goal, to rounding; the start of the goal if it never is; null if it is outside at the end, or without a band";
     SPECTRAL_RADIUS = "spectral_radius", "",
-        "Largest absolute value of the eigenvalues of the sampled loop at constant frequencies, with the dominant mode known and all of the command executed: the largest over the frequencies of a drift; below 1 the loop is stable; null for what is no sampled PD loop";
+        "Largest absolute value of the eigenvalues of the sampled loop at constant frequencies, with the dominant mode known and all of the command executed: the largest over the frequencies of a drift; below 1 the loop is stable; null without a sampled PD loop";
     ITAE = "itae", "rad s²", "Integral of time times the distance from the goal, from its beginning on, to rounding";
     ANGLE_ERROR_LATE = "angle_error_late_rad", "rad", "The same over the last 5 s of the run";
     OUTPUT_SWINGS = "output_swings", "",
-        "Half of what lies between the largest and the smallest value of each observed coordinate after the manoeuvre";
+        "Half the peak-to-peak value of each observed coordinate after the manoeuvre";
     OUTPUT_SWINGS_LATE = "output_swings_late", "", "The same over the last 5 s of the run";
     GOAL = "goal", "",
         "Whether the run meets its goal: met if the angle stays within goal_band_rad of it for at least the last tenth of the time since the goal began, else missed; none without a goal or a band";
     GOAL_BAND = "goal_band_rad", "rad",
-        "Half width of the band about the goal: reference.band, or what the law or the manoeuvre promises; null without one";
-    TIME_OUTSIDE = "time_outside_s", "s", "Time outside that band, from the goal's beginning on";
+        "Half width of the band about the goal: reference.band, or the one specified by the law or the manoeuvre; null without one";
+    TIME_OUTSIDE = "time_outside_s", "s", "Time outside that band since the start of the goal";
     RATE_END = "rate_end_rad_s", "rad/s",
         "Rigid rate of a body with magnetorquers at the end of the run";
     MOMENTUM_PEAK = "wheel_momentum_peak_nm_s", "N m s",
-        "Largest momentum of all wheels together, of wheels that magnetorquers unload";
+        "Largest total momentum of wheels that are unloaded by magnetorquers";
     MOMENTUM_END = "wheel_momentum_end_nm_s", "N m s", "The same at the end of the run";
     NEES_MEAN = "nees_mean", "",
-        "Mean over the assessed samples of the filter's normalised estimation error squared, over its number of states: 1 if its covariance is honest";
+        "Mean over the assessed samples of the filter's normalised estimation error squared, divided by the number of states: 1 if the covariance is consistent";
     NIS_MEAN = "nis_mean", "",
-        "Mean of its normalised innovation squared over the number of measurements in a sample: 1 if honest";
+        "Mean of its normalised innovation squared divided by the number of measurements in a sample: 1 if consistent";
     NIS_INSIDE = "nis_inside_95", "",
         "Fraction of the assessed samples whose NIS lies within the two-sided 95 % bounds of chi-square";
     FREQUENCY_ERROR_RMS = "frequency_error_rms_rad_s", "rad/s",
-        "Root mean square error of the dominant mode's frequency as the law reads it, over the assessed samples";
+        "Root mean square error of the dominant mode's frequency used by the law, over the assessed samples";
     FREQUENCY_ERROR_MAX = "frequency_error_max_rad_s", "rad/s", "Largest such error";
     ATTITUDE_ERROR = "attitude_estimate_error_rms_rad", "rad",
-        "Root mean square of what the estimated attitude is off by, as a vector of three axes, over the assessed samples";
+        "Root mean square attitude error of the filter (norm over three axes), over the assessed samples";
     BIAS_ERROR = "bias_estimate_error_rms_rad_s", "rad/s",
-        "The same of the estimated bias of the gyro";
-    LOCK_LOST = "lock_lost", "", "1 if the filter has lost the body at the end of the run, else 0";
-    LOCK_LOST_AT = "lock_lost_at_s", "s", "When it lost it for good; null if it did not";
-    FUEL = "fuel_kg", "kg", "Propellant that the jets used";
-    FIRINGS = "firings", "", "Pulses of the jets, of all axes together";
-    FIRING_CYCLES = "firing_cycles", "", "Cycles of the law in which any jet fires";
-    ZERO_CROSSINGS = "wheel_zero_crossings", "", "How often wheels with friction passed through zero speed, or slipped on the other way after they had stuck";
-    WHEEL_STOPS = "wheel_stops", "", "How often wheels stuck in their bearings";
-    FRICTION_HEAT = "friction_heat_j", "J", "Heat of the friction of all wheels, until the last cycle";
+        "The same for the estimated gyro bias";
+    LOCK_LOST = "lock_lost", "", "1 if the filter has diverged at the end of the run, else 0";
+    LOCK_LOST_AT = "lock_lost_at_s", "s", "Time from which it has diverged; null if it has not";
+    FUEL = "fuel_kg", "kg", "Propellant used by the jets";
+    FIRINGS = "firings", "", "Number of jet pulses on all axes";
+    FIRING_CYCLES = "firing_cycles", "", "Number of control cycles in which any jet fires";
+    ZERO_CROSSINGS = "wheel_zero_crossings", "", "Number of zero crossings of the speed of wheels with friction, including reversals after sticking";
+    WHEEL_STOPS = "wheel_stops", "", "Number of times a wheel stuck in its bearings";
+    FRICTION_HEAT = "friction_heat_j", "J", "Friction heat of all wheels up to the last cycle";
     ELASTIC_PEAK = "elastic_energy_peak_j", "J",
-        "Largest energy of motion and deformation of the elastic modes, at the starts of the law's cycles";
+        "Largest elastic energy, kinetic and potential, at the starts of the control cycles";
     ELASTIC_END = "elastic_energy_end_j", "J", "The same at the last cycle";
     VISIBLE_PEAK = "visible_energy_peak_j", "J",
-        "Largest elastic energy of the modes that the sensor sees: those that turn it at least a tenth as much as the one that does most";
+        "Largest elastic energy of the modes visible to the gyro: those that rotate it at least a tenth as much as the most visible one";
     VISIBLE_END = "visible_energy_end_j", "J", "The same at the last cycle";
     BELOW_10 = "energy_below_10pct_at_s", "s",
         "First cycle at which the elastic energy is below a tenth of that at the start; null if there is none";
     BELOW_1 = "energy_below_1pct_at_s", "s",
         "First cycle at which the elastic energy is below a hundredth of that at the start; null if there is none";
     ELASTIC_RATE = "elastic_rate_rms_rad_s", "rad/s",
-        "Root mean square of the elastic part of the rates at the gyro, as a vector of three axes, over the cycles of the last 200 s";
+        "Root mean square elastic rate at the gyro (norm over three axes), over the cycles of the last 200 s";
     POINTING_END = "pointing_error_end_rad", "rad",
-        "Length of the vector of angles beyond the target at the last cycle";
+        "Pointing error (norm over three axes) at the last cycle";
     POINTING_RMS = "pointing_rms_rad", "rad",
-        "Root mean square of the length of that vector over the law's cycles in reference.pointing.window";
+        "Root mean square pointing error over the control cycles in reference.pointing.window";
     REQUIREMENT = "requirement", "",
         "Whether pointing_rms_rad is at most reference.pointing.rms: met or missed, none without cycles in the window";
     ACCELERATION = "acceleration_rms_m_s2", "m/s²",
-        "Root mean square of what each accelerometer tells, as a vector of its axes, over its samples";
+        "Root mean square reading of each accelerometer (norm over its axes)";
     FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
-        "Natural frequency of each mode that an adaptive observer tracks, at the last cycle: about x, y and z, by frequency";
+        "Estimated natural frequency of each mode tracked by an adaptive observer, at the last cycle; about x, y, z, by frequency";
     FREQUENCY_ERRORS = "frequency_estimate_errors", "",
-        "What they are off by, relative to the true ones";
+        "Their errors relative to the true values";
     INFLUENCE_ESTIMATES = "influence_estimates", "",
-        "Influence of the axis' own jets on each of these modes, at the last cycle";
+        "Estimated influence of the axis' own jets on each of these modes, at the last cycle";
     INFLUENCE_ERRORS = "influence_estimate_errors", "",
-        "What they are off by, relative to the true ones";
+        "Their errors relative to the true values";
     TRACKING_ERROR = "elastic_rate_error_rms_rad_s", "rad/s",
-        "Root mean square of what the estimated elastic rates are off by, as a vector of three axes, over the cycles of the run";
-    DAMPING_CYCLES = "damping_cycles", "", "Cycles in which active damping commands a pulse about any axis";
-    DAMPING_PAUSES = "damping_pauses", "", "How often the watchdog began to keep active damping quiet";
+        "Root mean square error of the estimated elastic rates (norm over three axes), over the cycles of the run";
+    DAMPING_CYCLES = "damping_cycles", "", "Number of cycles in which active damping commands a pulse on any axis";
+    DAMPING_PAUSES = "damping_pauses", "", "Number of times the watchdog paused active damping";
 }
 
 /// What a metric means on a body without inertia, or where the hub's motion is commanded.

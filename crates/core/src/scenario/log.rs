@@ -20,7 +20,7 @@ const LARGEST_FACTOR: f64 = 1e9;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Log {
-    /// Period at which a full log holds the motion (s); left out, 0.1 or the first of 0.2, 0.5, 1, 2, 5 and so on of which the
+    /// Period at which a full log holds the motion (s); default: 0.1 or the first of 0.2, 0.5, 1, 2, 5 and so on of which the
     /// duration has at most 10 000.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
@@ -50,14 +50,14 @@ impl Log {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
-    /// Period of the frames (s); left out, that of the log, and at least 0.04 s.
+    /// Period of the frames (s); default: that of the log, and at least 0.04 s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
-    /// How many times the elastic motion is drawn as large as it is; left out, so many times that what the actuator or the
+    /// How many times the elastic motion is drawn as large as it is; default: so many times that what the actuator or the
     /// initial state excites shows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bending: Option<Positive>,
-    /// How many times the rotation of the body is drawn as large as it is; left out, so many times that it shows.
+    /// How many times the rotation of the body is drawn as large as it is; default: so many times that it shows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turning: Option<Positive>,
 }

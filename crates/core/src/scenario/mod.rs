@@ -55,7 +55,7 @@ pub use study::Study;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
-    /// Name of the study; left out, the name of its file.
+    /// Name of the study; default: the name of its file.
     #[serde(default)]
     pub name: String,
     /// What the study is about.
@@ -82,7 +82,7 @@ pub struct Scenario {
     /// The body with its modes, as it moves: solved from `body`. Of a spatial body it is empty: see `study`.
     #[serde(skip)]
     pub model: Planar,
-    /// How the natural frequencies drift; left out, they do not.
+    /// How the natural frequencies drift; default: they do not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<Drift>,
     /// How the motion is measured: one sensor, or an array of several.
@@ -109,7 +109,7 @@ pub struct Scenario {
     /// Disturbance torques.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub disturbance: Vec<Disturbance>,
-    /// What surrounds a body with three axes; left out, nothing.
+    /// What surrounds a body with three axes; default: nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub environment: Option<Environment>,
     /// What a full log holds.

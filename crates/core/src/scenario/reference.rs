@@ -10,12 +10,12 @@ use crate::quantity::{Positive, Time};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
-    /// Mean envelope without adaptation (rad), for the metric `envelope_reduction`; left out, the mean over
+    /// Mean envelope without adaptation (rad), for the metric `envelope_reduction`; default: the mean over
     /// the run's own first window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub envelope: Option<Positive>,
     /// Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s` and `settling_time_s`.
-    /// Left out, what is promised: after a manoeuvre a thousandth of its angle, by a PD law 5 % of the distance at which the
+    /// By default, what is promised: after a manoeuvre a thousandth of its angle, by a PD law 5 % of the distance at which the
     /// goal begins, by a relay its dead zone and its hysteresis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub band: Option<Positive>,
@@ -30,7 +30,7 @@ pub struct Reference {
 pub struct Pointing {
     /// From when to when (s) the angle beyond the target counts, for the metric `pointing_rms_rad`.
     pub window: [Time; 2],
-    /// What its root mean square is to be at most (rad), for the metric `requirement`; left out, nothing is asked.
+    /// What its root mean square is to be at most (rad), for the metric `requirement`; default: nothing is asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rms: Option<Positive>,
 }

@@ -22,12 +22,12 @@ pub struct Accelerometer {
     /// That nothing reads it, which has to be said: it is logged and changes nothing.
     #[serde(default)]
     pub watch_only: bool,
-    /// The point of the structure at which it is; left out, the first of the body's points.
+    /// The point of the structure at which it is; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its samples (s).
     pub period: Span,
-    /// The directions along which it measures, one to three of any length in the hub's axes while nothing is bent; left out, x, y and z.
+    /// The directions along which it measures, one to three of any length in the hub's axes while nothing is bent; default: x, y and z.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub along: Vec<[Finite; 3]>,
     /// Standard deviation of the white noise along each (m/s²).

@@ -20,10 +20,10 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gyro {
-    /// The point of the structure at which it is, on a body with three axes; left out, the first of the body's points.
+    /// The point of the structure at which it is, on a body with three axes; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
-    /// Period of its samples (s); left out, that of the law.
+    /// Period of its samples (s); default: that of the law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
     /// Standard deviation of the white noise about each axis (rad/s).

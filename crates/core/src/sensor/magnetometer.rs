@@ -20,7 +20,7 @@ use crate::time::Span;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Magnetometer {
-    /// The point of the structure at which it is; left out, the first of the body's points.
+    /// The point of the structure at which it is; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its samples (s).

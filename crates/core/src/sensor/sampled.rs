@@ -25,11 +25,11 @@ pub struct Sampled {
     /// Quantum of the output (rad); 0 for none.
     #[serde(default)]
     pub resolution: NonNegative,
-    /// Standard deviation of the white noise of a rate gyro (rad/s); left out, there is no gyro, and the rate is the
+    /// Standard deviation of the white noise of a rate gyro (rad/s); default: there is no gyro, and the rate is the
     /// difference of the last two angles over the period.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_noise: Option<Positive>,
-    /// The point of the structure at which it is, on a body with three axes; left out, the first of the body's points.
+    /// The point of the structure at which it is, on a body with three axes; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Times at which the sensor fails.

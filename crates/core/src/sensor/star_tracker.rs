@@ -15,7 +15,7 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StarTracker {
-    /// The point of the structure at which it is; left out, the first of the body's points.
+    /// The point of the structure at which it is; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its exposures (s).
@@ -23,14 +23,14 @@ pub struct StarTracker {
     /// Standard deviation of the white noise about each of its axes (rad): x and y across its boresight, z about it.
     #[serde(default)]
     pub noise: [NonNegative; 3],
-    /// The rotation from the body's axes to its own, \[w, x, y, z\]: it turns its vectors into the body's; left out, they are the
+    /// The rotation from the body's axes to its own, \[w, x, y, z\]: it turns its vectors into the body's; default: they are the
     /// body's.
     #[serde(default)]
     pub axes: Attitude,
     /// Time from an exposure to when it is told (s).
     #[serde(default)]
     pub latency: Time,
-    /// Rate of the body at the tracker from which on it sees nothing (rad/s); left out, it always sees.
+    /// Rate of the body at the tracker from which on it sees nothing (rad/s); default: it always sees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blackout_rate: Option<Positive>,
     /// Times at which it fails.

@@ -20,13 +20,13 @@ use crate::time::Span;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SunSensor {
-    /// The middle of its field of view in the body's axes, of any length; left out, z.
+    /// The middle of its field of view in the body's axes, of any length; default: z.
     #[serde(default = "ahead")]
     pub boresight: [Finite; 3],
-    /// Half of the angle of the field of view (rad); left out, it sees all around.
+    /// Half of the angle of the field of view (rad); default: it sees all around.
     #[serde(default = "all_around")]
     pub field_of_view: NonNegative,
-    /// The point of the structure at which it is; left out, the first of the body's points.
+    /// The point of the structure at which it is; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its samples (s).

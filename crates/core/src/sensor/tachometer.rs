@@ -20,7 +20,7 @@ use crate::time::{Instant, Span};
 pub struct Tachometer {
     /// Period of the readings (s).
     pub period: Span,
-    /// Pulses in a turn: a reading is those of a period over the period, what is left counts in the next. Left out, the speed at the
+    /// Pulses in a turn: a reading is those of a period over the period, what is left counts in the next. By default, the speed at the
     /// instant is read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pulses: Option<NonZeroU32>,

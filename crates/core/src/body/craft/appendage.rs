@@ -28,7 +28,7 @@ pub struct Appendage {
     /// Centre of mass from the root (m), in its own axes.
     #[serde(default)]
     pub centre: [Finite; 3],
-    /// Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; left out, it is a point mass.
+    /// Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; default: it is a point mass.
     #[serde(default)]
     pub inertia: [[Finite; 3]; 3],
     /// Where its root is, from the point O of the spacecraft (m).
@@ -37,7 +37,7 @@ pub struct Appendage {
     /// How its axes are turned against those of the body.
     #[serde(default, skip_serializing_if = "Turned::is_none")]
     pub turned: Turned,
-    /// What turns it during a run about an axis through its root; left out, nothing.
+    /// What turns it during a run about an axis through its root; default: nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<Drive>,
     /// The angle of the drive at the start (rad): see `drive`.
@@ -56,10 +56,10 @@ pub struct Appendage {
     /// Damping ratios of the modes of results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<Damping>,
-    /// How many of the modes of results are kept, those with the lowest frequencies; left out, all.
+    /// How many of the modes of results are kept, those with the lowest frequencies; default: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<usize>,
-    /// How sunlight bends it; left out, it does not.
+    /// How sunlight bends it; default: it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
     /// The units of results: metres and kilograms where it is left out.

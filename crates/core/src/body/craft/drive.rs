@@ -20,13 +20,13 @@ pub struct Drive {
     /// It turns at this rate (rad/s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<Finite>,
-    /// It begins to turn at this time (s); left out, it turns from the start on.
+    /// It begins to turn at this time (s); default: it turns from the start on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<NonNegative>,
-    /// It begins to stop at this time (s); left out, it does not.
+    /// It begins to stop at this time (s); default: it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<NonNegative>,
-    /// How fast its rate changes (rad/s²); left out, at once.
+    /// How fast its rate changes (rad/s²); default: at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<Positive>,
     /// Angles at times, with constant rates between.
@@ -35,7 +35,7 @@ pub struct Drive {
     /// What it follows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub track: Option<Track>,
-    /// What faces the Sun, a direction in the axes of the appendage across the drive's; left out, z.
+    /// What faces the Sun, a direction in the axes of the appendage across the drive's; default: z.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal: Option<[Finite; 3]>,
 }

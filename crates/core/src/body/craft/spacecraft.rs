@@ -31,7 +31,7 @@ pub struct Spacecraft {
     /// Whether the damping of the free modes is kept whole even where what is beside the diagonal of its matrix hardly counts.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub whole_damping: bool,
-    /// Named points of the hub, at which jets push and gyros look. Left out, there is one at O, named `hub`.
+    /// Named points of the hub, at which jets push and gyros look. By default, there is one at O, named `hub`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
 }

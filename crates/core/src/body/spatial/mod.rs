@@ -46,7 +46,7 @@ pub struct Spatial {
     /// Elastic modes: a table, or the path of a CSV file.
     #[serde(default)]
     pub modes: SpatialModes,
-    /// A torque that the surroundings exert; left out, there is none.
+    /// A torque that the surroundings exert; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disturbance: Option<Periodic>,
 }

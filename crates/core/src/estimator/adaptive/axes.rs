@@ -16,15 +16,15 @@ const MERGE: f64 = 0.08;
 pub struct Adaptive {
     /// Form of the observers.
     pub form: Form,
-    /// What they track; left out, the dominant modes of the body.
+    /// What they track; default: the dominant modes of the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trackers: Option<Given>,
-    /// How many modes of the body each axis tracks; left out, 2, and 1 in the form `recurrence`.
+    /// How many modes of the body each axis tracks; default: 2, and 1 in the form `recurrence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<u32>,
     /// Ratio of frequencies below which modes of the body are tracked as one.
     pub merge: NonNegative,
-    /// Whether an axis accounts for the jets of the others; left out, it does in the form `gradient`.
+    /// Whether an axis accounts for the jets of the others; default: it does in the form `gradient`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cross_axis: Option<bool>,
     /// By which part the frequencies are off at the start.

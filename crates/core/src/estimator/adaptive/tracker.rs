@@ -18,7 +18,7 @@ pub struct Tracker {
     /// Influence of each input: the jump of the elastic rate in this channel for a unit jump of the rigid rate that the
     /// input makes about its own axis (\[Timakov14\], page 41; dimensionless).
     pub influence: Vec<Finite>,
-    /// `[low, high]` between which the frequency is looked for (rad/s); left out, up to the middle between it and its
+    /// `[low, high]` between which the frequency is looked for (rad/s); default: up to the middle between it and its
     /// neighbours.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bounds: Option<[Frequency; 2]>,

@@ -20,7 +20,7 @@ use crate::quantity::Positive;
 pub struct ElasticStates {
     /// Which free modes, by their index.
     pub modes: Vec<usize>,
-    /// Their natural frequencies as the filter knows them (rad/s); left out, the body's own.
+    /// Their natural frequencies as the filter knows them (rad/s); default: the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<Positive>>,
     /// What these are multiplied by: the filter's error.
@@ -31,10 +31,10 @@ pub struct ElasticStates {
     /// Standard deviation of each displacement at the start (m sqrt(kg)).
     #[serde(default = "displacement")]
     pub displacement: Positive,
-    /// Standard deviation of each rate at the start (m sqrt(kg)/s); left out, that of the displacement times the frequency.
+    /// Standard deviation of each rate at the start (m sqrt(kg)/s); default: that of the displacement times the frequency.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<Positive>,
-    /// What the law reads: angle and rate as if the body were rigid, or those of the hub; left out, rigid.
+    /// What the law reads: angle and rate as if the body were rigid, or those of the hub; default: rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feeds: Option<Feeds>,
 }

@@ -22,19 +22,19 @@ pub struct AttitudeFilter {
     /// How its gains are found.
     #[serde(default)]
     pub form: Form,
-    /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; left out, the largest of the gyro's own.
+    /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the gyro's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_random_walk: Option<Positive>,
-    /// Rate random walk of the gyro's bias (rad/s^1.5); left out, the largest of the gyro's own.
+    /// Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_random_walk: Option<NonNegative>,
-    /// Standard deviation of a measured attitude about each axis of what measures it (rad); left out, the sensor's own.
+    /// Standard deviation of a measured attitude about each axis of what measures it (rad); default: the sensor's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude_noise: Option<[Positive; 3]>,
-    /// Standard deviation of a measured magnetic field along each axis (T); left out, the magnetometer's own.
+    /// Standard deviation of a measured magnetic field along each axis (T); default: the magnetometer's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field_noise: Option<Positive>,
-    /// Standard deviation of a measured direction to the Sun (rad); left out, the Sun sensor's own.
+    /// Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sun_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
@@ -43,10 +43,10 @@ pub struct AttitudeFilter {
     /// What the filter takes for attitude and bias at the start.
     #[serde(default)]
     pub prior: Prior,
-    /// Elastic modes that it knows too; left out, none.
+    /// Elastic modes that it knows too; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elastic: Option<ElasticStates>,
-    /// When the metrics judge the filter, from one time to another (s); left out, always.
+    /// When the metrics judge the filter, from one time to another (s); always by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
     /// Whether it is there to be assessed only: no law reads it.

@@ -26,13 +26,13 @@ pub use model::Model;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Kalman {
-    /// The modes of the filter's model; left out, they are the body's own at the start.
+    /// The modes of the filter's model; default: they are the body's own at the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
     /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
     #[serde(default = "moment_noise")]
     pub moment_noise: NonNegative,
-    /// Standard deviation of the measured angle (rad); left out, that of the sensor.
+    /// Standard deviation of the measured angle (rad); default: that of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
@@ -44,11 +44,11 @@ pub struct Kalman {
     /// What makes a mode the dominant one.
     #[serde(default)]
     pub dominant: Ranking,
-    /// When the metrics judge the filter, from one time to another (s); left out, always.
+    /// When the metrics judge the filter, from one time to another (s); always by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
     /// What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured; `hub` for angle and
-    /// rate of the hub, elastic part included; `rigid` for those of the body as if it were rigid. Left out, `modes` for a law
+    /// rate of the hub, elastic part included; `rigid` for those of the body as if it were rigid. By default, `modes` for a law
     /// that reads the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feeds: Option<Feeds>,
@@ -61,13 +61,13 @@ pub struct Kalman {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrequencyTracking {
-    /// The modes of the filter's model; left out, they are the body's own at the start.
+    /// The modes of the filter's model; default: they are the body's own at the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
     /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
     #[serde(default = "moment_noise")]
     pub moment_noise: NonNegative,
-    /// Standard deviation of the measured angle (rad); left out, that of the sensor.
+    /// Standard deviation of the measured angle (rad); default: that of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
@@ -79,11 +79,11 @@ pub struct FrequencyTracking {
     /// What makes a mode the dominant one.
     #[serde(default)]
     pub dominant: Ranking,
-    /// When the metrics judge the filter, from one time to another (s); left out, always.
+    /// When the metrics judge the filter, from one time to another (s); always by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
     /// What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured; `hub` for angle and
-    /// rate of the hub, elastic part included; `rigid` for those of the body as if it were rigid. Left out, `modes` for a law
+    /// rate of the hub, elastic part included; `rigid` for those of the body as if it were rigid. By default, `modes` for a law
     /// that reads the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feeds: Option<Feeds>,

@@ -21,7 +21,7 @@ pub struct Gradient {
     pub damping: NonNegative,
     /// Gain of the rigid rate: the part of an innovation that it takes.
     pub rigid_gain: Fraction,
-    /// Gain of each elastic rate; left out, 0.15 for one mode and 0.1 for several.
+    /// Gain of each elastic rate; default: 0.15 for one mode and 0.1 for several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elastic_gain: Option<Fraction>,
     /// Rate of the identification, 0 for none. Sufficient for its convergence: below 0.05 over the number of modes.
