@@ -25,7 +25,9 @@ ELSEWHERE = re.compile(r"\b[A-Z]{3,}\b|--live|--scheduler|study\.toml|part-0|\.\
 BLOCK = re.compile(r"(?:^ {4}.*\n)+|^```(?:sh|text|bash)?\n(?:.*\n)*?```", re.MULTILINE)
 CODE = re.compile(r"(<!-- not run: .*? -->\n+)?^```python\n((?:.*\n)*?)```", re.MULTILINE)
 # Libraries that a page shows and that the tests do without.
-OPTIONAL = re.compile(r"ModuleNotFoundError: No module named '(control|dask|duckdb|pandas|polars|ray|xarray)")
+OPTIONAL = re.compile(
+    r"ModuleNotFoundError: No module named '(control|dask|duckdb|numba|pandas|polars|ray|xarray)"
+)
 
 
 def code(page: Path) -> str:

@@ -143,8 +143,8 @@ def test_sweeps_have_curves_and_maps() -> None:
     drawn = plot.figure(both, name)
     # The map, and the bar of its colours.
     assert len(drawn.axes) == 2
-    assert drawn.axes[1].get_xlabel() == "envelope late mean, µrad" or drawn.axes[1].get_ylabel() != ""
-    assert drawn.axes[0].get_ylabel() == "law.relay.weak"
+    assert drawn.axes[1].get_xlabel() == "envelope late mean (µrad)" or drawn.axes[1].get_ylabel() != ""
+    assert drawn.axes[0].get_ylabel() == "law.relay.weak (rad/s²)"
 
 
 def test_without_matplotlib_it_says_what_is_missing() -> None:

@@ -3,6 +3,7 @@
 import doctest
 import warnings
 from collections.abc import Iterator
+from importlib import import_module
 from typing import Any
 
 import flexsc
@@ -208,6 +209,7 @@ def test_the_law_of_a_study_as_an_agent() -> None:
 
 
 def test_the_examples_of_the_docstrings_run() -> None:
-    told = doctest.testmod(flexsc.gym, extraglobs={"flexsc": flexsc})
+    module = import_module("flexsc.gym")
+    told = doctest.testmod(module, extraglobs={"flexsc": flexsc})
     assert told.attempted > 8
     assert not told.failed

@@ -250,7 +250,8 @@ def test_controllers_come_back_in() -> None:
     # A lead filter of continuous time, held and by Tustin's rule, is what SciPy makes of it.
     lead = tuple(np.array([[each]]) for each in (-3.0, 1.0, -200.0, 100.0))
     for method, name in [("held", "zoh"), ("tustin", "bilinear")]:
-        discrete = cont2discrete(lead, 0.5, name)[:4]
+        made: Any = cont2discrete(lead, 0.5, name)
+        discrete = made[:4]
         with_held = scenario.with_law(lead, 0.5, method=method)  # type: ignore[arg-type]
         by_scipy = scenario.with_law(StateSpace(*discrete, dt=0.5))
         law: Any = by_scipy.to_dict()["law"]

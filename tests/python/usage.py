@@ -48,7 +48,6 @@ duty: npt.NDArray[Any] = flexsc.sweep(scenario, "law.relay.k_t", np.linspace(0.3
 swept: flexsc.Table = flexsc.sweep(scenario, "law.relay.k_t", [0.3, 0.35])
 both: flexsc.Table = flexsc.sweep(scenario, {"law.relay.k_t": [0.3], "body.planar.angle": np.zeros(2)})
 unit = flexsc.metrics()["duty"]["unit"]
-unit: str = flexsc.metrics()["duty"]["unit"]
 sim: flexsc.Simulator = flexsc.Simulator(scenario, run=1)
 switched: bool = sim.run_until("switching", limit=100.0)
 before: flexsc.Snapshot = sim.snapshot()

@@ -181,7 +181,7 @@ class Linear:
     def closed(self) -> Linear:
         """The loop closed, of a model that `linearise(loop=...)` cut open: inputs are what is added there.
 
-        >>> scenario = flexsc.Scenario.example("wheel-fixed-gain").with_("law.pd.extra", {"gain": 0.0})
+        >>> scenario = flexsc.Scenario.example("rotation-robust")
         >>> bool(abs(numpy.linalg.eigvals(scenario.linearise(loop="command").closed().a)).max() < 1.0)
         True
         """

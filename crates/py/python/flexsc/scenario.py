@@ -199,10 +199,10 @@ class Accelerometer(Part):
     watch_only: bool | None = None
     """That nothing reads it, which has to be said: it is logged and changes nothing. Default: false."""
     point: str | None = None
-    """The point of the structure at which it is; left out, the first of the body's points."""
+    """The point of the structure at which it is; default: the first of the body's points."""
     along: Rows | None = None
     """The directions along which it measures, one to three of any length in the hub's axes while nothing is
-    bent; left out, x, y and z.
+    bent; default: x, y and z.
     """
     noise: float | Vector | None = None
     """Standard deviation of the white noise along each (m/s²). Default: 0.0."""
@@ -225,7 +225,7 @@ class ActiveDamping(Part):
     """Active damping."""
 
     threshold: Vector | None = None
-    """Elastic rates beyond which the jets push, about each axis (rad/s); left out, 1.5 times the amplitude
+    """Elastic rates beyond which the jets push, about each axis (rad/s); default: 1.5 times the amplitude
     of the limit cycle that the delay makes, and at least what two whole cycles change, of the mode that
     a long burn excites most.
     """
@@ -250,13 +250,13 @@ class Adaptive(Part):
     form: ObserverForm | None = None
     """Form of the observers."""
     trackers: Given | None = None
-    """What they track; left out, the dominant modes of the body."""
+    """What they track; default: the dominant modes of the body."""
     count: int | None = None
-    """How many modes of the body each axis tracks; left out, 2, and 1 in the form `recurrence`."""
+    """How many modes of the body each axis tracks; default: 2, and 1 in the form `recurrence`."""
     merge: float | None = None
     """Ratio of frequencies below which modes of the body are tracked as one. Default: 0.08."""
     cross_axis: bool | None = None
-    """Whether an axis accounts for the jets of the others; left out, it does in the form `gradient`."""
+    """Whether an axis accounts for the jets of the others; default: it does in the form `gradient`."""
     frequency_error: float | None = None
     """By which part the frequencies are off at the start. Default: 0.0."""
     influence_error: float | None = None
@@ -274,13 +274,13 @@ class Added(Part):
     from_: float
     """When it begins (s)."""
     to: float | None = None
-    """When it ends (s); left out, with the run."""
+    """When it ends (s); default: with the run."""
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis of which it fails, on a body with three; left out, of all."""
+    """The axis of which it fails, on a body with three; default: of all."""
     wheel: int | None = None
-    """The wheel that fails, counted from 1; left out, all do."""
+    """The wheel that fails, counted from 1; default: all do."""
     thruster: str | None = None
-    """The thruster that fails, of jets; left out, all do."""
+    """The thruster that fails, of jets; default: all do."""
     constant: float | None = None
     """A constant: a torque (N m), of magnetorquers a moment (A m²), of jets a thrust (N). Default: 0.0."""
     sines: Sequence[Sine] | None = None
@@ -298,7 +298,7 @@ class Appendage(Part):
     centre: Vector | None = None
     """Centre of mass from the root (m), in its own axes."""
     inertia: Rows | None = None
-    """Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; left out, it is a point
+    """Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; default: it is a point
     mass.
     """
     at: Vector | None = None
@@ -306,7 +306,7 @@ class Appendage(Part):
     turned: Turn | Sequence[Turn] | None = None
     """How its axes are turned against those of the body."""
     drive: AppendageDrive | None = None
-    """What turns it during a run about an axis through its root; left out, nothing."""
+    """What turns it during a run about an axis through its root; default: nothing."""
     plate: Literal["x", "y"] | None = None
     """The axis along which a thin plate in the plane of its own x and y stretches: first moments then
     follow from rotations.
@@ -320,9 +320,9 @@ class Appendage(Part):
     damping: float | Vector | None = None
     """Damping ratios of the modes of results."""
     keep: int | None = None
-    """How many of the modes of results are kept, those with the lowest frequencies; left out, all."""
+    """How many of the modes of results are kept, those with the lowest frequencies; default: all."""
     thermal: Thermal | None = None
-    """How sunlight bends it; left out, it does not."""
+    """How sunlight bends it; default: it does not."""
     units: Literal["m", "mm"] | None = None
     """The units of results: metres and kilograms where it is left out."""
 
@@ -338,17 +338,17 @@ class AppendageDrive(Part):
     rate: float | None = None
     """It turns at this rate (rad/s)."""
     from_: float | None = None
-    """It begins to turn at this time (s); left out, it turns from the start on."""
+    """It begins to turn at this time (s); default: it turns from the start on."""
     until: float | None = None
-    """It begins to stop at this time (s); left out, it does not."""
+    """It begins to stop at this time (s); default: it does not."""
     acceleration: float | None = None
-    """How fast its rate changes (rad/s²); left out, at once."""
+    """How fast its rate changes (rad/s²); default: at once."""
     table: Sequence[DrivePoint] | None = None
     """Angles at times, with constant rates between."""
     track: Literal["sun"] | None = None
     """What it follows."""
     normal: Vector | None = None
-    """What faces the Sun, a direction in the axes of the appendage across the drive's; left out, z."""
+    """What faces the Sun, a direction in the axes of the appendage across the drive's; default: z."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -374,29 +374,28 @@ class AttitudeEstimator(Part):
     form: FilterForm | Literal["extended", "steady"] | None = None
     """How its gains are found. Default: "extended"."""
     angle_random_walk: float | None = None
-    """Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; left out, the largest of the
+    """Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the
     gyro's own.
     """
     rate_random_walk: float | None = None
-    """Rate random walk of the gyro's bias (rad/s^1.5); left out, the largest of the gyro's own."""
+    """Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own."""
     attitude_noise: Vector | None = None
-    """Standard deviation of a measured attitude about each axis of what measures it (rad); left out, the
+    """Standard deviation of a measured attitude about each axis of what measures it (rad); default: the
     sensor's own.
     """
     field_noise: float | None = None
-    """Standard deviation of a measured magnetic field along each axis (T); left out, the magnetometer's
-    own.
+    """Standard deviation of a measured magnetic field along each axis (T); default: the magnetometer's own.
     """
     sun_noise: float | None = None
-    """Standard deviation of a measured direction to the Sun (rad); left out, the Sun sensor's own."""
+    """Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's own."""
     initial: AttitudeFilterInitial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
     """What the filter takes for attitude and bias at the start. Default: "drawn"."""
     elastic: ElasticStates | None = None
-    """Elastic modes that it knows too; left out, none."""
+    """Elastic modes that it knows too; none by default."""
     assess: Vector | None = None
-    """When the metrics judge the filter, from one time to another (s); left out, always."""
+    """When the metrics judge the filter, from one time to another (s); always by default."""
     watch_only: bool | None = None
     """Whether it is there to be assessed only: no law reads it."""
 
@@ -424,15 +423,15 @@ class AttitudeLaw(Part):
     damping: float | None = None
     """Damping ratio zeta of the error. Default: 0.7."""
     inertia: Rows | None = None
-    """The inertia tensor that the law takes a body with three axes to have (kg m²), row by row; left out,
+    """The inertia tensor that the law takes a body with three axes to have (kg m²), row by row; default:
     that which it has.
     """
     error: Literal["quaternion", "rodrigues"] | None = None
     """How a rotation counts as an error, on a body with three axes."""
     integral: Integral | None = None
-    """The integral of the error; left out, there is none."""
+    """The integral of the error; none by default."""
     rate_limit: float | None = None
-    """Largest rate at which an error is taken back (rad/s); left out, there is no limit."""
+    """Largest rate at which an error is taken back (rad/s); no limit by default."""
     filters: Sequence[Filter] | None = None
     """What the fed-back acceleration goes through, in this order."""
 
@@ -453,9 +452,9 @@ class AttitudeTarget(Part):
     yaw: float | None = None
     """Yaw (rad). Default: 0.0."""
     acceleration: float | None = None
-    """Largest acceleration of a turn about one axis to it (rad/s²); left out, it is there at once."""
+    """Largest acceleration of a turn about one axis to it (rad/s²); default: it is there at once."""
     rate_limit: float | None = None
-    """Largest rate of that turn (rad/s); left out, there is no limit."""
+    """Largest rate of that turn (rad/s); no limit by default."""
     profile: Literal["trapezoid", "versine"] | None = None
     """How the rate of that turn rises and falls."""
     command: Command | None = None
@@ -619,13 +618,13 @@ class Dead(Part):
     from_: float
     """When it begins (s)."""
     to: float | None = None
-    """When it ends (s); left out, with the run."""
+    """When it ends (s); default: with the run."""
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis of which it fails, on a body with three; left out, of all."""
+    """The axis of which it fails, on a body with three; default: of all."""
     wheel: int | None = None
-    """The wheel that fails, counted from 1; left out, all do."""
+    """The wheel that fails, counted from 1; default: all do."""
     thruster: str | None = None
-    """The thruster that fails, of jets; left out, all do."""
+    """The thruster that fails, of jets; default: all do."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -663,7 +662,7 @@ class Disturbance(Part):
     a push.
     """
     point: str | None = None
-    """Name of the point at which the force acts; left out, the first."""
+    """Name of the point at which the force acts; default: the first."""
     noise: float | None = None
     """Spectral density of a white noise in the torque beside it ((N m)² s): each draw is held for `period`.
     Default: 0.0.
@@ -675,7 +674,7 @@ class Disturbance(Part):
     from_: float | None = None
     """When it begins (s). Default: 0.0."""
     to: float | None = None
-    """When it ends (s); left out, with the run."""
+    """When it ends (s); default: with the run."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -687,11 +686,11 @@ class Drag(Part):
     plates: Sequence[DragPlate]
     """The plates."""
     scale_height: float | None = None
-    """Height in which it falls to 1/e (m); left out, it is the same everywhere."""
+    """Height in which it falls to 1/e (m); default: it is the same everywhere."""
     coefficient: float | None = None
     """Drag coefficient. Default: 2.2."""
     rotation: float | None = None
-    """How fast the atmosphere turns with the planet (rad/s); left out, as the Earth does. Default:
+    """How fast the atmosphere turns with the planet (rad/s); default: as the Earth does. Default:
     7.292115e-05.
     """
 
@@ -749,17 +748,17 @@ class ElasticStates(Part):
     noise: float
     """By how much random forces let the rate of each mode walk (m sqrt(kg)/s^1.5)."""
     frequencies: Vector | None = None
-    """Their natural frequencies as the filter knows them (rad/s); left out, the body's own."""
+    """Their natural frequencies as the filter knows them (rad/s); default: the body's own."""
     factor: float | None = None
     """What these are multiplied by: the filter's error. Default: 1.0."""
     displacement: float | None = None
     """Standard deviation of each displacement at the start (m sqrt(kg)). Default: 0.001."""
     rate: float | None = None
-    """Standard deviation of each rate at the start (m sqrt(kg)/s); left out, that of the displacement times
+    """Standard deviation of each rate at the start (m sqrt(kg)/s); default: that of the displacement times
     the frequency.
     """
     feeds: Literal["modes", "hub", "rigid"] | None = None
-    """What the law reads: angle and rate as if the body were rigid, or those of the hub; left out, rigid."""
+    """What the law reads: angle and rate as if the body were rigid, or those of the hub; default: rigid."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -773,7 +772,7 @@ class Envelope(Part):
     form: Literal["dynamic", "trigonometric", "truth"] | None = None
     """How the phasors are followed. Default: "dynamic"."""
     modes: Sequence[Mode] | None = None
-    """The modes of the monitor's model; left out, they are the body's own."""
+    """The modes of the monitor's model; default: they are the body's own."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -781,7 +780,7 @@ class Environment(Part):
     """What surrounds a body with three axes. The torques add up."""
 
     orbit: Kepler | None = None
-    """The orbit on which the body is; left out, there is none, or one of those below."""
+    """The orbit on which the body is; default: there is none, or one of those below."""
     magnetic_field: MagneticField | None = None
     """The magnetic field of the orbit's planet."""
     sun: Vector | Literal["epoch"] | None = None
@@ -807,11 +806,11 @@ class ExtendedKalman(Part):
     _tag: ClassVar[str | None] = "extended_kalman"
 
     modes: Sequence[Mode] | None = None
-    """The modes of the filter's model; left out, they are the body's own at the start."""
+    """The modes of the filter's model; default: they are the body's own at the start."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
-    """Standard deviation of the measured angle (rad); left out, that of the sensor."""
+    """Standard deviation of the measured angle (rad); default: that of the sensor."""
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
@@ -819,11 +818,11 @@ class ExtendedKalman(Part):
     dominant: Literal["excitability", "amplitude"] | None = None
     """What makes a mode the dominant one. Default: "excitability"."""
     assess: Vector | None = None
-    """When the metrics judge the filter, from one time to another (s); left out, always."""
+    """When the metrics judge the filter, from one time to another (s); always by default."""
     feeds: Literal["modes", "hub", "rigid"] | None = None
     """What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured;
     `hub` for angle and rate of the hub, elastic part included; `rigid` for those of the body as if it
-    were rigid. Left out, `modes` for a law that reads the dominant mode, else `hub`.
+    were rigid. By default, `modes` for a law that reads the dominant mode, else `hub`.
     """
     watch_only: bool | None = None
     """Whether it is there to be assessed only: no law reads it."""
@@ -859,7 +858,7 @@ class Friction(Part):
     viscous: float | Vector | None = None
     """Viscous friction c (N m s/rad), of each or of all. Default: 0.0."""
     breakaway: float | Vector | None = None
-    """Torque up to which the bearing holds a wheel at rest (N m); left out, that of Coulomb."""
+    """Torque up to which the bearing holds a wheel at rest (N m); default: that of Coulomb."""
 
 
 @dataclass(frozen=True)
@@ -897,7 +896,7 @@ class Gradient(Part):
     rigid_gain: float | None = None
     """Gain of the rigid rate: the part of an innovation that it takes. Default: 0.03."""
     elastic_gain: float | None = None
-    """Gain of each elastic rate; left out, 0.15 for one mode and 0.1 for several."""
+    """Gain of each elastic rate; default: 0.15 for one mode and 0.1 for several."""
     rate: float | None = None
     """Rate of the identification, 0 for none. Sufficient for its convergence: below 0.05 over the number of
     modes. Default: 0.02.
@@ -919,11 +918,11 @@ class GravityGradient(Part):
     """Gravity gradient."""
 
     orbit_rate: float | None = None
-    """Rate of a circular orbit (rad/s); left out, the environment's orbit counts."""
+    """Rate of a circular orbit (rad/s); default: the environment's orbit counts."""
     local: Vector | None = None
     """How the local axes of that orbit lie at the start, a unit quaternion [w, x, y, z] that turns vectors
     of the local axes (x along the velocity, y against the orbit's normal, z nadir) into inertial ones;
-    left out, they are the inertial ones then.
+    default: they are the inertial ones then.
     """
 
 
@@ -947,11 +946,11 @@ class Gyro(Part):
     _tag: ClassVar[str | None] = "gyro"
 
     point: str | None = None
-    """The point of the structure at which it is, on a body with three axes; left out, the first of the
+    """The point of the structure at which it is, on a body with three axes; default: the first of the
     body's points.
     """
     period: float | None = None
-    """Period of its samples (s); left out, that of the law."""
+    """Period of its samples (s); default: that of the law."""
     noise: float | Vector | None = None
     """Standard deviation of the white noise about each axis (rad/s). Default: 0.0."""
     bias: float | Vector | None = None
@@ -1030,10 +1029,10 @@ class Imbalance(Part):
     harmonics: Sequence[Harmonic] | None = None
     """What there is beside once a turn, alike for all wheels."""
     point: str | None = None
-    """The point of the structure at which the wheels are mounted; left out, the first of the body's points.
+    """The point of the structure at which the wheels are mounted; default: the first of the body's points.
     """
     positions: Rows | None = None
-    """Where each wheel is, from that point (m); left out, at it."""
+    """Where each wheel is, from that point (m); default: at it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1077,7 +1076,7 @@ class Jets(Part):
     quantum: float | None = None
     """Quantum of a pulse's length (s); 0 for none. Default: 0.0."""
     period: float | None = None
-    """Period of the pulses (s); left out, that of the law."""
+    """Period of the pulses (s); default: that of the law."""
     delay: int | None = None
     """Whole cycles from a command to its pulses: 0, or 1 where computing it takes a cycle. Default: 0."""
     allocation: Literal["groups", "least_propellant"] | None = None
@@ -1097,11 +1096,11 @@ class Kalman(Part):
     _tag: ClassVar[str | None] = "kalman"
 
     modes: Sequence[Mode] | None = None
-    """The modes of the filter's model; left out, they are the body's own at the start."""
+    """The modes of the filter's model; default: they are the body's own at the start."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
-    """Standard deviation of the measured angle (rad); left out, that of the sensor."""
+    """Standard deviation of the measured angle (rad); default: that of the sensor."""
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
@@ -1109,11 +1108,11 @@ class Kalman(Part):
     dominant: Literal["excitability", "amplitude"] | None = None
     """What makes a mode the dominant one. Default: "excitability"."""
     assess: Vector | None = None
-    """When the metrics judge the filter, from one time to another (s); left out, always."""
+    """When the metrics judge the filter, from one time to another (s); always by default."""
     feeds: Literal["modes", "hub", "rigid"] | None = None
     """What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured;
     `hub` for angle and rate of the hub, elastic part included; `rigid` for those of the body as if it
-    were rigid. Left out, `modes` for a law that reads the dominant mode, else `hub`.
+    were rigid. By default, `modes` for a law that reads the dominant mode, else `hub`.
     """
     watch_only: bool | None = None
     """Whether it is there to be assessed only: no law reads it."""
@@ -1136,9 +1135,9 @@ class Kepler(Part):
     anomaly: float | None = None
     """Mean anomaly at the start (rad), of a circular orbit the angle from the perigee. Default: 0.0."""
     gravity: float | None = None
-    """The planet's gravity (m³/s²); left out, the Earth's. Default: 398600441800000.0."""
+    """The planet's gravity (m³/s²); default: the Earth's. Default: 398600441800000.0."""
     planet_radius: float | None = None
-    """Radius of the planet (m), which throws the shadow; left out, the Earth's at its equator. Default:
+    """Radius of the planet (m), which throws the shadow; default: the Earth's at its equator. Default:
     6378137.0.
     """
 
@@ -1160,7 +1159,7 @@ class Log(Part):
     """What a full log holds."""
 
     period: float | None = None
-    """Period at which a full log holds the motion (s); left out, 0.1 or the first of 0.2, 0.5, 1, 2, 5 and
+    """Period at which a full log holds the motion (s); default: 0.1 or the first of 0.2, 0.5, 1, 2, 5 and
     so on of which the duration has at most 10 000.
     """
     scene: SceneSpec | None = None
@@ -1197,12 +1196,12 @@ class MagneticField(Part):
 
     coefficients: Vector | None = None
     """The first coefficients g11, h11 and g10 of the field (T), a vector in axes that turn with the planet:
-    z along its axis, x through its meridian 0; left out, the Earth's of IGRF-13 for 2020.
+    z along its axis, x through its meridian 0; default: the Earth's of IGRF-13 for 2020.
     """
     radius: float | None = None
-    """The radius a at which they are (m); left out, the Earth's mean one. Default: 6371200.0."""
+    """The radius a at which they are (m); default: the Earth's mean one. Default: 6371200.0."""
     rotation: float | None = None
-    """How fast the planet turns (rad/s); left out, the Earth's. Default: 7.292115e-05."""
+    """How fast the planet turns (rad/s); default: the Earth's. Default: 7.292115e-05."""
     meridian: float | None = None
     """Angle from the inertial x to the meridian 0 at the start (rad). Default: 0.0."""
 
@@ -1216,7 +1215,7 @@ class Magnetometer(Part):
     period: float
     """Period of its samples (s)."""
     point: str | None = None
-    """The point of the structure at which it is; left out, the first of the body's points."""
+    """The point of the structure at which it is; default: the first of the body's points."""
     noise: float | Vector | None = None
     """Standard deviation of the white noise along each axis (T). Default: 0.0."""
     bias: float | Vector | None = None
@@ -1256,7 +1255,7 @@ class Manoeuvre(Part):
     command: Command
     """What turns the body."""
     time: float | None = None
-    """Time of the manoeuvre (s). Left out, the shortest that the peak torque allows."""
+    """Time of the manoeuvre (s). By default, the shortest that the peak torque allows."""
     peak_torque: float | None = None
     """Largest torque (N m); beside a time, a limit that the plan has to keep."""
     start_rate: float | None = None
@@ -1266,7 +1265,7 @@ class Manoeuvre(Part):
     shaper: Shaper | None = None
     """What the command is convolved with; it takes a part of the time."""
     model: Planar | None = None
-    """The body that the plan is made for; left out, the body itself. A campaign that draws keys of the body
+    """The body that the plan is made for; default: the body itself. A campaign that draws keys of the body
     puts the body as it is written here: the plan does not depend on what is drawn.
     """
 
@@ -1284,12 +1283,12 @@ class Matrices(Part):
     displacements).
     """
     coordinates: Sequence[str] | None = None
-    """Names of the coordinates; left out, `q0`, `q1` and so on."""
+    """Names of the coordinates; default: `q0`, `q1` and so on."""
     hub: int | None = None
     """Index of the coordinate that is the hub's angle, counted from 0. Default: 0."""
     rotation: Vector | None = None
-    """Displacement of each coordinate under a unit rigid rotation; left out, only the hub's angle turns,
-    and all other coordinates are relative to it.
+    """Displacement of each coordinate under a unit rigid rotation; default: only the hub's angle turns, and
+    all other coordinates are relative to it.
     """
     drive: Literal["torque", "motion"] | None = None
     """What is commanded. Default: "torque"."""
@@ -1300,7 +1299,7 @@ class Matrices(Part):
     displacements); it adds to those ratios, and may couple the modes.
     """
     keep: int | None = None
-    """How many of the lowest modes are kept; left out, all up to 1e3 rad/s."""
+    """How many of the lowest modes are kept; default: all up to 1e3 rad/s."""
     angle: float | None = None
     """Rigid angle at the start (rad). Default: 0.0."""
     rate: float | None = None
@@ -1439,7 +1438,7 @@ class Panels(Part):
     damping: float | Vector | None = None
     """Damping ratio of all modes, or one for each that is kept. Default: 0.0."""
     keep: int | None = None
-    """How many of the lowest modes are kept; left out, all up to 1e3 rad/s."""
+    """How many of the lowest modes are kept; default: all up to 1e3 rad/s."""
     angle: float | None = None
     """Rigid angle at the start (rad). Default: 0.0."""
     rate: float | None = None
@@ -1465,7 +1464,7 @@ class Pd(Part):
     extra: Extra | None = None
     """The extra loop over the dominant mode."""
     limit: float | None = None
-    """Largest torque (N m); left out, there is no limit."""
+    """Largest torque (N m); no limit by default."""
     track: bool | None = None
     """Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends."""
 
@@ -1523,7 +1522,7 @@ class PhasePlane(Part):
     targets: Sequence[AttitudeTarget] | None = None
     """Attitudes to turn to, in the order of their times; before the first it is the inertial one."""
     damping: ActiveDamping | None = None
-    """What the jets do against elastic motion while they have nothing else to do; left out, nothing."""
+    """What the jets do against elastic motion while they have nothing else to do; default: nothing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1533,8 +1532,8 @@ class Planar(Part):
     _tag: ClassVar[str | None] = "planar"
 
     inertia: float | None = None
-    """Moment of inertia (kg m²). Left out, it is 1, and every torque is a reduced moment (rad/s²). Default:
-    1.0.
+    """Moment of inertia (kg m²). By default, it is 1, and every torque is a reduced moment (rad/s²).
+    Default: 1.0.
     """
     angle: float | None = None
     """Rigid angle at the start (rad). Default: 0.0."""
@@ -1569,7 +1568,7 @@ class Pointing(Part):
     window: Vector
     """From when to when (s) the angle beyond the target counts, for the metric `pointing_rms_rad`."""
     rms: float | None = None
-    """What its root mean square is to be at most (rad), for the metric `requirement`; left out, nothing is
+    """What its root mean square is to be at most (rad), for the metric `requirement`; default: nothing is
     asked.
     """
 
@@ -1680,12 +1679,12 @@ class Reference(Part):
     """Levels of other runs that the metrics compare with."""
 
     envelope: float | None = None
-    """Mean envelope without adaptation (rad), for the metric `envelope_reduction`; left out, the mean over
+    """Mean envelope without adaptation (rad), for the metric `envelope_reduction`; default: the mean over
     the run's own first window.
     """
     band: float | None = None
     """Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s` and
-    `settling_time_s`. Left out, what is promised: after a manoeuvre a thousandth of its angle, by a PD
+    `settling_time_s`. By default, what is promised: after a manoeuvre a thousandth of its angle, by a PD
     law 5 % of the distance at which the goal begins, by a relay its dead zone and its hysteresis.
     """
     pointing: Pointing | None = None
@@ -1753,7 +1752,7 @@ class Rotor(Part):
     speed: float | None = None
     """Speed at the start (rad/s). Default: 0.0."""
     speed_limit: float | None = None
-    """Largest speed (rad/s), at which no torque drives it further; left out, there is no limit."""
+    """Largest speed (rad/s), at which no torque drives it further; no limit by default."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1771,11 +1770,11 @@ class Sampled(Part):
     resolution: float | None = None
     """Quantum of the output (rad); 0 for none. Default: 0.0."""
     rate_noise: float | None = None
-    """Standard deviation of the white noise of a rate gyro (rad/s); left out, there is no gyro, and the
-    rate is the difference of the last two angles over the period.
+    """Standard deviation of the white noise of a rate gyro (rad/s); default: there is no gyro, and the rate
+    is the difference of the last two angles over the period.
     """
     point: str | None = None
-    """The point of the structure at which it is, on a body with three axes; left out, the first of the
+    """The point of the structure at which it is, on a body with three axes; default: the first of the
     body's points.
     """
     faults: Sequence[Fault] | None = None
@@ -1793,13 +1792,13 @@ class Scaled(Part):
     factor: float
     """The part; below 0, it acts the other way."""
     to: float | None = None
-    """When it ends (s); left out, with the run."""
+    """When it ends (s); default: with the run."""
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis of which it fails, on a body with three; left out, of all."""
+    """The axis of which it fails, on a body with three; default: of all."""
     wheel: int | None = None
-    """The wheel that fails, counted from 1; left out, all do."""
+    """The wheel that fails, counted from 1; default: all do."""
     thruster: str | None = None
-    """The thruster that fails, of jets; left out, all do."""
+    """The thruster that fails, of jets; default: all do."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1807,13 +1806,13 @@ class SceneSpec(Part):
     """How a run is drawn."""
 
     period: float | None = None
-    """Period of the frames (s); left out, that of the log, and at least 0.04 s."""
+    """Period of the frames (s); default: that of the log, and at least 0.04 s."""
     bending: float | None = None
-    """How many times the elastic motion is drawn as large as it is; left out, so many times that what the
+    """How many times the elastic motion is drawn as large as it is; default: so many times that what the
     actuator or the initial state excites shows.
     """
     turning: float | None = None
-    """How many times the rotation of the body is drawn as large as it is; left out, so many times that it
+    """How many times the rotation of the body is drawn as large as it is; default: so many times that it
     shows.
     """
 
@@ -1873,7 +1872,7 @@ class Silent(Part):
     from_: float
     """When it begins (s)."""
     to: float | None = None
-    """When it ends (s); left out, with the run."""
+    """When it ends (s); default: with the run."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1957,7 +1956,8 @@ class Spacecraft(Part):
     matrix hardly counts.
     """
     points: Sequence[NamedPoint] | None = None
-    """Named points of the hub, at which jets push and gyros look. Left out, there is one at O, named `hub`.
+    """Named points of the hub, at which jets push and gyros look. By default, there is one at O, named
+    `hub`.
     """
 
 
@@ -1980,7 +1980,7 @@ class Spatial(Part):
     modes: Sequence[SpatialMode] | str | None = None
     """Elastic modes: a table, or the path of a CSV file."""
     disturbance: Periodic | None = None
-    """A torque that the surroundings exert; left out, there is none."""
+    """A torque that the surroundings exert; none by default."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2039,19 +2039,19 @@ class StarTracker(Part):
     period: float
     """Period of its exposures (s)."""
     point: str | None = None
-    """The point of the structure at which it is; left out, the first of the body's points."""
+    """The point of the structure at which it is; default: the first of the body's points."""
     noise: Vector | None = None
     """Standard deviation of the white noise about each of its axes (rad): x and y across its boresight, z
     about it.
     """
     axes: Vector | None = None
     """The rotation from the body's axes to its own, [w, x, y, z]: it turns its vectors into the body's;
-    left out, they are the body's.
+    default: they are the body's.
     """
     latency: float | None = None
     """Time from an exposure to when it is told (s). Default: 0.0."""
     blackout_rate: float | None = None
-    """Rate of the body at the tracker from which on it sees nothing (rad/s); left out, it always sees."""
+    """Rate of the body at the tracker from which on it sees nothing (rad/s); default: it always sees."""
     faults: Sequence[Fault] | None = None
     """Times at which it fails."""
 
@@ -2065,7 +2065,7 @@ class StateSpace(Part):
     period: float
     """Period of its samples (s)."""
     a: Rows | None = None
-    """Matrix A, row by row; left out, there are no states."""
+    """Matrix A, row by row; default: there are no states."""
     b: Rows | None = None
     """Matrix B: a row for each state, a column for the error of the angle (rad) and, if there are two, of
     the rate (rad/s).
@@ -2073,13 +2073,13 @@ class StateSpace(Part):
     c: Rows | None = None
     """Matrix C: one row."""
     d: Rows | None = None
-    """Matrix D: one row; left out, it is zero."""
+    """Matrix D: one row; default: it is zero."""
     of: Literal["samples", "held", "tustin"] | None = None
     """What the matrices are of. Default: "samples"."""
     command: Literal["torque", "acceleration"] | None = None
     """What it commands. Default: "torque"."""
     limit: float | None = None
-    """Largest command, in its unit; left out, there is no limit."""
+    """Largest command, in its unit; no limit by default."""
     track: bool | None = None
     """Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends."""
 
@@ -2093,15 +2093,15 @@ class StuckFailure(Part):
     from_: float
     """When it begins (s)."""
     to: float | None = None
-    """When it ends (s); left out, with the run."""
+    """When it ends (s); default: with the run."""
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis of which it fails, on a body with three; left out, of all."""
+    """The axis of which it fails, on a body with three; default: of all."""
     wheel: int | None = None
-    """The wheel that fails, counted from 1; left out, all do."""
+    """The wheel that fails, counted from 1; default: all do."""
     thruster: str | None = None
-    """The thruster that fails, of jets; left out, all do."""
+    """The thruster that fails, of jets; default: all do."""
     at: float | None = None
-    """What: a torque (N m), of magnetorquers a moment (A m²), of jets the part of their thrust; left out,
+    """What: a torque (N m), of magnetorquers a moment (A m²), of jets the part of their thrust; default:
     what is given when it begins.
     """
 
@@ -2115,7 +2115,7 @@ class StuckFault(Part):
     from_: float
     """When it begins (s)."""
     to: float | None = None
-    """When it ends (s); left out, with the run."""
+    """When it ends (s); default: with the run."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2139,13 +2139,13 @@ class SunSensor(Part):
     period: float
     """Period of its samples (s)."""
     boresight: Vector | None = None
-    """The middle of its field of view in the body's axes, of any length; left out, z."""
+    """The middle of its field of view in the body's axes, of any length; default: z."""
     field_of_view: float | None = None
-    """Half of the angle of the field of view (rad); left out, it sees all around. Default:
+    """Half of the angle of the field of view (rad); default: it sees all around. Default:
     3.141592653589793.
     """
     point: str | None = None
-    """The point of the structure at which it is; left out, the first of the body's points."""
+    """The point of the structure at which it is; default: the first of the body's points."""
     noise: float | Vector | None = None
     """Standard deviation of the white noise along each axis (rad). Default: 0.0."""
     bias: float | Vector | None = None
@@ -2181,8 +2181,8 @@ class Tachometer(Part):
     period: float
     """Period of the readings (s)."""
     pulses: int | None = None
-    """Pulses in a turn: a reading is those of a period over the period, what is left counts in the next.
-    Left out, the speed at the instant is read.
+    """Pulses in a turn: a reading is those of a period over the period, what is left counts in the next. By
+    default, the speed at the instant is read.
     """
     noise: float | None = None
     """Standard deviation of the white noise of each reading (rad/s). Default: 0.0."""
@@ -2259,8 +2259,8 @@ class Tracker(Part):
     rate that the input makes about its own axis ([Timakov14], page 41; dimensionless).
     """
     bounds: Vector | None = None
-    """`[low, high]` between which the frequency is looked for (rad/s); left out, up to the middle between
-    it and its neighbours.
+    """`[low, high]` between which the frequency is looked for (rad/s); default: up to the middle between it
+    and its neighbours.
     """
 
 
@@ -2327,11 +2327,11 @@ class UnscentedKalman(Part):
     _tag: ClassVar[str | None] = "unscented_kalman"
 
     modes: Sequence[Mode] | None = None
-    """The modes of the filter's model; left out, they are the body's own at the start."""
+    """The modes of the filter's model; default: they are the body's own at the start."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
-    """Standard deviation of the measured angle (rad); left out, that of the sensor."""
+    """Standard deviation of the measured angle (rad); default: that of the sensor."""
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
@@ -2339,11 +2339,11 @@ class UnscentedKalman(Part):
     dominant: Literal["excitability", "amplitude"] | None = None
     """What makes a mode the dominant one. Default: "excitability"."""
     assess: Vector | None = None
-    """When the metrics judge the filter, from one time to another (s); left out, always."""
+    """When the metrics judge the filter, from one time to another (s); always by default."""
     feeds: Literal["modes", "hub", "rigid"] | None = None
     """What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured;
     `hub` for angle and rate of the hub, elastic part included; `rigid` for those of the body as if it
-    were rigid. Left out, `modes` for a law that reads the dominant mode, else `hub`.
+    were rigid. By default, `modes` for a law that reads the dominant mode, else `hub`.
     """
     watch_only: bool | None = None
     """Whether it is there to be assessed only: no law reads it."""
@@ -2390,7 +2390,7 @@ class Wheel(Part):
     quantum: float | None = None
     """Quantum of the command; 0 for none. Default: 0.0."""
     limit: float | None = None
-    """Largest command; left out, there is no limit."""
+    """Largest command; no limit by default."""
     delay: float | None = None
     """Time from a sample to the command that is computed from it (s). Default: 0.0."""
     faults: Sequence[Failure] | None = None
@@ -2406,37 +2406,37 @@ class Wheels(Part):
     inertia: float
     """Moment of inertia of each about its axis (kg m²)."""
     arrangement: Literal["orthogonal", "pyramid"] | None = None
-    """How they are arranged; left out, their `axes` are given."""
+    """How they are arranged; default: their `axes` are given."""
     cant: float | None = None
-    """Of a pyramid, the angle of each axis above the plane of x and y (rad); left out, the one with equal
+    """Of a pyramid, the angle of each axis above the plane of x and y (rad); default: the one with equal
     torques about all three axes, 0.6155 rad.
     """
     axes: Rows | None = None
     """The axis of each wheel in the body's axes, of any length."""
     torque: float | None = None
-    """Largest torque of each motor (N m); left out, there is no limit. A torque that asks more of one is
-    made smaller as a whole: it keeps its axis.
+    """Largest torque of each motor (N m); no limit by default. A torque that asks more of one is made
+    smaller as a whole: it keeps its axis.
     """
     momentum: float | None = None
-    """Largest momentum of each about its axis (N m s), at which no torque drives it further; left out,
-    there is no limit.
+    """Largest momentum of each about its axis (N m s), at which no torque drives it further; no limit by
+    default.
     """
     speed_limit: float | None = None
-    """Largest speed of each (rad/s), at which no torque drives it further; left out, there is no limit."""
+    """Largest speed of each (rad/s), at which no torque drives it further; no limit by default."""
     speeds: Vector | None = None
-    """Speed of each at the start, relative to the body (rad/s); left out, 0."""
+    """Speed of each at the start, relative to the body (rad/s); default: 0."""
     friction: Friction | None = None
-    """Friction in their bearings; left out, there is none."""
+    """Friction in their bearings; none by default."""
     compensation: Compensation | None = None
-    """Torque that their drives add against friction, by the speeds that they know; left out, none."""
+    """Torque that their drives add against friction, by the speeds that they know; none by default."""
     imbalance: Imbalance | None = None
-    """Imbalance; left out, they have none."""
+    """Imbalance; default: they have none."""
     allocation: Literal["pseudo_inverse", "least_largest"] | None = None
     """Which of all torques that give what is wanted are taken. Default: "pseudo_inverse"."""
     speed_bias: SpeedBias | None = None
-    """Of four wheels, a speed that torques which cancel each other keep; left out, none."""
+    """Of four wheels, a speed that torques which cancel each other keep; none by default."""
     unloading: Unloading | None = None
-    """How jets or magnetorquers unload them; left out, none do."""
+    """How jets or magnetorquers unload them; default: none do."""
     faults: Sequence[Failure] | None = None
     """Times at which their motors fail."""
 
@@ -2541,7 +2541,7 @@ class Keys(TypedDict, total=False):
     """What is clamped to the hub of the spacecraft."""
 
     drift: Drift
-    """How the natural frequencies drift; left out, they do not."""
+    """How the natural frequencies drift; default: they do not."""
 
     sensor: Sensor | Literal["continuous"] | Sequence[Sensor | Literal["continuous"]]
     """How the motion is measured: one sensor, or an array of several."""
@@ -2565,7 +2565,7 @@ class Keys(TypedDict, total=False):
     """Disturbance torques."""
 
     environment: Environment
-    """What surrounds a body with three axes; left out, nothing."""
+    """What surrounds a body with three axes; default: nothing."""
 
     log: Log
     """What a full log holds."""
