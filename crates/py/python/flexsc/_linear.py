@@ -181,8 +181,9 @@ class Linear:
     def closed(self) -> Linear:
         """The loop closed, of a model that `linearise(loop=...)` cut open: inputs are what is added there.
 
-        >>> scenario = flexsc.Scenario.example("wheel-fixed-gain").with_("law.pd.extra", {"gain": 0.0})
-        >>> bool(abs(numpy.linalg.eigvals(scenario.linearise(loop="command").closed().a)).max() < 1.0)
+        >>> scenario = flexsc.Scenario.example("relay-fixed").with_law(([], [], [], [[0.01, 0.2]]), 0.25)
+        >>> closed = scenario.linearise(loop="command").closed()
+        >>> bool(abs(numpy.linalg.eigvals(closed.a)).max() < 1.0)
         True
         """
         import numpy as np

@@ -8,7 +8,8 @@ it in the place of the scenario's own, beside all other kinds:
 ...     period = 0.25
 ...     def decide(self, event):
 ...         return flexsc.Hold(-4.0 * event.angle - 30.0 * event.rate)
->>> scenario = flexsc.Scenario({"duration": 60.0, "law": {"open": {}}, "body": {"planar": {"angle": 1e-3}}})
+>>> body = {"planar": {"inertia": 100.0, "angle": 1e-3}}
+>>> scenario = flexsc.Scenario({"duration": 60.0, "law": {"open": {}}, "body": body})
 >>> scenario.with_parts(law=Damper()).simulate().metrics["peak_torque_nm"]
 0.004
 
