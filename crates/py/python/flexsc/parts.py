@@ -124,8 +124,8 @@ class CompiledLaw(Law):
 
     `now` is the time (s), and `since` the time since the last call, rounded once. `cause` is 0 at the start,
     1 at the time given by the last hold, 2 when the angle is at least its level, and 3 when it is at most its
-    level. `states` are the law's own values, kept from call to call. The function writes to `hold`: torque (N
-    m), time until the next call (s), the levels `at_least` and `at_most` of the angle (rad) at which it is
+    level. `states` are the law's own values, kept from call to call. The function writes to `hold`: torque
+    (N m), time until the next call (s), the levels `at_least` and `at_most` of the angle (rad) at which it is
     called, and its state for the log: 0 to 11 for OPEN, PD, W0, RACC, RBRK, W+, LACC, LBRK, W-, COAST, FIRE
     and BDOT. Each entry is NaN at the call; an entry left at NaN is not set.
 
@@ -139,9 +139,12 @@ class CompiledLaw(Law):
 
     Args:
         function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
-        process.
+            process.
         period: Period (s) of the calls if a hold gives no time; None for a function that always gives one.
         states: Its states at the start of a run.
+        promise: The distance from the goal (rad) within which it keeps the angle; None without a promise.
+        switches: Whether its torque changes only together with its state, as for a relay.
+    """
 
     address: int
     """The address of the function."""
