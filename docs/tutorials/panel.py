@@ -1,14 +1,15 @@
 # %% [markdown]
 # # From a finite-element model to a pointing budget
 #
-# **The question.** You have a finite-element model of a solar panel, and data sheets of a gyro, a star tracker and wheels. The
-# telescope must be steady to 40 µrad within 100 s after a slew of 30°. Is it? And what uses up the budget?
+# **The question.** You have a finite-element model of a solar panel, and data sheets of a gyro, a star tracker and
+# wheels. The telescope must be steady to 40 µrad within 100 s after a slew of 30°. Does it meet this requirement? And
+# what uses up the budget?
 #
 # ## The panel
 #
-# To keep this page complete, the model is a beam of ten elements, 4 m long, in NumPy. A real one comes from Nastran or CalculiX
-# ([import](../import.md)) and gives the same three things: clamped frequencies, and for each mode the integrals of its
-# shape over the mass.
+# To keep this page complete, the model is a beam of ten elements, 4 m long, in NumPy. A real model comes from Nastran
+# or CalculiX ([import](../import.md)) and gives the same data: clamped frequencies, and for each mode the two integrals
+# of its shape over the mass.
 
 # %%
 import flexsc
@@ -41,8 +42,8 @@ for element in range(elements):
     mass_matrix[place] += density * h / 420 * inertia
 
 # %% [markdown]
-# Clamp the root, solve for the modes, and normalise them by mass. `lift` and `tilt` move the whole panel as a rigid body; their
-# products with the modes are the integrals of the shapes.
+# Clamp the root, solve for the modes, and normalise them by mass. `lift` and `tilt` are the rigid-body translation and
+# rotation of the panel; their products with the modes are the integrals of the shapes.
 
 # %%
 free = slice(2, size)
@@ -66,8 +67,8 @@ assert abs(frequencies[0] / theory - 1) < 1e-4
 # %% [markdown]
 # ## The spacecraft
 #
-# A hub, two such panels, four wheels, a gyro, a star tracker, an attitude filter and a law. A scenario is a dictionary; the
-# keys are those of [the scenario file](../scenario.md).
+# The spacecraft has a hub, two such panels, three wheels, a gyro, a star tracker, an attitude filter and a law. The
+# scenario is given as a dictionary, whose keys are those of [the scenario file](../scenario.md).
 
 # %%
 modes = [
@@ -113,8 +114,8 @@ influence = scenario.modes
 print({key: np.round(value, 3) for key, value in influence.items() if "frequency" in key})
 
 # %% [markdown]
-# With the hub free to turn, the frequencies are higher than clamped, and those of both panels split into pairs. The law's
-# bandwidth, 0.15 rad/s, stays well below.
+# With the hub free to rotate, the frequencies are higher than with the hub clamped, and the frequencies of the two
+# panels split into pairs. The law's bandwidth, 0.15 rad/s, is well below them.
 #
 # ## The slew
 
@@ -130,12 +131,12 @@ axes.set(xlabel="time [s]", ylabel="pointing error [µrad]")
 _ = axes.legend()
 
 # %% [markdown]
-# That is more than 40 µrad. Why?
+# The error exceeds 40 µrad. Why?
 #
 # ## The budget
 #
-# Take away one source at a time, over a campaign of five runs each, and see what is left. The noise of a sensor is not set to zero
-# but to a hundredth, so that the filter still has something to weigh.
+# Remove one source at a time, in a campaign of five runs each, and look at the remaining error. The noise of a sensor
+# is reduced to a hundredth rather than to zero, so that the filter still has a valid weighting.
 
 
 # %%
@@ -159,9 +160,8 @@ for name, change in {
     print(f"{name:>28}: {rms(scenario.with_(change)):5.1f} µrad")
 
 # %% [markdown]
-# It is the friction: after the slew the wheels are slow and stick, and the law asks for less torque than
-# lets them go. Neither better sensors nor stiffer panels would
-# help. Three ways out:
+# The main source is friction: after the slew the wheels are slow and stick, and the law asks for less than their
+# breakaway torque. Neither better sensors nor stiffer panels would help. There are three remedies:
 
 # %%
 integral = {"law.attitude.integral": {"time": 20.0, "limit": 0.1}}
@@ -178,14 +178,15 @@ for name, value in results.items():
 assert results["wheels kept at 60 rad/s"] > total > 40 > results["both"]
 
 # %% [markdown]
-# Compensation works if friction is known, which it is not. Wheels away from zero speed do not stick, but their friction then
-# is a constant torque: without an integral the law holds it by a constant error, which is worse than before. With both it is
-# met.
+# Compensation works if the friction is known, which it is not. Wheels biased away from zero speed do not stick, but
+# their friction is then a constant torque: without an integral the law balances it with a constant error, which is
+# worse than before. With both the bias and the integral the requirement is met.
 #
 # %% [markdown]
-# ## What is not known exactly
+# ## Uncertain parameters
 #
-# The last step: everything uncertain at once, and the requirement as a key, so that each run says whether it is met.
+# As the last step, vary all uncertain parameters at once, and give the requirement as a key, so that each run reports
+# whether it is met.
 
 # %%
 study = scenario.with_(
@@ -209,10 +210,10 @@ print(
 )
 
 # %% [markdown]
-# ## What to take along
+# ## Conclusions
 #
-# - Of a finite-element model the simulation needs clamped frequencies and integrals of the shapes, nothing else.
-# - A budget by taking sources away finds the one that matters, also where sources interact.
+# - From a finite-element model the simulation needs only the clamped frequencies and the integrals of the shapes.
+# - A budget made by removing sources one at a time finds the dominant source, even where sources interact.
 # - A requirement is a key of the scenario; a campaign counts how often it is met.
 #
 # Next: [a spacecraft from its parts](../spacecraft.md), [import](../import.md) of models from Nastran and CalculiX.

@@ -1,9 +1,10 @@
 # %% [markdown]
 # # A relay and its limit cycle
 #
-# **The question.** A spacecraft is held by jets that are either on or off. Such a relay law never comes to rest: it swings
-# back and forth across its dead zone for ever. Each push also shakes the solar panels. Which limit cycle does the
-# spacecraft settle in, when does that cycle shake the panels most, and what can be tuned to keep them quiet?
+# **The question.** The attitude of a spacecraft is held by on-off jets. Such a relay law never comes to rest: the
+# spacecraft oscillates across the dead zone indefinitely, and each pulse excites the solar panels. In which limit cycle
+# does the spacecraft settle, when does that cycle excite the panels most, and which parameter can be tuned to keep them
+# quiet?
 #
 # You need `pip install flexsc matplotlib`. Everything below takes some seconds.
 
@@ -16,14 +17,14 @@ scenario = flexsc.Scenario.example("relay-fixed")
 print(scenario.to_toml())
 
 # %% [markdown]
-# One axis, two elastic modes, and a relay law: outside the dead zone it pushes back with the strong torque; on the way in it
-# brakes for `k_t` seconds for each second of the push. The study follows [Silaev](../references.md), whose torques are
-# divided by the inertia, so they are in rad/s².
+# The scenario has one axis, two elastic modes and a relay law. Outside the dead zone the law pushes back with the
+# strong torque; on the way in it brakes for `k_t` seconds for each second of the push. The study follows
+# [Silaev](../references.md), whose torques are divided by the inertia, so they are in rad/s².
 #
-# ## What the cycle is
+# ## The limit cycle of the rigid body
 #
-# Without the modes the cycle has a closed form. `rigid_cycles` also tells at which `k_t` an odd harmonic of the cycle meets a
-# mode: those are the gains to avoid.
+# Without the modes the cycle has a closed form. `rigid_cycles` also gives the values of `k_t` at which an odd harmonic
+# of the cycle coincides with a mode. Avoid these gains.
 
 # %%
 theory = flexsc.rigid_cycles(scenario)
@@ -35,10 +36,10 @@ for resonance in theory["resonances"]:
     print(resonance)
 
 # %% [markdown]
-# ## What the flexible body does
+# ## The limit cycle of the flexible body
 #
 # A run of 20 000 s takes a few milliseconds, because the motion between two switchings has a closed form and only the
-# switchings are computed. `log="full"` keeps the motion as well.
+# switchings are computed. `log="full"` also records the motion.
 
 # %%
 run = scenario.simulate(log="full")
@@ -54,13 +55,13 @@ axes.axvspan(-0.5, 0.5, alpha=0.1, label="dead zone")
 _ = axes.legend()
 
 # %% [markdown]
-# The body coasts through the dead zone, is pushed back at its edge, and brakes. A rigid body would coast on a nearly straight line;
-# the bows in the upper and lower branch are the panels.
+# The body coasts through the dead zone, is pushed back at its edge, and brakes. A rigid body would coast on a nearly
+# straight line; the panels cause the bows in the upper and lower branches.
 #
-# ## Which gain is quiet
+# ## The quietest gain
 #
-# The envelope is the amplitude of the elastic angle. Sweep `k_t` and look at its mean over the second half of each run. A
-# sweep uses all cores, and each row is a run of its own.
+# The envelope is the amplitude of the elastic angle. Sweep `k_t` and look at the mean envelope over the second half of
+# each run. A sweep uses all cores, and each row is a separate run.
 
 # %%
 table = flexsc.sweep(scenario, "law.relay.k_t", np.linspace(0.28, 0.40, 241))
@@ -82,14 +83,16 @@ assert envelope[gains < 0.298].min() > 5 * envelope[(gains > 0.33) & (gains < 0.
 assert periodic[(gains > 0.31) & (gains < 0.34)].mean() > 0.95
 
 # %% [markdown]
-# The dotted lines are the two resonances of the rigid cycle in this range, the third harmonic with one mode and the fifth with
-# the other. Around them the panels swing so much that the cycle is no longer periodic. Further away, from 0.31 to 0.34, the
-# cycle repeats itself and the envelope falls steadily. Beyond 0.34 the cycle breaks up again, with a few narrow quiet windows.
+# The dotted lines are the two resonances of the rigid cycle in this range: the third harmonic with one mode and the
+# fifth with the other. Near them the amplitude of the panels is so large that the cycle is no longer periodic. Further
+# away, from 0.31 to 0.34, the cycle is periodic and the envelope falls steadily. Beyond 0.34 the cycle becomes
+# irregular again, with a few narrow quiet windows.
 #
-# ## Let the spacecraft find it
+# ## Tuning in flight
 #
-# In flight nobody sweeps: the modes are not known well enough. The scenario `relay-adaptive` changes `k_t` after each window of
-# 500 s by a random search that keeps what made the envelope smaller, and stops when nothing improves.
+# In flight a sweep is not possible, and the modes are not known well enough to compute the gain. The scenario
+# `relay-adaptive` changes `k_t` after each window of 500 s by a random search, which keeps a change if it made the
+# envelope smaller and stops when nothing improves.
 
 # %%
 adaptive = flexsc.Scenario.example("relay-adaptive").simulate()
@@ -104,9 +107,10 @@ print("from", adaptive.metrics["gain_initial"], "to", round(adaptive.metrics["ga
 assert adaptive.metrics["envelope_reduction"] > 2.5
 
 # %% [markdown]
-# ## Is that luck?
+# ## Repeatability
 #
-# A random search has good days. A campaign repeats it with other random numbers and says how often it works.
+# The result of a random search depends on chance. A campaign repeats it with other random numbers and shows how often
+# it works.
 
 # %%
 campaign = flexsc.campaign(flexsc.Scenario.example("relay-adaptive"), runs=200)
@@ -117,12 +121,13 @@ print(
 assert np.mean(reduction > 1) > 0.9
 
 # %% [markdown]
-# ## What to take along
+# ## Conclusions
 #
-# - A relay law has a limit cycle, and its odd harmonics must not meet a mode. `rigid_cycles` gives the gains to avoid before
-#   any simulation.
-# - The braking gain sets the period of the cycle, so it is the number to tune. A sweep shows all of it in a second.
+# - A relay law has a limit cycle, whose odd harmonics must not coincide with a mode. `rigid_cycles` gives the gains to
+#   avoid before any simulation.
+# - The braking gain sets the period of the cycle, so it is the parameter to tune. A sweep shows its whole range in a
+#   second.
 # - One run proves nothing about a random search: use a campaign.
 #
-# Next: change `body.planar.modes[0].frequency` with `scenario.with_(...)` and see the peaks move. The equations are in the
-# [theory of the relay](../theory/relay.md), the paper's own figures in [papers](../papers.md).
+# Next: change `body.planar.modes[0].frequency` with `scenario.with_(...)` and see the peaks move. The equations are in
+# the [theory of the relay](../theory/relay.md), the figures of the paper in [papers](../papers.md).

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # A slew that leaves the panels at rest
 #
-# **The question.** A spacecraft with two long solar panels has to roll by 90° in 12 s. A bang-bang torque is the fastest, and
-# leaves the panels swinging for minutes. Which torque turns the hub as far and leaves the panels at rest? And what remains of
-# that if the stiffness of the hinges is known to 20 % only?
+# **The question.** A spacecraft with two long solar panels has to roll by 90° in 12 s. A bang-bang torque is the
+# fastest, but leaves the panels oscillating for minutes. Which torque turns the hub by the same angle and leaves the
+# panels at rest? How much of this remains if the stiffness of the hinges is known only to 20 %?
 
 # %%
 import flexsc
@@ -15,13 +15,13 @@ modes = scenario.modes
 print("natural frequencies [rad/s]:", np.round(modes["frequency"], 3))
 
 # %% [markdown]
-# The body is a hub with two panels, each of four hinged sections ([manoeuvres](../manoeuvres.md)). In 12 s the lowest mode
-# swings a few times.
+# The body is a hub with two panels, each of four hinged sections ([manoeuvres](../manoeuvres.md)). In 12 s the lowest
+# mode oscillates a few times.
 #
 # ## Plan the torque
 #
-# The command `sine` is a series of sines whose coefficients follow from linear equations: the hub arrives, and as many modes as
-# you ask for are at rest, exactly. Each mode that is suppressed costs one harmonic.
+# The command `sine` is a series of sines. Its coefficients follow from linear equations: the hub arrives at the target,
+# and as many modes as you ask for are exactly at rest. Each suppressed mode costs one harmonic.
 
 # %%
 plans = {count: scenario.with_("manoeuvre.command.sine.suppress", count).plan() for count in (0, 1, 2)}
@@ -35,10 +35,10 @@ axes.set(xlabel="time [s]", ylabel="torque [N m]")
 _ = axes.legend()
 
 # %% [markdown]
-# ## Fly it
+# ## Simulate the slew
 #
-# What is left after the manoeuvre is the elastic energy. The simulation has no step size, so what it finds is what the plan
-# leaves, not an error of integration.
+# The elastic energy shows what remains after the manoeuvre. The simulation has no step size, so this residual comes
+# from the plan and not from an error of integration.
 
 # %%
 left = {}
@@ -59,11 +59,11 @@ _ = axes.legend()
 assert left[2] < 1e-8 and left[0] > 0.1
 
 # %% [markdown]
-# After the grey line the body should be still. With two modes suppressed what remains is in the modes above them.
+# After the grey line the body should be at rest. With two modes suppressed, the residual is in the higher modes.
 #
-# ## Beside other commands
+# ## Comparison with other commands
 #
-# `compare` plans the same turn with the other commands, each in the same time, and tells what they leave.
+# `compare` plans the same slew with the other commands, each in the same time, and gives their residuals.
 
 # %%
 print("command               time   peak torque   outermost section left   at worst with 10 % error")
@@ -74,14 +74,15 @@ for row in plans[2].compare():
     )
 
 # %% [markdown]
-# The row `sine p=2` is the plan above. Fewer newton metres mean more swinging or less robustness; the last column is the one to
-# read if the frequencies are uncertain.
+# The row `sine p=2` is the plan above. A lower peak torque means more oscillation or less robustness; if the
+# frequencies are uncertain, the last column is the relevant one.
 #
-# ## Frequencies that are wrong
+# ## Wrong frequencies
 #
-# No hinge is as stiff as its data sheet says. A zero of the command's spectrum that is doubled stays low in a wider band around
-# its mode. Let all hinges be softer or stiffer than the plan assumes, by the same factor, and fly three plans. The key
-# `manoeuvre.model` is the body that the plan is made for; `body` is the one that flies.
+# No hinge has exactly the stiffness of its data sheet. If a zero of the command's spectrum is doubled, the spectrum
+# stays low in a wider band around the mode. Make all hinges softer or stiffer than the plan assumes, by the same
+# factor, and simulate three plans. The key `manoeuvre.model` is the body assumed by the plan; `body` is the one that is
+# simulated.
 
 # %%
 commands = {
@@ -114,8 +115,8 @@ softer = errors < -0.15
 assert (residuals["first twice, second once"][softer] < 0.2 * residuals["both modes once"][softer]).all()
 
 # %% [markdown]
-# Hinges that are softer than believed are the worse case. The third plan has a harmonic more than the others, and its peak
-# torque is the price of its wide valley. Independent errors of the four hinges are a campaign:
+# Hinges softer than assumed are the worse case. The third plan has one harmonic more than the others; its wide valley
+# costs a higher peak torque. To vary the four hinges independently, run a campaign:
 
 # %%
 for name, command in commands.items():
@@ -126,10 +127,10 @@ for name, command in commands.items():
     )
 
 # %% [markdown]
-# ## Feedback for the rest
+# ## Feedback for the residual
 #
-# `rotation-robust` adds a sampled PD law that takes over when the manoeuvre ends, damping of the panels, and a disturbance at
-# 17 s.
+# `rotation-robust` adds a sampled PD law that takes over at the end of the manoeuvre, damping of the panels, and a
+# disturbance at 17 s.
 
 # %%
 robust = flexsc.Scenario.example("rotation-robust").simulate(log="full")
@@ -142,12 +143,12 @@ print(
 assert robust.metrics["goal"] == "met"
 
 # %% [markdown]
-# ## What to take along
+# ## Conclusions
 #
-# - The plan leaves exactly the modes at rest that it knows. The price is peak torque: look at `compare`.
-# - Robustness costs harmonics too. A zero that is doubled helps against a wrong frequency of that mode only: decide by a campaign
-#   over what you do not know.
-# - Feedback after the turn removes what the plan leaves, within its bandwidth.
+# - The plan leaves exactly those modes at rest that it includes. The price is peak torque: see `compare`.
+# - Robustness also costs harmonics. A doubled zero helps only against a wrong frequency of that mode; decide with a
+#   campaign over the uncertain parameters.
+# - Feedback after the slew removes the residual of the plan, within its bandwidth.
 #
-# Next: [planned rotations](../manoeuvres.md) has all commands, and their [theory](../theory/manoeuvres.md). Input shapers on three
-# axes are in the scenario `shaped-slew`.
+# Next: [planned rotations](../manoeuvres.md) describes all commands, and their [theory](../theory/manoeuvres.md)
+# derives them. The scenario `shaped-slew` has input shapers on three axes.

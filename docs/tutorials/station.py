@@ -1,9 +1,9 @@
 # %% [markdown]
 # # A station damped by its jets
 #
-# **The question.** A space station of 400 t has solar wings that ring for minutes after every disturbance. It has no actuator for
-# damping, but it has jets that turn it. Can the same jets damp the wings, with pulses of 0.2 s, measured by a gyro in the hub,
-# and with a computer that is a cycle late?
+# **The question.** A space station of 400 t has solar wings that oscillate for minutes after every disturbance. It has
+# no actuator for damping, but it has jets for attitude control. Can the same jets damp the wings, with pulses of 0.2 s,
+# measurements of a gyro in the hub, and a computer with a delay of one cycle?
 
 # %%
 import flexsc
@@ -25,11 +25,11 @@ _ = axes.legend()
 assert on.metrics["energy_below_1pct_at_s"] < 0.2 * off.metrics["energy_below_1pct_at_s"]
 
 # %% [markdown]
-# ## What decides whether a mode can be damped
+# ## Which modes can be damped
 #
-# A jet pushes against the elastic rate that the gyro measured. Some time passes until it pushes, and it pushes for a whole pulse.
-# The phase factor E says what is left of the push: 1 is perfect, 0 useless, and below 0 the jet feeds the mode
-# ([active damping](../active-damping.md)).
+# A jet acts against the elastic rate measured by the gyro. It starts after a delay, and it acts for a whole pulse. The
+# phase factor E gives the remaining effect of the pulse: 1 is ideal, 0 has no effect, and below 0 the jet excites the
+# mode ([active damping](../active-damping.md)).
 
 # %%
 frequencies = np.linspace(0.2, 12.0, 60)
@@ -42,13 +42,14 @@ axes.set(xlabel="frequency of the mode [Hz]", ylabel="phase factor E")
 _ = axes.legend()
 
 # %% [markdown]
-# With a delay of one cycle the factor is negative above 0.83 Hz: there a jet feeds the mode. A predictor of the mode takes the
-# delay away, if the frequency is known.
+# With a delay of one cycle the factor is negative above 0.83 Hz: there a jet excites the mode. A predictor of the mode
+# compensates the delay if the frequency is known.
 #
-# ## Frequencies that are not known
+# ## Unknown frequencies
 #
-# `iss-ringdown` knows its frequencies at the start and follows them by an adaptive observer. `iss-mismatch` is a turn of the same
-# station, damped with frequencies that are 20 % too high, nothing identified and the guards of the damping switched off:
+# `iss-ringdown` starts with known frequencies and tracks them with an adaptive observer. `iss-mismatch` is a slew of
+# the same station. Its damping uses frequencies that are 20 % too high, without identification and with the guards of
+# the damping switched off:
 
 # %%
 mismatch = flexsc.Scenario.example("iss-mismatch")
@@ -63,11 +64,12 @@ for name, study in {
     print(f"{name:>32}: {told['fuel_kg']:6.1f} kg, {told['elastic_energy_end_j']:8.4f} J at the end")
 
 # %% [markdown]
-# Jets that push at the wrong time feed the modes, for 140 kg of propellant. The guards notice that and keep the damping off.
+# Jets that fire at the wrong time excite the modes and use 140 kg of propellant. The guards detect this and keep the
+# damping off.
 #
 # ## The price
 #
-# Damping costs propellant. Below a threshold of the elastic rate no jet fires.
+# Damping uses propellant. Below a threshold of the elastic rate no jet fires.
 
 # %%
 thresholds = np.array([1e-5, 2e-5, 5e-5, 1e-4, 2e-4])
@@ -79,10 +81,11 @@ for value, told in zip(thresholds, prices, strict=True):
 assert prices[-1]["fuel_kg"] < 0.5 * prices[0]["fuel_kg"]
 
 # %% [markdown]
-# ## What to take along
+# ## Conclusions
 #
-# - Jets that turn a body can damp it up to a frequency that is set by pulse length and delay, not by their torque.
-# - The observer must know the frequency. Identify it in flight, and keep the guards on.
-# - The threshold buys time with propellant.
+# - Attitude-control jets can damp modes up to a frequency that is set by pulse length and delay, not by their torque.
+# - The observer needs the correct frequency. Identify it in flight, and keep the guards on.
+# - The threshold trades damping time against propellant.
 #
-# Next: [active damping](../active-damping.md) with its formulas, the theory of [thrusters](../theory/thrusters.md).
+# Next: [active damping](../active-damping.md) has the formulas, and the theory of [thrusters](../theory/thrusters.md)
+# explains them.

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # A wheel loop with falling frequencies
 #
-# **The question.** A flywheel turns a spacecraft whose panels follow the Sun. While they turn, all elastic frequencies fall to a
-# third within 200 s. A gain that suits the first frequency is wrong for the last one. How is the gain to follow, if nobody
-# measures the frequency?
+# **The question.** A flywheel controls a spacecraft whose panels track the Sun. As the panels turn, all elastic
+# frequencies fall to a third within 200 s. A gain that suits the initial frequency is wrong for the final one. How can
+# the gain follow the frequency if it is not measured?
 #
 # The loop is sampled at 0.3 s, the wheel has back-EMF, and an extra loop feeds back the dominant mode ([sampled
 # loops](../sampled-loops.md)).
@@ -28,10 +28,11 @@ draw_angle(axes, run, "constant gain")
 _ = axes.set(xlabel="time [s]", ylabel="angle [mrad]")
 
 # %% [markdown]
-# ## Which gains would do
+# ## The region of suitable gains
 #
-# For each frequency of the dominant mode, `gain_region` closes the sampled loop with every gain and keeps those that are stable
-# and settle in time. The loop is linear between its samples, so each cell is one propagation by exact matrices.
+# For each frequency of the dominant mode, `gain_region` closes the sampled loop with every gain and keeps the gains
+# that are stable and settle in time. The loop is linear between its samples, so each cell is one propagation with exact
+# matrices.
 
 # %%
 frequencies = np.linspace(0.10, 0.36, 27)
@@ -49,7 +50,7 @@ print(f"1.2 settles in time from {suits.min():.2f} to {suits.max():.2f} rad/s")
 assert suits.min() > 0.1
 
 # %% [markdown]
-# The constant gain leaves the region as the frequency falls. The midpoint is a schedule.
+# The constant gain leaves the region as the frequency falls. The midpoint of the region can serve as a schedule.
 #
 # ## Schedule the gain
 
@@ -72,9 +73,9 @@ assert follows.metrics["settling_time_s"] < 0.7 * run.metrics["settling_time_s"]
 # %% [markdown]
 # ## Estimate the frequency
 #
-# So far the law was told the true frequency. The scenario `wheel-ekf` measures only a noisy angle; an extended Kalman filter
-# estimates the modes and one ratio that scales all their frequencies, and the schedule uses the estimate. Put our schedule
-# into it.
+# So far the law used the true frequency. The scenario `wheel-ekf` measures only a noisy angle. An extended Kalman
+# filter estimates the modes and one ratio that scales all their frequencies, and the schedule uses the estimate. Put
+# the schedule above into this scenario.
 
 # %%
 filtered = flexsc.Scenario.example("wheel-ekf").with_("law.pd.extra", {"schedule": schedule})
@@ -95,7 +96,7 @@ print("mean NIS:", round(estimated.metrics["nis_mean"], 3), "(1 is consistent)")
 assert 0.9 < estimated.metrics["nis_mean"] < 1.2
 
 # %% [markdown]
-# ## How sure is that?
+# ## How certain is the result?
 #
 # Each run of a campaign draws other noise and another initial error of the filter.
 
@@ -108,8 +109,8 @@ print(
 print("filters that lost the body:", int(np.sum(table["lock_lost"] > 0)))
 
 # %% [markdown]
-# A filter that loses the body says so: its innovations are then much larger than it believes. A prior whose frequencies are wrong
-# by a half does it every time:
+# A filter that loses lock reports it: its innovations are then much larger than its covariance predicts. A prior with
+# frequencies that are wrong by a half always causes loss of lock:
 
 # %%
 wrong = filtered.with_("estimator.extended_kalman.ratio", 1.5).simulate()
@@ -117,12 +118,14 @@ print("lock lost:", wrong.metrics["lock_lost"], " mean NIS:", round(wrong.metric
 assert wrong.metrics["lock_lost"] == 1 and wrong.metrics["nis_mean"] > 100
 
 # %% [markdown]
-# The angle still settles here, by the PD law. So the pointing error alone would not have shown that the filter was lost.
+# The PD law still settles the angle here, so the pointing error alone would not have shown that the filter had lost
+# lock.
 #
-# ## What to take along
+# ## Conclusions
 #
-# - A sampled loop that is fine for one frequency can be unstable or slow for another: draw the region first.
-# - The midpoint of the region is a schedule with margin on both sides; `robust_gains` finds one for uncertain bodies.
-# - A filter in the loop must be consistent. Read NIS, not only the pointing error.
+# - A sampled loop that works for one frequency can be unstable or slow for another: compute the region first.
+# - The midpoint of the region is a schedule with margin on both sides; `robust_gains` finds a schedule for uncertain
+#   bodies.
+# - A filter in the loop must be consistent. Check the NIS, not only the pointing error.
 #
 # Next: [sampled loops](../sampled-loops.md), the theory of [filters](../theory/filters.md).

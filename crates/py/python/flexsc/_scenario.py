@@ -30,11 +30,11 @@ class Scenario:
     """A study: everything that a scenario file contains. It is valid and immutable.
 
     Args:
-        values: The keys of a scenario file, as nested dictionaries. Numbers may be numpy's, lists its arrays;
+        values: The keys of a scenario file, as nested dictionaries. NumPy numbers and arrays are accepted;
             the `epoch` is a `datetime`.
-        name: The scenario's name if `values` has none, and in errors.
-        keys: Keys beside those of `values`, or in place of them. Parts may be those of `flexsc.scenario`,
-            whose keys an editor completes.
+        name: The name of the scenario if `values` has none; also used in errors.
+        keys: Keys in addition to those of `values`, or replacing them. Parts may be classes of
+            `flexsc.scenario`, whose keys an editor completes.
 
     Raises:
         ScenarioError: A key is unknown, missing, or has a value that is not accepted.
@@ -70,14 +70,14 @@ class Scenario:
         """Read a scenario file.
 
         Raises:
-            ScenarioError: The file cannot be read, or is not accepted; the text names line, key and what is
-                accepted.
+            ScenarioError: The file cannot be read or is not accepted; the text gives the line, the key and
+                the accepted values.
         """
         return cls._of(engine.Scenario.load(path))
 
     @classmethod
     def parse(cls, text: str, name: str = "scenario") -> Scenario:
-        """Read a scenario from TOML text. `name` is its name if it has none, and in errors.
+        """Read a scenario from TOML text. `name` is its name if the text has none; it is also used in errors.
 
         Raises:
             ScenarioError: The text is not accepted.
@@ -93,7 +93,7 @@ class Scenario:
         20000.0
 
         Raises:
-            KeyError: There is none of this name.
+            KeyError: There is no scenario of this name.
         """
         return cls.parse(dict(engine.examples())[name], name)
 
@@ -116,13 +116,14 @@ class Scenario:
     def modes(self) -> dict[str, npt.NDArray[np.float64]]:
         """The elastic modes, as arrays of shape (modes,).
 
-        `frequency` (rad/s), `period` (s), `damping` (ratio), `gain` (angle's response per unit of reduced
-        torque), `excitability`, the gain over the squared frequency (s²), `effective_inertia`, the gain times
-        the moment of inertia (kg m²), and `free_frequency` and `clamped_frequency` (rad/s), with the hub free
-        and with the hub held; NaN where there is no such body.
+        For a single-axis body: `frequency` (rad/s), `period` (s), `damping` (ratio), `gain` (response of the
+        angle per unit of reduced torque), `excitability`, the gain divided by the squared frequency (s²),
+        `effective_inertia`, the gain times the moment of inertia (kg m²), and `free_frequency` and
+        `clamped_frequency` (rad/s), with the hub free and with the hub held; NaN where a value does not
+        apply.
 
-        Of a spatial body `frequency`, `period` and `damping`, and `influence` of shape (modes, 3): the jump
-        of the elastic rate at the gyro for each jump of the rigid rate that the jets give about x, y and z.
+        For a spatial body: `frequency`, `period` and `damping`, and `influence` of shape (modes, 3): the jump
+        of the elastic rate at the gyro per jump of the rigid rate that the jets cause about x, y and z.
         """
         import numpy as np
 
@@ -149,14 +150,14 @@ class Scenario:
 
     @property
     def outputs(self) -> dict[str, npt.NDArray[np.float64]]:
-        """The observed coordinates by name: weights of rigid angle and modes, of shape (1 + modes,)."""
+        """The observed coordinates by name: their weights on rigid angle and modes, of shape (1 + modes,)."""
         import numpy as np
 
         outputs = json.loads(self._native.modes_json()).get("outputs", [])
         return {o["name"]: np.array([o["rigid"], *o["weights"]], dtype=np.float64) for o in outputs}
 
     def to_dict(self) -> dict[str, Any]:
-        """The scenario with all its defaults, as `Scenario(...)` takes it."""
+        """The scenario with all its defaults, as a dictionary that `Scenario(...)` accepts."""
         values: dict[str, Any] = plain(self._native.to_json())
         return values
 
@@ -169,10 +170,10 @@ class Scenario:
     @overload
     def with_(self, keys: Mapping[str, object], /) -> Scenario: ...
     def with_(self, key: str | Mapping[str, object], value: object = None, /) -> Scenario:
-        """A scenario with one key set, or several: `with_("law.relay.k_t", 0.34)`, `with_({"seed": 3, ...})`.
+        """Return a scenario with new values: `with_("law.relay.k_t", 0.34)`, `with_({"seed": 3, ...})`.
 
-        Keys are paths into the file, such as `body.planar.modes[0].frequency`. Several are set together: only
-        the result has to be valid.
+        Keys are paths into the file, such as `body.planar.modes[0].frequency`. Several keys are set together:
+        only the result has to be valid.
 
         Raises:
             ScenarioError: A key or a value is not accepted.
@@ -189,12 +190,12 @@ class Scenario:
         adaptation: Adaptation | None = None,
         actuator: Actuator | None = None,
     ) -> Scenario:
-        """A scenario with parts of your own in the place of its own, as `flexsc.parts` describes them.
+        """Return a scenario with your own parts in place of its parts, as `flexsc.parts` describes them.
 
-        The objects are copied: what happens to them later does not change the scenario. Several sensors are
-        given by their places in the scenario's list, `sensor={1: MyTracker()}`; one alone takes the place of
-        the first. No file can hold such parts: `to_toml` has empty tables for them, a log of a run does not
-        repeat alone, and campaigns run in this process only.
+        The objects are copied: later changes to them do not change the scenario. Give several sensors by
+        their positions in the scenario's list, `sensor={1: MyTracker()}`; a single sensor replaces the first.
+        A file cannot hold such parts: `to_toml` has empty tables for them, the log of a run cannot be
+        repeated without the objects, and campaigns run in this process only.
 
         >>> class Off(flexsc.Law):
         ...     def decide(self, event):
@@ -228,7 +229,7 @@ class Scenario:
 
     @property
     def parts(self) -> dict[str, object]:
-        """The parts of your own by role; sensors as `sensor 0`."""
+        """Your own parts by role; sensors as `sensor 0`."""
         return dict(engine.parts_of(self._native))
 
     def linearise(
@@ -239,26 +240,26 @@ class Scenario:
         delay: float | None = None,
         loop: Break | None = None,
     ) -> Linear:
-        """The scenario's body at rest as a linear model, or its loop cut open.
+        """Return the scenario's body at rest as a linear model, or its open loop.
 
-        States are rigid motion and modes, inputs the torques of the actuator (N m), outputs what is measured:
-        angles and rates at the sensor with their elastic parts, then all states. Wheels' momentum couples the
-        axes; surroundings and limits are left out.
+        The states are rigid motion and modes. The inputs are the torques of the actuator (N m). The outputs
+        are the measured quantities, angles and rates at the sensor with their elastic parts, followed by all
+        states. The momentum of the wheels couples the axes; the environment and limits are left out.
 
         Args:
-            at: The time (s) at which natural frequencies that drift are taken.
-            period: Period of samples (s), at which inputs change and are held; None for continuous time.
-            delay: How late inputs act (s); None for the delay of the scenario's wheel.
-            loop: Cuts the loop of a linear law (`pd`, `attitude`, `state_space`) open, sampled with its
-            period:
-                at what it commands, at the actuator's torque, or at the measured angles and rates. The signs
-                are those of negative feedback: `closed()` closes it again.
+            at: The time (s) whose natural frequencies are used if they drift.
+            period: Sampling period (s), over which inputs are held; None for continuous time.
+            delay: The delay of the inputs (s); None for the delay of the scenario's wheel.
+            loop: Return the open loop of a linear law (`pd`, `attitude`, `state_space`), sampled with its
+                period and opened at the `command` of the law, at the `torque` of the actuator, or at the
+                `measurement` of angles and rates. The signs are those of negative feedback: `closed()`
+                closes the loop again.
 
         >>> flexsc.Scenario.example("relay-fixed").linearise(period=0.5).a.shape
         (6, 6)
 
         Raises:
-            ScenarioError: The body is no linear system: drives turn its appendages.
+            ScenarioError: The body is not a linear system, because it has driven appendages.
             ValueError: The loop is not linear, or a time is not accepted.
         """
         from flexsc._linear import linearise
@@ -275,19 +276,20 @@ class Scenario:
         limit: float | None = None,
         track: bool = False,
     ) -> Scenario:
-        """A scenario with a linear controller as its law, `[law.state_space]`.
+        """Return a scenario with a linear controller as its law, `[law.state_space]`.
 
         Args:
-            controller: Matrices (A, B, C, D), or what has them, as `control.ss` and `scipy.signal.StateSpace`
-            do;
-                for three axes one for all, or a dict of one for `roll`, `pitch` and `yaw`. Its inputs are the
-                errors of the angle (rad) and, if there are two, of the rate (rad/s): what is wanted less what
-                is believed; its output is the command.
-            period: Period of its samples (s), of a controller of continuous time; one of discrete time has
-            it. method: How continuous time is sampled: with errors `held` over a period exactly, or by
-            `tustin`. command: Whether the output is a torque (N m) or an acceleration (rad/s²).
+            controller: Matrices (A, B, C, D), or an object that has them, such as those of `control.ss` and
+                `scipy.signal.StateSpace`; on three axes one for all axes, or a dict with one each for `roll`,
+                `pitch` and `yaw`. Its inputs are the error of the angle (rad) and, if it has two, the error
+                of the rate (rad/s): the goal minus the measured or estimated value. Its output is the
+                command.
+            period: Sampling period (s) of a continuous-time controller; a discrete-time one has its own.
+            method: Discretisation of a continuous-time controller: `held`, exact for errors held over a
+                period, or `tustin`.
+            command: Whether the output is a `torque` (N m) or an `acceleration` (rad/s²).
             limit: Largest command; None without a limit.
-            track: Whether it follows a manoeuvre while it lasts.
+            track: Whether the law follows a manoeuvre while it lasts.
 
         >>> scenario = flexsc.Scenario.example("relay-fixed")
         >>> pd = scenario.with_law(([], [], [], [[0.04, 0.3]]), 0.25)
@@ -303,7 +305,7 @@ class Scenario:
         return self.with_("law", law_of(controller, period, method, command, limit, track))
 
     def draw(self, run: int) -> Scenario:
-        """The scenario of one run of a campaign: its `[uncertain]` keys drawn and set.
+        """Return the scenario of one run of a campaign, with its `[uncertain]` keys drawn and set.
 
         `scenario.draw(57).simulate(run=57)` is run 57 of `campaign(scenario)`.
 
@@ -313,7 +315,7 @@ class Scenario:
         return self._of(self._native.draw(run_number(run)))
 
     def plan(self, band: float = 0.1) -> Plan:
-        """The plan of the scenario's manoeuvre; frequencies are off by at most a relative `band`.
+        """Return the plan of the manoeuvre; its residuals allow for a relative frequency error `band`.
 
         Raises:
             ValueError: The scenario has no manoeuvre, or the band is not between 0 and 1.
@@ -329,15 +331,15 @@ class Scenario:
         """Simulate the scenario. Other Python threads continue meanwhile.
 
         Args:
-            run: Number of the run: another number, other noise.
-            log: `events` keeps all that changes (switchings, window means, adaptation), `full` also the
-                motion at each period of the scenario's log and at every switching, `none` the metrics only.
-                `scene` is `full` for columns; a file that is written of it has the scene for viewers, too.
+            run: Number of the run, which selects its noise.
+            log: `events` records all events (switchings, window means, adaptation). `full` adds the motion at
+                each period of the scenario's log and at every switching. `none` records the metrics only.
+                `scene` has the columns of `full`; a file written from it also has the scene for viewers.
             yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
 
         Raises:
             SimulationError: The state is no longer finite, or the law switches without end.
-            ValueError: The estimate is above these limits, and `yes` is not given.
+            ValueError: The estimate exceeds these limits, and `yes` is not given.
         """
         run, began = run_number(run), time.perf_counter()
         metrics, topics = engine.simulate(self._native, run, log, yes)
@@ -382,7 +384,7 @@ class _Topics:
 
     @property
     def topics(self) -> list[str]:
-        """Names of the topics, without the slash that they have in a log file."""
+        """The names of the topics, without the slash that they have in a log file."""
         raise NotImplementedError
 
     def _topic(self, name: str) -> Topic:
@@ -395,11 +397,11 @@ class _Topics:
         return iter(self.topics)
 
     def __getitem__(self, topic: str) -> Topic:
-        """The columns of a topic, such as `command`, as a mapping that other libraries read through Arrow.
+        """Return the columns of a topic, such as `command`; other libraries can read them through Arrow.
 
         Every column has shape (rows,): numbers as float64, counts as int64, labels such as `state` as str.
-        The parts of each row, such as its modes, are columns of shape (rows, modes), such as
-        `modes.displacement_rad`; if the rows have different numbers of parts, arrays of arrays.
+        Values with several parts per row, such as modes, are columns of shape (rows, modes), such as
+        `modes.displacement_rad`; if the rows have different lengths, they are arrays of arrays.
 
         Raises:
             KeyError: There is no such topic.
@@ -410,7 +412,7 @@ class _Topics:
 
 
 class Samples(_Topics):
-    """The motion of a run at times of one's own choice: topics as columns, a row for each time.
+    """The motion of a run at chosen times: topics as columns, with one row per time.
 
     >>> import flexsc
     >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
@@ -427,7 +429,7 @@ class Samples(_Topics):
 
     @property
     def topics(self) -> list[str]:
-        """Names of the topics."""
+        """The names of the topics."""
         return list(self._topics)
 
     def _topic(self, name: str) -> Topic:
@@ -441,7 +443,7 @@ class Samples(_Topics):
 
 
 class Result(_Topics):
-    """What a run came to: its metrics, and its topics as columns.
+    """The result of a run: its metrics, and its topics as columns.
 
     >>> import flexsc
     >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate(log="full")
@@ -452,12 +454,12 @@ class Result(_Topics):
     """
 
     scenario: Scenario
-    """What was simulated."""
+    """The simulated scenario."""
     run: int
     """The number of the run."""
     metrics: Metrics
-    """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is none.
-    `metrics.unit(name)` tells their units."""
+    """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is no value.
+    `metrics.unit(name)` returns their units."""
 
     def __init__(
         self,
@@ -482,25 +484,25 @@ class Result(_Topics):
 
     @property
     def topics(self) -> list[str]:
-        """Names of the topics."""
+        """The names of the topics."""
         return list(self._topics)
 
     def _topic(self, name: str) -> Topic:
         return self._topics[name]
 
     def sample(self, times: npt.ArrayLike) -> Samples:
-        """The motion at times (s) of one's own choice, exactly, whatever the log of the run holds.
+        """Return the exact motion at chosen times (s), whatever the detail of the run's log.
 
-        The run is simulated again, up to the last time, and its exact motion is read at each: nothing is
-        interpolated. At the time of a row of a log with all detail, such as a switching, the values are those
-        of the row to the bit.
+        The run is simulated again, up to the last time, and its exact motion is read at each time: nothing is
+        interpolated. At the time of a row of a full log, such as a switching, the values are bit-identical to
+        those of the row.
 
         Args:
             times: Of shape (times,), in any order, from 0 to the duration.
 
         Returns:
-            The topics of the motion, of one angle such as `attitude` and `law`, of three axes such as
-            `pointing`, each with a row for each time, in the order of `times`.
+            The topics of the motion, such as `attitude` and `law` for a single-axis body and `pointing` for a
+            three-axis one, each with one row per time, in the order of `times`.
 
         Raises:
             ValueError: A time is not within the run.
@@ -528,9 +530,9 @@ class Result(_Topics):
         return Samples(asked.copy(), self._named(seen))
 
     def at(self, time: float) -> dict[str, dict[str, Any]]:
-        """The motion at a time (s), exactly: the row of each topic that `sample` has, as plain numbers.
+        """Return the exact motion at a time (s): the row of each topic of `sample`, as plain numbers.
 
-        The parts of a row, such as its modes, are arrays of shape (parts,). `sample` takes many times.
+        Values with several parts, such as modes, are arrays of shape (parts,). Use `sample` for many times.
 
         Raises:
             ValueError: The time is not within the run.
@@ -543,7 +545,7 @@ class Result(_Topics):
         return {name: {c: plain_cell(v) for c, v in seen[name].items()} for name in seen}
 
     def _native_log(self) -> engine.Log:
-        """The log of the run with its events, which figures are drawn from."""
+        """The log of the run with its events, the source of figures."""
         if self._drawn is None:
             self._drawn = engine.log_of(self.scenario._native, self.run)
         return self._drawn
@@ -554,10 +556,10 @@ class Result(_Topics):
     def to_mcap(
         self, path: str | os.PathLike[str], log: Literal["events", "full", "scene"] | None = None
     ) -> int:
-        """Write the run's log, the same bytes as the command's, and return their number.
+        """Write the run's log, with the same bytes as the command writes, and return the number of bytes.
 
-        The run is simulated again. `log` is what the log holds; left out, what the result holds, and at least
-        `events`.
+        The run is simulated again. `log` is the detail of the log; if omitted, that of the result, and at
+        least `events`.
 
         Raises:
             LogError: The file cannot be written.
@@ -600,17 +602,17 @@ class Log(_Topics):
 
     @property
     def topics(self) -> list[str]:
-        """Names of the topics, without their slash."""
+        """The names of the topics, without their slash."""
         return list(self._names)
 
     @property
     def metadata(self) -> dict[str, str]:
-        """What the log says about its run: `scenario`, `seed`, `run`, `version`, `end`, ..."""
+        """The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ..."""
         return self._native.metadata
 
     @cached_property
     def scenario(self) -> Scenario | None:
-        """The scenario that was simulated, if the log has it.
+        """The simulated scenario, if the log contains it.
 
         Raises:
             ScenarioError: This version does not accept it.

@@ -1,4 +1,4 @@
-"""Runs that are stepped: one, or thousands together."""
+"""Runs advanced in steps: one run, or thousands together."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 Event = Literal["sample", "decision", "switching", "window"]
-"""What a run can be brought to: see `Simulator.run_until`."""
+"""The events that a run can be advanced to: see `Simulator.run_until`."""
 
 
 class Quantities(Mapping[str, "npt.NDArray[np.float64]"]):
-    """What moves in a run at an instant: arrays by name, with units.
+    """The quantities of motion of a run at an instant: arrays by name, with units.
 
-    Of one run a quantity has shape () or (k,), of n copies shape (n,) or (n, k). The arrays do not change
-    when the run goes on.
+    For one run a quantity has shape () or (k,), for n copies shape (n,) or (n, k). The arrays do not change
+    when the run is advanced.
 
     >>> sim = flexsc.Simulator(flexsc.Scenario.example("four-clamped-modes"))
     >>> sim.state["attitude"].shape, sim.state.units["rate"]
@@ -31,7 +31,7 @@ class Quantities(Mapping[str, "npt.NDArray[np.float64]"]):
     __slots__ = ("_values", "units")
 
     units: Mapping[str, str]
-    """The unit of each, empty for a pure number."""
+    """The unit of each quantity, empty for a dimensionless one."""
 
     def __init__(self, values: dict[str, npt.NDArray[np.float64]], units: Mapping[str, str]) -> None:
         self._values = values
@@ -54,7 +54,7 @@ class Quantities(Mapping[str, "npt.NDArray[np.float64]"]):
 
 
 class _Fields:
-    """Where the quantities of each group are in a row."""
+    """The positions of the quantities of each group in a row."""
 
     def __init__(self, fields: list[tuple[str, str, str, int | None]]) -> None:
         self._places: dict[str, list[tuple[str, int | slice]]] = {}
@@ -73,7 +73,7 @@ class _Fields:
 
 
 class Snapshot:
-    """The state of a run at an instant, to return to: made by `Simulator.snapshot`. It cannot be pickled.
+    """The saved state of a run at an instant, made by `Simulator.snapshot`. It cannot be pickled.
 
     >>> sim = flexsc.Simulator(flexsc.Scenario.example("relay-fixed"))
     >>> before = sim.snapshot()
@@ -93,7 +93,7 @@ class Snapshot:
 
     @property
     def time(self) -> float:
-        """Where the run stood (s)."""
+        """The time of the snapshot (s)."""
         return self._native.time
 
     def __repr__(self) -> str:
@@ -101,15 +101,16 @@ class Snapshot:
 
 
 class Simulator:
-    """A run that is stepped: the same run as `scenario.simulate(run)`, in pieces.
+    """A run advanced in steps: the same run as `scenario.simulate(run)`, in pieces.
 
-    It stands at an instant between what the sensors measure there and what is done about it. So a command
-    that follows from `measured` or `state` acts from that instant on. Wherever a run is cut into steps, it
-    comes to the same, to the bit.
+    The run stops after the measurements at an instant and before the response to them. A command computed
+    from `measured` or `state` therefore acts from that instant on. However a run is divided into steps, the
+    results are bit-identical.
 
     Args:
-        scenario: What is simulated. Its `[law]` commands as long as no command is given.
-        run: Number of the run: another number, other noise. Keys of `[uncertain]` stay as they are:
+        scenario: The scenario to simulate. Its `[law]` commands the actuator until the first command is
+            given.
+        run: Number of the run, which selects its noise. Keys of `[uncertain]` keep their nominal values:
             `Simulator(scenario.draw(7), 7)` has those of run 7.
 
     >>> sim = flexsc.Simulator(flexsc.Scenario.example("four-clamped-modes"))
@@ -121,7 +122,7 @@ class Simulator:
     __slots__ = ("_fields", "_native", "_row", "run", "scenario")
 
     scenario: Scenario
-    """What is simulated."""
+    """The simulated scenario."""
     run: int
     """The number of the run."""
 
@@ -143,22 +144,23 @@ class Simulator:
 
     @property
     def time(self) -> float:
-        """Where the run is in time (s)."""
+        """The time of the run (s)."""
         return self._native.time
 
     @property
     def done(self) -> bool:
-        """Whether the run is over: it has come to the end of the scenario's `duration`."""
+        """Whether the run has reached the end of the scenario's `duration`."""
         return self._native.done
 
     @property
     def axes(self) -> int:
-        """Numbers in a command: 1, or 3 about x, y and z."""
+        """The number of values in a command: 1, or 3 about x, y and z."""
         return self._native.axes
 
     @property
     def command_unit(self) -> str:
-        """The unit of commands: N m; rad/s² of a body without inertia, or whose motion is commanded.
+        """The unit of commands: N m, or rad/s² for a body without inertia or with a prescribed motion of the
+        hub.
 
         It is empty for the command of a wheel on one axis.
         """
@@ -174,30 +176,32 @@ class Simulator:
 
     @property
     def state(self) -> Quantities:
-        """The true state now.
+        """The true state at the present time.
 
-        Of a body with one angle `angle`, `rigid_angle` (rad), `rate`, `rigid_rate` (rad/s), `modes` (rad) and
+        For a single-axis body: `angle`, `rigid_angle` (rad), `rate`, `rigid_rate` (rad/s), `modes` (rad) and
         `mode_rates` (rad/s) of shape (modes,), `torque`, and `wheel_speed` (rad/s) if there is a wheel.
 
-        Of a body with three axes `attitude`, the quaternion w, x, y, z that turns vectors of the body into
-        inertial ones; `error` (rad), the angles beyond the target; `rate` and `rigid_rate` (rad/s), with
-        and without the elastic part at the first sensor; `modes` (m sqrt(kg)) and `mode_rates` of shape
-        (modes,); the `torque` of the actuator (N m); and `wheel_speeds` (rad/s) of shape (wheels,) if there
-        are wheels.
+        For a three-axis body: `attitude`, the quaternion w, x, y, z that rotates vectors from the body frame
+        to the inertial frame; `error` (rad), the angles relative to the target; `rate` and `rigid_rate`
+        (rad/s), with and without the elastic part at the first sensor; `modes` (m sqrt(kg)) and `mode_rates`
+        of shape (modes,); the `torque` of the actuator (N m); and `wheel_speeds` (rad/s) of shape (wheels,)
+        if there are wheels.
         """
         return self._fields.of("state", self._look())
 
     @property
     def measured(self) -> Quantities:
-        """What the sensors measured last: `angle` (rad), of three axes `error` (rad), and `rate` (rad/s).
+        """The latest measurements of the sensors: `angle` (rad), or on three axes `error` (rad), and `rate`
+        (rad/s).
 
-        NaN before the first sample. Without a sampled sensor it is the true motion now.
+        NaN before the first sample. Without a sampled sensor they are the true motion at the present time.
         """
         return self._fields.of("measured", self._look())
 
     @property
     def believed(self) -> Quantities:
-        """What laws are told, after estimators: the same quantities as `measured`, of the last sample."""
+        """The input of the laws, from the estimators: the same quantities as `measured`, at the last
+        sample."""
         return self._fields.of("believed", self._look())
 
     def _look(self) -> npt.NDArray[np.float64]:
@@ -207,13 +211,13 @@ class Simulator:
         return self._row
 
     def step(self, command: npt.ArrayLike | None, dt: float) -> None:
-        """Go on for a time, or to the end of the scenario if that is nearer.
+        """Advance by a time, or to the end of the scenario if that is earlier.
 
         Args:
-            command: What the scenario's actuator shall do from now on until the next command, in the place
-                of its `[law]`: of shape (axes,), or a number of one axis, in `command_unit`. The actuator
-                executes it as it does a law's: in its periods, within its limits. None leaves it to what
-                commanded before: the law, as long as no command was given, else the last command.
+            command: The command to the scenario's actuator from now until the next command, in place of its
+                `[law]`: of shape (axes,), or a number for one axis, in `command_unit`. The actuator executes
+                it like a command of the law: in its periods and within its limits. With None the last command
+                stays in force, or the law if no command has been given yet.
             dt: The length of the step (s).
 
         Raises:
@@ -226,16 +230,16 @@ class Simulator:
         self._native.step(dt)
 
     def run_until(self, event: float | Event, limit: float = float("inf")) -> bool:
-        """Go on to an instant or an event, or to the end of the scenario if that is earlier.
+        """Advance to a time or an event, or to the end of the scenario if that is earlier.
 
         Args:
-            event: A time (s), or `sample`, a sensor measures; `decision`, a law is about to decide;
-                `switching`, a law has changed its state; `window`, a window of the envelope's mean has
-                ended. A run whose commands come from outside has neither decisions nor switchings.
-            limit: The latest time (s), where it is an event.
+            event: A time (s), or one of `sample` (a sensor measures), `decision` (a law is about to decide),
+                `switching` (a law has changed its state) and `window` (a window of the mean envelope has
+                ended). A run under external commands has neither decisions nor switchings.
+            limit: The latest time (s) to advance to, if `event` is an event.
 
         Returns:
-            Whether the time or the event came.
+            Whether the time or the event was reached.
 
         Raises:
             ValueError: The time is before the present one, or there is no such event.
@@ -255,11 +259,11 @@ class Simulator:
         return self.time >= until
 
     def snapshot(self) -> Snapshot:
-        """Where the run stands, with all noise to come: to return to by `restore`."""
+        """Save the state of the run, including all future noise, for `restore`."""
         return Snapshot(self._native.copy(), self.scenario, self.run)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Return to where a snapshot was made; it can be used again.
+        """Return to a snapshot, which can be used again.
 
         Raises:
             ValueError: It is of another scenario.
@@ -269,7 +273,7 @@ class Simulator:
         self._set(snapshot._native.copy(), self.scenario, snapshot.run)
 
     def clone(self) -> Simulator:
-        """The same run at the same instant, which goes its own way from here."""
+        """Return a copy of the run at the same instant, which is advanced independently."""
         return self._of(self._native.copy(), self.scenario, self.run)
 
     __copy__ = clone
@@ -283,16 +287,16 @@ class Simulator:
 
 
 class Simulators:
-    """Many runs of a scenario that are stepped together, on all cores.
+    """Many runs of a scenario advanced together in steps, on all cores.
 
-    Copy i is the run `runs[i]`, with its keys of `[uncertain]` drawn: to the bit what
-    `Simulator(scenario.draw(run), run)` is, on any number of threads. It does not depend on the other copies.
+    Copy i is run `runs[i]`, with its keys of `[uncertain]` drawn. It is bit-identical to
+    `Simulator(scenario.draw(run), run)` for any number of threads, and independent of the other copies.
 
     Args:
-        scenario: What the runs are drawn from.
-        runs: Their number, or the number of each run.
-        jobs: Threads; left out, one for each core.
-        seed: Seed, instead of the scenario's.
+        scenario: The scenario from which the runs are drawn.
+        runs: The number of runs, or the run number of each.
+        jobs: Number of threads; if omitted, one per core.
+        seed: Seed that replaces the scenario's.
 
     Raises:
         SimulationError: The keys drawn for a run do not make a valid scenario.
@@ -306,7 +310,7 @@ class Simulators:
     __slots__ = ("_fields", "_native", "_rows", "scenario")
 
     scenario: Scenario
-    """What the runs are drawn from."""
+    """The scenario from which the runs are drawn."""
 
     def __init__(
         self,
@@ -327,11 +331,11 @@ class Simulators:
         self._raise()
 
     def __len__(self) -> int:
-        """How many copies there are."""
+        """The number of copies."""
         return len(self._native)
 
     def __getitem__(self, index: int) -> Simulator:
-        """A clone of one copy."""
+        """Return a clone of one copy."""
         index = range(len(self))[index]
         run = int(self.runs[index])
         scenario = self.scenario.draw(run)
@@ -339,22 +343,22 @@ class Simulators:
 
     @property
     def runs(self) -> npt.NDArray[np.uint64]:
-        """The number of each copy's run, of shape (n,)."""
+        """The run number of each copy, of shape (n,)."""
         return self._native.runs
 
     @property
     def time(self) -> npt.NDArray[np.float64]:
-        """Where each copy is in time (s), of shape (n,)."""
+        """The time of each copy (s), of shape (n,)."""
         return self._native.time
 
     @property
     def done(self) -> npt.NDArray[np.bool_]:
-        """Whether each copy's run is over, of shape (n,). It then stays where it is until it is reset."""
+        """Whether each copy has reached its end, of shape (n,). It stays there until it is reset."""
         return self._native.done
 
     @property
     def failed(self) -> npt.NDArray[np.bool_]:
-        """Which copies cannot go on, of shape (n,). Their numbers are NaN until they are reset."""
+        """Which copies have failed, of shape (n,). Their values are NaN until they are reset."""
         import numpy as np
 
         failed = np.zeros(len(self), dtype=np.bool_)
@@ -363,34 +367,34 @@ class Simulators:
 
     @property
     def axes(self) -> int:
-        """Numbers in a command: 1, or 3 about x, y and z."""
+        """The number of values in a command: 1, or 3 about x, y and z."""
         return self._native.axes
 
     @property
     def command_unit(self) -> str:
-        """The unit of commands, as `Simulator.command_unit`."""
+        """The unit of commands: see `Simulator.command_unit`."""
         return self._native.command_unit
 
     @property
     def command_limit(self) -> npt.NDArray[np.float64]:
-        """The largest command about each axis, as `Simulator.command_limit`, of the scenario as written."""
+        """The largest command about each axis for the nominal scenario: see `Simulator.command_limit`."""
         import numpy as np
 
         return np.array(self._native.command_limit, dtype=np.float64)
 
     @property
     def state(self) -> Quantities:
-        """The true states now: those of `Simulator.state`, of shape (n,) or (n, k)."""
+        """The true states at the present time: those of `Simulator.state`, of shape (n,) or (n, k)."""
         return self._fields.of("state", self._look())
 
     @property
     def measured(self) -> Quantities:
-        """What the sensors measured last: see `Simulator.measured`."""
+        """The latest measurements of the sensors: see `Simulator.measured`."""
         return self._fields.of("measured", self._look())
 
     @property
     def believed(self) -> Quantities:
-        """What laws are told: see `Simulator.believed`."""
+        """The input of the laws: see `Simulator.believed`."""
         return self._fields.of("believed", self._look())
 
     def _look(self) -> npt.NDArray[np.float64]:
@@ -417,21 +421,21 @@ class Simulators:
         dt: float,
         mask: npt.NDArray[np.bool_] | None = None,
     ) -> Quantities:
-        """Go on for a time, all copies together. Other Python threads continue meanwhile.
+        """Advance all copies by a time. Other Python threads continue meanwhile.
 
         Args:
-            commands: A command for each copy, of shape (n, axes), or (n,) of one axis, as `Simulator.step`
-                takes it; None leaves it to what commanded before.
+            commands: A command for each copy, of shape (n, axes), or (n,) for one axis, as in
+                `Simulator.step`; None leaves the present source of commands in force.
             dt: The length of the step (s).
-            mask: Which copies go on, of shape (n,); left out, all.
+            mask: The copies to advance, of shape (n,); if omitted, all.
 
         Returns:
             The states at the end of the step.
 
         Raises:
             ValueError: The commands have another shape or are not finite, or `dt` is not a positive time.
-            SimulationError: Copies cannot go on; the text names them. The others have taken the step:
-                `reset(sims.failed)` begins those anew.
+            SimulationError: Copies have failed; the text names them. The others have completed the step:
+                `reset(sims.failed)` restarts the failed ones.
         """
         native, n = self._native, len(self)
         if commands is not None:
@@ -445,19 +449,19 @@ class Simulators:
         mask: npt.NDArray[np.bool_] | None = None,
         runs: npt.ArrayLike | None = None,
     ) -> Quantities:
-        """Begin copies anew.
+        """Restart copies.
 
         Args:
-            mask: Which, of shape (n,); left out, all.
-            runs: The number of each copy's run from now on, of shape (n,), of which those of the mask count;
-                left out, each begins its own run again. Another number draws `[uncertain]` keys and noise
-                anew.
+            mask: The copies to restart, of shape (n,); if omitted, all.
+            runs: The new run number of each copy, of shape (n,), of which only those in the mask are used; if
+                omitted, each copy restarts its own run. Another number draws new `[uncertain]` keys and
+                noise.
 
         Returns:
             The states of all copies.
 
         Raises:
-            ValueError: Mask or runs have another shape.
+            ValueError: The mask or the run numbers have another shape.
             SimulationError: The keys drawn for a run do not make a valid scenario.
         """
         import numpy as np

@@ -1,6 +1,6 @@
-"""Environments for reinforcement learning: `SpacecraftEnv`, and many together, `SpacecraftVectorEnv`.
+"""Environments for reinforcement learning: one, `SpacecraftEnv`, or many together, `SpacecraftVectorEnv`.
 
-The extra `flexsc[gym]` installs what it needs. Importing this module registers both as
+The extra `flexsc[gym]` installs the dependencies. Importing this module registers both as
 `flexsc/Spacecraft-v0`:
 
     >>> import gymnasium, flexsc.gym
@@ -34,36 +34,37 @@ Observation = npt.NDArray[np.float32]
 Mask = npt.NDArray[np.bool_]
 
 Observe = Mapping[str, float] | Callable[[Simulators], npt.ArrayLike]
-"""What is observed: names such as `believed.rate`, each with the number that it is divided by; or what makes
-an array of shape (n, numbers) of the simulators."""
+"""The observation: names such as `believed.rate`, each with the value by which it is divided; or a callable
+that returns an array of shape (n, numbers) from the simulators."""
 Reward = Callable[[Simulators, Array], npt.ArrayLike]
-"""Rewards of shape (n,), of the simulators after a step and of the actions of shape (n, axes)."""
+"""Rewards of shape (n,), computed from the simulators after a step and from the actions of shape (n,
+axes)."""
 Terminate = Callable[[Simulators], npt.ArrayLike]
-"""Whether each episode has ended by what happened, not by its time, of shape (n,)."""
+"""Whether each episode has ended for a reason other than its time, of shape (n,)."""
 
 
 def _size(quantities: Quantities, *names: str) -> Array:
-    """The length of the first of these that there is, of shape (n,)."""
+    """The magnitude of the first quantity that exists, of shape (n,)."""
     values = next(quantities[name] for name in names if name in quantities)
     return np.abs(values) if values.ndim == 1 else np.sqrt(np.sum(values * values, axis=1))
 
 
 @dataclass(frozen=True)
 class Quadratic:
-    """A reward: minus a quadratic cost of the true error and rate and of the action.
+    """A reward: minus a quadratic cost of the true error, the true rate and the action.
 
-    -((error/`error`)² + (rate/`rate`)² + `effort` action²), with the lengths of the vectors of three axes.
+    -((error/`error`)² + (rate/`rate`)² + `effort` action²), with the magnitudes of the vectors on three axes.
 
     >>> flexsc.gym.Quadratic(error=0.01, effort=0.1).rate
     0.1
     """
 
     error: float = 0.1
-    """The error that costs 1 (rad)."""
+    """The error with a cost of 1 (rad)."""
     rate: float = 0.1
-    """The rate that costs 1 (rad/s)."""
+    """The rate with a cost of 1 (rad/s)."""
     effort: float = 0.01
-    """What the largest command about one axis costs."""
+    """The cost of the largest command about one axis."""
 
     def __call__(self, simulators: Simulators, actions: Array) -> Array:
         state = simulators.state
@@ -75,7 +76,7 @@ class Quadratic:
 
 @dataclass(frozen=True)
 class Beyond:
-    """Ends an episode where the true error or rate is beyond a limit.
+    """Terminates an episode if the true error or rate exceeds a limit.
 
     >>> flexsc.gym.Beyond(rate=0.5).error
     inf
@@ -92,7 +93,7 @@ class Beyond:
 
 
 class _Task:
-    """What one environment and many have in common."""
+    """The common part of one environment and of many."""
 
     def __init__(
         self,
@@ -148,7 +149,7 @@ class _Task:
         return told
 
     def step(self, actions: npt.ArrayLike, mask: Mask | None) -> tuple[Array, Mask, Mask]:
-        """Rewards, and which episodes terminated and were truncated."""
+        """Advance; return the rewards and which episodes were terminated and truncated."""
         sims, count = self.simulators, len(self.simulators)
         given = np.asarray(actions, dtype=np.float64)
         if given.shape != (count, sims.axes):
@@ -169,32 +170,32 @@ class _Task:
 
 
 def _run(random: np.random.Generator) -> int:
-    """The number of an episode's run."""
+    """The run number of an episode."""
     return int(random.integers(2**63))
 
 
 class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
-    """A scenario as an environment: an agent in the place of its law.
+    """A scenario as an environment: an agent acts in place of its law.
 
-    Each episode is a run of the scenario of its own, with noise and `[uncertain]` keys drawn anew: its
+    Each episode is a separate run of the scenario, with new noise and newly drawn `[uncertain]` keys. Its run
     number follows from the seed and is `info["run"]`. An episode is truncated at the end of the scenario's
     `duration`.
 
     Args:
-        scenario: The scenario, or the name of a shipped one. Its `[law]` is not asked.
+        scenario: The scenario, or the name of a shipped one. Its `[law]` is not used.
         dt: The length of a step, over which a command is held (s).
-        limit: The command of an action of 1 about each axis, a number or of shape (axes,), in the unit of
-            `Simulator.command_unit`; left out, the largest that the actuator can execute. Larger actions
-            are cut to 1.
-        observe: What is observed, as names with scales or a callable; left out, `believed.error` (of one axis
-            `believed.angle`) and `believed.rate` as they are (rad, rad/s).
-        reward: The reward of a step, of simulators and actions; left out, `Quadratic()`.
-        terminate: Whether an episode has ended before its time; left out, never.
-        render_mode: None: logs of `scenario.draw(run)` show what there is to see.
+        limit: The command that corresponds to an action of 1 about each axis, a number or of shape (axes,),
+            in the unit of `Simulator.command_unit`; if omitted, the largest that the actuator can execute.
+            Larger actions are clipped to 1.
+        observe: The observation, as names with scales or as a callable; if omitted, `believed.error` (on one
+            axis `believed.angle`) and `believed.rate`, unscaled (rad, rad/s).
+        reward: The reward of a step, computed from simulators and actions; if omitted, `Quadratic()`.
+        terminate: Whether an episode has ended before its time; if omitted, never.
+        render_mode: None is the only value: use logs of `scenario.draw(run)` to view a run.
 
     Raises:
-        ValueError: The actuator has no limit, and `limit` is not given; `dt` is not a positive time;
-            `observe` names what there is not.
+        ValueError: The actuator has no limit and `limit` is not given; `dt` is not a positive time; or
+            `observe` names a quantity that does not exist.
 
     >>> env = flexsc.gym.SpacecraftEnv("four-clamped-modes", dt=1.0, limit=1.0)
     >>> observation, info = env.reset(seed=1)
@@ -220,13 +221,13 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
     @property
     def simulators(self) -> Simulators:
-        """What is stepped: one copy."""
+        """The simulator of the environment: one copy."""
         return self._task.simulators
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin an episode: the next of its seed, or with `options={"run": n}` the run of this number."""
+        """Start an episode: the next of its seed, or with `options={"run": n}` the run with this number."""
         super().reset(seed=seed)
         run = _run(self.np_random)
         run = (options or {}).get("run", run)
@@ -234,24 +235,24 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
         return self._task.observe()[0], {"run": run}
 
     def step(self, action: npt.NDArray[Any]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Hold a command for a step: observation, reward, terminated, truncated, info."""
+        """Hold a command for a step; return observation, reward, terminated, truncated and info."""
         reward, terminated, truncated = self._task.step(np.asarray(action)[None], None)
         observation = self._task.observe()[0]
         return observation, float(reward[0]), bool(terminated[0]), bool(truncated[0]), {}
 
 
 class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[Any]]):
-    """Many `SpacecraftEnv` that are stepped together, on all cores.
+    """Many `SpacecraftEnv` advanced together, on all cores.
 
-    Copy i with seed s has the episodes of `SpacecraftEnv` with seed s + i.
+    Copy i has, with seed s, the episodes of `SpacecraftEnv` with seed s + i.
 
     Args:
-        scenario, dt, limit, observe, reward, terminate: As `SpacecraftEnv`.
-        num_envs: How many.
-        autoreset_mode: `NextStep`, the step after the end of an episode begins the next one; `SameStep`,
-            the step that ends it does, and `info["final_obs"]` has its last observation; `Disabled`,
-            `reset` with `options={"reset_mask": mask}` does.
-        jobs: Threads; left out, one for each core.
+        scenario, dt, limit, observe, reward, terminate: As in `SpacecraftEnv`.
+        num_envs: The number of environments.
+        autoreset_mode: When the next episode starts. `NextStep`: in the step after the end of an episode.
+            `SameStep`: in the step that ends the episode; `info["final_obs"]` has its last observation.
+            `Disabled`: at `reset` with `options={"reset_mask": mask}`.
+        jobs: Number of threads; if omitted, one per core.
 
     >>> envs = flexsc.gym.SpacecraftVectorEnv("four-clamped-modes", num_envs=100, dt=1.0, limit=1.0)
     >>> observations, info = envs.reset(seed=1)
@@ -288,13 +289,13 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
 
     @property
     def simulators(self) -> Simulators:
-        """What is stepped: a copy each."""
+        """The simulators of the environments: one copy each."""
         return self._task.simulators
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin episodes: all, or those of `options["reset_mask"]`."""
+        """Start episodes: all, or those of `options["reset_mask"]`."""
         count = self.num_envs
         mask = (options or {}).get("reset_mask", np.ones(count, dtype=np.bool_))
         seeds: list[int | None]
@@ -315,7 +316,7 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
         return self._task.observe(), info
 
     def _begin(self, mask: Mask) -> dict[str, Any]:
-        """Begins the next episodes of some."""
+        """Start the next episodes of some environments."""
         runs = self._task.simulators.runs
         for index in np.flatnonzero(mask):
             runs[index] = _run(self._randoms[index])
@@ -325,7 +326,8 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
     def step(
         self, actions: npt.NDArray[Any]
     ) -> tuple[Observation, npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], dict[str, Any]]:
-        """Hold commands of shape (n, axes): observations, rewards, terminations, truncations, info."""
+        """Hold commands of shape (n, axes); return observations, rewards, terminations, truncations and
+        info."""
         if not self._randoms:
             raise gymnasium.error.ResetNeeded("Cannot call env.step() before calling env.reset()")
         begins = self._ended

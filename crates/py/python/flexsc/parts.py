@@ -1,7 +1,7 @@
-"""Parts of your own: a law, an estimator, a sensor, an actuator or an adaptation as an object of Python.
+"""Your own parts: a law, an estimator, a sensor, an actuator or an adaptation as a Python object.
 
-A part is asked at events and at samples alone; between them the motion is exact. `Scenario.with_parts` puts
-it in the place of the scenario's own, beside all other kinds:
+A part is called only at events and samples; between them the motion is exact. `Scenario.with_parts` puts it
+in place of a part of the scenario and combines it with parts of any other kind:
 
 >>> import flexsc
 >>> class Damper(flexsc.Law):
@@ -13,9 +13,9 @@ it in the place of the scenario's own, beside all other kinds:
 >>> scenario.with_parts(law=Damper()).simulate().metrics["peak_torque_nm"]
 0.004
 
-Each run begins with copies of the objects, so that runs repeat: `copy` makes them, by `copy.deepcopy` unless
-a class says otherwise. An exception ends the run, and comes out of `simulate` as it was raised; in a campaign
-it is the `error` of its row. Numbers are in SI units.
+Each run starts with copies of the objects, so that runs are repeatable. The method `copy` makes them, with
+`copy.deepcopy` unless a class overrides it. An exception ends the run and leaves `simulate` as raised; in a
+campaign it is the `error` of its row. Numbers are in SI units.
 """
 
 from __future__ import annotations
@@ -69,15 +69,15 @@ _Self = TypeVar("_Self", bound="_Part")
 
 
 class _Part(ABC):  # noqa: B024
-    """What all parts have: roles have the methods."""
+    """The common base of all parts; each role adds its methods."""
 
     def copy(self: _Self) -> _Self:
-        """Make a part in the same state that shares nothing with this one: by `copy.deepcopy`."""
+        """Make a part in the same state that shares nothing with this one, with `copy.deepcopy`."""
         return copy.deepcopy(self)
 
 
 class Law(_Part):
-    """A control law about one axis; on a body with three axes a copy acts about each.
+    """A control law about one axis; on a three-axis body one copy acts about each axis.
 
     >>> class Weak(Law):
     ...     def decide(self, event):
@@ -85,46 +85,49 @@ class Law(_Part):
     """
 
     period: float | None = None
-    """Period (s) at which it is asked again if a hold names no time; None of a law that names them all."""
+    """Period (s) of the calls if a hold gives no time; None for a law whose holds all give one."""
     reads: Literal["nothing", "field", "motion", "dominant_mode", "elastic_rates"] = "motion"
-    """What it reads of an estimator."""
+    """The quantities that it reads from an estimator."""
     promise: float | None = None
-    """How near to the goal it promises to stay (rad), for the metrics; None if it promises nothing."""
+    """The distance from the goal (rad) within which it keeps the angle, for the metrics; None without a
+    promise."""
     switches: bool = False
-    """Whether the torque changes with the state that a hold names alone, as a relay's does."""
+    """Whether the torque changes only together with the state given by a hold, as for a relay."""
     tracks: bool = False
-    """Whether it follows a manoeuvre while it lasts; else its goal is where the manoeuvre ends."""
+    """Whether it follows a manoeuvre while it lasts; otherwise its goal is the end of the manoeuvre."""
     tunable: Mapping[str, float] = MappingProxyType({})
-    """The numbers that an adaptation may tune, by name, with their values at the start."""
+    """The parameters that an adaptation may tune, by name, with their initial values."""
 
     def start(self, authority: Authority) -> None:
-        """Begin a run about the axis `authority.axis`."""
+        """Start a run about the axis `authority.axis`."""
 
     @abstractmethod
     def decide(self, event: Event) -> Hold:
-        """Answer an event: the command from now on, and when to be asked again.
+        """Return the command from now on and the conditions for the next call.
 
-        Asked at the start of the run, at the time that the last hold named, and when the angle passes one of
-        its levels: exactly then with a continuous sensor, else at the first sample beyond it.
+        Called at the start of the run, at the time given by the last hold, and when the angle passes one of
+        its levels: at the exact instant with a continuous sensor, otherwise at the first sample beyond the
+        level.
         """
 
     def tune(self, key: str, value: float) -> None:
-        """Take over a number of `tunable` that an adaptation has changed."""
+        """Accept the new value of a parameter of `tunable` that an adaptation has changed."""
 
 
 class CompiledLaw(Law):
-    """A law that is a compiled function, called without Python: what numba's `cfunc` or a C compiler makes.
+    """A law given by a compiled function, such as a `cfunc` of numba or a C function, called without Python.
 
     The function takes nine arguments and returns nothing; all numbers are doubles:
 
         void law(double now, double since, double cause, double angle, double rate,
                  double goal_angle, double goal_rate, double *states, double *hold);
 
-    `now` is the time (s), `since` that since its last call, rounded once. `cause` is
-    0 at the start, 1 at the time of the last hold, 2 and 3 when the angle is at least and at most its level.
-    `states` are its own from call to call. It writes `hold`: torque (N m), time until it is asked again (s),
-    the least and most angle (rad) at which it is asked, and its state for the log: 0 to 11 for OPEN, PD, W0,
-    RACC, RBRK, W+, LACC, LBRK, W-, COAST, FIRE and BDOT. Those that it leaves NaN, as they come, are none.
+    `now` is the time (s), and `since` the time since the last call, rounded once. `cause` is 0 at the start,
+    1 at the time given by the last hold, 2 when the angle is at least its level, and 3 when it is at most its
+    level. `states` are the law's own values, kept from call to call. The function writes to `hold`: torque
+    (N m), time until the next call (s), the levels `at_least` and `at_most` of the angle (rad) at which it is
+    called, and its state for the log: 0 to 11 for OPEN, PD, W0, RACC, RBRK, W+, LACC, LBRK, W-, COAST, FIRE
+    and BDOT. Each entry is NaN at the call; an entry left at NaN is not set.
 
     >>> import ctypes
     >>> kind = ctypes.CFUNCTYPE(None, *[ctypes.c_double] * 7, *[ctypes.POINTER(ctypes.c_double)] * 2)
@@ -135,15 +138,16 @@ class CompiledLaw(Law):
     0.25
 
     Args:
-        function: A function of numba's `cfunc`, one of `ctypes`, or its address. A wrong address ends the
-        process. period: Period (s) at which it is asked again if a hold has no time; None of a function that
-        gives them all. states: Its states at the start of a run.
-        promise: How near to the goal it promises to stay (rad); None if it promises nothing.
-        switches: Whether its torque changes with its state alone, as a relay's does.
+        function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
+            process.
+        period: Period (s) of the calls if a hold gives no time; None for a function that always gives one.
+        states: Its states at the start of a run.
+        promise: The distance from the goal (rad) within which it keeps the angle; None without a promise.
+        switches: Whether its torque changes only together with its state, as for a relay.
     """
 
     address: int
-    """Where the function is."""
+    """The address of the function."""
     states: tuple[float, ...]
     """Its states at the start of a run."""
 
@@ -167,11 +171,11 @@ class CompiledLaw(Law):
         self.promise, self.switches = promise, switches
 
     def decide(self, event: Event) -> Hold:
-        """The function decides: this is never called."""
+        """Never called: the engine calls the compiled function instead."""
         raise NotImplementedError("a compiled law is called by its address")
 
     def copy(self) -> CompiledLaw:
-        """The law itself: its states are copied for each run."""
+        """Return the law itself: its states are copied for each run."""
         return self
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -179,7 +183,7 @@ class CompiledLaw(Law):
 
 
 class Estimator(_Part):
-    """An estimator: at each sample it makes a belief of what was measured, about all axes together.
+    """An estimator: at each sample it computes estimates about all axes from the measurements.
 
     >>> class Direct(Estimator):
     ...     def take(self, taken):
@@ -187,46 +191,47 @@ class Estimator(_Part):
     """
 
     def start(self, known: Known) -> None:
-        """Begin a run, with what is known of the scenario."""
+        """Start a run with the known data of the scenario."""
 
     @abstractmethod
     def take(self, taken: Taken) -> Sequence[Sequence[float]] | None:
-        """Take a sample.
+        """Process a sample.
 
         Returns:
-            Angle (rad) and rate (rad/s) about each axis, of shape (axes, 2), angles beyond the target; with
-            displacement (rad), rate (rad/s) and frequency (rad/s) of the dominant mode behind them, of shape
-            (axes, 5). None leaves the belief as it is.
+            Angle (rad) and rate (rad/s) about each axis, of shape (axes, 2), with angles relative to the
+            target. With displacement (rad), rate (rad/s) and frequency (rad/s) of the dominant mode appended,
+            the shape is (axes, 5). None leaves the estimate unchanged.
         """
 
     def given(self, now: Instant, moments: tuple[float, float, float]) -> None:
-        """Take over the reduced moments (rad/s²) about each axis that the actuator gives from now on."""
+        """Accept the reduced moments (rad/s²) about each axis that the actuator gives from now on."""
 
     def carry(self, taken: Taken) -> Sequence[Sequence[float]] | None:
-        """Carry the belief on from the last sample to now, where a law is asked between samples.
+        """Propagate the estimate from the last sample to now, if a law decides between samples.
 
-        `taken` has the time and the target, and nothing that was measured. Returns what `take` does. It must
-        not change the estimator.
+        `taken` has the time and the target, but no measurements. The return value is that of `take`. The
+        method must not change the estimator.
         """
         return None
 
     def attitude(
         self, now: Instant
     ) -> tuple[Sequence[float], Sequence[float], Sequence[Sequence[float]]] | None:
-        """What an attitude filter knows after a sample, for the log `attitude_filter` with errors and NEES.
+        """Return the attitude estimate after a sample, for the log `attitude_filter` with errors and NEES.
 
         Returns:
             The attitude now (w, x, y, z), the bias of the gyro (rad/s) of shape (3,), and the covariance of
-            their errors, of shape (6, 6), rad² and rad²/s²; arrays will do. None of an estimator without.
+            their errors, of shape (6, 6), in rad² and rad²/s²; arrays are accepted. None for an estimator
+            without them.
         """
         return None
 
     def shift(self, by: tuple[float, float, float]) -> None:
-        """Take over that angles count from another target: by so much more (rad) about each axis."""
+        """Accept a change of target: angles are now larger by `by` (rad) about each axis."""
 
 
 class Sensor(_Part):
-    """A sensor: it is read at samples.
+    """A sensor, which is read at samples.
 
     >>> class Encoder(Sensor):
     ...     period = 0.25
@@ -237,20 +242,21 @@ class Sensor(_Part):
     period: float
     """Period of its samples (s)."""
     angle_noise: float = 0.0
-    """Standard deviation of the measured angle (rad), as filters take it to be."""
+    """Standard deviation of the measured angle (rad), as used by filters."""
     rate_noise: float | None = None
-    """The same of the measured rate (rad/s); None of a sensor that measures none."""
+    """Standard deviation of the measured rate (rad/s); None for a sensor that does not measure the rate."""
 
     def start(self, axes: int, draws: Draws) -> None:
-        """Begin a run of a body with 1 or 3 axes; noise comes from streams of `draws`: runs repeat."""
+        """Start a run of a body with 1 or 3 axes; take noise from streams of `draws`, so that runs are
+        repeatable."""
 
     @abstractmethod
     def read(self, truth: Truth) -> Reading | None:
-        """Read what there is to measure; None where the sensor is silent."""
+        """Return a measurement; None if the sensor is silent."""
 
 
 class Actuator(_Part):
-    """An actuator: it makes torques of what laws demand, about all axes together.
+    """An actuator, which converts the demands of laws into torques about all axes.
 
     >>> class Servo(Actuator):
     ...     limit = 0.05
@@ -259,21 +265,21 @@ class Actuator(_Part):
     """
 
     limit: float | Sequence[float] | None = None
-    """Largest torque about an axis (N m), or about each; None without a limit."""
+    """Largest torque about every axis (N m), or one value per axis; None without a limit."""
 
     def start(self, settings: Sequence[Setting]) -> None:
-        """Begin a run, with what is around it about each axis."""
+        """Start a run with the settings of each axis."""
 
     @abstractmethod
     def command(self, demanded: Demanded) -> Effort | Sequence[float]:
-        """Answer demands: the torques (N m) about each axis from now on, of shape (axes,).
+        """Return the torques (N m) about each axis from now on, of shape (axes,).
 
-        `Effort(torques, after=s)` is asked again after `s` seconds, with the same demands.
+        `Effort(torques, after=s)` requests another call after `s` seconds, with the same demands.
         """
 
 
 class Adaptation(_Part):
-    """An adaptation: after each window of an `[estimator.envelope]` it may tune a number of the law.
+    """An adaptation: after each window of an `[estimator.envelope]` it may change a parameter of the law.
 
     >>> class Descent(Adaptation):
     ...     tunes = "k_t"
@@ -285,15 +291,15 @@ class Adaptation(_Part):
     """
 
     tunes: str
-    """The name of the number of the law: one of its `tunable`."""
+    """The name of the parameter of the law, one of its `tunable`."""
 
     def start(self, value: float, draws: Draws) -> None:
-        """Begin a run, with the number as the law has it."""
+        """Start a run with the initial value of the parameter."""
 
     @abstractmethod
     def learn(self, time: float, mean: float) -> float | None:
-        """Learn the mean envelope (rad) of the window that ends now (s).
+        """Process the mean envelope (rad) of the window that ends now (s).
 
         Returns:
-            The number from now on; None leaves it.
+            The new value of the parameter; None leaves it unchanged.
         """
