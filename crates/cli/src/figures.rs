@@ -16,7 +16,7 @@ use crate::plot::{self, What};
 /// # Errors
 /// A run that fails.
 pub fn log_of(run: &Run) -> Result<Log, String> {
-    logged::of_run(run, Path::new(&run.scenario.name), Detail::Events).map_err(text)
+    logged::of_run(run, Path::new(&run.scenario.name), Detail::Events).map_err(|failure| failure.to_string())
 }
 
 /// The names of the figures that a log has.
@@ -24,7 +24,7 @@ pub fn log_of(run: &Run) -> Result<Log, String> {
 /// # Errors
 /// A log that is not accepted.
 pub fn names(log: &Log, path: &Path) -> Result<Vec<String>, String> {
-    let there = plot::there(log, path).map_err(text)?;
+    let there = plot::there(log, path).map_err(|failure| failure.to_string())?;
     Ok(there.into_iter().map(What::name).collect())
 }
 
@@ -33,7 +33,7 @@ pub fn names(log: &Log, path: &Path) -> Result<Vec<String>, String> {
 /// # Errors
 /// A figure that the log does not have, and a run that cannot be repeated.
 pub fn of_log(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
-    plot::figure_of(log, path, name).map_err(text)
+    plot::figure_of(log, path, name).map_err(|failure| failure.to_string())
 }
 
 /// The figures of a campaign whose columns are at hand, each after its name: of the kind that is named, else the natural
@@ -48,7 +48,7 @@ pub fn of_columns(
     metrics: &[String],
 ) -> Result<Vec<Named>, String> {
     let kind = kind.map(|kind| What::from_str(kind, false)).transpose()?;
-    plot::of_columns(work, column, kind, metrics).map_err(text)
+    plot::of_columns(work, column, kind, metrics).map_err(|failure| failure.to_string())
 }
 
 /// The figures of the campaigns in a directory, each after its name, as [`of_columns`] has them, and a `fan` of their logs.
@@ -57,7 +57,7 @@ pub fn of_columns(
 /// A directory without a campaign, and a figure or a metric that they do not have.
 pub fn of_directory(path: &Path, kind: Option<&str>, metrics: &[String]) -> Result<Vec<Named>, String> {
     let kinds: Vec<What> = kind.map(|kind| What::from_str(kind, false)).transpose()?.into_iter().collect();
-    plot::of_directory(path, &kinds, metrics).map_err(text)
+    plot::of_directory(path, &kinds, metrics).map_err(|failure| failure.to_string())
 }
 
 /// The natural frequencies of a scenario with what moves them, which tells it from others at a glance; none without modes.
@@ -75,8 +75,4 @@ pub fn modes(frequencies: &[f64], weights: &[f64], (name, unit): (&str, &'static
     ];
     let title = format!("{} elastic modes", frequencies.len());
     Some(Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 160 })
-}
-
-fn text(failure: Failure) -> String {
-    failure.to_string()
 }

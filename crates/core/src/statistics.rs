@@ -134,7 +134,7 @@ mod tests {
         let runs = [run(1.0, 1.0), run(1.0, 9.5), run(f64::NAN, 0.0), run(1.0, 0.0), run(1.0, 3.0)];
         let mut gathered = Gathered::default();
         for run in runs {
-            gathered.add(run);
+            gathered.add(&run);
         }
         let told = gathered.finish();
         assert_eq!((told[0].name, told[0].runs, told[0].mean), ("goal", 4, 0.75));

@@ -126,7 +126,7 @@ impl Args {
             }
             if of_kind.len() == paths.len() {
                 let title = what.name().replace('-', " ");
-                figures.extend(overlay::overlaid(&title, of_kind).map(|figure| (what, figure)));
+                figures.extend(overlay::overlaid(&title, &of_kind).map(|figure| (what, figure)));
             }
         }
         if figures.is_empty() {

@@ -9,7 +9,7 @@ const COLOURS: [RGBColor; 6] =
 const LIGHTER: f64 = 0.45;
 
 /// One figure of the figures of some runs, each with the name of its run; none where they have other panels.
-pub fn overlaid(what: &str, runs: Vec<(String, Figure)>) -> Option<Figure> {
+pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
     let (_, first) = runs.first()?;
     let alike = |figure: &Figure| {
         let axes = |figure: &Figure| -> Vec<[(String, &'static str, Scale); 2]> {
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn each_run_has_its_colour_and_what_is_common_its_own() {
         let runs = vec![("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(3.0, 5.0))];
-        let both = overlaid("angle", runs).expect("alike");
+        let both = overlaid("angle", &runs).expect("alike");
         assert_eq!(both.title, "angle: a, b");
         let panel = &both.panels[0];
         assert_eq!((panel.x.range.clone(), panel.y.range.clone()), (0.0..10.0, 0.0..3.0));
@@ -134,6 +134,6 @@ mod tests {
     fn figures_of_other_panels_are_not_mixed() {
         let mut other = figure(1.0, 1.0);
         other.panels[0].y.unit = "m";
-        assert!(overlaid("x", vec![("a".to_owned(), figure(1.0, 1.0)), ("b".to_owned(), other)]).is_none());
+        assert!(overlaid("x", &[("a".to_owned(), figure(1.0, 1.0)), ("b".to_owned(), other)]).is_none());
     }
 }
