@@ -7,7 +7,6 @@ use flexsc_core::campaign::{Column, Run, Work};
 use flexsc_core::record::{Detail, Log};
 use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Shape, colour};
 
-use crate::failure::Failure;
 use crate::logged;
 use crate::plot::{self, What};
 
