@@ -181,7 +181,7 @@ def campaign(
         progress: Called after each task with the number of finished runs and the total number.
 
     Raises:
-        ScenarioError: The scenario does not allow this variation. A single failed run is a row with an `error`.
+        ScenarioError: The scenario does not allow this variation. A failed run is a row with an `error`.
         ValueError: There are more than 100 000 000 runs, `yes` is needed, or `out` contains another campaign.
         OSError: `out` cannot be written, or another process is using it.
 
