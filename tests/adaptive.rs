@@ -148,7 +148,7 @@ fn the_command_tells_how_often_modes_are_found() {
         .exits(0)
         .says(&["0.2476", "12/12"]);
     let drawn = dir.text("drawn/identification.svg");
-    assert!(drawn.contains("0.2476 Hz, 10 % off") && drawn.contains("found, %"));
+    assert!(drawn.contains("0.2476 Hz, 10 % off") && drawn.contains("found (%)"));
     // Two modes that no run of 300 s tells apart.
     let near = Trial::of(vec![(TAU * 0.6049, 1.5), (TAU * 0.6096, 1.6)], 0.05).table(4);
     let apart = Trial::of(vec![(TAU * 0.2476, 2.89), (TAU * 0.6, 3.0)], 0.05).table(4);

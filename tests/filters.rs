@@ -313,7 +313,7 @@ fn gyro_sharpens_the_estimate() {
 fn estimates_are_in_a_full_log() {
     let dir = Dir::new();
     dir.write("loop.toml", looped("extended_kalman]\nprior = 'drawn'").to_toml());
-    dir.run("simulate loop.toml --log full --set duration=3").exits(0).says(&["frequency off by", "stable"]);
+    dir.run("simulate loop.toml --log full --set duration=3").exits(0).says(&["frequency error", "stable"]);
     dir.run("simulate loop.toml --log none --set duration=3 --set estimator.extended_kalman.assess=[30,120]")
         .exits(0)
         .says(&["not assessed"]);

@@ -133,7 +133,9 @@ mod tests {
         };
         let runs = [run(1.0, 1.0), run(1.0, 9.5), run(f64::NAN, 0.0), run(1.0, 0.0), run(1.0, 3.0)];
         let mut gathered = Gathered::default();
-        runs.iter().for_each(|run| gathered.add(run));
+        for run in runs {
+            gathered.add(run);
+        }
         let told = gathered.finish();
         assert_eq!((told[0].name, told[0].runs, told[0].mean), ("goal", 4, 0.75));
         assert_eq!((told[2].name, told[2].runs, told[2].mean), ("time_outside_s", 4, 13.5 / 4.0));

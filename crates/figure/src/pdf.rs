@@ -23,8 +23,10 @@ pub fn written(tree: &Tree) -> Result<Vec<u8>, String> {
         let _ = write!(resources, "/G{index} << /ca {opacity} /CA {opacity} >> ");
     }
     // A font takes five objects after those of the page.
-    let fonts: String =
-        (0..page.fonts.len()).map(|index| format!("/F{index} {} 0 R ", stream + 1 + 5 * index)).collect();
+    let mut fonts = String::new();
+    for index in 0..page.fonts.len() {
+        let _ = write!(fonts, "/F{index} {} 0 R ", stream + 1 + 5 * index);
+    }
     file.object(&format!("<< /Type /Catalog /Pages {pages} 0 R >>"));
     file.object(&format!("<< /Type /Pages /Kids [{leaf} 0 R] /Count 1 >>"));
     file.object(&format!(
@@ -117,7 +119,11 @@ impl Page {
             point
         };
         let text = |points: &[Point]| -> String {
-            points.iter().map(|point| format!("{} {} ", short(point.x), short(point.y))).collect()
+            let mut text = String::new();
+            for point in points {
+                let _ = write!(text, "{} {} ", short(point.x), short(point.y));
+            }
+            text
         };
         let mut last = Point::zero();
         for segment in path.data().segments() {
@@ -274,8 +280,11 @@ impl Font {
         for (chunk, texts) in self.texts.chunks(100).enumerate() {
             let _ = writeln!(map, "{} beginbfchar", texts.len());
             for (index, text) in texts.iter().enumerate() {
-                let units: String = text.encode_utf16().map(|unit| format!("{unit:04x}")).collect();
-                let _ = writeln!(map, "<{:04x}> <{units}>", 100 * chunk + index + 1);
+                let _ = write!(map, "<{:04x}> <", 100 * chunk + index + 1);
+                for unit in text.encode_utf16() {
+                    let _ = write!(map, "{unit:04x}");
+                }
+                map.push_str(">\n");
             }
             map.push_str("endbfchar\n");
         }
@@ -337,7 +346,9 @@ impl File {
         let (start, count) = (self.bytes.len(), self.next());
         let mut end = format!("xref\n0 {count}\n0000000000 65535 f \n");
         for place in &self.places {
-            let _ = write!(end, "{place:010} 00000 n \n");
+            // Each line has twenty bytes.
+            let _ = write!(end, "{place:010} 00000 n");
+            end.push_str(" \n");
         }
         let _ =
             write!(end, "trailer\n<< /Size {count} /Root {catalogue} 0 R >>\nstartxref\n{start}\n%%EOF\n");

@@ -84,8 +84,9 @@ mod tests {
     fn smooth_fields_are_met_and_infinities_stay_where_they_are() {
         let axis: Vec<f64> = (0..12).map(f64::from).collect();
         let values = axis.iter().flat_map(|x| axis.iter().map(move |y| x * x + 3.0 * y)).collect();
+        // At the ends slopes are one-sided.
         let fine = Field { x: axis.clone(), y: axis.clone(), values }.refined(5);
-        for (i, x) in fine.x.iter().enumerate().filter(|(_, x)| **x > 1.0) {
+        for (i, x) in fine.x.iter().enumerate().filter(|(_, x)| **x > 1.0 && **x < 10.0) {
             for (j, y) in fine.y.iter().enumerate() {
                 let off = fine.values[i * fine.y.len() + j] - (x * x + 3.0 * y);
                 assert!(off.abs() < 0.1, "{x} {y}: {off}");

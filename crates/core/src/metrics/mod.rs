@@ -179,7 +179,8 @@ pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meani
         &[PEAK_ACCELERATION, PEAK_FEEDBACK_ACCELERATION, REDUCED_IMPULSE, CYCLE_REDUCED_IMPULSE];
     const UNIT_INERTIA: &[Meaning] = &[RESIDUAL_ENERGY_UNIT_INERTIA];
     let of = |some: &'static [Meaning]| some.iter().find(|meaning| meaning.name == name);
-    let model = scenario.map(|scenario| &scenario.model);
+    // A body with three axes has a moment of inertia.
+    let model = scenario.filter(|scenario| scenario.axis_count() == 1).map(|scenario| &scenario.model);
     let accelerations = model.filter(|model| model.commands_acceleration()).and_then(|_| of(ACCELERATIONS));
     let unit_inertia = model.filter(|model| model.has_unit_inertia()).and_then(|_| of(UNIT_INERTIA));
     accelerations.or(unit_inertia).or_else(|| of(ALL))

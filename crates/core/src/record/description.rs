@@ -56,6 +56,16 @@ fn text(lines: &[&str]) -> String {
 mod tests {
     use super::*;
 
+    fn described(fields: &Value, place: &str) {
+        for field in fields.as_array().expect("fields") {
+            let name = field["name"].as_str().expect("a name");
+            assert!(!field["doc"].as_str().expect("a text").is_empty(), "{place}.{name}");
+            if let Some(inner) = field.get("fields") {
+                described(inner, &format!("{place}.{name}"));
+            }
+        }
+    }
+
     #[test]
     fn every_topic_and_field_is_described() {
         let all = topics();
@@ -63,15 +73,6 @@ mod tests {
         assert_eq!(all.len(), TOPICS.len());
         let state = &all["command"]["fields"][3];
         assert!(state["labels"]["W+"].as_str().is_some_and(|doc| doc.contains("weak")), "{state}");
-        fn described(fields: &Value, place: &str) {
-            for field in fields.as_array().expect("fields") {
-                let name = field["name"].as_str().expect("a name");
-                assert!(!field["doc"].as_str().expect("a text").is_empty(), "{place}.{name}");
-                if let Some(inner) = field.get("fields") {
-                    described(inner, &format!("{place}.{name}"));
-                }
-            }
-        }
         for (name, topic) in all {
             assert!(!topic["doc"].as_str().expect("a text").is_empty(), "{name}");
             described(&topic["fields"], name);

@@ -49,6 +49,7 @@ const MOST_DECISIONS: u32 = 32;
 
 /// All that moves in a run.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub struct Simulation {
     now: Instant,
     end: Instant,

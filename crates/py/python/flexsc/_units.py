@@ -36,9 +36,7 @@ _REDUCED = {"N m": "rad/s²", "N m s": "rad/s"}
 
 def meanings(scenario: Scenario | None) -> dict[str, dict[str, str]]:
     """Return `unit` and `doc` of the metrics by name, for runs of a scenario if it is given."""
-    # A body with three axes has a moment of inertia.
-    given = None if scenario is None or scenario._native.spatial else scenario._native
-    text = engine.metrics_json() if given is None else engine.meanings_json(given)
+    text = engine.metrics_json() if scenario is None else engine.meanings_json(scenario._native)
     told: dict[str, dict[str, str]] = json.loads(text)
     return told
 
