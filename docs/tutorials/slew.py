@@ -145,7 +145,7 @@ assert robust.metrics["goal"] == "met"
 # %% [markdown]
 # ## Conclusions
 #
-# - The plan leaves exactly those modes at rest that it includes. The price is peak torque: see `compare`.
+# - The plan leaves exactly those modes at rest that it suppresses. The price is peak torque: see `compare`.
 # - Robustness also costs harmonics. A doubled zero helps only against a wrong frequency of that mode; decide with a
 #   campaign over the uncertain parameters.
 # - Feedback after the slew removes the residual of the plan, within its bandwidth.

@@ -1,6 +1,6 @@
-"""Attitude control of flexible spacecraft, simulated exactly, fast and reproducibly.
+"""Exact, fast and reproducible simulation of attitude control of flexible spacecraft.
 
-A scenario goes in, columns come out:
+A scenario gives a result whose data are columns:
 
     >>> import flexsc, numpy
     >>> scenario = flexsc.Scenario.example("relay-adaptive")
@@ -15,8 +15,8 @@ A scenario goes in, columns come out:
     >>> table["envelope_late_mean_rad"].shape
     (3,)
 
-All numbers are in SI units, which the names of columns and metrics end with. A run depends on its scenario,
-its seed and its number alone: its numbers are the same on every machine, on any number of threads.
+All numbers are in SI units; the names of columns and metrics end with their units. A run depends only on its
+scenario, its seed and its number: its numbers are the same on every machine and on any number of threads.
 """
 
 from __future__ import annotations
@@ -140,11 +140,11 @@ def __dir__() -> list[str]:
 
 
 def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
-    """The limit cycles of the scenario's relay law on its body without modes, in closed form.
+    """Return the limit cycles of the scenario's relay law on its body without modes, in closed form.
 
     Returns:
-        `cycles`, those that exist at the law's gain, and `resonances`, the gains at which an odd harmonic of
-        the two-sided cycle meets a mode. Units are in the names.
+        `cycles`, the cycles that exist at the law's gain, and `resonances`, the gains at which an odd
+        harmonic of the two-sided cycle coincides with a mode. Units are in the names.
 
     >>> import flexsc
     >>> told = flexsc.rigid_cycles(flexsc.Scenario.example("relay-fixed"))
@@ -159,7 +159,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     """Read a log file.
 
     Raises:
-        LogError: The file cannot be read, or is torn or damaged.
+        LogError: The file cannot be read, or is incomplete or damaged.
 
     >>> import flexsc, pathlib, tempfile
     >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
@@ -173,7 +173,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
 
 
 def examples() -> dict[str, str]:
-    """The shipped scenarios: for each name what it is about. `Scenario.example(name)` reads one.
+    """Return the shipped scenarios: names and subjects. `Scenario.example(name)` reads one.
 
     >>> import flexsc
     >>> "relay-fixed" in flexsc.examples()
@@ -183,7 +183,7 @@ def examples() -> dict[str, str]:
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of scenarios.
+    """Return the JSON Schema of scenarios.
 
     >>> import flexsc
     >>> flexsc.schema()["properties"]["duration"]["description"]
@@ -194,7 +194,7 @@ def schema() -> dict[str, Any]:
 
 
 def metrics() -> dict[str, dict[str, str]]:
-    """What the metrics mean: by name, the `unit` (empty for a count, a ratio or a word) and the `doc`.
+    """Return the metrics by name: the `unit` (empty for a count, a ratio or a word) and the `doc`.
 
     >>> import flexsc
     >>> flexsc.metrics()["cycle_period_s"]["unit"]
@@ -205,7 +205,7 @@ def metrics() -> dict[str, dict[str, str]]:
 
 
 def topics() -> dict[str, dict[str, Any]]:
-    """What the topics of a log hold: by name the `doc` and the `fields`, each with `name`, `doc` and `kind`.
+    """Return the topics of a log by name: the `doc` and the `fields`, each with `name`, `doc` and `kind`.
 
     >>> import flexsc
     >>> flexsc.topics()["rate"]["fields"][0]

@@ -1,4 +1,4 @@
-"""Campaigns and sweeps: many runs of one scenario as a table."""
+"""Campaigns and sweeps: many runs of one scenario, as a table."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 Sample = Literal["random", "latin-hypercube", "sobol"]
-"""How the `[uncertain]` keys are drawn."""
+"""The method by which the `[uncertain]` keys are drawn."""
 
 
 class Table:
-    """The results of a campaign: a row for each run.
+    """The results of a campaign, with one row per run.
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
@@ -33,9 +33,9 @@ class Table:
     """
 
     scenario: Scenario
-    """What the runs were drawn from."""
+    """The scenario from which the runs were drawn."""
     keys: list[str]
-    """The keys of the scenario that vary."""
+    """The keys of the scenario that are varied."""
 
     def __init__(
         self,
@@ -55,11 +55,11 @@ class Table:
 
     @property
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """Columns by name, of shape (runs,): `run`, `seed`, the keys that vary, the metrics, `error`.
+        """Columns by name, of shape (runs,): `run`, `seed`, the varied keys, the metrics, `error`.
 
-        Metrics are float64 with NaN where there is none, words str, lists an array of arrays. `error` is
-        why a run failed, else empty. `pandas.DataFrame(table.columns)` takes them as they are. Those of a
-        directory are read when they are first asked for.
+        Metrics are float64 with NaN where there is no value; words are str; lists are an array of arrays.
+        `error` is the reason for which a run failed, or empty. `pandas.DataFrame(table.columns)` accepts them
+        unchanged. Columns of a directory are read at the first access.
         """
         return {name: self[name] for name in self._names}
 
@@ -67,7 +67,7 @@ class Table:
         return len(self["run"])
 
     def __getitem__(self, column: str) -> npt.NDArray[Any]:
-        """A column, of shape (runs,)."""
+        """Return a column, of shape (runs,)."""
         if column not in self._names:
             raise KeyError(f"no column {column!r}; there are {', '.join(self._names)}")
         if column not in self._columns:
@@ -78,10 +78,11 @@ class Table:
         return iter(self._names)
 
     def statistics(self) -> dict[str, dict[str, Any]]:
-        """Statistics of each numeric metric over the runs that have a value of it.
+        """Return statistics of each numeric metric over the runs that have a value.
 
-        By metric: its `unit`, the number of those `runs`, their `mean`, their standard deviation `sd` (with
-        runs - 1; NaN for a single run), and `quantiles`, a dictionary from 0.05, 0.25, 0.5, 0.75 and 0.95.
+        For each metric: its `unit`, the number of these `runs`, their `mean`, their standard deviation `sd`
+        (with runs - 1; NaN for a single run), and `quantiles`, a dictionary with the keys 0.05, 0.25, 0.5,
+        0.75 and 0.95.
         """
         if self._statistics is None:
             names = ("unit", "runs", "mean", "sd")
@@ -92,7 +93,7 @@ class Table:
         return self._statistics
 
     def unit(self, column: str) -> str:
-        """The unit of a metric; empty for a count, a ratio, a word, and for keys, whose own text tells it.
+        """Return the unit of a metric; empty for a count, a ratio, a word, or a key.
 
         Raises:
             KeyError: There is no such column.
@@ -106,15 +107,15 @@ class Table:
         return lambda column: told.get(column, {"unit": ""})["unit"]
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Its rows, as Arrow's PyCapsule interface has them: null where a run has no value."""
+        """Return the rows through Arrow's PyCapsule interface: null where a run has no value."""
         return _arrow.stream(self.columns.items(), self._told(), {"scenario": self.scenario.name})
 
     def __arrow_c_schema__(self) -> object:
-        """The schema of its rows, as Arrow's PyCapsule interface has it."""
+        """Return the schema of the rows through Arrow's PyCapsule interface."""
         return _arrow.schema(self.columns.items(), self._told(), {"scenario": self.scenario.name})
 
     def _figures(self, kind: str | None, metrics: Sequence[str]) -> list[tuple[str, engine.Figure]]:
-        """The engine's figures of the table, each after its name, as `flexsc.plot` draws them."""
+        """The engine's figures of the table, each with its name, as drawn by `flexsc.plot`."""
         columns = {
             name: values.tolist() if values.dtype.kind == "U" else values
             for name, values in self.columns.items()
@@ -155,34 +156,34 @@ def campaign(
     force: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Table:
-    """Simulate many runs of a scenario: its `[uncertain]` keys and its noise drawn anew for each.
+    """Simulate many runs of a scenario, with new noise and newly drawn `[uncertain]` keys for each.
 
-    A run does not depend on the other runs of the call: parts such as `range(500, 1000)` make up a whole. Nor
-    does it depend on threads, processes or machines.
+    A run does not depend on the other runs of the call: partial campaigns such as `range(500, 1000)` add up
+    to the whole. It does not depend on threads, processes or machines either.
 
     Args:
-        scenario: What the runs are drawn from.
-        runs: Their number, or their range (of step 1).
-        jobs: Threads, at most 1024; left out, one for each core, and in each task of an executor one. Parts
-            written in Python run one at a time, whatever their threads: with them one is the default.
-        seed: Seed, instead of the scenario's.
+        scenario: The scenario from which the runs are drawn.
+        runs: The number of runs, or their range (of step 1).
+        jobs: Number of threads, at most 1024; if omitted, one per core, or one in each task of an executor.
+            Parts written in Python run one at a time on any number of threads: with them the default is one.
+        seed: Seed that replaces the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
-        metrics: The metrics that the table has; left out, all of them.
-        sample: How the `[uncertain]` keys are drawn.
-        replicas: Runs of each point that is drawn, which differ in their noise only.
-        out: The directory that keeps the rows as Parquet files, made if missing, or a place that `fsspec`
-            knows, such as `s3://bucket/study`. The same call goes on where a stopped one ended.
-        executor: Where the runs are made, such as a `concurrent.futures.ProcessPoolExecutor`, or
-            Dask's through `flexsc.dask.campaign`. Workers write their rows to `out`, which they all must
-            reach; without `out` rows come back through this process.
-        task_s: About how long a task of the executor takes (s).
+        metrics: The metrics in the table; if omitted, all of them.
+        sample: The method by which the `[uncertain]` keys are drawn.
+        replicas: Number of runs per drawn point, which differ only in their noise.
+        out: The directory for the rows, as Parquet files; it is created if missing. A location that `fsspec`
+            supports, such as `s3://bucket/study`, is accepted. The same call continues a stopped campaign.
+        executor: The executor of the runs, such as a `concurrent.futures.ProcessPoolExecutor`, or Dask's
+            through `flexsc.dask.campaign`. Workers write their rows to `out`, which all of them must be able
+            to reach; without `out` the rows return through this process.
+        task_s: Approximate duration of a task of the executor (s).
         force: Replace another campaign in `out`.
-        progress: Called with the number of runs that are done and that of all, after each task.
+        progress: Called after each task with the number of finished runs and the total number.
 
     Raises:
-        ScenarioError: The scenario cannot vary so. A single run that fails is a row with an `error`.
-        ValueError: There are more than 100 000 000 runs, `yes` is needed, or `out` holds another campaign.
-        OSError: `out` cannot be written, or another process is at work there.
+        ScenarioError: The scenario does not allow this variation. A failed run is a row with an `error`.
+        ValueError: There are more than 100 000 000 runs, `yes` is needed, or `out` contains another campaign.
+        OSError: `out` cannot be written, or another process is using it.
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 600.0)
@@ -227,24 +228,24 @@ def sweep(
     metrics: Sequence[str] | None = None,
     replicas: int = 1,
 ) -> Table:
-    """Simulate a scenario once for each value of a key, or each combination of the values of several.
+    """Simulate a scenario once per value of a key, or per combination of the values of several keys.
 
-    Over one key run i has value i. Over several the last key's values go from run to run:
+    For one key, run i has value i. For several keys, the value of the last key changes fastest:
     `table[metric].reshape(len(first), len(second))` is a map.
 
     Args:
-        scenario: What is varied.
-        key: The key, such as `law.relay.k_t`, or the values of each key by its name.
+        scenario: The scenario to vary.
+        key: The key, such as `law.relay.k_t`, or a mapping from each key to its values.
         values: The values of a single key, of shape (runs,), such as `numpy.linspace(0.28, 0.40, 25)`.
-        jobs: Threads, at most 1024; left out, one for each core.
-        seed: Seed, instead of the scenario's.
+        jobs: Number of threads, at most 1024; if omitted, one per core.
+        seed: Seed that replaces the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
-        metrics: The metrics that the table has; left out, all of them.
-        replicas: Runs of each point, one after another, which differ in their noise only.
+        metrics: The metrics in the table; if omitted, all of them.
+        replicas: Number of runs per point, in sequence, which differ only in their noise.
 
     Raises:
         ScenarioError: There is no such key, it does not accept the first or the last value, or a value is not
-            finite. Any other value that is not accepted is a row with an `error`.
+            finite. Any other value that is not accepted becomes a row with an `error`.
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0)
@@ -276,13 +277,14 @@ def sweep(
 
 
 def read_campaign(path: str | os.PathLike[str]) -> Table:
-    """Read the directory of a campaign, as `flexsc simulate --runs`, `flexsc sweep` and `campaign` write it.
+    """Read the directory of a campaign, as written by `flexsc simulate --runs`, `flexsc sweep` and
+    `campaign`.
 
-    Columns are read when they are first asked for. A campaign that is still at work, or was stopped, has the
-    rows of the parts that are whole. `path` may be a place that `fsspec` knows.
+    Columns are read at the first access. A campaign that is running or was stopped has the rows of its
+    complete parts. `path` may be a location that `fsspec` supports.
 
     Raises:
-        ValueError: It is no directory of a campaign, or holds what is none of it.
+        ValueError: It is not the directory of a campaign, or contains other files.
         OSError: It cannot be read.
 
     >>> import flexsc, tempfile
@@ -299,7 +301,7 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
 
 
 def of_directory(directory: engine.Directory, kept: object = None) -> Table:
-    """Make the table of a directory. `kept` lives as long as the table."""
+    """Create the table of a directory. `kept` lives as long as the table."""
     table = Table(directory.work, directory.column, directory.statistics)
     table._kept = kept
     return table
@@ -318,7 +320,8 @@ def _threads(jobs: int | None) -> int:
 
 
 def _array(is_given: bool, column: Any) -> npt.NDArray[Any]:
-    """Give a column its final form: metrics that count are float64, too, as some runs may have none."""
+    """Return a column in its final form: counts among the metrics become float64, as some runs may have
+    none."""
     import numpy as np
 
     if isinstance(column, list):

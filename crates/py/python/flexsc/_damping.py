@@ -30,16 +30,16 @@ def relay_damping(
     amplitude: float = 0.0,
     threshold: float = 0.0,
 ) -> dict[str, npt.NDArray[np.float64]]:
-    """Damping of modes by a relay that pushes against their elastic rate.
+    """Damping of modes by a relay that acts against their elastic rate.
 
     Args:
         frequencies: Natural frequencies (rad/s).
-        acceleration: Elastic acceleration of a push, the rigid one times the influence on the mode (rad/s²).
+        acceleration: Elastic acceleration of a pulse: the rigid one times the influence on the mode (rad/s²).
         period: Sampling period (s); 0 for a continuous relay.
-        delay: Delay from a sample to its push (s).
-        on_time: How long a push lasts (s); left out, the whole period.
+        delay: Delay from a sample to its pulse (s).
+        on_time: Duration of a pulse (s); if omitted, the whole period.
         damping: Damping ratio of the modes.
-        amplitude: Amplitude of the elastic rate at the start (rad/s).
+        amplitude: Initial amplitude of the elastic rate (rad/s).
         threshold: Amplitude below which no thruster fires (rad/s).
 
     Returns:
@@ -69,7 +69,7 @@ def observer_region(
     period: float = 0.2,
     damping: float = 0.005,
 ) -> dict[str, Any]:
-    """Where the recurrence observer converges in the plane of W2 and W3, its regressor frozen.
+    """The region of convergence of the recurrence observer in the plane of W2 and W3, its regressor frozen.
 
     Args:
         frequency: Natural frequency of the mode (rad/s).
@@ -80,8 +80,8 @@ def observer_region(
         damping: Damping ratio of the mode.
 
     Returns:
-        `elastic`, W2; `next_min` and `next_max`, the W3 between which it converges, NaN where none does;
-        `area`, that of the whole region.
+        `elastic`, W2; `next_min` and `next_max`, the limits of W3 between which it converges, NaN where it
+        does not converge for any; `area`, the area of the whole region.
 
     Raises:
         ValueError: A number is out of its range.
@@ -108,19 +108,19 @@ def observer_margin(
     period: float = 0.2,
     damping: float = 0.005,
 ) -> dict[str, Any]:
-    """How fast the recurrence observer may identify a frequency, with the oscillation as its regressor.
+    """The identification rate that the recurrence observer allows, with the oscillation as its regressor.
 
     Args:
         frequency: Natural frequency of the mode (rad/s).
-        kappas: Gains W4 V of the identification, V being the amplitude of the elastic rate.
+        kappas: Gains W4 V of the identification, where V is the amplitude of the elastic rate.
         weights: W1, W2 and W3.
         period: Period of the samples (s).
         damping: Damping ratio of the mode.
 
     Returns:
-        `gain_max`, up to which it converges; `gain_best`, with which it converges fastest;
-        `spectral_radius`, the factor of an error from sample to sample at that gain (NaN if none
-        converges); `radii`, the same for each of `kappas`.
+        `gain_max`, the largest gain at which it converges; `gain_best`, the gain with the fastest
+        convergence; `spectral_radius`, the factor of an error from sample to sample at that gain (NaN if no
+        gain converges); `radii`, this factor for each of `kappas`.
 
     Raises:
         ValueError: A number is out of its range.
@@ -150,26 +150,26 @@ def identify(
     seed: int = 1,
     yes: bool = False,
 ) -> dict[str, Any]:
-    """How often and how fast the gradient observer finds modes under random bursts of thrusters.
+    """The success rate and convergence time of the gradient observer under random bursts of thrusters.
 
-    The channel is the station's yaw: 2.05e-5 rad/s², cycles of 0.2 s, noise of 2e-6 and a resolution of
-    1e-6 rad/s.
+    The channel is the yaw axis of the station: 2.05e-5 rad/s², cycles of 0.2 s, noise of 2e-6 and a
+    resolution of 1e-6 rad/s.
 
     Args:
         modes: Natural frequency (rad/s) and influence of each mode.
-        off: Relative errors of the frequencies at the start, up or down.
+        off: Initial relative errors of the frequencies, up or down.
         influence_off: Relative error of the influences at the start.
         rate: Rate of the identification, eta.
-        runs: Runs of each row.
-        cycles: Cycles of a run.
+        runs: Number of runs per row.
+        cycles: Number of cycles per run.
         seed: Seed.
         yes: Run even if the estimate is more than 10 h on one core.
 
     Returns:
-        Columns of shape (off,), NaN where no run converged: `off`, `runs`, `converged`, to 2 % of each
-        frequency, `time_median_s`, `time_longest_s`, `frequency_error`, `influence_error`, medians of the
-        relative errors at the end, and `persistence` of excitation; and `times_s`, for each row when each run
-        that converged did.
+        Columns of shape (off,), NaN where no run converged: `off`, `runs`, `converged` (to 2 % of each
+        frequency), `time_median_s`, `time_longest_s`, `frequency_error` and `influence_error` (medians of the
+        final relative errors), and `persistence` of excitation; and `times_s`, for each row the convergence
+        times of the runs that converged.
 
     Raises:
         ValueError: A number is out of its range, or `yes` is needed.
@@ -198,11 +198,12 @@ def persistence(sensitivities: npt.ArrayLike) -> float:
     """Persistence of excitation: how well measurements distinguish the parameters.
 
     Args:
-        sensitivities: Derivatives of the measurement by each parameter, shape (samples, parameters).
+        sensitivities: Derivatives of the measurement with respect to each parameter, of shape (samples,
+            parameters).
 
     Returns:
-        The least eigenvalue of their Gram matrix, each column normalised: 1 at best, 0 where a combination of
-        parameters does not show; NaN if a parameter was never excited.
+        The smallest eigenvalue of their Gram matrix with normalised columns: 1 at best, 0 if a combination of
+        parameters is not observable; NaN if a parameter was never excited.
 
     >>> import flexsc
     >>> flexsc.persistence([[1.0, 0.0], [0.0, 1.0]])

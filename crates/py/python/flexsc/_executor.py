@@ -1,4 +1,4 @@
-"""Campaigns on executors: whole parts as tasks, written where they stay; only names go through the head."""
+"""Campaigns on executors: tasks write whole parts to their final location and return only names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexsc import _native as engine
 from flexsc._campaign import Table, of_directory
 
 Span = tuple[int, int]
-"""The first run of a part, and the one after its last."""
+"""The first run of a part and the run after its last."""
 
 # A task that a scheduler gave up, since its workers died, is handed in again so often.
 _AGAIN = 10
@@ -32,32 +32,32 @@ _RUNS = "runs"
 
 
 class Local:
-    """A directory that all workers reach by the same path."""
+    """A directory that all workers can reach by the same path."""
 
     def __init__(self, path: str) -> None:
         self.name = os.path.abspath(path)
         self._directory: engine.Directory | None = None
 
     def begin(self, work: engine.Work, force: bool) -> engine.Work:
-        """Make the directory, or go on with the one that is there; it is locked until `end`."""
+        """Create the directory or continue in an existing one; it is locked until `end`."""
         self._directory = engine.Directory.create(self.name, work, force)
         return self._directory.work
 
     def missing(self, work: engine.Work) -> list[Span]:
-        """The parts that are not there."""
+        """The missing parts."""
         return work.missing(os.listdir(os.path.join(self.name, _RUNS)))
 
     def end(self) -> None:
-        """Let other processes work there."""
+        """Release the lock for other processes."""
         self._directory = None
 
     def table(self) -> Table:
-        """The rows that are there."""
+        """The rows present so far."""
         return of_directory(engine.Directory.open(self.name))
 
 
 class Remote:
-    """A place that fsspec knows, such as a bucket."""
+    """A location that fsspec supports, such as a bucket."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -66,7 +66,7 @@ class Remote:
         return _file_system(self.name)
 
     def begin(self, work: engine.Work, force: bool) -> engine.Work:
-        """Write the manifest, or go on with the campaign that is there."""
+        """Write the manifest, or continue an existing campaign."""
         files, root = self._files()
         files.makedirs(f"{root}/{_RUNS}", exist_ok=True)
         at = f"{root}/{_MANIFEST}"
@@ -87,15 +87,15 @@ class Remote:
         return work
 
     def missing(self, work: engine.Work) -> list[Span]:
-        """The parts that are not there."""
+        """The missing parts."""
         files, root = self._files()
         return work.missing(_names(files, f"{root}/{_RUNS}"))
 
     def end(self) -> None:
-        """A bucket has no lock: who writes a part twice writes the same."""
+        """Do nothing: a bucket has no lock, and a part that is written twice has the same contents."""
 
     def table(self) -> Table:
-        """The rows that are there, through a directory of this process."""
+        """The rows present so far, through a directory of this process."""
         files, root = self._files()
         kept = _Temporary()
         (kept.path / _RUNS).mkdir()
@@ -107,7 +107,7 @@ class Remote:
 
 
 class _Temporary:
-    """A directory for as long as this lives."""
+    """A directory that exists as long as this object."""
 
     def __init__(self) -> None:
         self.path = Path(tempfile.mkdtemp(prefix="flexsc-"))
@@ -117,7 +117,7 @@ class _Temporary:
 
 
 def place(path: str | os.PathLike[str]) -> Local | Remote:
-    """The place of a campaign, by its path or its URL."""
+    """Return the location of a campaign from its path or its URL."""
     name = os.fspath(path)
     return Remote(name.rstrip("/")) if "://" in name else Local(name)
 
@@ -131,7 +131,7 @@ def run(
     force: bool,
     progress: Callable[[int, int], None] | None,
 ) -> Table:
-    """Make what is missing of a campaign, and return all of its rows."""
+    """Run the missing parts of a campaign, and return all of its rows."""
     kept = _Temporary() if out is None else None
     store = Local(str(kept.path)) if kept is not None else place(out or "")
     work = store.begin(work, force)
@@ -182,7 +182,7 @@ def _hand_out(
     task: Callable[[list[Span]], tuple[Any, ...]],
     keep: Callable[[Any], None] | None = None,
 ) -> None:
-    """Hand parts out as tasks, some more than there are workers, and take what they tell."""
+    """Submit parts as tasks, some more than there are workers, and collect their results."""
     waiting = missing[::-1]
     again: list[tuple[list[Span], int]] = []
     out: dict[Future[Any], tuple[list[Span], int]] = {}
@@ -218,7 +218,7 @@ def _hand_out(
 
 
 def _threads_of(executor: Executor) -> int:
-    """How many tasks an executor of Dask works on at once; of one that does not tell, many."""
+    """Return the number of tasks that an executor of Dask runs at once; if it is unknown, a large number."""
     client = getattr(executor, "_client", None)
     if client is None:
         return 64
@@ -242,7 +242,7 @@ def _work_at(name: str, _hash: str) -> engine.Work:
 
 
 def _write(name: str, hashed: str, parts: Sequence[Span], jobs: int) -> tuple[float, None]:
-    """Make parts, and write them where the campaign is: a worker's task. It tells how long it took (s)."""
+    """Run parts and write them to the campaign's location: a worker's task. Return its duration (s)."""
     began = time.perf_counter()
     if "://" not in name:
         for part in parts:
@@ -256,7 +256,7 @@ def _write(name: str, hashed: str, parts: Sequence[Span], jobs: int) -> tuple[fl
 
 
 def _bytes(manifest: str, parts: Sequence[Span], jobs: int) -> tuple[float, list[tuple[str, bytes]]]:
-    """Make parts, and return their files."""
+    """Run parts, and return their files."""
     began = time.perf_counter()
     told = [_parsed(manifest).part(part, jobs) for part in parts]
     return time.perf_counter() - began, told
@@ -280,7 +280,7 @@ def _names(files: Any, root: str) -> list[str]:
 
 
 def _put(files: Any, path: str, data: bytes) -> None:
-    """Write a file, which is whole or not there: written under another name, and renamed."""
+    """Write a file atomically: under another name, and then renamed."""
     partial = f"{path}.{uuid.uuid4().hex}.partial"
     files.pipe_file(partial, data)
     files.mv(partial, path)

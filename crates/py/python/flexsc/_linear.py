@@ -1,4 +1,4 @@
-"""Linear models: of a body at rest, sampled exactly, of loops with a linear law; and linear controllers as
+"""Linear models of a body at rest, sampled exactly, and of loops with a linear law; linear controllers as
 laws."""
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
 Break = Literal["command", "torque", "measurement"]
-"""Where a loop is cut open."""
+"""The point at which a loop is opened."""
 
 _AXES = ("roll", "pitch", "yaw")
 
 
 @dataclass(frozen=True)
 class Signal:
-    """A number of a linear model: its name, and its unit.
+    """A state, input or output of a linear model: its name and its unit.
 
     >>> flexsc.Signal("angle", "rad").unit
     'rad'
@@ -38,7 +38,7 @@ class Signal:
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """A linear model: x' = a x + b u, y = c x + d u, or with a period x[k+1] = a x[k] + b u[k].
+    """A linear model: x' = a x + b u, y = c x + d u, or with a sampling period x[k+1] = a x[k] + b u[k].
 
     >>> model = flexsc.Scenario.example("relay-fixed").linearise()
     >>> model.a.shape, [state.name for state in model.states[:3]]
@@ -54,18 +54,18 @@ class Linear:
     d: npt.NDArray[np.float64]
     """Shape (outputs, inputs)."""
     states: tuple[Signal, ...]
-    """What the states are."""
+    """The names and units of the states."""
     inputs: tuple[Signal, ...]
-    """What the inputs are."""
+    """The names and units of the inputs."""
     outputs: tuple[Signal, ...]
-    """What the outputs are."""
+    """The names and units of the outputs."""
     period: float | None = None
-    """Period of its samples (s); None of continuous time."""
+    """Sampling period (s); None for continuous time."""
 
     def eigenfrequencies(self) -> npt.NDArray[np.float64]:
-        """The natural frequencies |s| of its poles (rad/s), increasing; a pair of poles counts once.
+        """Return the natural frequencies |s| of the poles (rad/s), increasing; a pair of poles counts once.
 
-        Of a sampled model s = log(z)/period, below the Nyquist frequency. Rigid motion has the frequency 0.
+        For a sampled model s = log(z)/period, below the Nyquist frequency. Rigid motion has the frequency 0.
 
         >>> flexsc.Scenario.example("relay-fixed").linearise().eigenfrequencies()
         array([0.   , 0.   , 0.44 , 0.755])
@@ -83,20 +83,20 @@ class Linear:
         return np.sort(np.concatenate([found, np.zeros(max(missing, 0))]))
 
     def _rigid(self) -> int:
-        """How many poles at rest there are."""
+        """The number of poles at rest."""
         import numpy as np
 
         at_rest = self.a if self.period is None else self.a - np.eye(len(self.a))
         return 2 * (len(self.a) - int(np.linalg.matrix_rank(at_rest)))
 
     def select(self, inputs: Sequence[str] | None = None, outputs: Sequence[str] | None = None) -> Linear:
-        """The model with some inputs and outputs, by name.
+        """Return the model with only the named inputs and outputs.
 
         >>> flexsc.Scenario.example("relay-fixed").linearise().select(outputs=["angle"]).c.shape
         (1, 6)
 
         Raises:
-            KeyError: There is no such name.
+            KeyError: There is no signal of this name.
         """
 
         def places(names: Sequence[str] | None, signals: tuple[Signal, ...]) -> list[int]:
@@ -121,15 +121,15 @@ class Linear:
         )
 
     def sampled(self, period: float, delay: float = 0.0) -> Linear:
-        """The same at samples (s), exactly: inputs are held over a period and act `delay` seconds late.
+        """Return the exact model at samples `period` (s) apart: inputs are held and act `delay` (s) late.
 
-        Inputs that are under way are states behind the others.
+        Inputs still in the delay are states, after the others.
 
         >>> flexsc.Scenario.example("relay-fixed").linearise().sampled(0.5, delay=0.7).a.shape
         (8, 8)
 
         Raises:
-            ValueError: It is sampled already, or a time is not accepted.
+            ValueError: The model is sampled already, or a time is not accepted.
         """
         import numpy as np
 
@@ -179,7 +179,7 @@ class Linear:
         return Linear(big, into, c, self.d, states, self.inputs, self.outputs, period)
 
     def closed(self) -> Linear:
-        """The loop closed, of a model that `linearise(loop=...)` cut open: inputs are what is added there.
+        """Close the loop that `linearise(loop=...)` opened: the inputs are added at the break.
 
         >>> scenario = flexsc.Scenario.example("rotation-robust")
         >>> bool(abs(numpy.linalg.eigvals(scenario.linearise(loop="command").closed().a)).max() < 1.0)
@@ -194,7 +194,7 @@ class Linear:
         return Linear(a, self.b, self.c, d, self.states, self.inputs, self.outputs, self.period)
 
     def control(self) -> Any:
-        """The same as a `control.StateSpace` of python-control, which has to be installed.
+        """Return the model as a `control.StateSpace` of python-control, which must be installed.
 
         >>> flexsc.Scenario.example("relay-fixed").linearise().control().nstates  # doctest: +SKIP
         6
@@ -216,7 +216,7 @@ class Linear:
 def linearise(
     scenario: Scenario, at: float, period: float | None, delay: float | None, loop: Break | None
 ) -> Linear:
-    """The body of a scenario, or its loop cut open."""
+    """Return the body of a scenario, or its open loop."""
     import numpy as np
 
     told = json.loads(engine.linear_json(scenario._native, at))
@@ -241,7 +241,7 @@ def linearise(
 
 
 def _kind(part: str | Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
-    """The kind of a part and its keys: one without keys is a word."""
+    """Return the kind of a part and its keys: a part without keys is a word."""
     return (part, {}) if isinstance(part, str) else next(iter(part.items()))
 
 
@@ -250,7 +250,7 @@ def _refused(name: str, why: str) -> ValueError:
 
 
 def _law(name: str, keys: Mapping[str, Any], axis: int) -> tuple[str, dict[str, Any]]:
-    """The law about an axis: its kind and its keys."""
+    """Return the kind and the keys of the law about an axis."""
     law = keys["law"]
     if "per_axis" in law:
         law = law["per_axis"][_AXES[axis]]
@@ -434,7 +434,7 @@ def law_of(
     limit: float | None,
     track: bool,
 ) -> dict[str, Any]:
-    """The keys of a law `state_space`, of a controller or of one for each axis."""
+    """Return the keys of a law `state_space`, for one controller or for one per axis."""
     if isinstance(controller, Mapping):
         if set(controller) != set(_AXES):
             found = ", ".join(map(str, controller))
@@ -467,12 +467,12 @@ def law_of(
 
 
 def _unspecified(controller: object) -> bool:
-    """Whether it is of discrete time without a period: `dt=True` of python-control."""
+    """Whether it is in discrete time without a period: `dt=True` of python-control."""
     return getattr(controller, "dt", None) is True
 
 
 def _matrices(controller: object) -> tuple[Any, Any, Any, Any, float | None]:
-    """The matrices of a controller, and its period; None of continuous time."""
+    """Return the matrices of a controller and its period; None for continuous time."""
     import numpy as np
 
     step: object = None

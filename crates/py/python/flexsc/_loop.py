@@ -1,4 +1,4 @@
-"""Analyses of a sampled loop: regions of its extra gain, robust gains, maps of stability."""
+"""Analyses of a sampled loop: regions of its extra gain, robust gains, stability maps."""
 
 from __future__ import annotations
 
@@ -30,19 +30,18 @@ def gain_region(
     """The gains of the extra loop that are stable and settle in time, at each frequency of the dominant mode.
 
     Args:
-        scenario: A body under a law `pd`.
+        scenario: A body with a law `pd`.
         frequencies: Frequencies of the dominant mode (rad/s).
-        gains: Lowest and highest gain, and the step from one to the next.
+        gains: Lowest gain, highest gain, and step.
         limit: The longest settling time (s).
-        band: Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the
-            start.
-        horizon: How long each loop is simulated (s).
-        dominant_alone: Change the frequency of the dominant mode alone, not of all modes by one ratio.
+        band: Half width of the settling band of the angle (rad); if omitted, 5 % of the initial angle.
+        horizon: Simulated time of each loop (s).
+        dominant_alone: Change only the frequency of the dominant mode, instead of all modes by one ratio.
         yes: Run even if the estimate is more than 10 h on one core.
 
     Returns:
-        Columns of shape (frequencies,), NaN without such a gain: `frequency_rad_s`, `gain_min`, `gain_max`,
-        `midpoint`, `settling_s` and `spectral_radius` at the midpoint, `settling_without_s` and
+        Columns of shape (frequencies,), NaN where no gain qualifies: `frequency_rad_s`, `gain_min`,
+        `gain_max`, `midpoint`, `settling_s` and `spectral_radius` at the midpoint, `settling_without_s` and
         `spectral_radius_without`, without the extra loop.
 
     Raises:
@@ -80,18 +79,18 @@ def robust_gains(
     """The gains that settle fastest with an uncertain model, at each frequency of the dominant mode.
 
     Args:
-        scenario: A body under a law `pd`.
+        scenario: A body with a law `pd`.
         frequencies: Frequencies of the dominant mode (rad/s).
-        off: Relative error of frequencies, modal gains and the actuator's gain.
-        delay: Additional delay of the command to allow for (s).
+        off: Relative error of the frequencies, the modal gains and the gain of the actuator.
+        delay: Additional delay of the command that is allowed for (s).
         itae: Minimise the integral of time times angle instead of the settling time.
-        quantile: The quantile of the perturbed loops that counts; 1 is the worst.
-        margin: Margin by which every spectral radius stays below 1.
+        quantile: The quantile of the perturbed loops that is evaluated; 1 is the worst.
+        margin: Margin of every spectral radius below 1.
         gains: As for `gain_region`, with `band`, `horizon`, `dominant_alone` and `yes`.
 
     Returns:
-        Columns of shape (frequencies,), NaN where there is none: `frequency_rad_s`, `gain`, `settling_s`,
-        `settling_quantile_s`, `spectral_radius`, the largest, and `settling_without_s`.
+        Columns of shape (frequencies,), NaN where no gain qualifies: `frequency_rad_s`, `gain`, `settling_s`,
+        `settling_quantile_s`, `spectral_radius` (the largest), and `settling_without_s`.
 
     Raises:
         ScenarioError: The scenario has no loop of this kind.
@@ -127,13 +126,13 @@ def stability_map(
     dominant_alone: bool = False,
     yes: bool = False,
 ) -> dict[str, npt.NDArray[np.float64]]:
-    """Stability and settling over the dominant mode's frequency and the sampling period.
+    """Stability and settling as functions of the dominant mode's frequency and the sampling period.
 
     Args:
-        scenario: A body under a law `pd`.
+        scenario: A body with a law `pd`.
         frequencies: Frequencies of the dominant mode (rad/s).
-        periods: Periods of the samples (s); a delay of the wheel keeps its part of the period.
-        gain: Gain of the extra loop; left out, the scenario's.
+        periods: Sampling periods (s); a delay of the wheel stays the same fraction of the period.
+        gain: Gain of the extra loop; if omitted, the scenario's.
         band: As for `gain_region`, with `horizon`, `dominant_alone` and `yes`.
 
     Returns:

@@ -89,7 +89,7 @@ class ScenarioError(ValueError):
     mistakes: list[dict[str, Any]]
 
 class SimulationError(RuntimeError):
-    """A simulation that cannot go on."""
+    """A simulation that cannot continue."""
 
 class LogError(OSError):
     """A log that cannot be read or written."""
@@ -126,7 +126,7 @@ _Four: TypeAlias = tuple[float, float, float, float]
 
 @final
 class Instant:
-    """An instant of a run, to the femtosecond: `Instant(whole, femtoseconds)`."""
+    """An instant of a run with femtosecond resolution: `Instant(whole, femtoseconds)`."""
 
     def __new__(cls, whole: int, femtoseconds: int) -> Instant: ...
     @property
@@ -149,17 +149,17 @@ class Instant:
 
 @final
 class Stream:
-    """Random numbers of a run, the same on every machine. A copy goes on as this one does."""
+    """A stream of random numbers of a run, the same on every machine. A copy continues in the same way."""
 
     def uniform(self) -> float:
-        """A number of [0, 1)."""
+        """A uniformly distributed number in [0, 1)."""
     def normal(self) -> float:
-        """A number with mean 0 and standard deviation 1."""
+        """A normally distributed number with mean 0 and standard deviation 1."""
     def __deepcopy__(self, _memo: object) -> Stream: ...
 
 @final
 class Draws:
-    """What the random numbers of a run come from."""
+    """The source of the random numbers of a run."""
 
     @property
     def seed(self) -> int:
@@ -168,19 +168,20 @@ class Draws:
     def run(self) -> int:
         """The number of the run."""
     def stream(self, name: str) -> Stream:
-        """The stream of a name. Streams of other names are independent of it."""
+        """The stream with this name. It is independent of streams with other names."""
     def __deepcopy__(self, _memo: object) -> Draws: ...
 
 @final
 class Authority:
-    """What an actuator can do about an axis, as laws know it."""
+    """The authority of an actuator about an axis, as laws know it."""
 
     @property
     def axis(self) -> int:
         """The axis: 0, or 0 to 2 for roll, pitch and yaw."""
     @property
     def accelerations(self) -> tuple[float, float]:
-        """The largest accelerations of plus and minus (rad/s²); infinite without a limit."""
+        """The largest accelerations in the positive and negative direction (rad/s²); infinite without a
+        limit."""
     @property
     def delay(self) -> float:
         """Time from a command to its execution (s)."""
@@ -188,17 +189,18 @@ class Authority:
 
 @final
 class Event:
-    """Why a law is asked, and what it knows then. Angles count from the target on three axes."""
+    """The event at which a law is called, and its input. On three axes angles are relative to the target."""
 
     @property
     def now(self) -> Instant:
-        """When: `event.now - earlier` is the time between (s), without rounding before the difference."""
+        """The instant: `event.now - earlier` is the time between (s), without rounding before the
+        difference."""
     @property
     def time(self) -> float:
-        """The same in seconds."""
+        """The instant in seconds."""
     @property
     def cause(self) -> Literal["start", "timeout", "at_least", "at_most"]:
-        """The start of the run, the time of the last hold, or its level that the angle has passed."""
+        """The start of the run, the time given by the last hold, or the level that the angle has passed."""
     @property
     def angle(self) -> float:
         """Angle (rad)."""
@@ -207,44 +209,44 @@ class Event:
         """Rate (rad/s)."""
     @property
     def goal_angle(self) -> float:
-        """Where the body shall be now (rad)."""
+        """The goal of the angle at this time (rad)."""
     @property
     def goal_rate(self) -> float:
-        """How fast it shall turn (rad/s)."""
+        """The goal of the rate (rad/s)."""
     @property
     def goal_acceleration(self) -> float:
-        """And how that shall change (rad/s²), of a target that the body is led to."""
+        """The goal of the acceleration (rad/s²), for a target with a reference motion."""
     @property
     def goal_from(self) -> Instant:
-        """From when on the goal counts: the start, or the end of a manoeuvre."""
+        """The instant from which the goal applies: the start, or the end of a manoeuvre."""
     @property
     def whole(self) -> float:
-        """Length of the vector of the angles about all axes (rad); 0 of a body with one angle."""
+        """Magnitude of the vector of the angles about all axes (rad); 0 for a single-axis body."""
     @property
     def field_rate(self) -> float:
-        """How fast the magnetic field along the axis changes (T/s)."""
+        """Rate of change of the magnetic field along the axis (T/s)."""
     @property
     def queued(self) -> float:
-        """Change of the rate that is commanded, and not yet executed (rad/s)."""
+        """Change of the rate that is commanded but not yet executed (rad/s)."""
     @property
     def dominant(self) -> _Three:
-        """The dominant mode: displacement (rad), its rate (rad/s) and frequency (rad/s)."""
+        """The dominant mode: displacement (rad), rate (rad/s) and frequency (rad/s)."""
     @property
     def elastic(self) -> list[_Three]:
-        """The elastic modes: rate (rad/s), frequency (rad/s), its jump for each jump of the rigid rate."""
+        """The elastic modes: rate (rad/s), frequency (rad/s) and its jump per jump of the rigid rate."""
     @property
     def trusted(self) -> bool:
-        """Whether the elastic modes may be acted on."""
+        """Whether the law may act on the elastic modes."""
 
 @final
 class Hold:
-    """A command from now on, and when the law is asked again.
+    """A command from now on, and the conditions for the next call of the law.
 
-    `Hold(torque)` holds a torque (N m; rad/s² on a body without inertia; of a wheel, units of its command);
-    `acceleration` (rad/s²), `change` of the rigid rate (rad/s) and `moment` (A m²) take its place. The law is
-    asked again `after` so many seconds, or at the instant `until`, or when the angle is `at_least` or
-    `at_most` a level (rad), whichever is first; without a time after the law's `period`. `state` is what the
-    log calls it.
+    `Hold(torque)` holds a torque (N m; rad/s² for a body without inertia; for a wheel, units of its command).
+    Use `acceleration` (rad/s²), `change` of the rigid rate (rad/s) or `moment` (A m²) instead of it. The next
+    call follows `after` a time (s), at the instant `until`, or when the angle is `at_least` or `at_most` a
+    level (rad), whichever is first; if no time is given, after the law's `period`. `state` is the name in the
+    log.
     """
 
     def __new__(
@@ -283,46 +285,46 @@ class Hold:
 
 @final
 class Truth:
-    """What there is to measure at an instant."""
+    """The true quantities that a sensor can measure at an instant."""
 
     @property
     def now(self) -> Instant: ...
     @property
     def time(self) -> float:
-        """When (s)."""
+        """The instant (s)."""
     @property
     def angle(self) -> float | None:
-        """The angle with its elastic part (rad), of a body with one."""
+        """The angle with its elastic part (rad), for a single-axis body."""
     @property
     def attitude(self) -> _Four | None:
-        """The attitude (w, x, y, z), which turns vectors of the body's axes into inertial ones, of one with
-        three axes."""
+        """The attitude (w, x, y, z) of a three-axis body, which rotates vectors from the body frame to the
+        inertial frame."""
     @property
     def elastic(self) -> _Three:
-        """The elastic rotations at the sensor beside the attitude (rad)."""
+        """The elastic rotations at the sensor, in addition to the attitude (rad)."""
     @property
     def rate(self) -> _Three:
-        """Rates at the sensor, elastic part included (rad/s)."""
+        """The rates at the sensor, including the elastic part (rad/s)."""
     @property
     def rigid(self) -> _Three:
-        """Rates of the body as if it were rigid (rad/s)."""
+        """The rigid rates of the body (rad/s)."""
     @property
     def turned(self) -> _Three:
-        """The integral of `rate` (rad) but for a constant, as a gyro counts it."""
+        """The integral of `rate` (rad) up to a constant, as a gyro counts it."""
     @property
     def field(self) -> _Three | None:
-        """The magnetic field in inertial axes (T), if there is one."""
+        """The magnetic field in the inertial frame (T), if there is one."""
     @property
     def sun(self) -> _Three | None:
-        """The direction to the Sun in inertial axes, in the light."""
+        """The direction to the Sun in the inertial frame, when in sunlight."""
     def attitude_at(self, angles: Sequence[float] | npt.NDArray[np.float64]) -> _Four | None:
-        """The attitude turned by three small angles about the body's axes (rad)."""
+        """The attitude rotated by three small angles about the body axes (rad)."""
 
 @final
 class Reading:
-    """What a sensor measured: the `angle` (rad) or the `attitude` (w, x, y, z), the true one of a sensor that
-    tells neither; the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with what it is in
-    `inertial` ones."""
+    """A measurement: the `angle` (rad) or the `attitude` (w, x, y, z), which default to the true one; the
+    `rate` (rad/s), three numbers or one; a `vector` in the body frame with its value in the `inertial`
+    frame."""
 
     def __new__(
         cls,
@@ -350,11 +352,11 @@ class Reading:
 
 @final
 class Known:
-    """What an estimator knows of a scenario before a run."""
+    """The data of a scenario that an estimator knows before a run."""
 
     @property
     def axes(self) -> int:
-        """1 or 3."""
+        """The number of axes: 1 or 3."""
     @property
     def inertias(self) -> list[float]:
         """Moment of inertia about each axis (kg m²)."""
@@ -363,16 +365,16 @@ class Known:
         """Frequency (rad/s), damping ratio and gain of each mode, about each axis."""
     @property
     def period(self) -> float | None:
-        """Period of the samples (s)."""
+        """Sampling period (s)."""
     @property
     def angle_noise(self) -> float:
         """Standard deviation of the measured angle (rad)."""
     @property
     def rate_noise(self) -> list[float | None]:
-        """The same of the measured rate (rad/s) about each axis, if it is measured."""
+        """Standard deviation of the measured rate (rad/s) about each axis, if it is measured."""
     @property
     def reads(self) -> list[str]:
-        """What the law about each axis reads."""
+        """The quantities that the law about each axis reads."""
     @property
     def draws(self) -> Draws:
         """Random numbers of the run."""
@@ -380,43 +382,45 @@ class Known:
 
 @final
 class Taken:
-    """A sample, and what is around it."""
+    """A sample with its context."""
 
     @property
     def now(self) -> Instant: ...
     @property
     def time(self) -> float:
-        """When (s)."""
+        """The instant (s)."""
     @property
     def measured(self) -> list[tuple[float, float]] | None:
-        """Angle beyond the target (rad) and rate (rad/s) about each axis; None of a sensor that is silent."""
+        """Angle relative to the target (rad) and rate (rad/s) about each axis; None if the sensor is
+        silent."""
     @property
     def readings(self) -> list[Reading | None]:
-        """What each sensor measured now, in the order of the scenario; None of one that was not due, or
+        """The measurement of each sensor now, in the order of the scenario; None if it was not due, or
         silent."""
     @property
     def origin_angle(self) -> float | None:
-        """From where angles count (rad), of a body with one angle."""
+        """The origin of the angles (rad), for a single-axis body."""
     @property
     def origin_attitude(self) -> _Four | None:
-        """The target (w, x, y, z), of a body with three axes."""
+        """The target (w, x, y, z), for a three-axis body."""
     @property
     def truth(self) -> list[tuple[float, float]]:
-        """The true rigid angle beyond the target (rad) and rate (rad/s) about each axis, for observers."""
+        """The true rigid angle relative to the target (rad) and rate (rad/s) about each axis, for
+        observers."""
     @property
     def torque(self) -> list[float]:
         """The torque that the actuator holds about each axis (N m)."""
 
 @final
 class Setting:
-    """What an actuator knows of what is around it about an axis."""
+    """The data about an axis that an actuator knows."""
 
     @property
     def axis(self) -> int:
         """The axis: 0, or 0 to 2 for roll, pitch and yaw."""
     @property
     def inertia(self) -> float:
-        """What a unit of the torque accelerates (kg m²)."""
+        """The inertia that the torque accelerates (kg m²)."""
     @property
     def rate(self) -> float:
         """Rate at the start (rad/s)."""
@@ -427,29 +431,30 @@ class Setting:
 
 @final
 class Demanded:
-    """What laws demand from now on."""
+    """The demands of the laws from now on."""
 
     @property
     def now(self) -> Instant: ...
     @property
     def time(self) -> float:
-        """When (s)."""
+        """The instant (s)."""
     @property
     def values(self) -> list[float]:
-        """What is demanded about each axis."""
+        """The demand about each axis."""
     @property
     def kinds(self) -> list[Literal["torque", "change", "moment"]]:
-        """What that is: a torque (N m), a change of the rigid rate (rad/s), or a magnetic moment (A m²)."""
+        """The kind of each demand: a torque (N m), a change of the rigid rate (rad/s), or a magnetic moment
+        (A m²)."""
     @property
     def rigid(self) -> _Three:
         """The rigid rates of the body (rad/s)."""
     @property
     def field(self) -> _Three | None:
-        """The magnetic field in the body's axes as it is measured (T)."""
+        """The measured magnetic field in the body frame (T)."""
 
 @final
 class Effort:
-    """Torques about each axis (N m), and after how many seconds the actuator is asked again."""
+    """Torques about each axis (N m), and the time (s) after which the actuator is called again."""
 
     def __new__(
         cls, torques: Sequence[float] | npt.NDArray[np.float64], *, after: float | None = None

@@ -31,18 +31,19 @@ class Plan(Mapping[str, Any]):
         self._told: dict[str, Any] = json.loads(engine.plan_json(scenario, band))
 
     def torque(self, time: npt.ArrayLike) -> npt.NDArray[Any]:
-        """The command (N m, or rad/s² where the hub's motion is commanded) at times (s), in their shape."""
+        """Return the command at times (s), in their shape (N m, or rad/s² if the hub's motion is
+        prescribed)."""
         import numpy as np
 
         times = np.asarray(time, dtype=np.float64)
         return engine.plan_torque(self._scenario, times.ravel()).reshape(times.shape)
 
     def compare(self, peak_torque: float | None = None) -> list[dict[str, Any]]:
-        """Every command of the field on the same body, one dictionary each.
+        """Return the plans with every command for the same body, one dictionary each.
 
         Args:
-            peak_torque: Plan each for this peak torque (N m), in a time of its own; left out, for the
-                scenario's time.
+            peak_torque: Plan each for this peak torque (N m), in its own time; if omitted, for the time of
+                the scenario.
         """
         rows: list[dict[str, Any]] = json.loads(engine.rivals_json(self._scenario, self._band, peak_torque))
         return rows

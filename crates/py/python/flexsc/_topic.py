@@ -1,4 +1,4 @@
-"""Topics: the rows of one kind that a run, a log or a sample has, as columns."""
+"""Topics: the rows of one kind in a run, a log or a sample, as columns."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 class Topic(Mapping[str, "npt.NDArray[Any]"]):
     """A topic: its columns by name, in the order of a log file.
 
-    Every column has shape (rows,), or (rows, parts) for the parts of each row, such as the modes. Polars,
-    PyArrow, DuckDB and pandas read a topic as it is, through Arrow's PyCapsule interface: there NaN, which
-    stands for no value, is null, and each field has its `unit` as metadata.
+    Every column has shape (rows,), or (rows, parts) for values with several parts per row, such as modes.
+    Polars, PyArrow, DuckDB and pandas can read a topic directly, through Arrow's PyCapsule interface: there
+    NaN, which means no value, is null, and each field has its `unit` as metadata.
 
     >>> import flexsc
     >>> command = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate()["command"]
@@ -27,7 +27,7 @@ class Topic(Mapping[str, "npt.NDArray[Any]"]):
     """
 
     name: str
-    """Its name, without the slash that it has in a log file."""
+    """The name, without the slash that it has in a log file."""
 
     def __init__(
         self,
@@ -43,7 +43,7 @@ class Topic(Mapping[str, "npt.NDArray[Any]"]):
         self._reduced: bool | None = None
 
     def __getitem__(self, column: str) -> npt.NDArray[Any]:
-        """A column.
+        """Return a column.
 
         Raises:
             KeyError: There is no such column.
@@ -60,7 +60,7 @@ class Topic(Mapping[str, "npt.NDArray[Any]"]):
         return len(self._columns)
 
     def unit(self, column: str) -> str:
-        """The unit of a column; empty for a count, a ratio or a label.
+        """Return the unit of a column; empty for a count, a ratio or a label.
 
         Raises:
             KeyError: There is no such column.
@@ -76,11 +76,11 @@ class Topic(Mapping[str, "npt.NDArray[Any]"]):
         return len(next(iter(self._columns.values()), ()))
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Its rows, as Arrow's PyCapsule interface has them."""
+        """Return the rows through Arrow's PyCapsule interface."""
         return _arrow.stream(self._columns.items(), self.unit, {**self._about, "topic": self.name})
 
     def __arrow_c_schema__(self) -> object:
-        """The schema of its rows, as Arrow's PyCapsule interface has it."""
+        """Return the schema of the rows through Arrow's PyCapsule interface."""
         return _arrow.schema(self._columns.items(), self.unit, {**self._about, "topic": self.name})
 
     def __array__(self, *_: object, **__: object) -> NoReturn:

@@ -1,4 +1,4 @@
-"""Units: columns and metrics end with theirs."""
+"""Units: the names of columns and metrics end with their units."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _REDUCED = {"N m": "rad/s²", "N m s": "rad/s"}
 
 
 def meanings(scenario: Scenario | None) -> dict[str, dict[str, str]]:
-    """What the metrics mean, of runs of a scenario if it is known: by name, `unit` and `doc`."""
+    """Return `unit` and `doc` of the metrics by name, for runs of a scenario if it is given."""
     text = engine.metrics_json() if scenario is None else engine.meanings_json(scenario._native)
     told: dict[str, dict[str, str]] = json.loads(text)
     return told
@@ -56,9 +56,9 @@ def of_column(name: str, reduced: bool = False) -> str:
 
 
 class Metrics(dict[str, Any]):
-    """The metrics of a run by name: a dictionary that knows their units.
+    """The metrics of a run by name: a dictionary with their units.
 
-    Lists are arrays, words str, and None stands where there is no value.
+    Lists are arrays, words are str, and None means no value.
 
     >>> import flexsc
     >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0).simulate()
@@ -79,7 +79,7 @@ class Metrics(dict[str, Any]):
         return self._meanings[name]
 
     def unit(self, name: str) -> str:
-        """The unit of a metric; empty for a count, a ratio or a word.
+        """Return the unit of a metric; empty for a count, a ratio or a word.
 
         Raises:
             KeyError: The run has no such metric.
@@ -87,7 +87,7 @@ class Metrics(dict[str, Any]):
         return self._meaning(name)["unit"]
 
     def doc(self, name: str) -> str:
-        """What a metric means.
+        """Return the meaning of a metric.
 
         Raises:
             KeyError: The run has no such metric.

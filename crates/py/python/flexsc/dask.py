@@ -1,6 +1,6 @@
 """Campaigns on Dask: `flexsc.dask.campaign(client, ...)`, and `python -m flexsc.dask SCHEDULER DIR`.
 
-The extra `flexsc[dask]` installs what it needs. flexsc has to be installed on the workers too.
+The extra `flexsc[dask]` installs the dependencies. flexsc must also be installed on the workers.
 """
 
 from __future__ import annotations
@@ -28,24 +28,24 @@ __all__ = ["campaign"]
 def campaign(client: Client, scenario: Scenario, runs: int | range = 1000, **options: Any) -> Table:
     """Simulate many runs of a scenario on the workers of a Dask cluster.
 
-    Workers write their rows to `out`, a directory that all of them reach or a place that `fsspec` knows;
-    without it rows come back through this process. Rows do not depend on the number of workers, nor on the
-    deaths of some: a task whose worker died is done by another one.
+    Workers write their rows to `out`, a directory that all of them can reach or a location that `fsspec`
+    supports; without it the rows return through this process. Rows do not depend on the number of workers or
+    on the loss of workers: the task of a lost worker is repeated by another one.
 
     Args:
         client: The client of a scheduler.
-        scenario: What the runs are drawn from.
-        runs: Their number, or their range (of step 1).
-        options: Those of `flexsc.campaign`, but `executor`.
+        scenario: The scenario from which the runs are drawn.
+        runs: The number of runs, or their range (of step 1).
+        options: Those of `flexsc.campaign`, except `executor`.
 
     Raises:
-        ScenarioError, ValueError, OSError: As `flexsc.campaign`.
+        ScenarioError, ValueError, OSError: As in `flexsc.campaign`.
     """
     return _campaign(scenario, runs, executor=_Executor(client), **options)
 
 
 class _Executor(Executor):
-    """Tasks on the workers of a client. A task whose workers died ends with an error."""
+    """Tasks on the workers of a client. A task whose workers are lost ends with an error."""
 
     def __init__(self, client: Any) -> None:
         self._client = client
@@ -53,7 +53,7 @@ class _Executor(Executor):
         self._kept: dict[Any, Future[Any]] = {}
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hand a task in. A part that was deleted is made again: tasks are not known by their arguments."""
+        """Submit a task. A deleted part is made again: tasks are not identified by their arguments."""
         told: Future[Any] = Future()
         task = self._client.submit(fn, *args, **kwargs, pure=False, retries=10)
         self._kept[task] = told
@@ -70,13 +70,13 @@ class _Executor(Executor):
         return told
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Give up what is not done; the client stays."""
+        """Cancel the unfinished tasks; the client stays open."""
         for task in list(self._kept):
             task.cancel()
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Make what is missing of the campaign in a directory, on the workers of a scheduler."""
+    """Run the missing parts of a campaign directory on the workers of a scheduler."""
     parser = argparse.ArgumentParser("python -m flexsc.dask", description=main.__doc__)
     parser.add_argument("scheduler", help="address of the scheduler, such as tcp://10.0.0.1:8786")
     parser.add_argument("directory", help="directory of a campaign, which all workers reach")

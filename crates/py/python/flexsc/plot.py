@@ -1,4 +1,4 @@
-"""Every figure of `flexsc plot`, drawn with Matplotlib on axes of one's own (`pip install flexsc[plot]`).
+"""Every figure of `flexsc plot`, drawn with Matplotlib on your own axes (`pip install flexsc[plot]`).
 
     >>> import matplotlib; matplotlib.use("agg")
     >>> import flexsc, flexsc.plot
@@ -12,9 +12,9 @@
     >>> len(figure.axes)
     2
 
-What is drawn, its colours, names and units are the engine's own: both ways a figure looks the same. Axes
-hold values in SI units, so that one's own data join them as they are; only the numbers at the ticks are in
-the unit of the label.
+The engine defines the contents, colours, names and units of a figure, so it looks the same as that of the
+command. Axes hold values in SI units, so you can add your own data directly; only the tick labels are in the
+unit of the label.
 """
 
 from __future__ import annotations
@@ -62,15 +62,15 @@ _MARKS = {
 
 
 def figures(source: Source, metrics: Sequence[str] = ()) -> list[str]:
-    """The names of the figures that there are, as `flexsc plot` has them.
+    """Return the names of the available figures, as in `flexsc plot`.
 
     Args:
-        source: What is drawn.
-        metrics: Of a campaign, the metrics that count; left out, the main ones that vary.
+        source: The source of the figure.
+        metrics: For a campaign, the metrics to use; if omitted, the main ones that vary.
 
     Returns:
-        Of a run and a log such as `angle`, of a campaign such as `distribution-gain_final`. The names of a
-        directory begin with that of the scenario; with logs it has a `fan`, too.
+        For a run or a log, names such as `angle`; for a campaign, names such as `distribution-gain_final`.
+        The names of a directory begin with that of the scenario; with logs it also has a `fan`.
 
     Raises:
         ValueError: There is nothing to draw, or no such metric.
@@ -83,13 +83,13 @@ def figures(source: Source, metrics: Sequence[str] = ()) -> list[str]:
 
 
 def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> Axes:
-    """Draw a panel of a figure on axes.
+    """Draw one panel of a figure on axes.
 
     Args:
-        source: What is drawn.
-        name: One of `figures(source)`; of a campaign also that of another metric, such as `scatter-duty`.
-        ax: Where; left out, on a figure of its own.
-        panel: Which of the figure's panels, from the top; `figure` draws all of them.
+        source: The source of the figure.
+        name: One of `figures(source)`; for a campaign also that of another metric, such as `scatter-duty`.
+        ax: The axes; if omitted, those of a new figure.
+        panel: The index of the panel in the figure, from the top; `figure` draws all of them.
 
     Returns:
         The axes, in SI units: `axes.plot(time_s, angle_rad)` adds to them.
@@ -117,9 +117,9 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
     """Draw a figure with all of its panels.
 
     Args:
-        source: What is drawn.
+        source: The source of the figure.
         name: One of `figures(source)`.
-        on: An empty figure or subfigure; left out, one of the size that the command's has.
+        on: An empty figure or subfigure; if omitted, a new one of the same size as that of the command.
 
     Returns:
         The figure; its `axes` are the panels, from the top.
