@@ -20,9 +20,9 @@ macro_rules! kinds {
             #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
             #[serde(deny_unknown_fields)]
             pub struct $name {
-                /// When it begins (s).
+                /// Start time (s).
                 pub from: Time,
-                /// When it ends (s); default: with the run.
+                /// End time (s); default: the end of the run.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub to: Option<Time>,
                 /// The axis of which it fails, on a body with three; default: of all.

@@ -43,7 +43,7 @@ pub struct Jets {
     /// Of `groups`, which of them act together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<Groups>,
-    /// Times at which they fail.
+    /// Intervals in which they fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

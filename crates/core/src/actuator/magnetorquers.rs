@@ -20,7 +20,7 @@ use crate::time::{Instant, Span};
 pub struct Magnetorquers {
     /// Largest magnetic moment along each axis (A m²): one number for all, or three.
     pub moment: Each<Positive>,
-    /// Times at which they fail.
+    /// Intervals in which they fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -22,7 +22,7 @@ pub struct Thrusters {
     /// Quantum of a pulse's length (s); 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
-    /// Times at which they fail.
+    /// Intervals in which they fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -24,7 +24,7 @@ pub enum Profile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ramp {
-    /// When it begins (s).
+    /// Start time (s).
     #[serde(default)]
     pub from: Time,
     /// How long it lasts (s).
