@@ -16,34 +16,34 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
-    /// The axis about which it acts, of a body with three.
+    /// Axis about which it acts, on a body with three.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<Axis>,
     /// Torque (N m).
     #[serde(default)]
     pub torque: Finite,
-    /// Sines of the time in the torque beside it, of a `[spacecraft]`.
+    /// Sine terms added to the torque, on a `[spacecraft]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sines: Vec<Sine>,
-    /// In place of a torque, on a body with three axes a force in its axes (N): a leak, a jet that is stuck, a push.
+    /// Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck jet, a push.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<[Finite; 3]>,
     /// Name of the point at which the force acts; default: the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
-    /// Spectral density of a white noise in the torque beside it ((N m)² s): each draw is held for `period`.
+    /// Spectral density of white noise added to the torque ((N m)² s); each draw is held for `period`.
     #[serde(default)]
     pub noise: NonNegative,
     /// Pulses in place of a steady torque or force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pulse: Option<Pulses>,
-    /// How long a draw of the noise is held (s).
+    /// Time for which a draw of the noise is held (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
-    /// When it begins (s).
+    /// Start time (s).
     #[serde(default)]
     pub from: Time,
-    /// When it ends (s); default: with the run.
+    /// End time (s); default: the end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<Time>,
 }
@@ -52,9 +52,9 @@ pub struct Disturbance {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pulses {
-    /// From the start of one pulse to that of the next (s).
+    /// Time from the start of one pulse to the start of the next (s).
     pub period: Span,
-    /// How long each lasts (s).
+    /// Duration of each pulse (s).
     pub on: Span,
 }
 

@@ -7,13 +7,13 @@ use crate::document::Fault;
 use crate::quantity::Time;
 use crate::time::{Instant, Span};
 
-/// How long a failure lasts.
+/// The interval of a failure.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Outage {
-    /// When it begins (s).
+    /// Start time (s).
     pub from: Time,
-    /// When it ends (s); default: with the run.
+    /// End time (s); default: the end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<Time>,
 }

@@ -18,15 +18,15 @@ use crate::random::Stream;
 pub enum Distribution {
     /// Uniform between two values.
     Uniform([Finite; 2]),
-    /// Uniform in the logarithm between two positive values.
+    /// Log-uniform between two positive values.
     LogUniform([Positive; 2]),
     /// Normal with this mean and standard deviation.
     Normal(Normal),
-    /// The scenario's own value, times a factor uniform on 1 - this to 1 + this.
+    /// The scenario's own value times a factor that is uniform between 1 - this and 1 + this.
     RelativeUniform(Positive),
-    /// The scenario's own value, times a normal factor of mean 1 and this standard deviation.
+    /// The scenario's own value times a normal factor with mean 1 and this standard deviation.
     RelativeNormal(Positive),
-    /// One of these values, each as likely.
+    /// One of these values, with equal probability.
     Choice(Vec<Finite>),
 }
 

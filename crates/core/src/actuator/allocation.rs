@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
 
-/// Which of all torques of wheels that give what is wanted are taken.
+/// How the demanded torque is distributed over the wheels.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Choice {
-    /// Those with the least sum of squares, by the pseudo-inverse.
+    /// Smallest sum of squared wheel torques, by the pseudo-inverse.
     #[default]
     PseudoInverse,
-    /// Those of which the largest is least: more torque about most axes, and more reversals of wheels.
+    /// Smallest largest wheel torque: more torque about most axes, but more reversals of the wheels.
     LeastLargest,
 }
 

@@ -20,18 +20,18 @@ macro_rules! kinds {
             #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
             #[serde(deny_unknown_fields)]
             pub struct $name {
-                /// When it begins (s).
+                /// Start time (s).
                 pub from: Time,
-                /// When it ends (s); default: with the run.
+                /// End time (s); default: the end of the run.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub to: Option<Time>,
-                /// The axis of which it fails, on a body with three; default: of all.
+                /// Axis that fails, on a body with three; default: all.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub about: Option<Axis>,
-                /// The wheel that fails, counted from 1; default: all do.
+                /// Wheel that fails, counted from 1; default: all.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub wheel: Option<NonZeroU32>,
-                /// The thruster that fails, of jets; default: all do.
+                /// Thruster of `jets` that fails; default: all.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub thruster: Option<String>,
                 $($(#[$meta])* pub $field: $of),*
@@ -77,13 +77,13 @@ kinds! {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Failure {
-    /// It gives nothing.
+    /// No output.
     Dead(Dead),
-    /// It gives a part of what it should.
+    /// A fraction of the commanded output.
     Scaled(Scaled),
-    /// It gives the same all the time.
+    /// A constant output, whatever the command.
     Stuck(Stuck),
-    /// It gives something beside what it should.
+    /// An error added to the commanded output.
     Added(Added),
 }
 

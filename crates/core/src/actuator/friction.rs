@@ -7,17 +7,17 @@ use super::per_wheel::PerWheel;
 use crate::document::Fault;
 use crate::quantity::NonNegative;
 
-/// Friction: c Omega + t sgn Omega of a wheel that turns, and up to its breakaway torque of one at rest.
+/// Bearing friction: c Omega + t sgn Omega for a turning wheel, and up to the breakaway torque for a wheel at rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Friction {
-    /// Coulomb friction t (N m), of each or of all.
+    /// Coulomb friction t (N m): one number for all wheels, or one for each.
     #[serde(default)]
     pub coulomb: PerWheel<NonNegative>,
-    /// Viscous friction c (N m s/rad), of each or of all.
+    /// Viscous friction c (N m s/rad): one number for all wheels, or one for each.
     #[serde(default)]
     pub viscous: PerWheel<NonNegative>,
-    /// Torque up to which the bearing holds a wheel at rest (N m); default: that of Coulomb.
+    /// Torque up to which the bearing holds a wheel at rest (N m); default: the Coulomb friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breakaway: Option<PerWheel<NonNegative>>,
 }

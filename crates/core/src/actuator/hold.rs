@@ -12,7 +12,7 @@ use crate::time::{Instant, Span};
 pub struct ZeroOrderHold {
     /// Period (s).
     pub period: Span,
-    /// Times at which it fails.
+    /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -14,7 +14,7 @@ use crate::waveform::Waveform;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ideal {
-    /// Times at which it fails.
+    /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -11,29 +11,29 @@ use crate::document::Fault;
 use crate::motion::turning::{Flexible, Line};
 use crate::quantity::{Finite, NonNegative, Positive};
 
-/// Imbalance of wheels, as the body feels it at their speed Omega and angle th.
+/// Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th.
 ///
 /// Each force and torque is its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1 is z x a of the
 /// wheel's axis a, or x of one along z, and e2 is a x e1.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Imbalance {
-    /// Static imbalance (kg m), of each or of all: the force once a turn.
+    /// Static imbalance (kg m): the force once per turn; one number for all wheels, or one for each.
     #[serde(default, rename = "static")]
     pub static_: PerWheel<NonNegative>,
-    /// Dynamic imbalance (kg m²), of each or of all: the torque once a turn.
+    /// Dynamic imbalance (kg m²): the torque once per turn; one number for all wheels, or one for each.
     #[serde(default)]
     pub dynamic: PerWheel<NonNegative>,
-    /// By how much the torque is ahead of the force (rad), of each or of all.
+    /// Phase lead of the torque over the force (rad); one number for all wheels, or one for each.
     #[serde(default)]
     pub phase: PerWheel<Finite>,
-    /// What there is beside once a turn, alike for all wheels.
+    /// Further harmonics of the speed, the same for all wheels.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub harmonics: Vec<Harmonic>,
-    /// The point of the structure at which the wheels are mounted; default: the first of the body's points.
+    /// Point of the structure at which the wheels are mounted; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
-    /// Where each wheel is, from that point (m); default: at it.
+    /// Position of each wheel relative to that point (m); default: at the point.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<[Finite; 3]>,
 }
@@ -42,15 +42,15 @@ pub struct Imbalance {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Harmonic {
-    /// Its order k: periods in a turn of the wheel, whole or not.
+    /// Order k: periods per turn of the wheel; it may be fractional.
     pub order: Positive,
-    /// The force across the axis for each (rad/s)² (kg m).
+    /// Force perpendicular to the axis per (rad/s)² (kg m).
     #[serde(default)]
     pub force: NonNegative,
-    /// The torque across the axis for each (rad/s)² (kg m²).
+    /// Torque perpendicular to the axis per (rad/s)² (kg m²).
     #[serde(default)]
     pub torque: NonNegative,
-    /// The force along the axis for each (rad/s)² (kg m), as cos(k th + phase).
+    /// Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase).
     #[serde(default)]
     pub axial: NonNegative,
     /// Its phase (rad).

@@ -29,33 +29,33 @@ pub struct Jets {
     pub period: Option<Span>,
     /// Specific impulse (s).
     pub specific_impulse: Positive,
-    /// Whole cycles from a command to its pulses: 0, or 1 where computing it takes a cycle.
+    /// Delay from a command to its pulses in whole cycles: 0, or 1 if computing it takes a cycle.
     #[serde(default)]
     pub delay: u32,
     /// The thrusters.
     pub thrusters: Vec<Thruster>,
-    /// How what is demanded becomes pulses.
+    /// How the demand is converted into pulses.
     #[serde(default, skip_serializing_if = "is_default")]
     pub allocation: Firing,
-    /// Of `least_propellant`, whether the forces of the pulses shall cancel.
+    /// For `least_propellant`: whether the forces of the pulses must cancel.
     #[serde(default, skip_serializing_if = "is_default")]
     pub force_free: bool,
-    /// Of `groups`, which of them act together.
+    /// For `groups`: the thrusters that act together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<Groups>,
-    /// Times at which they fail.
+    /// Intervals in which they fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }
 
-/// How what is demanded of jets becomes pulses.
+/// How the demand on the jets is converted into pulses.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Firing {
-    /// A pulse of one group for each axis.
+    /// One pulse per axis, by one group of thrusters.
     #[default]
     Groups,
-    /// A pulse of each thruster, as long as gives what is demanded with the least propellant.
+    /// One pulse per thruster, with the lengths that meet the demand with the least propellant.
     LeastPropellant,
 }
 
@@ -69,9 +69,9 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 pub struct Thruster {
     /// Name.
     pub name: String,
-    /// The point of the structure to which it is fixed.
+    /// Point of the structure on which it is mounted.
     pub point: String,
-    /// Its nozzle from there (m).
+    /// Position of its nozzle relative to that point (m).
     #[serde(default)]
     pub offset: [Finite; 3],
     /// Direction of the force on the body, of length 1.
@@ -96,9 +96,9 @@ pub struct Groups {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pair {
-    /// Those that push to positive rates.
+    /// Thrusters whose torque is positive.
     pub plus: Vec<String>,
-    /// Those that push to negative rates.
+    /// Thrusters whose torque is negative.
     pub minus: Vec<String>,
 }
 

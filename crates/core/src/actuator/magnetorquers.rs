@@ -18,9 +18,9 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Magnetorquers {
-    /// Largest magnetic moment along each axis (A m²): one number for all, or three.
+    /// Largest magnetic moment along each axis (A m²): one number for all axes, or a list of three.
     pub moment: Each<Positive>,
-    /// Times at which they fail.
+    /// Intervals in which they fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

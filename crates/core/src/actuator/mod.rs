@@ -60,16 +60,16 @@ pub use unloading::{Unloaded, Unloading};
 pub use wheel::{Opposes, Rotor, Wheel};
 pub use wheels::{Arrangement, Compensation, SpeedBias, Wheels};
 
-/// The kinds of actuator. Those of one angle act on a body with three axes about each.
+/// The kinds of actuator. On a body with three axes, an actuator for one angle acts about each of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", remote = "Self")]
 #[schemars(transform = written::or_a_word)]
 pub enum Actuator {
     /// The command itself, at every instant.
     Ideal(Ideal),
-    /// In each period the mean of what the manoeuvre commands over it, and the feedback at its start.
+    /// A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its start.
     Hold(ZeroOrderHold),
-    /// In each period one pulse of full torque, centred in it, with the impulse that a hold would have.
+    /// One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold.
     Thrusters(Thrusters),
     /// A flywheel on a motor with back-EMF.
     Wheel(Wheel),
@@ -77,9 +77,9 @@ pub enum Actuator {
     Wheels(Wheels),
     /// Thrusters at points of a spatial body.
     Jets(Jets),
-    /// Magnetic moments of a spatial body in the field of its planet.
+    /// Magnetorquers of a spatial body in the field of its planet.
     Magnetorquers(Magnetorquers),
-    /// An actuator from outside of this crate, which no scenario file can name.
+    /// An actuator from another crate; a scenario file cannot name it.
     Own(Own<dyn Effector>),
 }
 

@@ -8,11 +8,11 @@ use crate::axes::Each;
 use crate::quantity::{NonNegative, Positive};
 use crate::time::{Instant, Span};
 
-/// A pair of thrusters for each direction, modulated by the width of its pulses.
+/// A pair of thrusters for each direction, with pulse-width modulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Thrusters {
-    /// Torque of a pulse (N m); one, or one for each of three axes.
+    /// Torque of a pulse (N m): one number for all axes, or a list of three.
     pub torque: Each<Positive>,
     /// Period of the pulses (s).
     pub period: Span,
@@ -22,7 +22,7 @@ pub struct Thrusters {
     /// Quantum of a pulse's length (s); 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
-    /// Times at which they fail.
+    /// Intervals in which they fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

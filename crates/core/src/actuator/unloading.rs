@@ -12,27 +12,27 @@ use crate::quantity::{NonNegative, Positive};
 use crate::record;
 use crate::time::{Instant, Span};
 
-/// How wheels are unloaded: by jets or by magnetorquers.
+/// Unloading of the wheels by jets or by magnetorquers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Unloading {
-    /// Momentum of the wheels together beyond which it begins (N m s).
+    /// Total momentum of the wheels above which unloading begins (N m s).
     pub above: Positive,
-    /// Momentum below which it ends (N m s).
+    /// Total momentum below which it ends (N m s).
     pub below: NonNegative,
-    /// Largest mean torque of the jets about each axis over their cycles (N m), which the wheels take up meanwhile.
+    /// Largest mean torque of the jets about each axis over a cycle (N m), which the wheels counteract.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub torque: Option<Positive>,
-    /// The jets, with a period of their own and without a delay.
+    /// Jets for unloading, with their own period and without a delay.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub jets: Option<Jets>,
-    /// The magnetorquers.
+    /// Magnetorquers for unloading.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetorquers: Option<Magnetorquers>,
-    /// Of magnetorquers, the part of the momentum across the field that they take in a second (1/s).
+    /// For magnetorquers: the fraction of the momentum perpendicular to the field that they remove per second (1/s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<Positive>,
-    /// Of magnetorquers, the period of their commands (s).
+    /// For magnetorquers: the period of their commands (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
 }

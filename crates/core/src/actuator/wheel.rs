@@ -14,9 +14,9 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wheel {
-    /// Torque for each unit of the law's command (N m; k'_u of \[Wheel11, Sukhanov\] times the body's inertia).
+    /// Torque per unit of the law's command (N m; k'_u of \[Wheel11, Sukhanov\] times the body's inertia).
     pub gain: Positive,
-    /// Torque for each unit of the rate (N m s; k'_omega times the body's inertia).
+    /// Back-EMF torque per unit of the rate (N m s; k'_omega times the body's inertia).
     #[serde(default)]
     pub back_emf: NonNegative,
     /// The rate that the back-EMF opposes.
@@ -25,7 +25,7 @@ pub struct Wheel {
     /// The wheel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotor: Option<Rotor>,
-    /// Commands of less than this are not executed.
+    /// Commands smaller than this are not executed.
     #[serde(default)]
     pub dead_zone: NonNegative,
     /// Quantum of the command; 0 for none.
@@ -34,10 +34,10 @@ pub struct Wheel {
     /// Largest command; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
-    /// Time from a sample to the command that is computed from it (s).
+    /// Time from a sample to the execution of the command computed from it (s).
     #[serde(default)]
     pub delay: Time,
-    /// Times at which what its motor gives of a command fails; its back-EMF stays.
+    /// Intervals in which the motor fails to execute commands; its back-EMF still acts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }
@@ -46,10 +46,10 @@ pub struct Wheel {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Opposes {
-    /// The measured rate, elastic part included: so in the papers, which overstates the damping of the modes.
+    /// The measured rate, elastic part included, as in the papers; it overstates the damping of the modes.
     #[default]
     BodyRate,
-    /// The rigid rate: the momentum of the wheel is that which the body's torque gave it, exactly.
+    /// The rigid rate; the momentum of the wheel then agrees exactly with the torque on the body.
     RigidRate,
 }
 
@@ -62,7 +62,7 @@ pub struct Rotor {
     /// Speed at the start (rad/s).
     #[serde(default)]
     pub speed: Finite,
-    /// Largest speed (rad/s), at which no torque drives it further; no limit by default.
+    /// Largest speed (rad/s), beyond which the motor cannot accelerate it; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_limit: Option<Positive>,
 }

@@ -16,87 +16,87 @@ use crate::document::Fault;
 use crate::motion::turning::{Bearing, Flexible};
 use crate::quantity::{Finite, NonNegative, Positive};
 
-/// Reaction wheels, alike but for their axes and speeds at the start.
+/// Reaction wheels, identical except for their axes and initial speeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wheels {
-    /// How they are arranged; default: their `axes` are given.
+    /// Arrangement of the wheels; default: given by `axes`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arrangement: Option<Arrangement>,
-    /// Of a pyramid, the angle of each axis above the plane of x and y (rad); default: the one with equal torques about all
-    /// three axes, 0.6155 rad.
+    /// For a pyramid: angle of each axis above the xy plane (rad); default: 0.6155 rad, which gives equal torques about all
+    /// three axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cant: Option<Finite>,
-    /// The axis of each wheel in the body's axes, of any length.
+    /// Axis of each wheel in the body's axes, of any length.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<[Finite; 3]>,
-    /// Moment of inertia of each about its axis (kg m²).
+    /// Moment of inertia of each wheel about its axis (kg m²).
     pub inertia: Positive,
-    /// Largest torque of each motor (N m); no limit by default. A torque that asks more of one is made smaller as a
-    /// whole: it keeps its axis.
+    /// Largest torque of each motor (N m); no limit by default. If a demanded torque exceeds it, the whole torque is scaled
+    /// down and keeps its axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub torque: Option<Positive>,
-    /// Largest momentum of each about its axis (N m s), at which no torque drives it further; no limit by default.
+    /// Largest momentum of each wheel about its axis (N m s), beyond which its motor cannot accelerate it; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub momentum: Option<Positive>,
-    /// Largest speed of each (rad/s), at which no torque drives it further; no limit by default.
+    /// Largest speed of each wheel (rad/s), beyond which its motor cannot accelerate it; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_limit: Option<Positive>,
-    /// Speed of each at the start, relative to the body (rad/s); default: 0.
+    /// Speed of each wheel at the start, relative to the body (rad/s); default: 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub speeds: Vec<Finite>,
-    /// Friction in their bearings; none by default.
+    /// Friction of the bearings; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Box<Friction>>,
-    /// Torque that their drives add against friction, by the speeds that they know; none by default.
+    /// Friction compensation by the drives, from the speeds that they measure; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compensation: Option<Box<Compensation>>,
-    /// Imbalance; default: they have none.
+    /// Imbalance of the wheels; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imbalance: Option<Box<Imbalance>>,
-    /// Which of all torques that give what is wanted are taken.
+    /// How the demanded torque is distributed over the wheels.
     #[serde(default)]
     pub allocation: Choice,
-    /// Of four wheels, a speed that torques which cancel each other keep; none by default.
+    /// For four wheels: a bias speed, maintained by torques that cancel each other; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_bias: Option<SpeedBias>,
-    /// How jets or magnetorquers unload them; default: none do.
+    /// Unloading by jets or magnetorquers; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unloading: Option<Box<Unloading>>,
-    /// Times at which their motors fail.
+    /// Intervals in which their motors fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }
 
-/// What drives take the friction of their wheels to be.
+/// Friction of the wheels as the drives model it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Compensation {
-    /// Coulomb friction (N m), of each or of all.
+    /// Coulomb friction (N m): one number for all wheels, or one for each.
     #[serde(default)]
     pub coulomb: PerWheel<NonNegative>,
-    /// Viscous friction (N m s/rad), of each or of all.
+    /// Viscous friction (N m s/rad): one number for all wheels, or one for each.
     #[serde(default)]
     pub viscous: PerWheel<NonNegative>,
 }
 
-/// How wheels are arranged.
+/// Arrangement of wheels.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Arrangement {
     /// One each about x, y and z.
     Orthogonal,
-    /// Four, halfway between the axes x and y seen along z, and canted towards z.
+    /// Four wheels with axes midway between x and y as seen along z, canted towards z.
     Pyramid,
 }
 
-/// A speed at which four wheels turn beside what the torque asks of them, two one way and two the other.
+/// A bias speed of four wheels, two in one direction and two in the other, in addition to what the torque requires.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpeedBias {
-    /// The speed (rad/s), of the first one.
+    /// Bias speed of the first wheel (rad/s).
     pub speed: Finite,
-    /// How fast they are brought there (1/s).
+    /// Gain with which the wheels are brought to the bias speed (1/s).
     pub gain: Positive,
 }
 

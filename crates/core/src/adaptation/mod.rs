@@ -18,9 +18,9 @@ pub use random_search::{Decision, RandomSearch, Search, Step};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Adaptation {
-    /// Random search with learning, by the window means of the envelope.
+    /// Random search with learning, based on the window means of the envelope.
     RandomSearch(RandomSearch),
-    /// An adaptation from outside of this crate, which no scenario file can name.
+    /// An adaptation from another crate; a scenario file cannot name it.
     Own(Own<dyn Adapt>),
 }
 

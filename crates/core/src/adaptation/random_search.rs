@@ -17,12 +17,12 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSearch {
-    /// The number of the law that is tuned: `k_t` of a relay, `k_p` or `k_d` of a PD law.
+    /// Tuned parameter of the law: `k_t` of a relay, `k_p` or `k_d` of a PD law.
     #[serde(default = "k_t", skip_serializing_if = "is_k_t")]
     pub tunes: String,
     /// Largest move of the gain in one window, delta `k_t`.
     pub step: Positive,
-    /// The gain stays between these two.
+    /// Smallest and largest gain.
     pub bounds: [Finite; 2],
     /// A relative change of the mean below this counts as settled, `delta_0`.
     #[serde(default = "five_percent")]

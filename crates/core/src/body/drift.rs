@@ -12,24 +12,24 @@ pub const SERIES: usize = 21;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Profile {
-    /// From 1 on a straight line to another ratio, which holds from then on.
+    /// A linear change from 1 to another ratio, which then stays constant.
     Ramp(Ramp),
     /// 1 + amplitude (cos(2 pi (t + phase)/period) - cos(2 pi phase/period)): panels that follow the Sun on an orbit.
     Sinusoid(Sinusoid),
-    /// Straight lines between points, held before the first and after the last.
+    /// Linear interpolation between points, constant before the first and after the last.
     Table(Vec<Point>),
 }
 
-/// A straight change of the ratio.
+/// A linear change of the ratio.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ramp {
-    /// When it begins (s).
+    /// Start time (s).
     #[serde(default)]
     pub from: Time,
-    /// How long it lasts (s).
+    /// Duration (s).
     pub time: Positive,
-    /// The ratio after it.
+    /// The ratio afterwards.
     pub to: Positive,
 }
 
@@ -37,11 +37,11 @@ pub struct Ramp {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sinusoid {
-    /// Half of what lies between the smallest and the largest ratio.
+    /// Half the difference between the largest and the smallest ratio.
     pub amplitude: NonNegative,
     /// Period (s).
     pub period: Positive,
-    /// Time on the cosine at the start of the run (s).
+    /// Time shift of the cosine at the start of the run (s).
     #[serde(default)]
     pub phase: Finite,
 }
@@ -52,7 +52,7 @@ pub struct Sinusoid {
 pub struct Point {
     /// Time (s).
     pub time: Time,
-    /// Ratio there.
+    /// Ratio at that time.
     pub ratio: Positive,
 }
 
@@ -136,9 +136,9 @@ impl Profile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Drift {
-    /// All by one ratio.
+    /// All frequencies have one ratio.
     Common(Profile),
-    /// Each by its own, in the order of the modes.
+    /// Each frequency has its own ratio, in the order of the modes.
     Each(Vec<Profile>),
 }
 

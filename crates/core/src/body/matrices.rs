@@ -11,13 +11,13 @@ use crate::document::Fault;
 use crate::quantity::Finite;
 use crate::structure::{Matrix, Structure};
 
-/// A body by its matrices: M q'' + C q' + K q = Q, where one coordinate is the hub's angle.
+/// A body given by its matrices: M q'' + C q' + K q = Q, where one coordinate is the hub's angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Matrices {
     /// Mass matrix, symmetric and positive definite (kg m² for angles, kg for displacements).
     pub mass: Matrix,
-    /// Stiffness matrix, symmetric, without strain in the rotation only (N m/rad for angles, N/m for displacements).
+    /// Stiffness matrix, symmetric; only the rigid rotation is free of strain (N m/rad for angles, N/m for displacements).
     pub stiffness: Matrix,
     /// Names of the coordinates; default: `q0`, `q1` and so on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -25,21 +25,21 @@ pub struct Matrices {
     /// Index of the coordinate that is the hub's angle, counted from 0.
     #[serde(default)]
     pub hub: u32,
-    /// Displacement of each coordinate under a unit rigid rotation; default: only the hub's angle turns, and all other
-    /// coordinates are relative to it.
+    /// Displacement of each coordinate under a unit rigid rotation; default: 1 for the hub's angle and 0 for all other
+    /// coordinates, which are relative to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Vec<Finite>>,
-    /// What is commanded.
+    /// Quantity that the actuator commands.
     #[serde(default)]
     pub drive: Drive,
-    /// Damping ratio of all modes, or one for each that is kept.
+    /// Damping ratio of all modes, or a list with one for each mode that is kept.
     #[serde(default)]
     pub damping: Damping,
-    /// Damping matrix, symmetric, without resistance to the rotation (N m s/rad for angles, N s/m for displacements); it
-    /// adds to those ratios, and may couple the modes.
+    /// Damping matrix, symmetric, without resistance to the rigid rotation (N m s/rad for angles, N s/m for displacements).
+    /// It adds to the damping ratios and may couple the modes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_matrix: Option<Matrix>,
-    /// How many of the lowest modes are kept; default: all up to 1e3 rad/s.
+    /// Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<u32>,
     /// Rigid angle at the start (rad).
@@ -48,7 +48,7 @@ pub struct Matrices {
     /// Rigid rate at the start (rad/s).
     #[serde(default)]
     pub rate: Finite,
-    /// Sums of coordinates that are observed beside the hub's angle.
+    /// Sums of coordinates that are observed in addition to the hub's angle.
     #[serde(default)]
     pub outputs: Vec<Sum>,
 }

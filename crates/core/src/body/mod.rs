@@ -60,9 +60,9 @@ pub enum Body {
     Matrices(Matrices),
     /// A hub with panels of hinged sections.
     Panels(Panels),
-    /// Three axes, and modes with shapes at points of the structure.
+    /// Three axes, and elastic modes with shapes at points of the structure.
     Spatial(Spatial),
-    /// What `[spacecraft]` and `[[appendage]]` come to, which are not written here.
+    /// The body built from `[spacecraft]` and `[[appendage]]`, which are keys of their own.
     #[serde(skip)]
     Spacecraft(Box<Craft>),
 }

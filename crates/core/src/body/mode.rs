@@ -8,13 +8,13 @@ use crate::numerics::phasor::Phasor;
 use crate::numerics::trig::sincos_any;
 use crate::quantity::{Finite, Frequency, NonNegative};
 
-/// An elastic mode as a scenario describes it (\[Silaev\], equation (1), with damping added).
+/// An elastic mode (\[Silaev\], equation (1), with damping added).
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mode {
     /// Natural frequency w (rad/s).
     pub frequency: Frequency,
-    /// Modal gain k: modal acceleration for each unit of the rigid body's.
+    /// Modal gain k: modal acceleration per unit of rigid acceleration.
     pub gain: Finite,
     /// Damping ratio zeta: 0 undamped, 1 critical.
     #[serde(default)]

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::motion::State;
 use crate::quantity::Finite;
 
-/// A coordinate that is observed beside the hub's angle: y = rigid x_r + sum modes\[i\] x_i.
+/// A coordinate that is observed in addition to the hub's angle: y = rigid x_r + sum modes\[i\] x_i.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {

@@ -35,19 +35,19 @@ pub struct Panels {
     pub count: u32,
     /// Sections of each panel, from the hub outwards.
     pub sections: Vec<Section>,
-    /// How the sections turn.
+    /// Kinematics of the sections.
     #[serde(default)]
     pub kinematics: Kinematics,
-    /// Error of each step of the exact kinematics (rad).
+    /// Error tolerance of each integration step of the exact kinematics (rad).
     #[serde(default = "tight")]
     pub tolerance: Tolerance,
-    /// What is commanded.
+    /// Quantity that the actuator commands.
     #[serde(default)]
     pub drive: Drive,
-    /// Damping ratio of all modes, or one for each that is kept.
+    /// Damping ratio of all modes, or a list with one for each mode that is kept.
     #[serde(default)]
     pub damping: Damping,
-    /// How many of the lowest modes are kept; default: all up to 1e3 rad/s.
+    /// Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<u32>,
     /// Rigid angle at the start (rad).
@@ -64,7 +64,7 @@ pub struct Panels {
 pub struct Section {
     /// Length l (m).
     pub length: Positive,
-    /// Mass for each unit of length m (kg/m).
+    /// Mass per unit length m (kg/m).
     pub mass_per_length: Positive,
     /// Mass mu lumped at the outer end (kg).
     #[serde(default)]
@@ -73,14 +73,14 @@ pub struct Section {
     pub hinge_stiffness: Positive,
 }
 
-/// How the sections turn.
+/// Kinematics of the sections.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kinematics {
-    /// By small angles relative to the hub: the motion has modes and a closed form.
+    /// Small angles relative to the hub: the motion has modes and a closed form.
     #[default]
     Linear,
-    /// By any angles: the motion is integrated. The modes are those of small angles.
+    /// Large angles: the motion is integrated. The modes are those of small angles.
     Exact,
 }
 

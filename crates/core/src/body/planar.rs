@@ -12,11 +12,11 @@ use crate::document::Fault;
 use crate::motion::State;
 use crate::quantity::{Finite, Positive};
 
-/// A planar body as a scenario describes it.
+/// A planar body: one angle and elastic modes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Planar {
-    /// Moment of inertia (kg m²). By default, it is 1, and every torque is a reduced moment (rad/s²).
+    /// Moment of inertia (kg m²); default: 1, and every torque is a reduced moment (rad/s²).
     #[serde(default = "unit")]
     pub inertia: Positive,
     /// Rigid angle at the start (rad).
@@ -25,29 +25,29 @@ pub struct Planar {
     /// Rigid rate at the start (rad/s).
     #[serde(default)]
     pub rate: Finite,
-    /// What is commanded.
+    /// Quantity that the actuator commands.
     #[serde(default)]
     pub drive: Drive,
-    /// Damping that couples the modes, beside their own ratios (1/s): x_i'' has also -sum_j `damping_matrix`\[i\]\[j\] x_j'.
+    /// Damping that couples the modes (1/s): it adds -sum_j `damping_matrix`\[i\]\[j\] x_j' to x_i'', beside the damping ratios.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub damping_matrix: Vec<Vec<Finite>>,
     /// Elastic modes.
     #[serde(default)]
     pub modes: Vec<Mode>,
-    /// Coordinates that are observed beside the hub's angle.
+    /// Coordinates that are observed in addition to the hub's angle.
     #[serde(default)]
     pub outputs: Vec<Output>,
 }
 
-/// What is commanded.
+/// Quantity that the actuator commands.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Drive {
-    /// A torque (N m): the modes are those of the free body, and show in the hub's angle.
+    /// A torque (N m): the modes are those of the free body and contribute to the hub's angle.
     #[default]
     Torque,
-    /// The hub's own motion, as an acceleration (rad/s²): the modes are those of the body clamped at the hub, and do
-    /// not show in the hub's angle (\[Rotation\], equations (17) and (18)).
+    /// The hub's own motion, as an acceleration (rad/s²): the modes are those of the body clamped at the hub and do not
+    /// contribute to the hub's angle (\[Rotation\], equations (17) and (18)).
     Motion,
 }
 

@@ -19,8 +19,8 @@ use crate::quantity::{Finite, Positive};
 pub struct Dipole {
     /// Magnetic moment of the body (A m²), in its axes.
     pub moment: [Finite; 3],
-    /// Field over the magnetic equator at the radius R of a circular orbit (T), mu/R³: around the Earth mu is 7.8e15 T m³; left
-    /// out, the environment's magnetic field counts.
+    /// Field over the magnetic equator at the radius R of a circular orbit (T), mu/R³; for the Earth mu is 7.8e15 T m³.
+    /// Default: the environment's magnetic field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<Positive>,
     /// Inclination of that orbit to the magnetic equator (rad).
@@ -32,7 +32,7 @@ pub struct Dipole {
     /// Rate of that orbit (rad/s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orbit_rate: Option<Positive>,
-    /// How the local axes lie at the start, as of a gravity gradient.
+    /// Orientation of the local axes at the start, as for a gravity gradient.
     #[serde(default, skip_serializing_if = "Attitude::is_identity")]
     pub local: Attitude,
 }

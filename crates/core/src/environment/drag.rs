@@ -19,20 +19,20 @@ use crate::quantity::{Finite, Positive};
 pub struct Drag {
     /// Density at a distance of the orbit's semi-major axis (kg/m³).
     pub density: Positive,
-    /// Height in which it falls to 1/e (m); default: it is the same everywhere.
+    /// Scale height, in which the density falls to 1/e (m); default: the density is uniform.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale_height: Option<Positive>,
     /// Drag coefficient.
     #[serde(default = "coefficient")]
     pub coefficient: Positive,
-    /// How fast the atmosphere turns with the planet (rad/s); default: as the Earth does.
+    /// Rotation rate of the atmosphere with the planet (rad/s); default: the Earth's.
     #[serde(default = "rotation")]
     pub rotation: Finite,
     /// The plates.
     pub plates: Vec<Plate>,
 }
 
-/// A plate, of which one side counts.
+/// A plate; drag acts on one side of it.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plate {
@@ -40,7 +40,7 @@ pub struct Plate {
     pub area: Positive,
     /// Its outward normal in the body's axes, of any length.
     pub normal: [Finite; 3],
-    /// Its middle (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
+    /// Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
     pub at: [Finite; 3],
 }
 

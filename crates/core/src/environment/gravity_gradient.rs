@@ -18,11 +18,11 @@ use crate::quantity::Positive;
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GravityGradient {
-    /// Rate of a circular orbit (rad/s); default: the environment's orbit counts.
+    /// Rate of a circular orbit (rad/s); default: the environment's orbit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orbit_rate: Option<Positive>,
-    /// How the local axes of that orbit lie at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the local axes (x
-    /// along the velocity, y against the orbit's normal, z nadir) into inertial ones; default: they are the inertial ones then.
+    /// Orientation of that orbit's local axes at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the local
+    /// axes (x along the velocity, y against the orbit's normal, z nadir) into inertial ones; default: the inertial axes.
     #[serde(default, skip_serializing_if = "Attitude::is_identity")]
     pub local: Attitude,
 }

@@ -17,7 +17,7 @@ use crate::quantity::{Finite, NonNegative, Positive};
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Kepler {
-    /// Semi-major axis (m), of a circular orbit its radius.
+    /// Semi-major axis (m); for a circular orbit, its radius.
     pub semi_major_axis: Positive,
     /// Eccentricity.
     #[serde(default)]
@@ -31,13 +31,13 @@ pub struct Kepler {
     /// Angle from the node to the perigee (rad).
     #[serde(default)]
     pub perigee: Finite,
-    /// Mean anomaly at the start (rad), of a circular orbit the angle from the perigee.
+    /// Mean anomaly at the start (rad); for a circular orbit, the angle from the perigee.
     #[serde(default)]
     pub anomaly: Finite,
-    /// The planet's gravity (m³/s²); default: the Earth's.
+    /// Gravitational parameter of the planet (m³/s²); default: the Earth's.
     #[serde(default = "earth_gravity")]
     pub gravity: Positive,
-    /// Radius of the planet (m), which throws the shadow; default: the Earth's at its equator.
+    /// Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
     #[serde(default = "earth_radius")]
     pub planet_radius: Positive,
 }

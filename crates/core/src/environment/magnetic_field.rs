@@ -10,14 +10,14 @@ use crate::quantity::{Finite, Positive};
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MagneticField {
-    /// The first coefficients g11, h11 and g10 of the field (T), a vector in axes that turn with the planet: z along its axis, x
-    /// through its meridian 0; default: the Earth's of IGRF-13 for 2020.
+    /// Coefficients g11, h11 and g10 of the field (T), a vector in axes that rotate with the planet: z along its axis, x
+    /// through its prime meridian; default: the Earth's from IGRF-13 for 2020.
     pub coefficients: [Finite; 3],
-    /// The radius a at which they are (m); default: the Earth's mean one.
+    /// Reference radius a of the coefficients (m); default: the Earth's mean radius.
     pub radius: Positive,
-    /// How fast the planet turns (rad/s); default: the Earth's.
+    /// Rotation rate of the planet (rad/s); default: the Earth's.
     pub rotation: Finite,
-    /// Angle from the inertial x to the meridian 0 at the start (rad).
+    /// Angle from the inertial x to the prime meridian at the start (rad).
     pub meridian: Finite,
 }
 

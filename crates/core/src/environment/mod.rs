@@ -30,17 +30,17 @@ pub use sky::{Seen, Sky};
 pub use solar_pressure::SolarPressure;
 pub use sun::Sun;
 
-/// What surrounds a body with three axes. The torques add up.
+/// The environment of a body with three axes. Its torques add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Environment {
-    /// The orbit on which the body is; default: there is none, or one of those below.
+    /// Orbit of the body; default: none, or the one given with a torque below.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orbit: Option<Kepler>,
     /// The magnetic field of the orbit's planet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetic_field: Option<MagneticField>,
-    /// The direction to the Sun in inertial axes, of any length, or by the date of the start; the orbit's planet throws a shadow.
+    /// Direction to the Sun in inertial axes, of any length, or from the date of the start; the orbit's planet casts a shadow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sun: Option<Sun>,
     /// Gravity gradient of a circular orbit.

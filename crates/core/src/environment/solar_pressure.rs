@@ -13,9 +13,9 @@ use crate::time::{Instant, Span};
 pub struct SolarPressure {
     /// The force (N), in inertial axes.
     pub force: [Finite; 3],
-    /// Where it acts, the centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
+    /// Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
     pub at: [Finite; 3],
-    /// When there is none, \[from, to\] (s): the body is in shadow, beside that of the orbit's planet.
+    /// Intervals \[from, to\] without sunlight (s), in addition to the shadow of the orbit's planet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shadow: Vec<[Time; 2]>,
 }

@@ -14,21 +14,21 @@ use crate::numerics::swing_integral;
 use crate::numerics::trig::sincos_any;
 use crate::time::{Instant, Span};
 
-/// An envelope monitor as a scenario describes it.
+/// An envelope monitor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Envelope {
-    /// How the phasors are followed.
+    /// How the phasors are computed.
     #[serde(default)]
     pub form: Form,
     /// Length of the windows over which the envelope is averaged (s).
     pub window: Span,
-    /// The modes of the monitor's model; default: they are the body's own.
+    /// Modes of the monitor's model; default: the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
 }
 
-/// How the phasors are followed. All forms agree to rounding as long as the model is right.
+/// How the phasors are computed. All forms agree to rounding if the model is right.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
@@ -37,7 +37,7 @@ pub enum Form {
     Dynamic,
     /// Trigonometric: each switching of the torque adds one phasor.
     Trigonometric,
-    /// Read from the body itself: what an ideal observer would see.
+    /// From the true state of the body, as an ideal observer gives it.
     Truth,
 }
 

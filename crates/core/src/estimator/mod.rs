@@ -44,19 +44,19 @@ pub enum Estimator {
     Envelope(Envelope),
     /// The true dominant mode, as an ideal observer gives it.
     Truth(Truth),
-    /// The motion, by a Kalman filter with constant natural frequencies.
+    /// A Kalman filter of the motion, with constant natural frequencies.
     Kalman(Kalman),
-    /// The motion and the natural frequencies, by an extended Kalman filter.
+    /// An extended Kalman filter of the motion and the natural frequencies.
     ExtendedKalman(FrequencyTracking),
-    /// The same by an unscented Kalman filter.
+    /// An unscented Kalman filter of the motion and the natural frequencies.
     UnscentedKalman(FrequencyTracking),
-    /// Attitude and gyro bias of a spatial body, by a multiplicative extended Kalman filter.
+    /// A multiplicative extended Kalman filter of the attitude and gyro bias of a spatial body.
     Attitude(AttitudeFilter),
     /// The rigid rates of a spatial body.
     RigidRate(RigidRate),
-    /// The rigid rates and elastic modes of a spatial body, by adaptive observers.
+    /// Adaptive observers of the rigid rates and elastic modes of a spatial body.
     Adaptive(Box<Adaptive>),
-    /// An estimator from outside of this crate, which no scenario file can name.
+    /// An estimator from another crate; a scenario file cannot name it.
     Own(Own<dyn Observe>),
 }
 
@@ -71,12 +71,12 @@ pub trait Observe: Send + Sync {
     }
 }
 
-/// What an ideal observer knows.
+/// An ideal observer.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Truth {
-    /// What the law reads of it beside the dominant mode: `modes` for angle and rate as measured, `hub`, or `rigid`; left
-    /// out, `modes` for a law that reads the dominant mode, else `hub`.
+    /// Angle and rate that the law reads in addition to the dominant mode: `modes` for the measured ones, `hub`, or `rigid`;
+    /// default: `modes` for a law that reads the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feeds: Option<Feeds>,
 }
@@ -213,15 +213,15 @@ pub fn start(known: &Known<'_>, seed: Seed) -> Box<dyn Estimate> {
     }
 }
 
-/// What a filter writes into the belief beside the dominant mode.
+/// Estimates that the law reads in addition to the dominant mode.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Feeds {
-    /// Nothing: angle and rate are as measured.
+    /// None: angle and rate are as measured.
     Modes,
     /// Angle and rate of the hub, elastic part included.
     Hub,
-    /// Angle and rate of the body as if it were rigid.
+    /// The rigid angle and rate.
     Rigid,
 }
 

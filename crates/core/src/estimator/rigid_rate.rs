@@ -16,9 +16,9 @@ use crate::time::Instant;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidRate {
-    /// Part l of the innovation by which each sample corrects the rate.
+    /// Fraction l of the innovation by which each sample corrects the rate.
     pub correction: Fraction,
-    /// What the rates are believed to be before the first sample (rad/s).
+    /// Estimated rates before the first sample (rad/s).
     #[serde(default)]
     pub rate: Each<Finite>,
 }

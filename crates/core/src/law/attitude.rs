@@ -27,19 +27,19 @@ pub struct AttitudeLaw {
     /// Damping ratio zeta of the error.
     #[serde(default = "damping")]
     pub damping: Positive,
-    /// The inertia tensor that the law takes a body with three axes to have (kg m²), row by row; default: that which it has.
+    /// Inertia tensor in the law's model of a body with three axes (kg m²), row by row; default: the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertia: Option<[[Finite; 3]; 3]>,
-    /// How a rotation counts as an error, on a body with three axes.
+    /// How a rotation is converted into an error, on a body with three axes.
     #[serde(default, skip_serializing_if = "Measure::is_default")]
     pub error: Measure,
-    /// The integral of the error; none by default.
+    /// Integral of the error; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integral: Option<Integral>,
-    /// Largest rate at which an error is taken back (rad/s); no limit by default.
+    /// Largest rate at which an error is corrected (rad/s); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_limit: Option<Positive>,
-    /// What the fed-back acceleration goes through, in this order.
+    /// Filters of the fed-back acceleration, applied in this order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub filters: Vec<Filter>,
 }
@@ -50,8 +50,8 @@ pub struct AttitudeLaw {
 pub struct Integral {
     /// Its time constant t (s).
     pub time: Positive,
-    /// Largest integral (rad s). It stands still as well while the torque or the rate is at its limit and the error would make
-    /// it larger.
+    /// Largest integral (rad s). The integral also stops while the torque or the rate is at its limit and the error would
+    /// increase it.
     pub limit: Positive,
 }
 

@@ -18,7 +18,7 @@ use crate::time::{Instant, Span};
 pub struct BDot {
     /// Period of its commands (s).
     pub period: Span,
-    /// Moment for each unit of the change of the field (A m² s/T).
+    /// Magnetic moment per unit rate of change of the field (A m² s/T).
     pub gain: Positive,
 }
 

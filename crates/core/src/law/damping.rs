@@ -29,17 +29,17 @@ const CYCLES: f64 = 2.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ActiveDamping {
-    /// Elastic rates beyond which the jets push, about each axis (rad/s); default: 1.5 times the amplitude of the limit
-    /// cycle that the delay makes, and at least what two whole cycles change, of the mode that a long burn excites most.
+    /// Elastic rate about each axis above which the jets fire (rad/s); default, for the mode that a long burn excites most:
+    /// 1.5 times the amplitude of the limit cycle due to the delay, and at least the change by two whole cycles of firing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<[Positive; 3]>,
-    /// Part of the threshold at which they end.
+    /// Fraction of the threshold at which they stop.
     pub release: Fraction,
-    /// Whether a pulse is no longer than it takes to stop the elastic motion; else it fills the cycle.
+    /// Whether a pulse is only as long as it takes to stop the elastic motion; otherwise it fills the cycle.
     pub pulse_width: bool,
-    /// Whether the elastic rate is predicted to the middle of the coming pulse.
+    /// Whether the elastic rate is predicted for the middle of the next pulse.
     pub predictor: bool,
-    /// What keeps it from doing harm.
+    /// Guards against exciting the motion.
     pub guards: DampingGuards,
 }
 
@@ -48,13 +48,13 @@ pub struct ActiveDamping {
 #[serde(deny_unknown_fields, default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a key that stands alone")]
 pub struct DampingGuards {
-    /// No pulse that would kick the rigid motion out of the dead zone.
+    /// Suppress pulses that would drive the rigid motion out of the dead zone.
     pub dead_zone: bool,
-    /// Without the predictor, only modes whose phase factor is 0.5 or more.
+    /// Without the predictor, damp only modes whose phase factor is at least 0.5.
     pub eligibility: bool,
-    /// Only while the observer's innovations are small.
+    /// Act only while the innovations of the observer are small.
     pub residual: bool,
-    /// A pause where the pushes do not help.
+    /// Pause active damping when the pulses do not help.
     pub watchdog: bool,
 }
 

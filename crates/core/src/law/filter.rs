@@ -17,19 +17,19 @@ pub enum Filter {
     LowPass(LowPass),
     /// (1 + s/zero)/(1 + s/pole): a lead with the zero below the pole, else a lag.
     Lead(Lead),
-    /// b0 + b1/z + b2/z² over 1 + a1/z + a2/z², as they are.
+    /// (b0 + b1/z + b2/z²)/(1 + a1/z + a2/z²), with the coefficients as given.
     Biquad(Coefficients),
 }
 
-/// A notch: its gain is 1 far from a frequency, and small there.
+/// A notch: its gain is small at one frequency, and 1 far from it.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Notch {
     /// The frequency w (rad/s).
     pub frequency: Positive,
-    /// The gain there, below 1.
+    /// Gain at that frequency, below 1.
     pub depth: NonNegative,
-    /// The damping ratio zeta of the denominator: the notch is the wider the larger it is.
+    /// Damping ratio zeta of the denominator; a larger one makes the notch wider.
     #[serde(default = "wide")]
     pub damping: Positive,
 }

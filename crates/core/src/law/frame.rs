@@ -10,14 +10,14 @@ use crate::document::Fault;
 use crate::environment::Sky;
 use crate::manoeuvre::Pose;
 
-/// The axes that a target's attitude is from.
+/// Frame relative to which a target's attitude is given.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Frame {
     /// Inertial axes.
     #[default]
     Inertial,
-    /// The local axes of the orbit: z to the planet's centre, y against the orbit's normal, x ahead. They turn with the orbit.
+    /// The local axes of the orbit: z to the planet's centre, y against the orbit's normal, x ahead. They rotate with the orbit.
     Nadir,
     /// z to the Sun, x in the plane of the Sun and the planet's axis.
     Sun,

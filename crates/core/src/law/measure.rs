@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::belief::Belief;
 
-/// How the rotation by an angle a from the target counts. For small angles both are the angle.
+/// How a rotation by an angle a from the target is converted into an error. For small angles both equal the angle.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
-    /// 2 sin(a/2): twice the vector of the quaternion.
+    /// 2 sin(a/2): twice the vector part of the quaternion.
     #[default]
     Quaternion,
     /// 4 tan(a/4): four times the modified Rodrigues parameters.

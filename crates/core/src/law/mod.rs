@@ -62,23 +62,23 @@ pub use switching_lines::{SwitchingLines, band};
 pub enum Law {
     /// Relay with dead zone, hysteresis and a timed brake.
     Relay(Relay),
-    /// Sampled proportional and derivative feedback of the angle.
+    /// Sampled proportional-derivative feedback of the angle.
     Pd(Pd),
     /// Sampled feedback of the attitude, as an acceleration.
     Attitude(AttitudeLaw),
-    /// A sampled compensator, by its matrices.
+    /// A sampled compensator, given by its matrices.
     StateSpace(StateSpace),
-    /// None: what a scenario with a manoeuvre has by default.
+    /// No law: the default of a scenario with a manoeuvre.
     Open(Open),
-    /// A relay in the phase plane, with pulses of measured length.
+    /// A relay in the phase plane, with pulses of computed length.
     PhasePlane(PhasePlane),
-    /// A law of its own about each of three axes.
+    /// A separate law about each of three axes.
     PerAxis(Box<PerAxis>),
-    /// Magnetic moments against the change of the field, of a body that tumbles.
+    /// Magnetic moments against the measured change of the field, to detumble a body.
     BDot(BDot),
-    /// Laws one after the other.
+    /// Laws that act one after the other.
     Stages(Stages),
-    /// A law from outside of this crate, which no scenario file can name.
+    /// A law from another crate; a scenario file cannot name it.
     Own(Own<dyn Rule + Send + Sync>),
 }
 

@@ -15,7 +15,7 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pd {
-    /// Proportional gain (N m/rad; for a wheel, units of its command for each rad).
+    /// Proportional gain (N m/rad; for a wheel, units of its command per rad).
     pub k_p: NonNegative,
     /// Derivative gain (N m s/rad; without the second where the difference is raw).
     pub k_d: NonNegative,
@@ -24,16 +24,16 @@ pub struct Pd {
     /// How the derivative is taken.
     #[serde(default)]
     pub differentiation: Differentiation,
-    /// How a rotation counts as an error, on a body with three axes.
+    /// How a rotation is converted into an error, on a body with three axes.
     #[serde(default, skip_serializing_if = "Measure::is_default")]
     pub error: Measure,
-    /// The extra loop over the dominant mode.
+    /// Extra loop on the dominant mode.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extra: Option<Extra>,
     /// Largest torque (N m); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
-    /// Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends.
+    /// Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the manoeuvre.
     #[serde(default, skip_serializing_if = "is_false")]
     pub track: bool,
     #[serde(skip)]
@@ -53,20 +53,20 @@ pub enum Differentiation {
     /// The measured rate.
     #[default]
     Exact,
-    /// The difference of two samples over their period.
+    /// The difference of two samples divided by their period.
     Difference,
     /// The difference of two samples: the derivative gain then has the unit of the proportional one.
     Raw,
 }
 
-/// The extra loop over the dominant mode: its gain is k_d of the papers.
+/// The extra loop on the dominant mode; its gain is k_d of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Extra {
     /// A constant gain.
     Gain(Finite),
-    /// A gain that follows the estimated frequency: straight lines between points, held before the first and after the
-    /// last.
+    /// A gain scheduled by the estimated frequency: linear interpolation between points, constant before the first and after
+    /// the last.
     Schedule(Vec<ScheduledGain>),
 }
 
@@ -76,7 +76,7 @@ pub enum Extra {
 pub struct ScheduledGain {
     /// Frequency of the dominant mode (rad/s).
     pub frequency: Positive,
-    /// Gain there.
+    /// Gain at that frequency.
     pub gain: Finite,
 }
 

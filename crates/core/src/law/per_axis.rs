@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{Authority, Control, Law, Promise, Reads, Rule};
 use crate::time::Span;
 
-/// Laws of one angle, lifted to three axes.
+/// A law of one angle for each of three axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PerAxis {

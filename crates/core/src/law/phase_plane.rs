@@ -25,25 +25,25 @@ use crate::time::{Instant, Span};
 pub struct PhasePlane {
     /// Cycle of gyro, estimator, law and jets (s).
     pub period: Span,
-    /// Half width of the angles that are left alone (rad).
+    /// Half width of the dead zone (rad).
     pub dead_zone: Positive,
     /// Largest rate at which the law turns the body (rad/s).
     pub rate_limit: Positive,
-    /// Largest rate of the return for each unit of the angle beyond the dead zone (1/s).
+    /// Largest return rate per unit of the angle beyond the dead zone (1/s).
     #[serde(default = "slope")]
     pub slope: Positive,
-    /// Part of the jets' acceleration that slowing down may take.
+    /// Fraction of the jets' acceleration used for slowing down.
     #[serde(default = "half")]
     pub braking: Fraction,
-    /// The jets begin to fire where the rate is further than this from where it should be (rad/s), near and beyond the
-    /// edges of the dead zone where it is less far.
+    /// Rate error above which the jets begin to fire (rad/s); near and beyond the edges of the dead zone they begin at a
+    /// smaller one.
     pub switch_on: Positive,
-    /// They end where it is nearer than this (rad/s), at which rate the body returns at least.
+    /// Rate error below which they stop (rad/s); it is also the smallest return rate.
     pub switch_off: Positive,
-    /// Attitudes to turn to, in the order of their times; before the first it is the inertial one.
+    /// Target attitudes, in the order of their times; before the first one, the target is the inertial axes.
     #[serde(default)]
     pub targets: Vec<Target>,
-    /// What the jets do against elastic motion while they have nothing else to do; default: nothing.
+    /// Active damping of elastic motion while the rigid motion needs no jets; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<ActiveDamping>,
 }
@@ -56,13 +56,13 @@ fn half() -> Fraction {
     Fraction::HALF
 }
 
-/// An attitude to turn to: yaw, then pitch about the turned axis, then roll about the one turned twice.
+/// A target attitude: yaw, then pitch about the rotated y axis, then roll about the twice rotated x axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Target {
-    /// From when on (s).
+    /// Start time (s).
     pub from: Time,
-    /// The axes that its attitude is from.
+    /// Frame relative to which the attitude is given.
     #[serde(default, skip_serializing_if = "is_inertial")]
     pub frame: Frame,
     /// Roll (rad).
@@ -74,25 +74,25 @@ pub struct Target {
     /// Yaw (rad).
     #[serde(default)]
     pub yaw: Finite,
-    /// Largest acceleration of a turn about one axis to it (rad/s²); default: it is there at once.
+    /// Largest acceleration of the slew about one axis to it (rad/s²); default: the reference jumps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<Positive>,
-    /// Largest rate of that turn (rad/s); no limit by default.
+    /// Largest rate of the slew (rad/s); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_limit: Option<Positive>,
-    /// How the rate of that turn rises and falls.
+    /// How the rate of the slew rises and falls.
     #[serde(default, skip_serializing_if = "is_trapezoid")]
     pub profile: Profile,
-    /// In place of `acceleration`, a command planned for the turn, which may leave modes at rest.
+    /// Command planned for the slew, in place of `acceleration`; it may leave modes at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub command: Option<Planned>,
-    /// How long the turn by that command takes (s).
+    /// Duration of the slew by that command (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration: Option<Positive>,
-    /// What takes modes out of the turn: its acceleration is convolved with impulses.
+    /// Shaper that suppresses modes: the acceleration of the slew is convolved with impulses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shaper: Option<Shaper>,
-    /// In place of one attitude, a table in time: splines of roll, pitch and yaw, at rest at both ends.
+    /// Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at rest at both ends.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub table: Vec<AttitudeAt>,
 }

@@ -9,16 +9,16 @@ use crate::document::Fault;
 use crate::quantity::Time;
 use crate::time::{Instant, Span};
 
-/// Laws one after the other.
+/// Laws that act one after the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Stages(Vec<Stage>);
 
-/// A law that acts from a time on.
+/// A law that acts from a given time on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stage {
-    /// From when on (s); of the first 0.
+    /// Start time (s); 0 for the first stage.
     #[serde(default)]
     pub from: Time,
     /// The law.

@@ -27,7 +27,7 @@ pub struct StateSpace {
     /// Matrix A, row by row; default: there are no states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub a: Vec<Vec<Finite>>,
-    /// Matrix B: a row for each state, a column for the error of the angle (rad) and, if there are two, of the rate (rad/s).
+    /// Matrix B: one row per state; one column for the angle error (rad) and optionally a second for the rate error (rad/s).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub b: Vec<Vec<Finite>>,
     /// Matrix C: one row.
@@ -36,41 +36,41 @@ pub struct StateSpace {
     /// Matrix D: one row; default: it is zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub d: Vec<Vec<Finite>>,
-    /// What the matrices are of.
+    /// Whether the matrices are discrete or continuous.
     #[serde(default)]
     pub of: Of,
-    /// What it commands.
+    /// Quantity that it commands.
     #[serde(default)]
     pub command: Commands,
     /// Largest command, in its unit; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
-    /// Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends.
+    /// Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the manoeuvre.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub track: bool,
 }
 
-/// What matrices are of.
+/// Whether matrices are discrete or continuous.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Of {
-    /// Samples, `period` apart.
+    /// Discrete time, with samples `period` apart.
     #[default]
     Samples,
-    /// Continuous time: the error is held over a period.
+    /// Continuous time, discretised with the error held over a period.
     Held,
-    /// Continuous time: Tustin's rule.
+    /// Continuous time, discretised by Tustin's rule.
     Tustin,
 }
 
-/// What the output is.
+/// Quantity that the output commands.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Commands {
     /// A torque (N m; for a wheel, units of its command).
     #[default]
     Torque,
-    /// An angular acceleration (rad/s²), of which the whole inertia makes a torque, with that of the reference added.
+    /// An angular acceleration (rad/s²): that of the reference is added, and the sum is multiplied by the whole inertia.
     Acceleration,
 }
 

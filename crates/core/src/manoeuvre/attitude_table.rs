@@ -13,7 +13,7 @@ use crate::quantity::{Finite, Time};
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AttitudeAt {
-    /// Time since the target begins (s); of the first row 0.
+    /// Time since the start of the target (s); 0 in the first row.
     pub time: Time,
     /// Roll (rad).
     #[serde(default)]
@@ -64,7 +64,7 @@ impl AttitudeTable {
         Some(Fault::new(format!("table[{late}].time"), why))
     }
 
-    /// How long it lasts (s).
+    /// Duration (s).
     pub fn duration(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)
     }

@@ -19,35 +19,35 @@ pub enum Command {
     Sine(Suppression),
     /// A series of cosines (\[Rotation\], equations (25) to (30)).
     Cosine(Suppression),
-    /// Full one way, then full the other: the least peak that turns the rigid body.
+    /// Full torque one way, then full torque the other way: the smallest peak that turns the rigid body.
     BangBang(BangBang),
-    /// The least integral of the command's square.
+    /// The command with the smallest integral of its square.
     MinimumEnergy(Suppression),
-    /// The least peak.
+    /// The command with the smallest peak.
     MinimumPeak(MinimumPeak),
-    /// A polynomial of the angle.
+    /// A polynomial for the angle.
     Polynomial(Polynomial),
 }
 
-/// The command of two pieces; it has no parameters.
+/// A bang-bang command; it has no parameters.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BangBang {}
 
-/// The command of the least peak that leaves modes at rest.
+/// The command with the smallest peak that leaves modes at rest.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MinimumPeak {
-    /// So many modes of the lowest frequencies.
+    /// Number of modes left at rest, lowest frequencies first.
     #[serde(default)]
     pub suppress: usize,
 }
 
-/// A polynomial of the angle.
+/// A polynomial for the angle.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Polynomial {
-    /// Its degree: 3, 5, 7, 9, 11 or 13.
+    /// Degree of the polynomial: 3, 5, 7, 9, 11 or 13.
     pub degree: u32,
 }
 

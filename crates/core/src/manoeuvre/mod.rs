@@ -48,31 +48,31 @@ pub use turn::Turn;
 
 use planner::Planner;
 
-/// A manoeuvre as a scenario describes it. The body's modes rest at its start.
+/// A manoeuvre. The modes of the body are at rest at its start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Manoeuvre {
-    /// The angle by which the rigid body turns (rad).
+    /// Angle by which the rigid body turns (rad).
     pub angle: Finite,
-    /// Time of the manoeuvre (s). By default, the shortest that the peak torque allows.
+    /// Duration of the manoeuvre (s); default: the shortest that the peak torque allows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<Span>,
-    /// Largest torque (N m); beside a time, a limit that the plan has to keep.
+    /// Largest torque (N m); together with `time`, a limit that the plan must respect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_torque: Option<Positive>,
-    /// Rate before (rad/s): that of the body at its start.
+    /// Rate before the manoeuvre (rad/s), equal to the body's rate at the start.
     #[serde(default)]
     pub start_rate: Finite,
-    /// Rate after (rad/s).
+    /// Rate after the manoeuvre (rad/s).
     #[serde(default)]
     pub end_rate: Finite,
-    /// What turns the body.
+    /// Command that turns the body.
     pub command: Command,
-    /// What the command is convolved with; it takes a part of the time.
+    /// Shaper with which the command is convolved; it uses part of the duration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shaper: Option<Shaper>,
-    /// The body that the plan is made for; default: the body itself. A campaign that draws keys of the body puts the
-    /// body as it is written here: the plan does not depend on what is drawn.
+    /// Body for which the manoeuvre is planned; default: the body itself. A campaign that draws keys of the body plans for the
+    /// body as written in the scenario: the plan does not depend on the drawn values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<Planar>,
 }

@@ -19,11 +19,12 @@ pub enum Shaper {
     Zvd(Shaped),
     /// Zero vibration and two derivatives: four impulses.
     Zvdd(Shaped),
-    /// Extra insensitive: three impulses that leave a little vibration, and little more over a wider band.
+    /// Extra insensitive: three impulses that allow a little vibration at the mode's frequency, and stay near it over a wider
+    /// band.
     Ei(ExtraInsensitive),
 }
 
-/// What a shaper takes out.
+/// The modes that a shaper suppresses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shaped {
@@ -39,7 +40,7 @@ pub struct ExtraInsensitive {
     /// Indices of the modes.
     #[serde(default = "first")]
     pub modes: Vec<usize>,
-    /// Vibration that is left at the mode's frequency, relative to that of one impulse.
+    /// Residual vibration at the mode's frequency, relative to that of a single impulse.
     #[serde(default = "twentieth")]
     pub vibration: Fraction,
 }

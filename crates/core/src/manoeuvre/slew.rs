@@ -8,14 +8,14 @@ use crate::attitude::{Vector, rotation};
 use crate::environment::into;
 use crate::waveform::{Shape, Term, Waveform};
 
-/// How the rate of a turn rises to its limit, and falls.
+/// How the rate of a slew rises to its limit and falls.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Profile {
-    /// At a constant acceleration: the shortest.
+    /// Constant acceleration: the shortest slew.
     #[default]
     Trapezoid,
-    /// At an acceleration that rises and falls as 1 - cos: twice as long, without a jump.
+    /// Acceleration that rises and falls as 1 - cos: twice as long, without jumps.
     Versine,
 }
 
@@ -142,7 +142,7 @@ impl Slew {
         self.to
     }
 
-    /// How long it lasts (s).
+    /// Duration (s).
     pub fn duration(&self) -> f64 {
         2.0 * self.rise + self.coast
     }

@@ -11,14 +11,14 @@ use crate::quantity::Finite;
 /// No command has more zeros.
 const MOST: usize = 40;
 
-/// Which modes a command leaves at rest. Both keys add up.
+/// Modes that a command leaves at rest. Both keys add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Suppression {
-    /// So many modes of the lowest frequencies.
+    /// Number of modes left at rest, lowest frequencies first.
     #[serde(default)]
     pub suppress: usize,
-    /// Zeros beside them.
+    /// Further zeros.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub zeros: Vec<Target>,
 }
@@ -29,10 +29,10 @@ pub struct Suppression {
 pub struct Target {
     /// Index of the mode.
     pub mode: usize,
-    /// Shift of its frequency, relative to it.
+    /// Shift of the zero from the mode's frequency, relative to that frequency.
     #[serde(default)]
     pub shift: Finite,
-    /// So many times: each time more flattens the spectrum there by one derivative with frequency.
+    /// Multiplicity of the zero: each additional one makes one more derivative of the spectrum vanish there.
     #[serde(default = "once")]
     pub times: u32,
 }

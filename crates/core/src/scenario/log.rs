@@ -16,15 +16,15 @@ const MOST_INSTANTS: f64 = 1e4;
 /// What is drawn larger than this is out of any picture, and its square soon no number.
 const LARGEST_FACTOR: f64 = 1e9;
 
-/// What a full log holds.
+/// Contents of a full log.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Log {
-    /// Period at which a full log holds the motion (s); default: 0.1 or the first of 0.2, 0.5, 1, 2, 5 and so on of which the
-    /// duration has at most 10 000.
+    /// Sampling period of the motion in a full log (s); default: the first of 0.1, 0.2, 0.5, 1, 2, 5 and so on that gives at
+    /// most 10 000 samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
-    /// How a log with a scene draws the run.
+    /// How the scene of a log is drawn.
     #[serde(default, skip_serializing_if = "SceneSpec::is_default")]
     pub scene: SceneSpec,
 }
@@ -46,18 +46,18 @@ impl Log {
     }
 }
 
-/// How a run is drawn.
+/// How the scene of a run is drawn.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
     /// Period of the frames (s); default: that of the log, and at least 0.04 s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
-    /// How many times the elastic motion is drawn as large as it is; default: so many times that what the actuator or the
-    /// initial state excites shows.
+    /// Magnification of the elastic motion; default: chosen so that the motion excited by the actuator or the initial state is
+    /// visible.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bending: Option<Positive>,
-    /// How many times the rotation of the body is drawn as large as it is; default: so many times that it shows.
+    /// Magnification of the body's rotation; default: chosen so that it is visible.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turning: Option<Positive>,
 }

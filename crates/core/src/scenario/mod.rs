@@ -58,10 +58,10 @@ pub struct Scenario {
     /// Name of the study; default: the name of its file.
     #[serde(default)]
     pub name: String,
-    /// What the study is about.
+    /// Description of the study.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub about: String,
-    /// Seed of all randomness.
+    /// Seed of all random numbers.
     #[serde(default)]
     pub seed: u64,
     /// Simulated time (s).
@@ -70,62 +70,62 @@ pub struct Scenario {
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "epoch::read")]
     #[schemars(with = "Option<String>")]
     pub epoch: Option<Datetime>,
-    /// What is controlled, if it is not a `spacecraft`.
+    /// The controlled body, unless it is a `spacecraft`.
     #[serde(default, skip_serializing_if = "Body::is_spacecraft")]
     pub body: Body,
-    /// A spacecraft that is controlled, put together from its parts: the hub.
+    /// The hub of a controlled spacecraft, which is built from its parts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spacecraft: Option<Spacecraft>,
-    /// What is clamped to the hub of the spacecraft.
+    /// Appendages clamped to the hub of the spacecraft.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub appendage: Vec<Appendage>,
     /// The body with its modes, as it moves: solved from `body`. Of a spatial body it is empty: see `study`.
     #[serde(skip)]
     pub model: Planar,
-    /// How the natural frequencies drift; default: they do not.
+    /// Drift of the natural frequencies; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<Drift>,
-    /// How the motion is measured: one sensor, or an array of several.
+    /// The sensor, or an array of several.
     #[serde(default)]
     pub sensor: Parts<Sensor>,
-    /// What is estimated.
+    /// The estimator.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimator: Option<Estimator>,
-    /// What is adapted.
+    /// The adaptation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adaptation: Option<Adaptation>,
-    /// What is planned ahead.
+    /// The planned manoeuvre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub manoeuvre: Option<Manoeuvre>,
     /// The plan of the manoeuvre.
     #[serde(skip)]
     pub plan: Option<Plan>,
-    /// What commands the torque. Only a scenario with a manoeuvre can do without.
+    /// The control law. Only a scenario with a manoeuvre can omit it.
     #[serde(default)]
     pub law: Law,
-    /// How the commanded torque is executed.
+    /// The actuator, which executes the commanded torque.
     #[serde(default)]
     pub actuator: Actuator,
-    /// Disturbance torques.
+    /// Disturbance torques and forces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub disturbance: Vec<Disturbance>,
-    /// What surrounds a body with three axes; default: nothing.
+    /// Environment of a body with three axes; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub environment: Option<Environment>,
-    /// What a full log holds.
+    /// Contents of a full log.
     #[serde(default)]
     pub log: Log,
-    /// Attitudes that a body with three axes shall turn to, in the order of their times; before the first it is the inertial
-    /// one. A law `phase_plane` may have them of its own.
+    /// Target attitudes of a body with three axes, in the order of their times; before the first one, the target is the
+    /// inertial axes. A law `phase_plane` may have targets of its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub target: Vec<Target>,
-    /// What the metrics compare with.
+    /// Reference values for the metrics.
     #[serde(default, skip_serializing_if = "Reference::is_empty")]
     pub reference: Reference,
-    /// Distributions of keys that a campaign draws anew for each run.
+    /// Distributions of keys from which a campaign draws a value for each run.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertain: BTreeMap<String, Distribution>,
-    /// Keys of `uncertain` that are drawn together.
+    /// Correlated keys of `uncertain`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub correlated: Vec<Correlated>,
     /// The exact flow of a body whose modes are coupled, where the motion is in closed form.

@@ -6,31 +6,31 @@ use serde::{Deserialize, Serialize};
 use crate::document::Fault;
 use crate::quantity::{Positive, Time};
 
-/// Levels of other runs that the metrics compare with.
+/// Reference values for the metrics.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
-    /// Mean envelope without adaptation (rad), for the metric `envelope_reduction`; default: the mean over
-    /// the run's own first window.
+    /// Mean envelope without adaptation (rad), for the metric `envelope_reduction`; default: the mean over the run's own first
+    /// window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub envelope: Option<Positive>,
     /// Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s` and `settling_time_s`.
-    /// By default, what is promised: after a manoeuvre a thousandth of its angle, by a PD law 5 % of the distance at which the
-    /// goal begins, by a relay its dead zone and its hysteresis.
+    /// Default: after a manoeuvre, a thousandth of its angle; for a PD law, 5 % of the distance at the start of the goal; for a
+    /// relay, the sum of its dead zone and hysteresis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub band: Option<Positive>,
-    /// What is asked of the pointing of a body with three axes over a part of the run.
+    /// Pointing requirement of a body with three axes over a part of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pointing: Option<Pointing>,
 }
 
-/// What is asked of the pointing over a part of the run.
+/// Pointing requirement over a part of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pointing {
-    /// From when to when (s) the angle beyond the target counts, for the metric `pointing_rms_rad`.
+    /// Start and end (s) of the interval in which the pointing error is assessed, for the metric `pointing_rms_rad`.
     pub window: [Time; 2],
-    /// What its root mean square is to be at most (rad), for the metric `requirement`; default: nothing is asked.
+    /// Largest allowed root mean square of the pointing error (rad), for the metric `requirement`; default: no requirement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rms: Option<Positive>,
 }

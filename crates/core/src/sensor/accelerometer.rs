@@ -13,21 +13,23 @@ use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
-/// An accelerometer on a `[spacecraft]`, which falls freely: it measures what forces, rotation and vibration accelerate its place by.
+/// An accelerometer on a `[spacecraft]` in free fall. It measures the acceleration of its mounting point due to forces,
+/// rotation and vibration.
 ///
-/// Numbers are one for all of its axes, or one for each of three.
+/// A value is one number for all of its axes, or a list of three.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Accelerometer {
-    /// That nothing reads it, which has to be said: it is logged and changes nothing.
+    /// Must be true: no law or estimator reads an accelerometer; its readings are only logged.
     #[serde(default)]
     pub watch_only: bool,
-    /// The point of the structure at which it is; default: the first of the body's points.
+    /// Point of the structure at which it is mounted; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its samples (s).
     pub period: Span,
-    /// The directions along which it measures, one to three of any length in the hub's axes while nothing is bent; default: x, y and z.
+    /// Measurement directions: one to three, of any length, in the hub's axes with the structure undeformed; default: x, y
+    /// and z.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub along: Vec<[Finite; 3]>,
     /// Standard deviation of the white noise along each (m/s²).
@@ -36,7 +38,7 @@ pub struct Accelerometer {
     /// Constant error along each (m/s²).
     #[serde(default)]
     pub bias: Each<Finite>,
-    /// Random walk of the bias along each (m/s² for the square root of a second).
+    /// Random walk of the bias along each (m/s² per square root of a second).
     #[serde(default)]
     pub bias_random_walk: Each<NonNegative>,
     /// Quantum of the output along each (m/s²); 0 for none.
@@ -45,10 +47,10 @@ pub struct Accelerometer {
     /// Relative error of the scale along each.
     #[serde(default)]
     pub scale: Each<Finite>,
-    /// Time from a sample to when it is told (s).
+    /// Time from a sample to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Times at which it fails.
+    /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
 }

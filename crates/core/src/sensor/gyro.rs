@@ -13,14 +13,14 @@ use crate::random::{Seed, Stream};
 use crate::sensor;
 use crate::time::{Instant, Span};
 
-/// A gyro. One that samples the rate is read once in each cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
-/// rounded (\[Timakov14\]). One with a random walk integrates: it tells the mean rate of each of its periods.
+/// A gyro. A gyro that samples the rate is read once per cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
+/// rounded (\[Timakov14\]). A gyro with a random walk integrates: its output is the mean rate over each of its periods.
 ///
-/// Numbers are one for all axes, or one for each of three.
+/// A value is one number for all axes, or a list of three.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gyro {
-    /// The point of the structure at which it is, on a body with three axes; default: the first of the body's points.
+    /// Point of the structure at which it is mounted, on a body with three axes; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its samples (s); default: that of the law.
@@ -35,22 +35,24 @@ pub struct Gyro {
     /// Quantum of the output about each axis (rad/s); 0 for none.
     #[serde(default)]
     pub resolution: Each<NonNegative>,
-    /// Angle random walk about each axis (rad/sqrt(s)), of one that integrates.
+    /// Angle random walk of an integrating gyro about each axis (rad/sqrt(s)).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub angle_random_walk: Each<NonNegative>,
-    /// Rate random walk of the bias about each axis (rad/s^1.5), of one that integrates.
+    /// Rate random walk of the bias of an integrating gyro about each axis (rad/s^1.5).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub rate_random_walk: Each<NonNegative>,
-    /// Quantum of the angle about each axis (rad), of one that integrates: what is left is counted with the next; 0 for none.
+    /// Quantum of the angle of an integrating gyro about each axis (rad); the remainder carries over to the next sample; 0 for
+    /// none.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub quantum: Each<NonNegative>,
     /// Relative error of the scale about each axis.
     #[serde(default, skip_serializing_if = "is_none")]
     pub scale: Each<Finite>,
-    /// What each axis, a row, measures of the rates about the others (rad), on a body with three; the diagonal is 0.
+    /// Misalignment (rad), on a body with three axes: row i gives what axis i measures of the rates about the other axes; the
+    /// diagonal is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub misalignment: Option<Box<[[Finite; 3]; 3]>>,
-    /// Times at which it fails; where the body points is known all the same.
+    /// Intervals in which it fails; the attitude is still known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<sensor::Fault>,
 }

@@ -14,13 +14,13 @@ use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Seed;
 use crate::time::Span;
 
-/// A magnetometer on a body with three axes. It does not feel the torquers of its own body.
+/// A magnetometer on a body with three axes. The body's own magnetorquers do not disturb it.
 ///
-/// Numbers are one for all axes, or one for each of three.
+/// A value is one number for all axes, or a list of three.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Magnetometer {
-    /// The point of the structure at which it is; default: the first of the body's points.
+    /// Point of the structure at which it is mounted; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its samples (s).
@@ -37,13 +37,13 @@ pub struct Magnetometer {
     /// Relative error of the scale along each axis.
     #[serde(default)]
     pub scale: Each<Finite>,
-    /// What each axis, a row, measures of the field along the others (rad); the diagonal is 0.
+    /// Misalignment (rad): row i gives what axis i measures of the field along the other axes; the diagonal is 0.
     #[serde(default)]
     pub misalignment: [[Finite; 3]; 3],
-    /// Time from a sample to when it is told (s).
+    /// Time from a sample to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Times at which it fails.
+    /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
 }

@@ -46,17 +46,17 @@ pub enum Sensor {
     Sampled(Sampled),
     /// A rate gyro, read in each cycle of the law; the angle, or the attitude, is known exactly.
     Gyro(Gyro),
-    /// The attitude at exposures, told later.
+    /// The attitude at the exposures, available after a latency.
     StarTracker(StarTracker),
     /// The magnetic field.
     Magnetometer(Magnetometer),
     /// The direction to the Sun.
     SunSensor(SunSensor),
-    /// The speeds of wheels, which their drives know by it; it tells nothing of the body.
+    /// The speeds of the wheels, for their drives; it measures nothing of the body's motion.
     Tachometer(Tachometer),
-    /// The specific force at a point of a spacecraft, for the log alone.
+    /// The specific force at a point of a spacecraft, for the log only.
     Accelerometer(Accelerometer),
-    /// A sensor from outside of this crate, which no scenario file can name.
+    /// A sensor from another crate; a scenario file cannot name it.
     Own(Own<dyn Instrument>),
 }
 

@@ -26,13 +26,13 @@ pub struct Sampled {
     #[serde(default)]
     pub resolution: NonNegative,
     /// Standard deviation of the white noise of a rate gyro (rad/s); default: there is no gyro, and the rate is the
-    /// difference of the last two angles over the period.
+    /// difference of the last two angles divided by the period.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_noise: Option<Positive>,
-    /// The point of the structure at which it is, on a body with three axes; default: the first of the body's points.
+    /// Point of the structure at which it is mounted, on a body with three axes; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
-    /// Times at which the sensor fails.
+    /// Intervals in which the sensor fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
 }
@@ -43,7 +43,7 @@ pub struct Sampled {
 pub enum Fault {
     /// It repeats the last measurement before the failure.
     Stuck(Outage),
-    /// It gives no number.
+    /// It gives no measurement.
     Silent(Outage),
 }
 

@@ -15,25 +15,25 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StarTracker {
-    /// The point of the structure at which it is; default: the first of the body's points.
+    /// Point of the structure at which it is mounted; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its exposures (s).
     pub period: Span,
-    /// Standard deviation of the white noise about each of its axes (rad): x and y across its boresight, z about it.
+    /// Standard deviation of the white noise about each of its axes (rad): x and y across the boresight, z about it.
     #[serde(default)]
     pub noise: [NonNegative; 3],
-    /// The rotation from the body's axes to its own, \[w, x, y, z\]: it turns its vectors into the body's; default: they are the
-    /// body's.
+    /// Orientation of its axes in the body, a unit quaternion \[w, x, y, z\] that turns vectors of its axes into the body's;
+    /// default: its axes are the body's.
     #[serde(default)]
     pub axes: Attitude,
-    /// Time from an exposure to when it is told (s).
+    /// Time from an exposure to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Rate of the body at the tracker from which on it sees nothing (rad/s); default: it always sees.
+    /// Rate of the body at the tracker at and above which it gives no measurement (rad/s); default: no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blackout_rate: Option<Positive>,
-    /// Times at which it fails.
+    /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
 }

@@ -14,19 +14,19 @@ use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Seed;
 use crate::time::Span;
 
-/// A Sun sensor on a body with three axes. It tells the direction as a vector of length 1.
+/// A Sun sensor on a body with three axes. It measures the direction to the Sun as a unit vector.
 ///
-/// Numbers are one for all axes, or one for each of three.
+/// A value is one number for all axes, or a list of three.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SunSensor {
-    /// The middle of its field of view in the body's axes, of any length; default: z.
+    /// Centre of its field of view, a direction in the body's axes, of any length; default: z.
     #[serde(default = "ahead")]
     pub boresight: [Finite; 3],
-    /// Half of the angle of the field of view (rad); default: it sees all around.
+    /// Half angle of the field of view (rad); default: all directions are visible.
     #[serde(default = "all_around")]
     pub field_of_view: NonNegative,
-    /// The point of the structure at which it is; default: the first of the body's points.
+    /// Point of the structure at which it is mounted; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Period of its samples (s).
@@ -43,13 +43,13 @@ pub struct SunSensor {
     /// Relative error of the scale along each axis.
     #[serde(default)]
     pub scale: Each<Finite>,
-    /// What each axis, a row, measures of the direction along the others (rad); the diagonal is 0.
+    /// Misalignment (rad): row i gives what axis i measures of the direction along the other axes; the diagonal is 0.
     #[serde(default)]
     pub misalignment: [[Finite; 3]; 3],
-    /// Time from a sample to when it is told (s).
+    /// Time from a sample to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Times at which it fails.
+    /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
 }

@@ -13,21 +13,21 @@ use crate::time::{Instant, Span};
 
 /// Tachometers, one on each wheel of `[actuator.wheels]`.
 ///
-/// Their drives know the speeds by them, and nothing else: friction compensation, speed bias, and the momentum that the law and
-/// unloading reckon with. Between two readings they keep the last.
+/// The readings are the only speeds that the drives use: for friction compensation, for the speed bias, and for the momentum
+/// that the law and unloading use. Between two readings the last one is kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tachometer {
     /// Period of the readings (s).
     pub period: Span,
-    /// Pulses in a turn: a reading is those of a period over the period, what is left counts in the next. By default, the speed at the
-    /// instant is read.
+    /// Pulses per turn: a reading is the count over a period divided by the period, and the remainder carries over to the next
+    /// one. By default, the speed at the instant is read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pulses: Option<NonZeroU32>,
     /// Standard deviation of the white noise of each reading (rad/s).
     #[serde(default)]
     pub noise: NonNegative,
-    /// Times at which they fail: then the drives keep the last reading.
+    /// Intervals in which they fail; the drives then keep the last reading.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
 }

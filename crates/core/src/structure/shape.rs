@@ -9,10 +9,10 @@ use crate::quantity::Finite;
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shape {
-    /// Displacement of the point for a unit of the mode (1/sqrt(kg)).
+    /// Displacement of the point per unit of the modal displacement (1/sqrt(kg)).
     #[serde(default)]
     pub translation: [Finite; 3],
-    /// Rotation at the point for a unit of the mode (rad/(m sqrt(kg))).
+    /// Rotation at the point per unit of the modal displacement (rad/(m sqrt(kg))).
     #[serde(default)]
     pub rotation: [Finite; 3],
 }

@@ -9,8 +9,8 @@ use crate::quantity::Finite;
 /// What rounding leaves of a variance of 0 (`[[1, 1], [1, 1]]` is accepted).
 const ROUNDING: f64 = 1e-12;
 
-/// Keys of `[uncertain]` that are drawn together. Behind each stands a standard normal number: these numbers have the
-/// correlations, and each key keeps its own distribution. Of normal distributions they are the correlations themselves.
+/// Correlated keys of `[uncertain]`. Each key is drawn from a standard normal number; the matrix correlates these numbers,
+/// and each key keeps its own distribution. For normal distributions these are the correlations of the keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Correlated {

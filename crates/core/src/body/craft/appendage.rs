@@ -28,46 +28,46 @@ pub struct Appendage {
     /// Centre of mass from the root (m), in its own axes.
     #[serde(default)]
     pub centre: [Finite; 3],
-    /// Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; default: it is a point mass.
+    /// Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; default: zero, a point mass.
     #[serde(default)]
     pub inertia: [[Finite; 3]; 3],
-    /// Where its root is, from the point O of the spacecraft (m).
+    /// Position of its root from the point O of the spacecraft (m).
     #[serde(default)]
     pub at: [Finite; 3],
-    /// How its axes are turned against those of the body.
+    /// Rotation of its axes relative to those of the body.
     #[serde(default, skip_serializing_if = "Turned::is_none")]
     pub turned: Turned,
-    /// What turns it during a run about an axis through its root; default: nothing.
+    /// Drive that turns it about an axis through its root during a run; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<Drive>,
     /// The angle of the drive at the start (rad): see `drive`.
     #[serde(skip)]
     pub start_angle: f64,
-    /// The axis along which a thin plate in the plane of its own x and y stretches: first moments then follow from rotations.
+    /// Long axis of a thin plate in the plane of its own x and y; the first moments then follow from the rotations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plate: Option<Plate>,
-    /// Named points of the appendage, from its root in its own axes.
+    /// Named points of the appendage, measured from its root in its own axes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
-    /// Its modes with the root held: a table, or the path of a CSV file or of results of a finite-element program. Without any it
-    /// is rigid.
+    /// Its clamped modes: a table, or the path of a CSV file or of results of a finite-element program. Without modes it is
+    /// rigid.
     #[serde(default)]
     pub modes: ModeTable<ClampedMode>,
-    /// Damping ratios of the modes of results.
+    /// Damping ratios of modes read from finite-element results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<Damping>,
-    /// How many of the modes of results are kept, those with the lowest frequencies; default: all.
+    /// Number of modes to keep from finite-element results, lowest frequencies first; default: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<usize>,
-    /// How sunlight bends it; default: it does not.
+    /// Thermal bending in sunlight; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
-    /// The units of results: metres and kilograms where it is left out.
+    /// Units of finite-element results; default: metres and kilograms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
 }
 
-/// Along which of its own axes a plate stretches.
+/// Long axis of a plate, in its own axes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Plate {

@@ -11,7 +11,7 @@ use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
 use crate::structure::mode_table::{Common, Row};
 
-/// A mode of an appendage clamped at its root, mass-normalised: the integral of phi_i . phi_j dm is 1 for i = j, else 0.
+/// A mass-normalised mode of an appendage clamped at its root: the integral of phi_i . phi_j dm is 1 for i = j, else 0.
 ///
 /// Vectors are in the axes of the appendage, and r is the position from its root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,7 +25,7 @@ pub struct ClampedMode {
     /// Participation in translation, the integral of phi dm (sqrt(kg)).
     #[serde(default)]
     pub translation: [Finite; 3],
-    /// Of a point mass, in place of `translation`: the direction in which the whole of it swings, of any length.
+    /// For a point mass, in place of `translation`: the direction in which all of its mass swings, of any length.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub along: Option<[Finite; 3]>,
     /// Participation in rotation about the root, the integral of r x phi dm (sqrt(kg) m).
@@ -40,7 +40,7 @@ pub struct ClampedMode {
     /// Its rate at the start (m sqrt(kg)/s).
     #[serde(default)]
     pub rate: Finite,
-    /// The mode's shape at each point of the appendage, by the point's name, against the held root.
+    /// Shape of the mode at each point of the appendage, relative to the fixed root, by the name of the point.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub shapes: BTreeMap<String, Shape>,
 }

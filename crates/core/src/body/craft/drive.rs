@@ -12,30 +12,30 @@ use crate::quantity::{Finite, NonNegative, Positive};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
-    /// The axis through the root, in the axes of the appendage, of any length but 0.
+    /// Axis through the root, in the axes of the appendage, of any nonzero length.
     pub about: [Finite; 3],
-    /// Angle at the start (rad), 0 where the appendage is as it is `turned`.
+    /// Angle at the start (rad); at 0 the appendage has the orientation given by `turned`.
     #[serde(default)]
     pub angle: Finite,
-    /// It turns at this rate (rad/s).
+    /// Constant rate of the drive (rad/s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<Finite>,
-    /// It begins to turn at this time (s); default: it turns from the start on.
+    /// Time at which it begins to turn (s); default: the start of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<NonNegative>,
-    /// It begins to stop at this time (s); default: it does not.
+    /// Time at which it begins to stop (s); default: it does not stop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<NonNegative>,
-    /// How fast its rate changes (rad/s²); default: at once.
+    /// Acceleration with which its rate changes (rad/s²); default: the rate jumps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<Positive>,
-    /// Angles at times, with constant rates between.
+    /// Table of angles over time, with constant rates between the points.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub table: Vec<DrivePoint>,
-    /// What it follows.
+    /// Object that the drive tracks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub track: Option<Track>,
-    /// What faces the Sun, a direction in the axes of the appendage across the drive's; default: z.
+    /// Direction that is turned to the Sun, in the axes of the appendage, perpendicular to the drive's axis; default: z.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal: Option<[Finite; 3]>,
 }
@@ -50,11 +50,11 @@ pub struct DrivePoint {
     pub angle: Finite,
 }
 
-/// What a drive follows.
+/// Object that a drive tracks.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Track {
-    /// The Sun, from a spacecraft that points to its target.
+    /// The Sun, as seen from a spacecraft that points exactly at its target.
     Sun,
 }
 

@@ -19,7 +19,7 @@ use crate::structure::mode_table::{MOST_MODES, Row};
 /// The structure of a file weighs what the appendage weighs, but for this part: its clamped nodes, or what is no structure.
 const OWN_MASS: f64 = 0.2;
 
-/// The units of a file that names none, which solvers leave to their user.
+/// Units of a file that states none, because the solver leaves them to its user.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Units {
     /// Metres, kilograms, newtons.

@@ -8,9 +8,9 @@ use crate::attitude::{Attitude, tensor, vector};
 use crate::body::spatial::NamedPoint;
 use crate::quantity::{Finite, Positive};
 
-/// A spacecraft: its rigid hub, to which the appendages are clamped.
+/// A spacecraft: the rigid hub, to which appendages are clamped.
 ///
-/// Positions are from a point O of the user's choice, in the axes of the hub, which are the body's.
+/// Positions are measured from a point O of the user's choice, in the axes of the hub, which are the body's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spacecraft {
@@ -24,14 +24,14 @@ pub struct Spacecraft {
     /// Attitude at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the body into inertial ones.
     #[serde(default)]
     pub attitude: Attitude,
-    /// Rates at the start (rad/s), in the body's axes: of the spacecraft as a whole, which are those of the hub while nothing
-    /// vibrates.
+    /// Rates of the whole spacecraft at the start (rad/s), in the body's axes; without vibration they are the rates of the
+    /// hub.
     #[serde(default)]
     pub rate: [Finite; 3],
-    /// Whether the damping of the free modes is kept whole even where what is beside the diagonal of its matrix hardly counts.
+    /// Whether the full damping matrix of the free modes is kept even if its off-diagonal terms are negligible.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub whole_damping: bool,
-    /// Named points of the hub, at which jets push and gyros look. By default, there is one at O, named `hub`.
+    /// Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
 }

@@ -12,9 +12,9 @@ use crate::quantity::{Finite, Positive};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Thermal {
-    /// By how much each mode is displaced in sunlight beyond the shadow, in the end (m sqrt(kg)).
+    /// Steady displacement of each mode in sunlight relative to shadow (m sqrt(kg)).
     pub deflection: Vec<Finite>,
-    /// Time constant with which it gets there (s).
+    /// Time constant of that displacement (s).
     pub time_constant: Positive,
 }
 

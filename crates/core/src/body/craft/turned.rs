@@ -19,7 +19,7 @@ const EXPECTED: &str = "a turn `{ about = [x, y, z], by = ANGLE }`, or an array 
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Turn {
-    /// The axis, of any length but 0.
+    /// Axis, of any nonzero length.
     pub about: [Finite; 3],
     /// The angle (rad).
     pub by: Finite,

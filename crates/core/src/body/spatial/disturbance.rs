@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::{Vector, vector};
 use crate::quantity::{Finite, Positive};
 
-/// A torque in the body's axes, constant + amplitude sin(2 pi t/period + phase) about each.
+/// A torque in the body's axes: constant + amplitude sin(2 pi t/period + phase) about each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Periodic {
@@ -18,7 +18,7 @@ pub struct Periodic {
     /// Amplitude of the periodic part (N m).
     #[serde(default)]
     pub amplitude: [Finite; 3],
-    /// Its period (s): of a station in a low orbit about 5560 s.
+    /// Period (s); about 5560 s for a station in a low orbit.
     #[serde(default = "orbit")]
     pub period: Positive,
     /// Its phase at the start (rad).

@@ -28,7 +28,7 @@ pub use modes::SpatialModes;
 pub use rigid::{LONGEST_TURN, Rigid, Turn};
 pub use state::SpatialState;
 
-/// A spatial body as a scenario describes it.
+/// A spatial body: three axes and elastic modes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spatial {
@@ -40,13 +40,13 @@ pub struct Spatial {
     /// Rates at the start (rad/s), in the body's axes.
     #[serde(default)]
     pub rate: [Finite; 3],
-    /// Named points of the structure, at which jets push and gyros look.
+    /// Named points of the structure, at which jets and sensors are mounted.
     #[serde(default)]
     pub points: Vec<NamedPoint>,
     /// Elastic modes: a table, or the path of a CSV file.
     #[serde(default)]
     pub modes: SpatialModes,
-    /// A torque that the surroundings exert; none by default.
+    /// Torque of the environment; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disturbance: Option<Periodic>,
 }
@@ -57,7 +57,7 @@ pub struct Spatial {
 pub struct NamedPoint {
     /// Name.
     pub name: String,
-    /// Position (m): from the centre of mass, of a spacecraft's hub from its point O, of an appendage from its root.
+    /// Position (m): from the centre of mass; on a spacecraft's hub from its point O, on an appendage from its root.
     #[serde(default)]
     pub position: [Finite; 3],
 }
@@ -77,7 +77,7 @@ pub struct SpatialMode {
     /// Its rate at the start (m sqrt(kg)/s).
     #[serde(default)]
     pub rate: Finite,
-    /// The mode's shape at each point, by the point's name.
+    /// Shape of the mode at each point, by the name of the point.
     #[serde(default)]
     pub shapes: BTreeMap<String, Shape>,
 }

@@ -10,26 +10,26 @@ use crate::quantity::{Finite, NonNegative};
 /// Modes nearer than this to each other cannot be distinguished.
 const MERGE: f64 = 0.08;
 
-/// The rigid rates, and the dominant elastic modes that each axis of the gyro sees, with their parameters.
+/// Estimates the rigid rates and, for each axis of the gyro, its dominant elastic modes with their parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Adaptive {
     /// Form of the observers.
     pub form: Form,
-    /// What they track; default: the dominant modes of the body.
+    /// The modes to track; default: the dominant modes of the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trackers: Option<Given>,
-    /// How many modes of the body each axis tracks; default: 2, and 1 in the form `recurrence`.
+    /// Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<u32>,
-    /// Ratio of frequencies below which modes of the body are tracked as one.
+    /// Frequency ratio below which modes of the body are tracked as one.
     pub merge: NonNegative,
-    /// Whether an axis accounts for the jets of the others; default: it does in the form `gradient`.
+    /// Whether an axis accounts for the jets of the other axes; default: true in the form `gradient`, else false.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cross_axis: Option<bool>,
-    /// By which part the frequencies are off at the start.
+    /// Relative error of the frequencies at the start.
     pub frequency_error: Finite,
-    /// By which part the influences are off at the start.
+    /// Relative error of the influences at the start.
     pub influence_error: Finite,
     /// Whether frequencies and influences are identified.
     pub adapt: bool,
@@ -45,8 +45,8 @@ pub enum Form {
     Recurrence(Recurrence),
 }
 
-/// Modes to track about each axis. The influence has an element for each group of jets: roll, pitch, yaw, or the axis alone
-/// where `cross_axis` is false.
+/// Modes to track about each axis. The influence has one element per group of jets (roll, pitch, yaw), or a single one for
+/// the axis' own group if `cross_axis` is false.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Given {

@@ -9,7 +9,7 @@ use crate::quantity::{Finite, Frequency};
 /// The part of the Nyquist frequency up to which a frequency can be distinguished from its alias.
 const SAMPLED: f64 = 0.98;
 
-/// A mode as an observer of one channel begins with it.
+/// Initial values of one mode in the observer of a channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tracker {
@@ -18,7 +18,7 @@ pub struct Tracker {
     /// Influence of each input: the jump of the elastic rate in this channel for a unit jump of the rigid rate that the
     /// input makes about its own axis (\[Timakov14\], page 41; dimensionless).
     pub influence: Vec<Finite>,
-    /// `[low, high]` between which the frequency is looked for (rad/s); default: up to the middle between it and its
+    /// Bounds `[low, high]` of the frequency (rad/s); default: the midpoints between it and its
     /// neighbours.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bounds: Option<[Frequency; 2]>,

@@ -18,15 +18,15 @@ use crate::quantity::Positive;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElasticStates {
-    /// Which free modes, by their index.
+    /// Indices of the free modes.
     pub modes: Vec<usize>,
-    /// Their natural frequencies as the filter knows them (rad/s); default: the body's own.
+    /// Natural frequencies in the filter's model (rad/s); default: the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<Positive>>,
-    /// What these are multiplied by: the filter's error.
+    /// Factor on these frequencies: the error of the filter's model.
     #[serde(default = "one")]
     pub factor: Positive,
-    /// By how much random forces let the rate of each mode walk (m sqrt(kg)/s^1.5).
+    /// Random walk of the rate of each mode due to random forces (m sqrt(kg)/s^1.5).
     pub noise: Positive,
     /// Standard deviation of each displacement at the start (m sqrt(kg)).
     #[serde(default = "displacement")]
@@ -34,7 +34,7 @@ pub struct ElasticStates {
     /// Standard deviation of each rate at the start (m sqrt(kg)/s); default: that of the displacement times the frequency.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<Positive>,
-    /// What the law reads: angle and rate as if the body were rigid, or those of the hub; default: rigid.
+    /// Estimates that the law reads: the rigid angle and rate, or those of the hub; default: rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feeds: Option<Feeds>,
 }

@@ -10,16 +10,16 @@ use serde::{Deserialize, Serialize};
 use super::GyroNoise;
 use crate::quantity::Positive;
 
-/// How gains are found.
+/// How the gains are computed.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
-    /// By the covariance, at each measurement.
+    /// From the covariance, at each measurement.
     #[default]
     Extended,
-    /// The constant ones that the optimal filter of a body at rest has in the end.
+    /// Constant: the steady-state gains of the optimal filter for a body at rest.
     Steady,
-    /// Constant ones that give the error a bandwidth and a damping ratio.
+    /// Constant: from a bandwidth and a damping ratio of the error.
     Complementary(Complementary),
 }
 
@@ -27,7 +27,7 @@ pub enum Form {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Complementary {
-    /// Bandwidth (rad/s): below it the attitude is that of the sensors, above it that of the gyro.
+    /// Bandwidth (rad/s): below it the attitude follows the sensors, above it the gyro.
     pub bandwidth: Positive,
     /// Damping ratio.
     #[serde(default = "damping")]

@@ -15,11 +15,11 @@ use crate::quantity::{NonNegative, Positive};
 use crate::sensor::{Gyro, Sensor};
 use crate::time::Span;
 
-/// Attitude and gyro bias of a body with three axes.
+/// Estimates the attitude and the gyro bias of a body with three axes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AttitudeFilter {
-    /// How its gains are found.
+    /// How the gains are computed.
     #[serde(default)]
     pub form: Form,
     /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the gyro's own.
@@ -28,7 +28,7 @@ pub struct AttitudeFilter {
     /// Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_random_walk: Option<NonNegative>,
-    /// Standard deviation of a measured attitude about each axis of what measures it (rad); default: the sensor's own.
+    /// Standard deviation of a measured attitude about each axis of its sensor (rad); default: the sensor's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude_noise: Option<[Positive; 3]>,
     /// Standard deviation of a measured magnetic field along each axis (T); default: the magnetometer's own.
@@ -40,16 +40,16 @@ pub struct AttitudeFilter {
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: Initial,
-    /// What the filter takes for attitude and bias at the start.
+    /// Initial estimate of attitude and bias.
     #[serde(default)]
     pub prior: Prior,
-    /// Elastic modes that it knows too; none by default.
+    /// Elastic modes as further states; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elastic: Option<ElasticStates>,
-    /// When the metrics judge the filter, from one time to another (s); always by default.
+    /// Interval over which the metrics assess the filter (s); default: the whole run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
-    /// Whether it is there to be assessed only: no law reads it.
+    /// Whether the filter runs for assessment only: the law does not read it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub watch_only: bool,
 }

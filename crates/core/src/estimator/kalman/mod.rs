@@ -22,11 +22,11 @@ use crate::random::Stream;
 pub use filter::{Filter, Filters, Innovation, Prediction, Tuning};
 pub use model::Model;
 
-/// A linear Kalman filter as a scenario describes it: natural frequencies that are known and constant.
+/// A linear Kalman filter: natural frequencies are known and constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Kalman {
-    /// The modes of the filter's model; default: they are the body's own at the start.
+    /// Modes of the filter's model; default: the body's own at the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
     /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
@@ -38,30 +38,30 @@ pub struct Kalman {
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: Initial,
-    /// What the filter takes for the state at the start.
+    /// Initial state estimate of the filter.
     #[serde(default)]
     pub prior: Prior,
-    /// What makes a mode the dominant one.
+    /// Criterion for the dominant mode.
     #[serde(default)]
     pub dominant: Ranking,
-    /// When the metrics judge the filter, from one time to another (s); always by default.
+    /// Interval over which the metrics assess the filter (s); default: the whole run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
-    /// What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured; `hub` for angle and
-    /// rate of the hub, elastic part included; `rigid` for those of the body as if it were rigid. By default, `modes` for a law
-    /// that reads the dominant mode, else `hub`.
+    /// Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as measured; `hub` for angle and
+    /// rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By default, `modes` for a law that reads
+    /// the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feeds: Option<Feeds>,
-    /// Whether it is there to be assessed only: no law reads it.
+    /// Whether the filter runs for assessment only: the law does not read it.
     #[serde(default, skip_serializing_if = "is_false")]
     pub watch_only: bool,
 }
 
-/// An extended or an unscented Kalman filter as a scenario describes it: natural frequencies that drift.
+/// An extended or an unscented Kalman filter: natural frequencies drift.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrequencyTracking {
-    /// The modes of the filter's model; default: they are the body's own at the start.
+    /// Modes of the filter's model; default: the body's own at the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
     /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
@@ -73,33 +73,33 @@ pub struct FrequencyTracking {
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: Initial,
-    /// What the filter takes for the state at the start.
+    /// Initial state estimate of the filter.
     #[serde(default)]
     pub prior: Prior,
-    /// What makes a mode the dominant one.
+    /// Criterion for the dominant mode.
     #[serde(default)]
     pub dominant: Ranking,
-    /// When the metrics judge the filter, from one time to another (s); always by default.
+    /// Interval over which the metrics assess the filter (s); default: the whole run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assess: Option<[NonNegative; 2]>,
-    /// What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured; `hub` for angle and
-    /// rate of the hub, elastic part included; `rigid` for those of the body as if it were rigid. By default, `modes` for a law
-    /// that reads the dominant mode, else `hub`.
+    /// Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as measured; `hub` for angle and
+    /// rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By default, `modes` for a law that reads
+    /// the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feeds: Option<Feeds>,
-    /// Whether it is there to be assessed only: no law reads it.
+    /// Whether the filter runs for assessment only: the law does not read it.
     #[serde(default, skip_serializing_if = "is_false")]
     pub watch_only: bool,
     /// Which frequencies drift together.
     #[serde(default)]
     pub ratios: Ratios,
-    /// Ratio that the filter takes the frequencies to have at the start.
+    /// Initial estimate of the frequency ratio.
     #[serde(default = "one")]
     pub ratio: Positive,
-    /// Standard deviation of that ratio.
+    /// Standard deviation of the initial ratio.
     #[serde(default = "ratio_sd")]
     pub ratio_sd: NonNegative,
-    /// Standard deviation of its rate at the start, which is taken for 0 (1/s).
+    /// Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s).
     #[serde(default = "ratio_rate_sd")]
     pub ratio_rate_sd: NonNegative,
     /// Spectral density of the white noise in a ratio (1/s).
@@ -108,13 +108,13 @@ pub struct FrequencyTracking {
     /// Spectral density of the white noise in the rate of a ratio (1/s³).
     #[serde(default = "ratio_noise")]
     pub ratio_rate_noise: NonNegative,
-    /// `[low, high]` of a ratio; the filter that reaches them has lost the body.
+    /// Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock.
     #[serde(default = "bounds")]
     pub bounds: [Positive; 2],
-    /// Steps in which a period is predicted.
+    /// Number of prediction steps per period.
     #[serde(default = "substeps")]
     pub substeps: Substeps,
-    /// While the dominant mode's amplitude is below so many standard deviations of the angle, the ratios learn nothing.
+    /// Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios are not updated.
     #[serde(default = "gate")]
     pub gate: NonNegative,
 }
@@ -127,31 +127,31 @@ pub struct Initial {
     pub angle: NonNegative,
     /// Of the rigid rate (rad/s).
     pub rate: NonNegative,
-    /// Of the displacement of the mode with the largest k/w² (rad); of the others a tenth.
+    /// Of the displacement of the mode with the largest k/w² (rad); a tenth of it for the other modes.
     pub displacement: NonNegative,
-    /// Of the rate of that mode (rad/s); of the others a tenth.
+    /// Of the rate of that mode (rad/s); a tenth of it for the other modes.
     pub mode_rate: NonNegative,
 }
 
-/// What a filter takes for the state at the start.
+/// Initial state estimate of a filter.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Prior {
-    /// One drawn around the true one with the standard deviations of `initial` and, around `ratio`, of `ratio_sd`.
+    /// Drawn at random about the true state with the standard deviations of `initial` and, about `ratio`, with `ratio_sd`.
     #[default]
     Drawn,
-    /// The true one: errors begin at 0, and show little of the filter.
+    /// The true state: errors start at 0, and tell little about the filter.
     True,
 }
 
-/// What makes a mode the dominant one.
+/// Criterion for the dominant mode.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Ranking {
     /// The largest excitability k/w².
     #[default]
     Excitability,
-    /// An estimated amplitude that is larger than any other, beyond their standard deviations.
+    /// The largest estimated amplitude, if it exceeds the others by more than their standard deviations.
     Amplitude,
 }
 
@@ -159,10 +159,10 @@ pub enum Ranking {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Ratios {
-    /// All, by one ratio.
+    /// All frequencies have one ratio.
     #[default]
     Common,
-    /// None: each mode has its own ratio.
+    /// Each mode has its own ratio.
     Each,
 }
 
@@ -318,7 +318,7 @@ impl Default for Initial {
     }
 }
 
-/// How many steps a period is predicted in.
+/// Number of prediction steps per period.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Substeps(#[schemars(range(min = 1, max = 100))] u32);

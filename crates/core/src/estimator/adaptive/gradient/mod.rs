@@ -19,18 +19,18 @@ pub use observer::GradientObserver;
 pub struct Gradient {
     /// Damping ratio of the modes, which is not identified.
     pub damping: NonNegative,
-    /// Gain of the rigid rate: the part of an innovation that it takes.
+    /// Gain of the rigid rate: the fraction of an innovation by which it is corrected.
     pub rigid_gain: Fraction,
     /// Gain of each elastic rate; default: 0.15 for one mode and 0.1 for several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elastic_gain: Option<Fraction>,
-    /// Rate of the identification, 0 for none. Sufficient for its convergence: below 0.05 over the number of modes.
+    /// Rate of the identification; 0 for none. It converges if this is below 0.05 divided by the number of modes.
     pub rate: NonNegative,
-    /// While a mode's elastic rate is below this amplitude (rad/s), its frequency learns nothing.
+    /// Amplitude of a mode's elastic rate (rad/s) below which its frequency is not updated.
     pub gate: Positive,
-    /// Between which multiples of its value at the start an influence is looked for.
+    /// Bounds of an influence, as multiples of its initial value.
     pub influence_bounds: [NonNegative; 2],
-    /// A frequency without bounds of its own is looked for from its value divided by this to its value times this.
+    /// Default bounds of a frequency: its initial value divided by this factor, and multiplied by it.
     pub reach: Positive,
 }
 

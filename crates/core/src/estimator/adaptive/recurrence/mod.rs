@@ -21,23 +21,23 @@ pub use observer::RecurrenceObserver;
 pub struct Recurrence {
     /// Damping ratio of the mode, which is not identified.
     pub damping: NonNegative,
-    /// W1 to W3, for cycles in which no thruster fired.
+    /// Weights W1 to W3, for cycles in which no thruster fires.
     pub coast: Weights,
-    /// W5 to W7, for cycles in which one did.
+    /// Weights W5 to W7, for cycles in which a thruster fires.
     pub active: Weights,
-    /// W4 times the amplitude of the elastic rate, kappa. With the weights as they are left out it converges below 0.043.
+    /// Frequency gain kappa: W4 times the amplitude of the elastic rate. With the default weights it converges below 0.043.
     pub frequency_gain: NonNegative,
-    /// W8 times the absolute value of what it learns from.
+    /// Influence gain: W8 times the absolute value of its input.
     pub influence_gain: NonNegative,
-    /// While the elastic rate is below this amplitude (rad/s), the frequency learns nothing.
+    /// Amplitude of the elastic rate (rad/s) below which the frequency is not updated.
     pub gate: Positive,
-    /// Between which multiples of its value at the start the influence is looked for.
+    /// Bounds of the influence, as multiples of its initial value.
     pub influence_bounds: [NonNegative; 2],
-    /// A frequency without bounds of its own is looked for from its value divided by this to its value times this.
+    /// Default bounds of a frequency: its initial value divided by this factor, and multiplied by it.
     pub reach: Positive,
 }
 
-/// What parts of an innovation the estimates take.
+/// Fractions of an innovation by which the estimates are corrected.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
@@ -45,7 +45,7 @@ pub struct Weights {
     pub rigid: Finite,
     /// The elastic rate: W2 or W6.
     pub elastic: Finite,
-    /// The elastic rate of the next sample, taken off: W3 or W7.
+    /// The elastic rate of the next sample, subtracted: W3 or W7.
     pub next: Finite,
 }
 
