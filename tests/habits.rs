@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::util::{Dir, UNCERTAIN};
+use crate::util::{Dir, UNCERTAIN, has_extension};
 
 /// A run without anything random, and short.
 fn quiet() -> Dir {
@@ -65,7 +65,7 @@ fn a_name_that_ends_in_a_form_is_a_file_in_every_verb_that_draws() {
         dir.run(&format!("{verb} -o {file}")).exits(0);
         assert!(dir.text(&file).starts_with("<svg "), "{verb}");
         dir.run(&format!("{verb} --figures {index} --format svg")).exits(0);
-        assert!(dir.names(&index.to_string()).iter().all(|name| name.ends_with(".svg")), "{verb}");
+        assert!(dir.names(&index.to_string()).iter().all(|name| has_extension(name, "svg")), "{verb}");
         assert!(!dir.names(&index.to_string()).is_empty(), "{verb}");
         dir.run(&format!("{verb} --figures {index}.gif")).exits(2).says(&["cannot be written as .gif"]);
     }
@@ -107,7 +107,7 @@ fn a_sweep_has_a_log_of_each_row() {
         "sweep relay-fixed.toml --set duration=400 --vary law.relay.k_t=0.30:0.34:3 --table csv -o out";
     dir.run(&format!("{sweep} --log events")).exits(0).says(&["relay-fixed-0.mcap to", "relay-fixed-2.mcap"]);
     let logs = dir.names("out");
-    let logs: Vec<&String> = logs.iter().filter(|name| name.ends_with(".mcap")).collect();
+    let logs: Vec<&String> = logs.iter().filter(|name| has_extension(name, "mcap")).collect();
     assert_eq!(logs, ["relay-fixed-0.mcap", "relay-fixed-1.mcap", "relay-fixed-2.mcap"]);
     // Each is of its row.
     for (row, gain) in [(0, "0.3"), (2, "0.34")] {

@@ -133,7 +133,7 @@ impl Simulator {
     #[new]
     fn new(py: Python<'_>, scenario: &Scenario, run: u64) -> PyResult<Self> {
         let mut simulator = Self::of(Simulation::new(&scenario.inner, run), &scenario.inner);
-        simulator.go(py, |simulation, record| simulation.open(record))?;
+        simulator.go(py, Simulation::open)?;
         Ok(simulator)
     }
 
