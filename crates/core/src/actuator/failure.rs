@@ -48,26 +48,26 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// Nothing is given.
+    /// No output.
     Dead {}
-    /// A part of what should be is given.
+    /// A fraction of the commanded output.
     Scaled {
-        /// The part; below 0, it acts the other way.
+        /// The fraction; a negative one reverses the output.
         factor: Finite,
     }
-    /// The same is given all the time.
+    /// A constant output, whatever the command.
     Stuck {
-        /// What: a torque (N m), of magnetorquers a moment (A m²), of jets the part of their thrust; default: what is given when
-        /// it begins.
+        /// The output: a torque (N m); for magnetorquers a moment (A m²), for jets a fraction of their thrust; default: the output
+        /// when the failure begins.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at: Option<Finite>,
     }
-    /// Something is given beside what should be.
+    /// An error added to the commanded output.
     Added {
-        /// A constant: a torque (N m), of magnetorquers a moment (A m²), of jets a thrust (N).
+        /// Constant part: a torque (N m); for magnetorquers a moment (A m²), for jets a thrust (N).
         #[serde(default)]
         constant: Finite,
-        /// Torques that are sines of the time.
+        /// Sine torques.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         sines: Vec<Sine>,
     }

@@ -36,30 +36,30 @@ states! {
         /// It begins.
         Begins = "begins",
     }
-    /// Whether a filter follows the body.
+    /// Whether a filter has lock.
     Lock {
-        /// It has lost the body.
+        /// The filter has lost lock.
         Lost = "lost",
-        /// It follows.
+        /// The filter has lock.
         Locked = "locked",
     }
-    /// Whether a filter learns frequencies.
+    /// Whether a filter updates frequencies.
     Gate {
-        /// It learns.
+        /// The frequency is updated.
         Learning = "learning",
-        /// The dominant mode moves too little for that.
+        /// The amplitude of the dominant mode is too small for an update.
         Gated = "gated",
     }
-    /// Whether the Sun shines on a body.
+    /// Whether a body is in sunlight.
     Light {
-        /// The planet hides it.
+        /// The body is in shadow.
         Shadow = "shadow",
-        /// It shines.
+        /// The body is in sunlight.
         Lit = "lit",
     }
-    /// What a filter did with a sample.
+    /// How a filter used a sample.
     Use {
-        /// There was none, or it was dropped.
+        /// There was no sample, or it was dropped.
         Dropped = "dropped",
         /// It was used.
         Used = "used",
@@ -78,7 +78,7 @@ states! {
         /// It was beyond the threshold, and is not yet back.
         Latched = "latched",
     }
-    /// Whether the watchdog keeps active damping quiet.
+    /// Whether the watchdog pauses active damping.
     Watch {
         /// It does not.
         Awake = "awake",

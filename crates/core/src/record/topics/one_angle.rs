@@ -7,11 +7,11 @@ use crate::record::states::{Gate, Lock, Phase, Use};
 use crate::time::Instant;
 
 labels! {
-    /// Why the law was asked.
+    /// Why the law decides.
     Trigger {
         /// A guard of the measured angle tripped.
         Guard = "guard",
-        /// The time of the hold had come.
+        /// The hold ended at its end time.
         Timeout = "timeout",
     }
 }
@@ -21,7 +21,7 @@ label_cells!(Trigger, Decision);
 rows! {
     package "flexsc.v1";
 
-    /// A switching: the law changed its state, and from this instant on commands this torque.
+    /// A switching: the law changes its state and commands this torque from this instant on.
     Command = "/command" {
         /// Time since the start, rounded to a double (s).
         time_s: f64,
@@ -29,12 +29,12 @@ rows! {
         time_whole_s: u64,
         /// Femtoseconds of the exact time past the whole second.
         time_fs: u64,
-        /// State of the law that begins.
+        /// New state of the law.
         state: Phase,
-        /// What made the law decide.
+        /// Cause of the decision.
         cause: Trigger,
-        /// Torque that the law asks for from now on (N m; rad/s² on a body without inertia); of a wheel, its gain times the
-        /// law's command.
+        /// Torque that the law commands from now on (N m; rad/s² on a body without inertia); for a wheel: its gain times the law's
+        /// command.
         torque_nm: f64,
         /// Angle, elastic part included (rad).
         angle_rad: f64,
@@ -43,11 +43,11 @@ rows! {
         /// The law's tunable parameter (k_t of the relay law).
         gain: f64,
     }
-    /// What the law does: at the start, and once a second in a full log.
+    /// State and command of the law: at the start, and once a second in a full log.
     Law = "/law" {
         /// State of the law.
         state: Phase,
-        /// Torque that the law asks for (N m; rad/s² on a body without inertia); of a wheel, its gain times the law's command.
+        /// Torque that the law commands (N m; rad/s² on a body without inertia); for a wheel: its gain times the law's command.
         torque_nm: f64,
         /// The law's tunable parameter (k_t of the relay law).
         gain: f64,
@@ -56,16 +56,16 @@ rows! {
     Attitude = "/attitude" {
         /// Angle, elastic part included (rad).
         angle_rad: f64,
-        /// Angle of the body as if it were rigid (rad).
+        /// Rigid angle (rad).
         rigid_rad: f64,
-        /// Angle as the sensor gives it (rad).
+        /// Measured angle (rad).
         measured_rad: f64,
     }
     /// Rates.
     Rate = "/rate" {
         /// Rate, elastic part included (rad/s).
         rate_rad_s: f64,
-        /// Rate of the body as if it were rigid (rad/s).
+        /// Rigid rate (rad/s).
         rigid_rad_s: f64,
     }
     /// One elastic mode.
@@ -84,9 +84,9 @@ rows! {
     }
     /// One observed coordinate.
     OutputMotion {
-        /// Value, in the unit that `/params` names.
+        /// Value, in the unit given in `/params`.
         value: f64,
-        /// Its derivative with time.
+        /// Its time derivative.
         rate: f64,
     }
     /// The observed coordinates, in the order of `/params`.
@@ -96,13 +96,13 @@ rows! {
     }
     /// The torques on the body; all are rad/s² on a body without inertia, or where the hub's motion is commanded.
     Torque = "/torque" {
-        /// What the manoeuvre commands (N m).
+        /// Torque commanded by the manoeuvre (N m).
         feedforward_nm: f64,
-        /// What the law asks for (N m); of a wheel, its gain times the law's command.
+        /// Torque commanded by the law (N m); for a wheel: its gain times the law's command.
         feedback_nm: f64,
-        /// What the actuator makes of both (N m).
+        /// Torque of the actuator (N m).
         applied_nm: f64,
-        /// Disturbances (N m).
+        /// Disturbance torque (N m).
         disturbance_nm: f64,
     }
     /// The flywheel.
@@ -112,31 +112,31 @@ rows! {
         /// Momentum (N m s; rad/s on a body without inertia).
         momentum_nm_s: f64,
     }
-    /// Where the body shall be: on the manoeuvre, where it would be if it were rigid.
+    /// The goal: during a manoeuvre, the motion that a rigid body would have.
     GoalMotion = "/goal" {
         /// Angle (rad).
         angle_rad: f64,
         /// Rate (rad/s).
         rate_rad_s: f64,
     }
-    /// The vibration that is left of one observed coordinate.
+    /// Residual vibration of one observed coordinate.
     Residual {
-        /// Sum of the modes' amplitudes, in this unit.
+        /// Sum of the modal amplitudes, in this unit.
         amplitude: f64,
         /// Unit.
         unit: String,
     }
-    /// How the manoeuvre ended, once at its end.
+    /// Errors and residual vibration at the end of the manoeuvre, logged once.
     Arrival = "/arrival" {
-        /// Angle beyond the goal (rad).
+        /// Angle minus the goal (rad).
         angle_error_rad: f64,
-        /// Rate beyond the goal (rad/s).
+        /// Rate minus the goal (rad/s).
         rate_error_rad_s: f64,
-        /// Vibration that is left of the hub's angle: the sum of the modes' amplitudes (rad).
+        /// Residual vibration of the hub's angle: sum of the modal amplitudes (rad).
         angle_residual_rad: f64,
-        /// Elastic energy that is left, of motion and deformation (J; J/(kg m²) on a body without inertia).
+        /// Residual elastic energy, kinetic and potential (J; J/(kg m²) on a body without inertia).
         elastic_energy_j: f64,
-        /// Vibration that is left of each observed coordinate.
+        /// Residual vibration of each observed coordinate.
         outputs: Vec<Residual>,
     }
     /// The envelope of one elastic mode.
@@ -144,20 +144,20 @@ rows! {
         /// Envelope (rad).
         envelope_rad: f64,
     }
-    /// The envelope of the elastic modes, as the observer gives it.
+    /// Envelope of the elastic modes, as estimated by the monitor.
     Envelope = "/envelope" {
         /// Total envelope: the sum over the modes (rad).
         envelope_rad: f64,
-        /// Each mode's.
+        /// The envelope of each mode.
         modes: Vec<ModeEnvelope>,
     }
-    /// The mean envelope over the window that ended.
+    /// Mean envelope over the last window.
     WindowMean = "/envelope_mean" {
         /// Number of the window, from 0.
         window: u64,
-        /// When the window began (s).
+        /// Start of the window (s).
         from_s: f64,
-        /// When it ended (s).
+        /// End of the window (s).
         to_s: f64,
         /// Mean of the total envelope over the window (rad).
         mean_rad: f64,
@@ -168,18 +168,18 @@ rows! {
     Adaptation = "/adaptation" {
         /// Number of the window that ended, from 0.
         window: u64,
-        /// What was decided.
+        /// Decision.
         decision: Decision,
-        /// Relative change of the mean envelope since the window before.
+        /// Change of the mean envelope relative to the previous window.
         change: f64,
         /// Random part of the largest move, in [-1, 1].
         draw: f64,
-        /// The gain from now on.
+        /// Gain from now on.
         gain: f64,
-        /// Consecutive settled windows.
+        /// Number of consecutive settled windows.
         settled: u64,
     }
-    /// One elastic mode as a filter sees it.
+    /// One elastic mode as estimated by a filter.
     ModeEstimate {
         /// Displacement (rad).
         displacement_rad: f64,
@@ -192,19 +192,19 @@ rows! {
         /// Its standard deviation (rad).
         amplitude_sd_rad: f64,
     }
-    /// What a Kalman filter makes of a sample.
+    /// A Kalman filter, after a sample.
     Estimate = "/estimator" {
-        /// The dominant mode's index.
+        /// Index of the dominant mode.
         dominant: u64,
-        /// Its natural frequency as the law reads it (rad/s).
+        /// Its natural frequency as read by the law (rad/s).
         frequency_rad_s: f64,
-        /// Standard deviation of the estimated frequency (rad/s); 0 of a filter that takes it for known.
+        /// Standard deviation of the estimated frequency (rad/s); 0 for a filter with known frequencies.
         frequency_sd_rad_s: f64,
-        /// What that frequency really is (rad/s).
+        /// True value of that frequency (rad/s).
         true_frequency_rad_s: f64,
-        /// The dominant mode's displacement as the law reads it (rad).
+        /// Displacement of the dominant mode as read by the law (rad).
         displacement_rad: f64,
-        /// Estimated frequency over the one at the start.
+        /// Estimated frequency divided by its initial value.
         ratio: f64,
         /// Its standard deviation.
         ratio_sd: f64,
@@ -214,17 +214,17 @@ rows! {
         ratio_rate_sd_1_s: f64,
         /// Each mode.
         modes: Vec<ModeEstimate>,
-        /// Measured angle less the predicted one (rad); 0 if the sample was dropped.
+        /// Measured angle minus the predicted one (rad); 0 if the sample was dropped.
         innovation_rad: f64,
         /// Normalised innovation squared, summed over the measurements; 0 if the sample was dropped.
         nis: f64,
-        /// What became of the sample.
+        /// Use of the sample.
         measured: Use,
-        /// Normalised estimation error squared against the true state: of an honest filter about the number of states.
+        /// Normalised estimation error squared, from the true state; about the number of states for a consistent filter.
         nees: f64,
-        /// Whether the dominant mode moves enough for its frequency to be learnt.
+        /// Whether the amplitude of the dominant mode is large enough to update its frequency.
         gated: Gate,
-        /// Whether the filter follows the body.
+        /// Whether the filter has lock.
         lock: Lock,
     }
 }

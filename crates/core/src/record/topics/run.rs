@@ -14,9 +14,9 @@ rows! {
         unit: String,
         /// Position in a metric that is a list, else 0.
         index: u64,
-        /// Value; NaN where there is none.
+        /// Value; NaN if there is none.
         value: f64,
-        /// Value of a metric that is a word.
+        /// Value of a metric that is text.
         text: String,
     }
     /// The metrics of the run, once at its end.
@@ -28,7 +28,7 @@ rows! {
     MetricLine {
         /// Name, as `flexsc schema --metrics` explains it.
         name: String,
-        /// Value, or the values of a list.
+        /// Value, or list of values.
         value: String,
         /// Unit.
         unit: String,
@@ -38,7 +38,7 @@ rows! {
         /// Each metric.
         metrics: Vec<MetricLine>,
     }
-    /// The metrics of the run once more, for people: in pages, since tables of viewers show ten rows.
+    /// The metrics of the run again as readable tables: in pages, since tables of viewers show ten rows.
     Summary = "/summary" {
         /// Each page.
         pages: Vec<MetricPage>,
@@ -53,7 +53,7 @@ rows! {
         time_fs: u64,
         /// The key of the part: `sensor.sampled`.
         part: String,
-        /// What of it fails; empty for all of it.
+        /// Component that fails; empty for the whole part.
         of: String,
         /// The kind of failure.
         fault: String,
@@ -67,7 +67,7 @@ rows! {
         /// Unit.
         unit: String,
     }
-    /// What was simulated, once at the start.
+    /// The simulated scenario, logged once at the start.
     Params = "/params" {
         /// Name of the scenario.
         scenario: String,
