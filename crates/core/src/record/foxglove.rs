@@ -70,7 +70,7 @@ pub enum LineType {
 impl LineType {
     const LABELS: Labels = Labels {
         name: "LinePrimitive.Type",
-        docs: &[" Each with the next.", " Also the last with the first.", " Two by two."],
+        docs: &[" Each point with the next.", " Also the last point with the first.", " In pairs."],
         values: &["line strip", "line loop", "line list"],
     };
 }

@@ -43,8 +43,8 @@ pub struct Appendage {
     /// The angle of the drive at the start (rad): see `drive`.
     #[serde(skip)]
     pub start_angle: f64,
-    /// For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments then follow from the
-    /// participations in rotation.
+    /// For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments then follow
+    /// from the participations in rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plate: Option<Plate>,
     /// Named points of the appendage, measured from its root in its own axes.
