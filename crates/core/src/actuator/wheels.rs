@@ -48,7 +48,7 @@ pub struct Wheels {
     /// Friction of the bearings; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Box<Friction>>,
-    /// Friction compensation by the drives, from the speeds that they measure; none by default.
+    /// Friction compensation by the drives, from the wheel speeds available to them; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compensation: Option<Box<Compensation>>,
     /// Imbalance of the wheels; none by default.

@@ -70,11 +70,11 @@ labels! {
         Begin = "begin",
         /// The mean fell: the direction is kept.
         Keep = "keep",
-        /// The mean rose once after many falls: the direction is kept all the same.
+        /// The mean rose once after several falls: the direction is kept.
         Ignore = "ignore",
-        /// The mean rose: the direction is turned.
+        /// The mean rose: the direction is reversed.
         Turn = "turn",
-        /// The mean is settled: the gain stays for good.
+        /// The mean has settled: the gain stays fixed.
         Freeze = "freeze",
     }
 }

@@ -76,7 +76,7 @@ pub enum Law {
     PerAxis(Box<PerAxis>),
     /// Magnetic moments against the measured change of the field, to detumble a body.
     BDot(BDot),
-    /// Laws that act one after the other.
+    /// Laws that act one after another.
     Stages(Stages),
     /// A law from another crate; a scenario file cannot name it.
     Own(Own<dyn Rule + Send + Sync>),

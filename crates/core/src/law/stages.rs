@@ -9,7 +9,7 @@ use crate::document::Fault;
 use crate::quantity::Time;
 use crate::time::{Instant, Span};
 
-/// Laws that act one after the other.
+/// Laws that act one after another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Stages(Vec<Stage>);

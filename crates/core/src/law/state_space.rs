@@ -36,7 +36,7 @@ pub struct StateSpace {
     /// Matrix D: one row; default: it is zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub d: Vec<Vec<Finite>>,
-    /// Whether the matrices are discrete or continuous.
+    /// Whether the matrices are in discrete or continuous time.
     #[serde(default)]
     pub of: Of,
     /// Quantity that it commands.
@@ -50,7 +50,7 @@ pub struct StateSpace {
     pub track: bool,
 }
 
-/// Whether matrices are discrete or continuous.
+/// Whether the matrices are in discrete or continuous time.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Of {

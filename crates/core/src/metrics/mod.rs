@@ -38,8 +38,8 @@ macro_rules! metrics {
 
 metrics! {
     SWITCHINGS = "switchings", "", "Number of switchings of the law";
-    PUSHES_RIGHT = "pushes_right", "", "Strong pushes back from the right boundary of the dead zone";
-    PUSHES_LEFT = "pushes_left", "", "Strong pushes back from the left boundary of the dead zone";
+    PUSHES_RIGHT = "pushes_right", "", "Number of strong pushes back from the right boundary of the dead zone";
+    PUSHES_LEFT = "pushes_left", "", "Number of strong pushes back from the left boundary of the dead zone";
     DUTY = "duty", "", "Fraction of the run under strong torque";
     IMPULSE = "torque_impulse_per_hour_nm_s", "N m s",
         "Integral of the absolute torque per hour of the run; in rad/s on a body without inertia";
@@ -58,71 +58,74 @@ metrics! {
     ENVELOPE_FROZEN = "envelope_frozen_rad", "rad",
         "Mean of the total envelope over the whole windows after the freeze (the last one, if it came at the end); null without a freeze";
     FROZEN_REDUCTION = "envelope_frozen_reduction", "",
-        "Ratio of the same reference to envelope_frozen_rad; null without a freeze";
+        "Ratio of the reference of envelope_reduction to envelope_frozen_rad; null without a freeze";
     CYCLE_KIND = "cycle_kind", "",
         "The limit cycle at the end of the run: two-sided, one-sided, mixed, or none if the run is not periodic";
-    CYCLE_PERIOD = "cycle_period_s", "s", "Period of that cycle; null without one";
-    CYCLE_ORDER = "cycle_order", "", "Pushes from one boundary in each period; null without a cycle";
+    CYCLE_PERIOD = "cycle_period_s", "s", "Period of the limit cycle; null without one";
+    CYCLE_ORDER = "cycle_order", "", "Number of pushes from one boundary in each period; null without a cycle";
     CYCLE_SYMMETRIC = "cycle_symmetric", "",
         "1 if the cycle's second half mirrors its first, else 0; null without a cycle";
     CYCLE_DUTY = "cycle_duty", "", "Fraction of the cycle under strong torque; null without a cycle";
     CYCLE_IMPULSE = "cycle_impulse_per_hour_nm_s", "N m s",
-        "Integral of the absolute torque per hour of that cycle, in rad/s on a body without inertia; null without one";
+        "Integral of the absolute torque per hour of the limit cycle; in rad/s on a body without inertia; null without one";
     CYCLE_MULTIPLIERS = "cycle_multipliers", "",
         "Absolute values of the cycle's Floquet multipliers, largest first; empty without a cycle, and where modes are coupled";
     CYCLE_MULTIPLIER_ARGUMENTS = "cycle_multiplier_arguments_rad", "rad",
-        "Arguments of the same multipliers";
+        "Arguments of the cycle's Floquet multipliers, in the order of cycle_multipliers";
     CYCLE_MULTIPLIER_MAX = "cycle_multiplier_max", "",
-        "Largest absolute value among the multipliers: below 1 the cycle attracts; null without a cycle";
+        "Largest absolute value among the multipliers: below 1 the cycle is stable; null without a cycle";
     ARRIVAL_ANGLE = "arrival_angle_error_rad", "rad", "Error of the hub angle at the end of the manoeuvre";
     ARRIVAL_RATE = "arrival_rate_error_rad_s", "rad/s", "Error of the hub rate at the end of the manoeuvre";
     ANGLE_RESIDUAL = "angle_residual_rad", "rad",
         "Residual vibration of the hub angle: the sum of the modal amplitudes at the end of the manoeuvre";
     OUTPUT_RESIDUALS = "output_residuals", "",
-        "The same for each observed coordinate, in its own unit";
+        "Residual vibration of each observed coordinate, in its own unit: the sum of the modal amplitudes at the end of the manoeuvre";
     RESIDUAL_ENERGY = "residual_energy_j", "J",
         "Residual elastic energy, kinetic and potential, after the manoeuvre; per kg m² for a body without inertia";
     PEAK_TORQUE = "peak_torque_nm", "N m",
         "Largest torque of the actuator, to rounding; in rad/s² on a body without inertia, or where the hub's motion is commanded";
-    PEAK_FEEDBACK = "peak_feedback_torque_nm", "N m", "Largest torque commanded by the law (for a wheel, its gain times the command); in rad/s² as peak_torque_nm";
+    PEAK_FEEDBACK = "peak_feedback_torque_nm", "N m", "Largest torque commanded by the law (for a wheel: its gain times the command); in rad/s² where peak_torque_nm is";
     PEAK_OUTPUTS = "output_peaks", "",
         "Largest absolute value of each observed coordinate, in its own unit, to rounding";
     ANGLE_ERROR_PEAK = "angle_error_peak_rad", "rad",
         "Largest distance of the hub's angle from the goal after the manoeuvre, to rounding; null if the run ends before";
     SETTLING_TIME = "settling_time_s", "s",
-        "Last time at which the hub angle is outside goal_band_rad of the goal, to rounding; the start of the goal if it never is; null if it is outside at the end, or without a band";
+        "Last time at which the hub angle is further than goal_band_rad from the goal, to rounding; the start of the goal if it never is; null if it still is at the end of the run, or without a band";
     SPECTRAL_RADIUS = "spectral_radius", "",
-        "Largest absolute value of the eigenvalues of the sampled loop at constant frequencies, with the dominant mode known and all of the command executed: the largest over the frequencies of a drift; below 1 the loop is stable; null without a sampled PD loop";
-    ITAE = "itae", "rad s²", "Integral of time times the distance from the goal, from its beginning on, to rounding";
-    ANGLE_ERROR_LATE = "angle_error_late_rad", "rad", "The same over the last 5 s of the run";
+        "Spectral radius of the sampled loop at constant frequencies, with the dominant mode known and the command fully executed; with a drift, the largest over its frequencies; below 1 the loop is stable; null without a sampled PD loop";
+    ITAE = "itae", "rad s²", "Integral of time times the distance from the goal, since the start of the goal, to rounding";
+    ANGLE_ERROR_LATE = "angle_error_late_rad", "rad",
+        "Largest distance of the hub's angle from the goal over the last 5 s of the run, to rounding";
     OUTPUT_SWINGS = "output_swings", "",
         "Half the peak-to-peak value of each observed coordinate after the manoeuvre";
-    OUTPUT_SWINGS_LATE = "output_swings_late", "", "The same over the last 5 s of the run";
+    OUTPUT_SWINGS_LATE = "output_swings_late", "",
+        "Half the peak-to-peak value of each observed coordinate over the last 5 s of the run";
     GOAL = "goal", "",
         "Whether the run meets its goal: met if the angle stays within goal_band_rad of it for at least the last tenth of the time since the goal began, else missed; none without a goal or a band";
     GOAL_BAND = "goal_band_rad", "rad",
         "Half width of the band about the goal: reference.band, or the one specified by the law or the manoeuvre; null without one";
-    TIME_OUTSIDE = "time_outside_s", "s", "Time outside that band since the start of the goal";
+    TIME_OUTSIDE = "time_outside_s", "s", "Time outside goal_band_rad since the start of the goal";
     RATE_END = "rate_end_rad_s", "rad/s",
         "Rigid rate of a body with magnetorquers at the end of the run";
     MOMENTUM_PEAK = "wheel_momentum_peak_nm_s", "N m s",
         "Largest total momentum of wheels that are unloaded by magnetorquers";
-    MOMENTUM_END = "wheel_momentum_end_nm_s", "N m s", "The same at the end of the run";
+    MOMENTUM_END = "wheel_momentum_end_nm_s", "N m s",
+        "Total momentum of wheels that are unloaded by magnetorquers, at the end of the run";
     NEES_MEAN = "nees_mean", "",
         "Mean over the assessed samples of the filter's normalised estimation error squared, divided by the number of states: 1 if the covariance is consistent";
     NIS_MEAN = "nis_mean", "",
-        "Mean of its normalised innovation squared divided by the number of measurements in a sample: 1 if consistent";
+        "Mean over the assessed samples of the filter's normalised innovation squared, divided by the number of measurements in a sample: 1 if consistent";
     NIS_INSIDE = "nis_inside_95", "",
         "Fraction of the assessed samples whose NIS lies within the two-sided 95 % bounds of chi-square";
     FREQUENCY_ERROR_RMS = "frequency_error_rms_rad_s", "rad/s",
         "Root mean square error of the dominant mode's frequency used by the law, over the assessed samples";
-    FREQUENCY_ERROR_MAX = "frequency_error_max_rad_s", "rad/s", "Largest such error";
+    FREQUENCY_ERROR_MAX = "frequency_error_max_rad_s", "rad/s", "Largest error of the dominant mode's frequency used by the law, over the assessed samples";
     ATTITUDE_ERROR = "attitude_estimate_error_rms_rad", "rad",
         "Root mean square attitude error of the filter (norm over three axes), over the assessed samples";
     BIAS_ERROR = "bias_estimate_error_rms_rad_s", "rad/s",
-        "The same for the estimated gyro bias";
-    LOCK_LOST = "lock_lost", "", "1 if the filter has diverged at the end of the run, else 0";
-    LOCK_LOST_AT = "lock_lost_at_s", "s", "Time from which it has diverged; null if it has not";
+        "Root mean square error of the estimated gyro bias (norm over three axes), over the assessed samples";
+    LOCK_LOST = "lock_lost", "", "1 if the filter has lost lock at the end of the run, else 0";
+    LOCK_LOST_AT = "lock_lost_at_s", "s", "Time at which the filter lost lock for good; null if it has lock at the end of the run";
     FUEL = "fuel_kg", "kg", "Propellant used by the jets";
     FIRINGS = "firings", "", "Number of jet pulses on all axes";
     FIRING_CYCLES = "firing_cycles", "", "Number of control cycles in which any jet fires";
@@ -131,10 +134,10 @@ metrics! {
     FRICTION_HEAT = "friction_heat_j", "J", "Friction heat of all wheels up to the last cycle";
     ELASTIC_PEAK = "elastic_energy_peak_j", "J",
         "Largest elastic energy, kinetic and potential, at the starts of the control cycles";
-    ELASTIC_END = "elastic_energy_end_j", "J", "The same at the last cycle";
+    ELASTIC_END = "elastic_energy_end_j", "J", "Elastic energy, kinetic and potential, at the last cycle";
     VISIBLE_PEAK = "visible_energy_peak_j", "J",
         "Largest elastic energy of the modes visible to the gyro: those that rotate it at least a tenth as much as the most visible one";
-    VISIBLE_END = "visible_energy_end_j", "J", "The same at the last cycle";
+    VISIBLE_END = "visible_energy_end_j", "J", "Elastic energy of the modes visible to the gyro, at the last cycle";
     BELOW_10 = "energy_below_10pct_at_s", "s",
         "First cycle at which the elastic energy is below a tenth of that at the start; null if there is none";
     BELOW_1 = "energy_below_1pct_at_s", "s",
@@ -150,13 +153,13 @@ metrics! {
     ACCELERATION = "acceleration_rms_m_s2", "m/s²",
         "Root mean square reading of each accelerometer (norm over its axes)";
     FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
-        "Estimated natural frequency of each mode tracked by an adaptive observer, at the last cycle; about x, y, z, by frequency";
+        "Estimated natural frequency of each mode tracked by an adaptive observer, at the last cycle; ordered by axis, then by frequency";
     FREQUENCY_ERRORS = "frequency_estimate_errors", "",
-        "Their errors relative to the true values";
+        "Relative errors of frequency_estimates_hz";
     INFLUENCE_ESTIMATES = "influence_estimates", "",
-        "Estimated influence of the axis' own jets on each of these modes, at the last cycle";
+        "Estimated influence of the axis' own jets on each tracked mode, at the last cycle";
     INFLUENCE_ERRORS = "influence_estimate_errors", "",
-        "Their errors relative to the true values";
+        "Relative errors of influence_estimates";
     TRACKING_ERROR = "elastic_rate_error_rms_rad_s", "rad/s",
         "Root mean square error of the estimated elastic rates (norm over three axes), over the cycles of the run";
     DAMPING_CYCLES = "damping_cycles", "", "Number of cycles in which active damping commands a pulse on any axis";

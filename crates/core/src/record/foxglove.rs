@@ -9,17 +9,17 @@ use crate::label::Labels;
 /// How much a line of the log matters.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Level {
-    /// Not told.
+    /// Unknown severity.
     Unknown,
-    /// For those who look for an error.
+    /// For debugging.
     Debug,
-    /// What happens.
+    /// Information.
     Info,
-    /// What should not be.
+    /// A warning.
     Warning,
-    /// What fails.
+    /// An error.
     Error,
-    /// What ends the run.
+    /// A fatal error.
     Fatal,
 }
 
@@ -28,12 +28,12 @@ impl Level {
     pub const LABELS: Labels = Labels {
         name: "Log.Level",
         docs: &[
-            " Not told.",
+            " Unknown severity.",
             " For debugging.",
-            " What happens.",
-            " What should not be.",
-            " A failure.",
-            " The end.",
+            " Information.",
+            " A warning.",
+            " An error.",
+            " A fatal error.",
         ],
         values: &["unknown", "debug", "info", "warning", "error", "fatal"],
     };
@@ -56,21 +56,21 @@ impl Deleted {
     };
 }
 
-/// How points make lines.
+/// How the points are joined into lines.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum LineType {
-    /// Each with the next.
+    /// Each point with the next.
     Strip,
-    /// Also the last with the first.
+    /// Also the last point with the first.
     Loop,
-    /// Two by two.
+    /// In pairs.
     List,
 }
 
 impl LineType {
     const LABELS: Labels = Labels {
         name: "LinePrimitive.Type",
-        docs: &[" Each with the next.", " Also the last with the first.", " Two by two."],
+        docs: &[" Each point with the next.", " Also the last point with the first.", " In pairs."],
         values: &["line strip", "line loop", "line list"],
     };
 }
@@ -82,13 +82,13 @@ rows! {
 
     /// A line of the log.
     Log = "/log" {
-        /// When.
+        /// Time of the message.
         timestamp: Stamp,
-        /// How much it matters.
+        /// Severity.
         level: Level,
-        /// What happened.
+        /// Text of the message.
         message: String,
-        /// Who tells.
+        /// Source of the message.
         name: String,
     }
     /// A vector.
@@ -111,23 +111,23 @@ rows! {
     }
     /// A rotation.
     Quaternion {
-        /// Part along x.
+        /// Its x component.
         x: f64,
-        /// Part along y.
+        /// Its y component.
         y: f64,
-        /// Part along z.
+        /// Its z component.
         z: f64,
         /// Real part.
         w: f64,
     }
-    /// A place and an attitude.
+    /// A position and an attitude.
     Pose {
-        /// Place (m).
+        /// Position (m).
         position: Vector3,
         /// Attitude.
         orientation: Quaternion,
     }
-    /// A colour, each part from 0 to 1.
+    /// A colour; each component is from 0 to 1.
     Color {
         /// Red.
         r: f64,
@@ -138,31 +138,31 @@ rows! {
         /// Opacity.
         a: f64,
     }
-    /// Where a frame is in another.
+    /// Pose of a frame in another.
     FrameTransform {
-        /// When.
+        /// Time of the message.
         timestamp: Stamp,
-        /// Name of the other frame.
+        /// Name of the parent frame.
         parent_frame_id: String,
         /// Name of the frame.
         child_frame_id: String,
-        /// Its origin in the other (m).
+        /// Its origin in the parent frame (m).
         translation: Vector3,
-        /// Its attitude in the other.
+        /// Its attitude in the parent frame.
         rotation: Quaternion,
     }
-    /// Where frames are.
+    /// Poses of the frames.
     FrameTransforms = "/tf" {
         /// Each frame.
         transforms: Vec<FrameTransform>,
     }
     /// Entities that a scene no longer has.
     SceneEntityDeletion {
-        /// When.
+        /// Time of the message.
         timestamp: Stamp,
-        /// Which.
+        /// Kind of deletion.
         r#type: Deleted,
-        /// The id.
+        /// Id of the entity.
         id: String,
     }
     /// A remark.
@@ -174,7 +174,7 @@ rows! {
     }
     /// An arrow.
     ArrowPrimitive {
-        /// Where it begins; it points along x.
+        /// Pose of its start; it points along x.
         pose: Pose,
         /// Length of its shaft (m).
         shaft_length: f64,
@@ -189,16 +189,16 @@ rows! {
     }
     /// A box.
     CubePrimitive {
-        /// Its middle.
+        /// Pose of its centre.
         pose: Pose,
         /// Its edges (m).
         size: Vector3,
         /// Colour.
         color: Color,
     }
-    /// A ball.
+    /// A sphere.
     SpherePrimitive {
-        /// Its middle.
+        /// Pose of its centre.
         pose: Pose,
         /// Its diameters (m).
         size: Vector3,
@@ -207,22 +207,22 @@ rows! {
     }
     /// A cylinder or a cone about z.
     CylinderPrimitive {
-        /// Its middle.
+        /// Pose of its centre.
         pose: Pose,
         /// Its diameters and its height (m).
         size: Vector3,
-        /// Part of the diameters at the lower end.
+        /// Fraction of the diameters at the lower end.
         bottom_scale: f64,
-        /// Part of the diameters at the upper end.
+        /// Fraction of the diameters at the upper end.
         top_scale: f64,
         /// Colour.
         color: Color,
     }
     /// Lines.
     LinePrimitive {
-        /// How points make lines.
+        /// How the points are joined into lines.
         r#type: LineType,
-        /// Where they are.
+        /// Their pose.
         pose: Pose,
         /// Thickness (m, or pixels).
         thickness: f64,
@@ -235,16 +235,16 @@ rows! {
     }
     /// Triangles.
     TriangleListPrimitive {
-        /// Where they are.
+        /// Their pose.
         pose: Pose,
-        /// Their corners, three by three.
+        /// Their corners, three for each triangle.
         points: Vec<Point3>,
         /// Colour.
         color: Color,
     }
     /// A text.
     TextPrimitive {
-        /// Where it is.
+        /// Its pose.
         pose: Pose,
         /// Whether it faces who looks.
         billboard: bool,
@@ -259,13 +259,13 @@ rows! {
     }
     /// A thing in a scene.
     SceneEntity {
-        /// When.
+        /// Time of the message.
         timestamp: Stamp,
-        /// The frame in which it is.
+        /// Frame in which it is drawn.
         frame_id: String,
-        /// Its id: a later entity of the same id takes its place.
+        /// Id; a later entity with the same id replaces it.
         id: String,
-        /// How long it stays.
+        /// Time for which it is shown.
         lifetime: Lifetime,
         /// Whether it moves with its frame.
         frame_locked: bool,
@@ -275,7 +275,7 @@ rows! {
         arrows: Vec<ArrowPrimitive>,
         /// Its boxes.
         cubes: Vec<CubePrimitive>,
-        /// Its balls.
+        /// Its spheres.
         spheres: Vec<SpherePrimitive>,
         /// Its cylinders and cones.
         cylinders: Vec<CylinderPrimitive>,
@@ -286,11 +286,11 @@ rows! {
         /// Its texts.
         texts: Vec<TextPrimitive>,
     }
-    /// What a scene consists of.
+    /// Contents of a scene.
     SceneUpdate = "/scene" {
-        /// What it no longer has.
+        /// Entities to remove.
         deletions: Vec<SceneEntityDeletion>,
-        /// What it has from now on.
+        /// Entities of the scene from now on.
         entities: Vec<SceneEntity>,
     }
 }

@@ -64,25 +64,25 @@ states! {
         /// It was used.
         Used = "used",
     }
-    /// Whether an observer may be acted on.
+    /// Whether active damping may use an observer.
     Trust {
         /// Its innovations are too large.
         Doubted = "doubted",
-        /// They are small enough.
+        /// Its innovations are small enough.
         Trusted = "trusted",
     }
-    /// Whether active damping is at work about an axis.
+    /// Whether active damping acts about an axis.
     Latch {
         /// The rate is within the threshold.
         Quiet = "quiet",
-        /// It was beyond the threshold, and is not yet back.
+        /// The rate exceeded the threshold and has not yet fallen below the release level.
         Latched = "latched",
     }
     /// Whether the watchdog pauses active damping.
     Watch {
-        /// It does not.
+        /// Active damping is allowed.
         Awake = "awake",
-        /// It does.
+        /// Active damping is paused.
         Resting = "resting",
     }
 }
@@ -108,11 +108,11 @@ labels! {
         LeftBrake = "LBRK",
         /// Relay: weak push to the left, while coasting inside the dead zone.
         WeakLeft = "W-",
-        /// Phase plane: the rate is within what is allowed.
+        /// Phase plane: the rate is within its limits.
         Coasting = "COAST",
-        /// Phase plane: pulses bring the rate back.
+        /// Phase plane: pulses bring the rate back within its limits.
         Firing = "FIRE",
-        /// B-dot: magnetic moments take the rotation away.
+        /// B-dot: magnetic moments reduce the rotation.
         Detumbling = "BDOT",
     }
 }

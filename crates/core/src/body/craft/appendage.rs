@@ -43,7 +43,8 @@ pub struct Appendage {
     /// The angle of the drive at the start (rad): see `drive`.
     #[serde(skip)]
     pub start_angle: f64,
-    /// Long axis of a thin plate in the plane of its own x and y; the first moments then follow from the rotations.
+    /// For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments then follow
+    /// from the participations in rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plate: Option<Plate>,
     /// Named points of the appendage, measured from its root in its own axes.
@@ -67,7 +68,7 @@ pub struct Appendage {
     pub units: Option<Units>,
 }
 
-/// Long axis of a plate, in its own axes.
+/// Axis along which a plate extends, in its own axes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Plate {

@@ -22,7 +22,7 @@ pub struct Adaptive {
     /// Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<u32>,
-    /// Frequency ratio below which modes of the body are tracked as one.
+    /// Relative frequency difference below which modes of the body are tracked as one.
     pub merge: NonNegative,
     /// Whether an axis accounts for the jets of the other axes; default: true in the form `gradient`, else false.
     #[serde(skip_serializing_if = "Option::is_none")]

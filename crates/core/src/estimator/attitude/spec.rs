@@ -58,9 +58,9 @@ pub struct AttitudeFilter {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Initial {
-    /// Of the attitude (rad).
+    /// Standard deviation of the attitude (rad).
     pub angle: Positive,
-    /// Of the bias (rad/s).
+    /// Standard deviation of the bias (rad/s).
     pub bias: Positive,
 }
 

@@ -123,13 +123,13 @@ pub struct FrequencyTracking {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Initial {
-    /// Of the rigid angle (rad).
+    /// Standard deviation of the rigid angle (rad).
     pub angle: NonNegative,
-    /// Of the rigid rate (rad/s).
+    /// Standard deviation of the rigid rate (rad/s).
     pub rate: NonNegative,
-    /// Of the displacement of the mode with the largest k/w² (rad); a tenth of it for the other modes.
+    /// Standard deviation of the displacement of the mode with the largest k/w² (rad); a tenth of it for the other modes.
     pub displacement: NonNegative,
-    /// Of the rate of that mode (rad/s); a tenth of it for the other modes.
+    /// Standard deviation of the rate of that mode (rad/s); a tenth of it for the other modes.
     pub mode_rate: NonNegative,
 }
 

@@ -100,7 +100,7 @@ rows! {
         feedforward_nm: f64,
         /// Torque commanded by the law (N m); for a wheel: its gain times the law's command.
         feedback_nm: f64,
-        /// Torque of the actuator (N m).
+        /// Torque applied by the actuator (N m).
         applied_nm: f64,
         /// Disturbance torque (N m).
         disturbance_nm: f64,

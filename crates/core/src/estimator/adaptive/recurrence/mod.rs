@@ -27,7 +27,7 @@ pub struct Recurrence {
     pub active: Weights,
     /// Frequency gain kappa: W4 times the amplitude of the elastic rate. With the default weights it converges below 0.043.
     pub frequency_gain: NonNegative,
-    /// Influence gain: W8 times the absolute value of its input.
+    /// Influence gain: W8 times the absolute value of the excitation from which the influence is identified.
     pub influence_gain: NonNegative,
     /// Amplitude of the elastic rate (rad/s) below which the frequency is not updated.
     pub gate: Positive,
