@@ -13,5 +13,8 @@ test:
 bench:
     python3 benches/table.py
 
+site:
+    python3 site/build.py
+
 wheel:
     pip wheel --no-deps -w dist .
