@@ -190,34 +190,36 @@ Rows: TypeAlias = Union[Sequence[Sequence[float]], "npt.NDArray[Any]"]
 
 @dataclass(frozen=True, kw_only=True)
 class Accelerometer(Part):
-    """The specific force at a point of a spacecraft, for the log alone."""
+    """The specific force at a point of a spacecraft, for the log only."""
 
     _tag: ClassVar[str | None] = "accelerometer"
 
     period: float
     """Period of its samples (s)."""
     watch_only: bool | None = None
-    """That nothing reads it, which has to be said: it is logged and changes nothing. Default: false."""
+    """Must be true: no law or estimator reads an accelerometer; its readings are only logged. Default:
+    false.
+    """
     point: str | None = None
-    """The point of the structure at which it is; default: the first of the body's points."""
+    """Point of the structure at which it is mounted; default: the first of the body's points."""
     along: Rows | None = None
-    """The directions along which it measures, one to three of any length in the hub's axes while nothing is
-    bent; default: x, y and z.
+    """Measurement directions: one to three, of any length, in the hub's axes with the structure undeformed;
+    default: x, y and z.
     """
     noise: float | Vector | None = None
     """Standard deviation of the white noise along each (m/s²). Default: 0.0."""
     bias: float | Vector | None = None
     """Constant error along each (m/s²). Default: 0.0."""
     bias_random_walk: float | Vector | None = None
-    """Random walk of the bias along each (m/s² for the square root of a second). Default: 0.0."""
+    """Random walk of the bias along each (m/s² per square root of a second). Default: 0.0."""
     resolution: float | Vector | None = None
     """Quantum of the output along each (m/s²); 0 for none. Default: 0.0."""
     scale: float | Vector | None = None
     """Relative error of the scale along each. Default: 0.0."""
     latency: float | None = None
-    """Time from a sample to when it is told (s). Default: 0.0."""
+    """Time from a sample to its output (s). Default: 0.0."""
     faults: Sequence[Fault] | None = None
-    """Times at which it fails."""
+    """Intervals in which it fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,66 +227,70 @@ class ActiveDamping(Part):
     """Active damping."""
 
     threshold: Vector | None = None
-    """Elastic rates beyond which the jets push, about each axis (rad/s); default: 1.5 times the amplitude
-    of the limit cycle that the delay makes, and at least what two whole cycles change, of the mode that
-    a long burn excites most.
+    """Elastic rate about each axis above which the jets fire (rad/s); default, for the mode that a long
+    burn excites most: 1.5 times the amplitude of the limit cycle due to the delay, and at least the
+    change by two whole cycles of firing.
     """
     release: float | None = None
-    """Part of the threshold at which they end. Default: 0.5."""
+    """Fraction of the threshold at which they stop. Default: 0.5."""
     pulse_width: bool | None = None
-    """Whether a pulse is no longer than it takes to stop the elastic motion; else it fills the cycle.
+    """Whether a pulse is only as long as it takes to stop the elastic motion; otherwise it fills the cycle.
     Default: true.
     """
     predictor: bool | None = None
-    """Whether the elastic rate is predicted to the middle of the coming pulse. Default: true."""
+    """Whether the elastic rate is predicted for the middle of the next pulse. Default: true."""
     guards: DampingGuards | None = None
-    """What keeps it from doing harm."""
+    """Guards against exciting the motion."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Adaptive(Part):
-    """The rigid rates and elastic modes of a spatial body, by adaptive observers."""
+    """Adaptive observers of the rigid rates and elastic modes of a spatial body."""
 
     _tag: ClassVar[str | None] = "adaptive"
 
     form: ObserverForm | None = None
     """Form of the observers."""
     trackers: Given | None = None
-    """What they track; default: the dominant modes of the body."""
+    """The modes to track; default: the dominant modes of the body."""
     count: int | None = None
-    """How many modes of the body each axis tracks; default: 2, and 1 in the form `recurrence`."""
+    """Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`."""
     merge: float | None = None
-    """Ratio of frequencies below which modes of the body are tracked as one. Default: 0.08."""
+    """Relative frequency difference below which modes of the body are tracked as one. Default: 0.08."""
     cross_axis: bool | None = None
-    """Whether an axis accounts for the jets of the others; default: it does in the form `gradient`."""
+    """Whether an axis accounts for the jets of the other axes; default: true in the form `gradient`, else
+    false.
+    """
     frequency_error: float | None = None
-    """By which part the frequencies are off at the start. Default: 0.0."""
+    """Relative error of the frequencies at the start. Default: 0.0."""
     influence_error: float | None = None
-    """By which part the influences are off at the start. Default: 0.0."""
+    """Relative error of the influences at the start. Default: 0.0."""
     adapt: bool | None = None
     """Whether frequencies and influences are identified. Default: true."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Added(Part):
-    """It gives something beside what it should."""
+    """An error added to the commanded output."""
 
     _tag: ClassVar[str | None] = "added"
 
     from_: float
-    """When it begins (s)."""
+    """Start time (s)."""
     to: float | None = None
-    """When it ends (s); default: with the run."""
+    """End time (s); default: the end of the run."""
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis of which it fails, on a body with three; default: of all."""
+    """Axis that fails, on a body with three; default: all."""
     wheel: int | None = None
-    """The wheel that fails, counted from 1; default: all do."""
+    """Wheel that fails, counted from 1; default: all."""
     thruster: str | None = None
-    """The thruster that fails, of jets; default: all do."""
+    """Thruster of `jets` that fails; default: all."""
     constant: float | None = None
-    """A constant: a torque (N m), of magnetorquers a moment (A m²), of jets a thrust (N). Default: 0.0."""
+    """Constant part: a torque (N m); for magnetorquers a moment (A m²), for jets a thrust (N). Default:
+    0.0.
+    """
     sines: Sequence[Sine] | None = None
-    """Torques that are sines of the time."""
+    """Sine torques."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -298,33 +304,33 @@ class Appendage(Part):
     centre: Vector | None = None
     """Centre of mass from the root (m), in its own axes."""
     inertia: Rows | None = None
-    """Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; default: it is a point
+    """Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; default: zero, a point
     mass.
     """
     at: Vector | None = None
-    """Where its root is, from the point O of the spacecraft (m)."""
+    """Position of its root from the point O of the spacecraft (m)."""
     turned: Turn | Sequence[Turn] | None = None
-    """How its axes are turned against those of the body."""
+    """Rotation of its axes relative to those of the body."""
     drive: AppendageDrive | None = None
-    """What turns it during a run about an axis through its root; default: nothing."""
+    """Drive that turns it about an axis through its root during a run; default: none."""
     plate: Literal["x", "y"] | None = None
-    """The axis along which a thin plate in the plane of its own x and y stretches: first moments then
-    follow from rotations.
+    """For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments
+    then follow from the participations in rotation.
     """
     points: Sequence[NamedPoint] | None = None
-    """Named points of the appendage, from its root in its own axes."""
+    """Named points of the appendage, measured from its root in its own axes."""
     modes: Sequence[ClampedMode] | str | None = None
-    """Its modes with the root held: a table, or the path of a CSV file or of results of a finite-element
-    program. Without any it is rigid.
+    """Its clamped modes: a table, or the path of a CSV file or of results of a finite-element program.
+    Without modes it is rigid.
     """
     damping: float | Vector | None = None
-    """Damping ratios of the modes of results."""
+    """Damping ratios of modes read from finite-element results."""
     keep: int | None = None
-    """How many of the modes of results are kept, those with the lowest frequencies; default: all."""
+    """Number of modes to keep from finite-element results, lowest frequencies first; default: all."""
     thermal: Thermal | None = None
-    """How sunlight bends it; default: it does not."""
+    """Thermal bending in sunlight; default: none."""
     units: Literal["m", "mm"] | None = None
-    """The units of results: metres and kilograms where it is left out."""
+    """Units of finite-element results; default: metres and kilograms."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -332,23 +338,25 @@ class AppendageDrive(Part):
     """A drive."""
 
     about: Vector
-    """The axis through the root, in the axes of the appendage, of any length but 0."""
+    """Axis through the root, in the axes of the appendage, of any nonzero length."""
     angle: float | None = None
-    """Angle at the start (rad), 0 where the appendage is as it is `turned`. Default: 0.0."""
+    """Angle at the start (rad); at 0 the appendage has the orientation given by `turned`. Default: 0.0."""
     rate: float | None = None
-    """It turns at this rate (rad/s)."""
+    """Constant rate of the drive (rad/s)."""
     from_: float | None = None
-    """It begins to turn at this time (s); default: it turns from the start on."""
+    """Time at which it begins to turn (s); default: the start of the run."""
     until: float | None = None
-    """It begins to stop at this time (s); default: it does not."""
+    """Time at which it begins to stop (s); default: it does not stop."""
     acceleration: float | None = None
-    """How fast its rate changes (rad/s²); default: at once."""
+    """Acceleration with which its rate changes (rad/s²); default: the rate jumps."""
     table: Sequence[DrivePoint] | None = None
-    """Angles at times, with constant rates between."""
+    """Table of angles over time, with constant rates between the points."""
     track: Literal["sun"] | None = None
-    """What it follows."""
+    """Object that the drive tracks."""
     normal: Vector | None = None
-    """What faces the Sun, a direction in the axes of the appendage across the drive's; default: z."""
+    """Direction that is turned to the Sun, in the axes of the appendage, perpendicular to the drive's axis;
+    default: z.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -356,7 +364,7 @@ class AttitudeAt(Part):
     """A row of the table."""
 
     time: float
-    """Time since the target begins (s); of the first row 0."""
+    """Time since the start of the target (s); 0 in the first row."""
     roll: float | None = None
     """Roll (rad). Default: 0.0."""
     pitch: float | None = None
@@ -367,12 +375,12 @@ class AttitudeAt(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class AttitudeEstimator(Part):
-    """Attitude and gyro bias of a spatial body, by a multiplicative extended Kalman filter."""
+    """A multiplicative extended Kalman filter of the attitude and gyro bias of a spatial body."""
 
     _tag: ClassVar[str | None] = "attitude"
 
     form: FilterForm | Literal["extended", "steady"] | None = None
-    """How its gains are found. Default: "extended"."""
+    """How the gains are computed. Default: "extended"."""
     angle_random_walk: float | None = None
     """Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the
     gyro's own.
@@ -380,8 +388,8 @@ class AttitudeEstimator(Part):
     rate_random_walk: float | None = None
     """Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own."""
     attitude_noise: Vector | None = None
-    """Standard deviation of a measured attitude about each axis of what measures it (rad); default: the
-    sensor's own.
+    """Standard deviation of a measured attitude about each axis of its sensor (rad); default: the sensor's
+    own.
     """
     field_noise: float | None = None
     """Standard deviation of a measured magnetic field along each axis (T); default: the magnetometer's own.
@@ -391,13 +399,13 @@ class AttitudeEstimator(Part):
     initial: AttitudeFilterInitial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
-    """What the filter takes for attitude and bias at the start. Default: "drawn"."""
+    """Initial estimate of attitude and bias. Default: "drawn"."""
     elastic: ElasticStates | None = None
-    """Elastic modes that it knows too; none by default."""
+    """Elastic modes as further states; none by default."""
     assess: Vector | None = None
-    """When the metrics judge the filter, from one time to another (s); always by default."""
+    """Interval over which the metrics assess the filter (s); default: the whole run."""
     watch_only: bool | None = None
-    """Whether it is there to be assessed only: no law reads it."""
+    """Whether the filter runs for assessment only: the law does not read it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -405,9 +413,9 @@ class AttitudeFilterInitial(Part):
     """Standard deviations of an attitude filter's estimate at the start, the same about each axis."""
 
     angle: float | None = None
-    """Of the attitude (rad). Default: 0.001."""
+    """Standard deviation of the attitude (rad). Default: 0.001."""
     bias: float | None = None
-    """Of the bias (rad/s). Default: 1e-05."""
+    """Standard deviation of the bias (rad/s). Default: 1e-05."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -423,28 +431,29 @@ class AttitudeLaw(Part):
     damping: float | None = None
     """Damping ratio zeta of the error. Default: 0.7."""
     inertia: Rows | None = None
-    """The inertia tensor that the law takes a body with three axes to have (kg m²), row by row; default:
-    that which it has.
+    """Inertia tensor in the law's model of a body with three axes (kg m²), row by row; default: the body's
+    own.
     """
     error: Literal["quaternion", "rodrigues"] | None = None
-    """How a rotation counts as an error, on a body with three axes."""
+    """How a rotation is converted into an error, on a body with three axes."""
     integral: Integral | None = None
-    """The integral of the error; none by default."""
+    """Integral of the error; none by default."""
     rate_limit: float | None = None
-    """Largest rate at which an error is taken back (rad/s); no limit by default."""
+    """Largest rate at which an error is corrected (rad/s); no limit by default."""
     filters: Sequence[Filter] | None = None
-    """What the fed-back acceleration goes through, in this order."""
+    """Filters of the fed-back acceleration, applied in this order."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class AttitudeTarget(Part):
-    """An attitude to turn to: yaw, then pitch about the turned axis, then roll about the one turned twice.
+    """A target attitude: yaw, then pitch about the rotated y axis, then roll about the twice rotated x
+    axis.
     """
 
     from_: float
-    """From when on (s)."""
+    """Start time (s)."""
     frame: Literal["inertial", "nadir", "sun"] | None = None
-    """The axes that its attitude is from."""
+    """Frame relative to which the attitude is given."""
     roll: float | None = None
     """Roll (rad). Default: 0.0."""
     pitch: float | None = None
@@ -452,43 +461,45 @@ class AttitudeTarget(Part):
     yaw: float | None = None
     """Yaw (rad). Default: 0.0."""
     acceleration: float | None = None
-    """Largest acceleration of a turn about one axis to it (rad/s²); default: it is there at once."""
+    """Largest acceleration of the slew about one axis to it (rad/s²); default: the reference jumps."""
     rate_limit: float | None = None
-    """Largest rate of that turn (rad/s); no limit by default."""
+    """Largest rate of the slew (rad/s); no limit by default."""
     profile: Literal["trapezoid", "versine"] | None = None
-    """How the rate of that turn rises and falls."""
+    """How the rate of the slew rises and falls."""
     command: Command | None = None
-    """In place of `acceleration`, a command planned for the turn, which may leave modes at rest."""
+    """Command planned for the slew, in place of `acceleration`; it may leave modes at rest."""
     duration: float | None = None
-    """How long the turn by that command takes (s)."""
+    """Duration of the slew by that command (s)."""
     shaper: Shaper | None = None
-    """What takes modes out of the turn: its acceleration is convolved with impulses."""
+    """Shaper that suppresses modes: the acceleration of the slew is convolved with impulses."""
     table: Sequence[AttitudeAt] | None = None
-    """In place of one attitude, a table in time: splines of roll, pitch and yaw, at rest at both ends."""
+    """Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at rest at
+    both ends.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
 class BDot(Part):
-    """Magnetic moments against the change of the field, of a body that tumbles."""
+    """Magnetic moments against the measured change of the field, to detumble a body."""
 
     _tag: ClassVar[str | None] = "b_dot"
 
     period: float
     """Period of its commands (s)."""
     gain: float
-    """Moment for each unit of the change of the field (A m² s/T)."""
+    """Magnetic moment per unit rate of change of the field (A m² s/T)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class BangBang(Part):
-    """Full one way, then full the other: the least peak that turns the rigid body."""
+    """Full torque one way, then full torque the other way: the smallest peak that turns the rigid body."""
 
     _tag: ClassVar[str | None] = "bang_bang"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Biquad(Part):
-    """b0 + b1/z + b2/z² over 1 + a1/z + a2/z², as they are."""
+    """(b0 + b1/z + b2/z²)/(1 + a1/z + a2/z²), with the coefficients as given."""
 
     _tag: ClassVar[str | None] = "biquad"
 
@@ -500,7 +511,7 @@ class Biquad(Part):
 
 @dataclass(frozen=True)
 class Choice(Part):
-    """One of these values, each as likely."""
+    """One of these values, with equal probability."""
 
     _tag: ClassVar[str | None] = "choice"
     _holds_one: ClassVar[bool] = True
@@ -510,8 +521,8 @@ class Choice(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class ClampedMode(Part):
-    """A mode of an appendage clamped at its root, mass-normalised: the integral of phi_i . phi_j dm is 1
-    for i = j, else 0. Vectors are in the axes of the appendage, and r is the position from its root.
+    """A mass-normalised mode of an appendage clamped at its root: the integral of phi_i . phi_j dm is 1 for
+    i = j, else 0. Vectors are in the axes of the appendage, and r is the position from its root.
     """
 
     frequency: float
@@ -521,7 +532,7 @@ class ClampedMode(Part):
     translation: Vector | None = None
     """Participation in translation, the integral of phi dm (sqrt(kg))."""
     along: Vector | None = None
-    """Of a point mass, in place of `translation`: the direction in which the whole of it swings, of any
+    """For a point mass, in place of `translation`: the direction in which all of its mass swings, of any
     length.
     """
     rotation: Vector | None = None
@@ -535,12 +546,14 @@ class ClampedMode(Part):
     rate: float | None = None
     """Its rate at the start (m sqrt(kg)/s). Default: 0.0."""
     shapes: Mapping[str, Shape] | None = None
-    """The mode's shape at each point of the appendage, by the point's name, against the held root."""
+    """Shape of the mode at each point of the appendage, relative to the fixed root, by the name of the
+    point.
+    """
 
 
 @dataclass(frozen=True)
 class Common(Part):
-    """All by one ratio."""
+    """All frequencies have one ratio."""
 
     _tag: ClassVar[str | None] = "common"
     _holds_one: ClassVar[bool] = True
@@ -550,31 +563,31 @@ class Common(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Compensation(Part):
-    """What drives take the friction of their wheels to be."""
+    """Friction of the wheels as the drives model it."""
 
     coulomb: float | Vector | None = None
-    """Coulomb friction (N m), of each or of all. Default: 0.0."""
+    """Coulomb friction (N m): one number for all wheels, or one for each. Default: 0.0."""
     viscous: float | Vector | None = None
-    """Viscous friction (N m s/rad), of each or of all. Default: 0.0."""
+    """Viscous friction (N m s/rad): one number for all wheels, or one for each. Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Complementary(Part):
-    """Constant ones that give the error a bandwidth and a damping ratio."""
+    """Constant: from a bandwidth and a damping ratio of the error."""
 
     _tag: ClassVar[str | None] = "complementary"
 
     bandwidth: float
-    """Bandwidth (rad/s): below it the attitude is that of the sensors, above it that of the gyro."""
+    """Bandwidth (rad/s): below it the attitude follows the sensors, above it the gyro."""
     damping: float | None = None
     """Damping ratio. Default: 0.7."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Correlated(Part):
-    """Keys of `[uncertain]` that are drawn together. Behind each stands a standard normal number: these
-    numbers have the correlations, and each key keeps its own distribution. Of normal distributions they
-    are the correlations themselves.
+    """Correlated keys of `[uncertain]`. Each key is drawn from a standard normal number; the matrix
+    correlates these numbers, and each key keeps its own distribution. For normal distributions these are
+    the correlations of the keys.
     """
 
     keys: Sequence[str]
@@ -590,9 +603,9 @@ class Cosine(Part):
     _tag: ClassVar[str | None] = "cosine"
 
     suppress: int | None = None
-    """So many modes of the lowest frequencies. Default: 0."""
+    """Number of modes left at rest, lowest frequencies first. Default: 0."""
     zeros: Sequence[Target] | None = None
-    """Zeros beside them."""
+    """Further zeros."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -600,31 +613,31 @@ class DampingGuards(Part):
     """Guards of active damping."""
 
     dead_zone: bool | None = None
-    """No pulse that would kick the rigid motion out of the dead zone. Default: true."""
+    """Suppress pulses that would drive the rigid motion out of the dead zone. Default: true."""
     eligibility: bool | None = None
-    """Without the predictor, only modes whose phase factor is 0.5 or more. Default: true."""
+    """Without the predictor, damp only modes whose phase factor is at least 0.5. Default: true."""
     residual: bool | None = None
-    """Only while the observer's innovations are small. Default: true."""
+    """Act only while the innovations of the observer are small. Default: true."""
     watchdog: bool | None = None
-    """A pause where the pushes do not help. Default: true."""
+    """Pause active damping when the pulses do not help. Default: true."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Dead(Part):
-    """It gives nothing."""
+    """No output."""
 
     _tag: ClassVar[str | None] = "dead"
 
     from_: float
-    """When it begins (s)."""
+    """Start time (s)."""
     to: float | None = None
-    """When it ends (s); default: with the run."""
+    """End time (s); default: the end of the run."""
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis of which it fails, on a body with three; default: of all."""
+    """Axis that fails, on a body with three; default: all."""
     wheel: int | None = None
-    """The wheel that fails, counted from 1; default: all do."""
+    """Wheel that fails, counted from 1; default: all."""
     thruster: str | None = None
-    """The thruster that fails, of jets; default: all do."""
+    """Thruster of `jets` that fails; default: all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -634,8 +647,8 @@ class Dipole(Part):
     moment: Vector
     """Magnetic moment of the body (A m²), in its axes."""
     strength: float | None = None
-    """Field over the magnetic equator at the radius R of a circular orbit (T), mu/R³: around the Earth mu
-    is 7.8e15 T m³; left out, the environment's magnetic field counts.
+    """Field over the magnetic equator at the radius R of a circular orbit (T), mu/R³; for the Earth mu is
+    7.8e15 T m³. Default: the environment's magnetic field.
     """
     inclination: float | None = None
     """Inclination of that orbit to the magnetic equator (rad)."""
@@ -644,7 +657,7 @@ class Dipole(Part):
     orbit_rate: float | None = None
     """Rate of that orbit (rad/s)."""
     local: Vector | None = None
-    """How the local axes lie at the start, as of a gravity gradient."""
+    """Orientation of the local axes at the start, as for a gravity gradient."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -652,29 +665,29 @@ class Disturbance(Part):
     """A disturbance: a torque about an axis, or a force at a point."""
 
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis about which it acts, of a body with three."""
+    """Axis about which it acts, on a body with three."""
     torque: float | None = None
     """Torque (N m). Default: 0.0."""
     sines: Sequence[Sine] | None = None
-    """Sines of the time in the torque beside it, of a `[spacecraft]`."""
+    """Sine terms added to the torque, on a `[spacecraft]`."""
     force: Vector | None = None
-    """In place of a torque, on a body with three axes a force in its axes (N): a leak, a jet that is stuck,
-    a push.
+    """Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck jet, a
+    push.
     """
     point: str | None = None
     """Name of the point at which the force acts; default: the first."""
     noise: float | None = None
-    """Spectral density of a white noise in the torque beside it ((N m)² s): each draw is held for `period`.
+    """Spectral density of white noise added to the torque ((N m)² s); each draw is held for `period`.
     Default: 0.0.
     """
     pulse: Pulses | None = None
     """Pulses in place of a steady torque or force."""
     period: float | None = None
-    """How long a draw of the noise is held (s)."""
+    """Time for which a draw of the noise is held (s)."""
     from_: float | None = None
-    """When it begins (s). Default: 0.0."""
+    """Start time (s). Default: 0.0."""
     to: float | None = None
-    """When it ends (s); default: with the run."""
+    """End time (s); default: the end of the run."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -686,25 +699,26 @@ class Drag(Part):
     plates: Sequence[DragPlate]
     """The plates."""
     scale_height: float | None = None
-    """Height in which it falls to 1/e (m); default: it is the same everywhere."""
+    """Scale height, in which the density falls to 1/e (m); default: the density is uniform."""
     coefficient: float | None = None
     """Drag coefficient. Default: 2.2."""
     rotation: float | None = None
-    """How fast the atmosphere turns with the planet (rad/s); default: as the Earth does. Default:
-    7.292115e-05.
+    """Rotation rate of the atmosphere with the planet (rad/s); default: the Earth's. Default: 7.292115e-05.
     """
 
 
 @dataclass(frozen=True, kw_only=True)
 class DragPlate(Part):
-    """A plate, of which one side counts."""
+    """A plate; drag acts on one side of it."""
 
     area: float
     """Area (m²)."""
     normal: Vector
     """Its outward normal in the body's axes, of any length."""
     at: Vector
-    """Its middle (m): from the point O of a spacecraft, or from the centre of mass of a spatial body."""
+    """Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial
+    body.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -719,7 +733,7 @@ class DrivePoint(Part):
 
 @dataclass(frozen=True)
 class Each(Part):
-    """Each by its own, in the order of the modes."""
+    """Each frequency has its own ratio, in the order of the modes."""
 
     _tag: ClassVar[str | None] = "each"
     _holds_one: ClassVar[bool] = True
@@ -729,14 +743,16 @@ class Each(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Ei(Part):
-    """Extra insensitive: three impulses that leave a little vibration, and little more over a wider band."""
+    """Extra insensitive: three impulses that allow a little vibration at the mode's frequency, and stay
+    near it over a wider band.
+    """
 
     _tag: ClassVar[str | None] = "ei"
 
     modes: Sequence[int] | None = None
     """Indices of the modes."""
     vibration: float | None = None
-    """Vibration that is left at the mode's frequency, relative to that of one impulse. Default: 0.05."""
+    """Residual vibration at the mode's frequency, relative to that of a single impulse. Default: 0.05."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -744,13 +760,13 @@ class ElasticStates(Part):
     """Elastic modes as states of the filter."""
 
     modes: Sequence[int]
-    """Which free modes, by their index."""
+    """Indices of the free modes."""
     noise: float
-    """By how much random forces let the rate of each mode walk (m sqrt(kg)/s^1.5)."""
+    """Random walk of the rate of each mode due to random forces (m sqrt(kg)/s^1.5)."""
     frequencies: Vector | None = None
-    """Their natural frequencies as the filter knows them (rad/s); default: the body's own."""
+    """Natural frequencies in the filter's model (rad/s); default: the body's own."""
     factor: float | None = None
-    """What these are multiplied by: the filter's error. Default: 1.0."""
+    """Factor on these frequencies: the error of the filter's model. Default: 1.0."""
     displacement: float | None = None
     """Standard deviation of each displacement at the start (m sqrt(kg)). Default: 0.001."""
     rate: float | None = None
@@ -758,7 +774,7 @@ class ElasticStates(Part):
     the frequency.
     """
     feeds: Literal["modes", "hub", "rigid"] | None = None
-    """What the law reads: angle and rate as if the body were rigid, or those of the hub; default: rigid."""
+    """Estimates that the law reads: the rigid angle and rate, or those of the hub; default: rigid."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -770,22 +786,22 @@ class Envelope(Part):
     window: float
     """Length of the windows over which the envelope is averaged (s)."""
     form: Literal["dynamic", "trigonometric", "truth"] | None = None
-    """How the phasors are followed. Default: "dynamic"."""
+    """How the phasors are computed. Default: "dynamic"."""
     modes: Sequence[Mode] | None = None
-    """The modes of the monitor's model; default: they are the body's own."""
+    """Modes of the monitor's model; default: the body's own."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Environment(Part):
-    """What surrounds a body with three axes. The torques add up."""
+    """The environment of a body with three axes. Its torques add up."""
 
     orbit: Kepler | None = None
-    """The orbit on which the body is; default: there is none, or one of those below."""
+    """Orbit of the body; default: none, or the one given with a torque below."""
     magnetic_field: MagneticField | None = None
     """The magnetic field of the orbit's planet."""
     sun: Vector | Literal["epoch"] | None = None
-    """The direction to the Sun in inertial axes, of any length, or by the date of the start; the orbit's
-    planet throws a shadow.
+    """Direction to the Sun in inertial axes, of any length, or from the date of the start; the orbit's
+    planet casts a shadow.
     """
     gravity_gradient: GravityGradient | None = None
     """Gravity gradient of a circular orbit."""
@@ -801,12 +817,12 @@ class Environment(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class ExtendedKalman(Part):
-    """The motion and the natural frequencies, by an extended Kalman filter."""
+    """An extended Kalman filter of the motion and the natural frequencies."""
 
     _tag: ClassVar[str | None] = "extended_kalman"
 
     modes: Sequence[Mode] | None = None
-    """The modes of the filter's model; default: they are the body's own at the start."""
+    """Modes of the filter's model; default: the body's own at the start."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
@@ -814,51 +830,52 @@ class ExtendedKalman(Part):
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
-    """What the filter takes for the state at the start. Default: "drawn"."""
+    """Initial state estimate of the filter. Default: "drawn"."""
     dominant: Literal["excitability", "amplitude"] | None = None
-    """What makes a mode the dominant one. Default: "excitability"."""
+    """Criterion for the dominant mode. Default: "excitability"."""
     assess: Vector | None = None
-    """When the metrics judge the filter, from one time to another (s); always by default."""
+    """Interval over which the metrics assess the filter (s); default: the whole run."""
     feeds: Literal["modes", "hub", "rigid"] | None = None
-    """What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured;
-    `hub` for angle and rate of the hub, elastic part included; `rigid` for those of the body as if it
-    were rigid. By default, `modes` for a law that reads the dominant mode, else `hub`.
+    """Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as measured;
+    `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By
+    default, `modes` for a law that reads the dominant mode, else `hub`.
     """
     watch_only: bool | None = None
-    """Whether it is there to be assessed only: no law reads it."""
+    """Whether the filter runs for assessment only: the law does not read it."""
     ratios: Literal["common", "each"] | None = None
     """Which frequencies drift together. Default: "common"."""
     ratio: float | None = None
-    """Ratio that the filter takes the frequencies to have at the start. Default: 1.0."""
+    """Initial estimate of the frequency ratio. Default: 1.0."""
     ratio_sd: float | None = None
-    """Standard deviation of that ratio. Default: 0.03."""
+    """Standard deviation of the initial ratio. Default: 0.03."""
     ratio_rate_sd: float | None = None
-    """Standard deviation of its rate at the start, which is taken for 0 (1/s). Default: 0.003."""
+    """Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s). Default: 0.003."""
     ratio_noise: float | None = None
     """Spectral density of the white noise in a ratio (1/s). Default: 1e-08."""
     ratio_rate_noise: float | None = None
     """Spectral density of the white noise in the rate of a ratio (1/s³). Default: 1e-08."""
     bounds: Vector | None = None
-    """`[low, high]` of a ratio; the filter that reaches them has lost the body."""
+    """Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock."""
     substeps: int | None = None
-    """Steps in which a period is predicted. Default: 2."""
+    """Number of prediction steps per period. Default: 2."""
     gate: float | None = None
-    """While the dominant mode's amplitude is below so many standard deviations of the angle, the ratios
-    learn nothing. Default: 3.0.
+    """Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios are not
+    updated. Default: 3.0.
     """
 
 
 @dataclass(frozen=True, kw_only=True)
 class Friction(Part):
-    """Friction: c Omega + t sgn Omega of a wheel that turns, and up to its breakaway torque of one at rest.
+    """Bearing friction: c Omega + t sgn Omega for a turning wheel, and up to the breakaway torque for a
+    wheel at rest.
     """
 
     coulomb: float | Vector | None = None
-    """Coulomb friction t (N m), of each or of all. Default: 0.0."""
+    """Coulomb friction t (N m): one number for all wheels, or one for each. Default: 0.0."""
     viscous: float | Vector | None = None
-    """Viscous friction c (N m s/rad), of each or of all. Default: 0.0."""
+    """Viscous friction c (N m s/rad): one number for all wheels, or one for each. Default: 0.0."""
     breakaway: float | Vector | None = None
-    """Torque up to which the bearing holds a wheel at rest (N m); default: that of Coulomb."""
+    """Torque up to which the bearing holds a wheel at rest (N m); default: the Coulomb friction."""
 
 
 @dataclass(frozen=True)
@@ -873,8 +890,8 @@ class Gain(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Given(Part):
-    """Modes to track about each axis. The influence has an element for each group of jets: roll, pitch,
-    yaw, or the axis alone where `cross_axis` is false.
+    """Modes to track about each axis. The influence has one element per group of jets (roll, pitch, yaw),
+    or a single one for the axis' own group if `cross_axis` is false.
     """
 
     roll: Sequence[Tracker] | None = None
@@ -894,22 +911,21 @@ class Gradient(Part):
     damping: float | None = None
     """Damping ratio of the modes, which is not identified. Default: 0.005."""
     rigid_gain: float | None = None
-    """Gain of the rigid rate: the part of an innovation that it takes. Default: 0.03."""
+    """Gain of the rigid rate: the fraction of an innovation by which it is corrected. Default: 0.03."""
     elastic_gain: float | None = None
     """Gain of each elastic rate; default: 0.15 for one mode and 0.1 for several."""
     rate: float | None = None
-    """Rate of the identification, 0 for none. Sufficient for its convergence: below 0.05 over the number of
+    """Rate of the identification; 0 for none. It converges if this is below 0.05 divided by the number of
     modes. Default: 0.02.
     """
     gate: float | None = None
-    """While a mode's elastic rate is below this amplitude (rad/s), its frequency learns nothing. Default:
-    5e-06.
+    """Amplitude of a mode's elastic rate (rad/s) below which its frequency is not updated. Default: 5e-06.
     """
     influence_bounds: Vector | None = None
-    """Between which multiples of its value at the start an influence is looked for."""
+    """Bounds of an influence, as multiples of its initial value."""
     reach: float | None = None
-    """A frequency without bounds of its own is looked for from its value divided by this to its value times
-    this. Default: 2.0.
+    """Default bounds of a frequency: its initial value divided by this factor, and multiplied by it.
+    Default: 2.0.
     """
 
 
@@ -918,11 +934,11 @@ class GravityGradient(Part):
     """Gravity gradient."""
 
     orbit_rate: float | None = None
-    """Rate of a circular orbit (rad/s); default: the environment's orbit counts."""
+    """Rate of a circular orbit (rad/s); default: the environment's orbit."""
     local: Vector | None = None
-    """How the local axes of that orbit lie at the start, a unit quaternion [w, x, y, z] that turns vectors
-    of the local axes (x along the velocity, y against the orbit's normal, z nadir) into inertial ones;
-    default: they are the inertial ones then.
+    """Orientation of that orbit's local axes at the start, a unit quaternion [w, x, y, z] that turns
+    vectors of the local axes (x along the velocity, y against the orbit's normal, z nadir) into inertial
+    ones; default: the inertial axes.
     """
 
 
@@ -946,7 +962,7 @@ class Gyro(Part):
     _tag: ClassVar[str | None] = "gyro"
 
     point: str | None = None
-    """The point of the structure at which it is, on a body with three axes; default: the first of the
+    """Point of the structure at which it is mounted, on a body with three axes; default: the first of the
     body's points.
     """
     period: float | None = None
@@ -958,21 +974,21 @@ class Gyro(Part):
     resolution: float | Vector | None = None
     """Quantum of the output about each axis (rad/s); 0 for none. Default: 0.0."""
     angle_random_walk: float | Vector | None = None
-    """Angle random walk about each axis (rad/sqrt(s)), of one that integrates."""
+    """Angle random walk of an integrating gyro about each axis (rad/sqrt(s))."""
     rate_random_walk: float | Vector | None = None
-    """Rate random walk of the bias about each axis (rad/s^1.5), of one that integrates."""
+    """Rate random walk of the bias of an integrating gyro about each axis (rad/s^1.5)."""
     quantum: float | Vector | None = None
-    """Quantum of the angle about each axis (rad), of one that integrates: what is left is counted with the
-    next; 0 for none.
+    """Quantum of the angle of an integrating gyro about each axis (rad); the remainder carries over to the
+    next sample; 0 for none.
     """
     scale: float | Vector | None = None
     """Relative error of the scale about each axis."""
     misalignment: Rows | None = None
-    """What each axis, a row, measures of the rates about the others (rad), on a body with three; the
-    diagonal is 0.
+    """Misalignment (rad), on a body with three axes: row i gives what axis i measures of the rates about
+    the other axes; the diagonal is 0.
     """
     faults: Sequence[Fault] | None = None
-    """Times at which it fails; where the body points is known all the same."""
+    """Intervals in which it fails; the attitude is still known."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -980,27 +996,29 @@ class Harmonic(Part):
     """A harmonic of the imbalance."""
 
     order: float
-    """Its order k: periods in a turn of the wheel, whole or not."""
+    """Order k: periods per turn of the wheel; it may be fractional."""
     force: float | None = None
-    """The force across the axis for each (rad/s)² (kg m). Default: 0.0."""
+    """Force perpendicular to the axis per (rad/s)² (kg m). Default: 0.0."""
     torque: float | None = None
-    """The torque across the axis for each (rad/s)² (kg m²). Default: 0.0."""
+    """Torque perpendicular to the axis per (rad/s)² (kg m²). Default: 0.0."""
     axial: float | None = None
-    """The force along the axis for each (rad/s)² (kg m), as cos(k th + phase). Default: 0.0."""
+    """Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase). Default: 0.0."""
     phase: float | None = None
     """Its phase (rad). Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Hold(Part):
-    """In each period the mean of what the manoeuvre commands over it, and the feedback at its start."""
+    """A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its
+    start.
+    """
 
     _tag: ClassVar[str | None] = "hold"
 
     period: float
     """Period (s)."""
     faults: Sequence[Failure] | None = None
-    """Times at which it fails."""
+    """Intervals in which it fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1010,29 +1028,34 @@ class Ideal(Part):
     _tag: ClassVar[str | None] = "ideal"
 
     faults: Sequence[Failure] | None = None
-    """Times at which it fails."""
+    """Intervals in which it fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Imbalance(Part):
-    """Imbalance of wheels, as the body feels it at their speed Omega and angle th. Each force and torque is
-    its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1 is z x a of
-    the wheel's axis a, or x of one along z, and e2 is a x e1.
+    """Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th. Each force and
+    torque is its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1
+    is z x a of the wheel's axis a, or x of one along z, and e2 is a x e1.
     """
 
     static: float | Vector | None = None
-    """Static imbalance (kg m), of each or of all: the force once a turn. Default: 0.0."""
-    dynamic: float | Vector | None = None
-    """Dynamic imbalance (kg m²), of each or of all: the torque once a turn. Default: 0.0."""
-    phase: float | Vector | None = None
-    """By how much the torque is ahead of the force (rad), of each or of all. Default: 0.0."""
-    harmonics: Sequence[Harmonic] | None = None
-    """What there is beside once a turn, alike for all wheels."""
-    point: str | None = None
-    """The point of the structure at which the wheels are mounted; default: the first of the body's points.
+    """Static imbalance (kg m): the force once per turn; one number for all wheels, or one for each.
+    Default: 0.0.
     """
+    dynamic: float | Vector | None = None
+    """Dynamic imbalance (kg m²): the torque once per turn; one number for all wheels, or one for each.
+    Default: 0.0.
+    """
+    phase: float | Vector | None = None
+    """Phase lead of the torque over the force (rad); one number for all wheels, or one for each. Default:
+    0.0.
+    """
+    harmonics: Sequence[Harmonic] | None = None
+    """Further harmonics of the speed, the same for all wheels."""
+    point: str | None = None
+    """Point of the structure at which the wheels are mounted; default: the first of the body's points."""
     positions: Rows | None = None
-    """Where each wheel is, from that point (m); default: at it."""
+    """Position of each wheel relative to that point (m); default: at the point."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1040,13 +1063,17 @@ class Initial(Part):
     """Standard deviations of a filter's estimate at the start."""
 
     angle: float | None = None
-    """Of the rigid angle (rad). Default: 0.0001."""
+    """Standard deviation of the rigid angle (rad). Default: 0.0001."""
     rate: float | None = None
-    """Of the rigid rate (rad/s). Default: 0.0001."""
+    """Standard deviation of the rigid rate (rad/s). Default: 0.0001."""
     displacement: float | None = None
-    """Of the displacement of the mode with the largest k/w² (rad); of the others a tenth. Default: 0.002."""
+    """Standard deviation of the displacement of the mode with the largest k/w² (rad); a tenth of it for the
+    other modes. Default: 0.002.
+    """
     mode_rate: float | None = None
-    """Of the rate of that mode (rad/s); of the others a tenth. Default: 0.0006."""
+    """Standard deviation of the rate of that mode (rad/s); a tenth of it for the other modes. Default:
+    0.0006.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1056,8 +1083,8 @@ class Integral(Part):
     time: float
     """Its time constant t (s)."""
     limit: float
-    """Largest integral (rad s). It stands still as well while the torque or the rate is at its limit and
-    the error would make it larger.
+    """Largest integral (rad s). The integral also stops while the torque or the rate is at its limit and
+    the error would increase it.
     """
 
 
@@ -1078,25 +1105,27 @@ class Jets(Part):
     period: float | None = None
     """Period of the pulses (s); default: that of the law."""
     delay: int | None = None
-    """Whole cycles from a command to its pulses: 0, or 1 where computing it takes a cycle. Default: 0."""
+    """Delay from a command to its pulses in whole cycles: 0, or 1 if computing it takes a cycle. Default:
+    0.
+    """
     allocation: Literal["groups", "least_propellant"] | None = None
-    """How what is demanded becomes pulses."""
+    """How the demand is converted into pulses."""
     force_free: bool | None = None
-    """Of `least_propellant`, whether the forces of the pulses shall cancel."""
+    """For `least_propellant`: whether the forces of the pulses must cancel."""
     groups: Groups | None = None
-    """Of `groups`, which of them act together."""
+    """For `groups`: the thrusters that act together."""
     faults: Sequence[Failure] | None = None
-    """Times at which they fail."""
+    """Intervals in which they fail."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Kalman(Part):
-    """The motion, by a Kalman filter with constant natural frequencies."""
+    """A Kalman filter of the motion, with constant natural frequencies."""
 
     _tag: ClassVar[str | None] = "kalman"
 
     modes: Sequence[Mode] | None = None
-    """The modes of the filter's model; default: they are the body's own at the start."""
+    """Modes of the filter's model; default: the body's own at the start."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
@@ -1104,18 +1133,18 @@ class Kalman(Part):
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
-    """What the filter takes for the state at the start. Default: "drawn"."""
+    """Initial state estimate of the filter. Default: "drawn"."""
     dominant: Literal["excitability", "amplitude"] | None = None
-    """What makes a mode the dominant one. Default: "excitability"."""
+    """Criterion for the dominant mode. Default: "excitability"."""
     assess: Vector | None = None
-    """When the metrics judge the filter, from one time to another (s); always by default."""
+    """Interval over which the metrics assess the filter (s); default: the whole run."""
     feeds: Literal["modes", "hub", "rigid"] | None = None
-    """What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured;
-    `hub` for angle and rate of the hub, elastic part included; `rigid` for those of the body as if it
-    were rigid. By default, `modes` for a law that reads the dominant mode, else `hub`.
+    """Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as measured;
+    `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By
+    default, `modes` for a law that reads the dominant mode, else `hub`.
     """
     watch_only: bool | None = None
-    """Whether it is there to be assessed only: no law reads it."""
+    """Whether the filter runs for assessment only: the law does not read it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1123,7 +1152,7 @@ class Kepler(Part):
     """A Kepler orbit. Inertial axes are those of the planet's equator: z along its axis of rotation."""
 
     semi_major_axis: float
-    """Semi-major axis (m), of a circular orbit its radius."""
+    """Semi-major axis (m); for a circular orbit, its radius."""
     eccentricity: float | None = None
     """Eccentricity. Default: 0.0."""
     inclination: float | None = None
@@ -1133,12 +1162,11 @@ class Kepler(Part):
     perigee: float | None = None
     """Angle from the node to the perigee (rad). Default: 0.0."""
     anomaly: float | None = None
-    """Mean anomaly at the start (rad), of a circular orbit the angle from the perigee. Default: 0.0."""
+    """Mean anomaly at the start (rad); for a circular orbit, the angle from the perigee. Default: 0.0."""
     gravity: float | None = None
-    """The planet's gravity (m³/s²); default: the Earth's. Default: 398600441800000.0."""
+    """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
     planet_radius: float | None = None
-    """Radius of the planet (m), which throws the shadow; default: the Earth's at its equator. Default:
-    6378137.0.
+    """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
     """
 
 
@@ -1156,19 +1184,19 @@ class Lead(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Log(Part):
-    """What a full log holds."""
+    """Contents of a full log."""
 
     period: float | None = None
-    """Period at which a full log holds the motion (s); default: 0.1 or the first of 0.2, 0.5, 1, 2, 5 and
-    so on of which the duration has at most 10 000.
+    """Sampling period of the motion in a full log (s); default: the first of 0.1, 0.2, 0.5, 1, 2, 5 and so
+    on that gives at most 10 000 samples.
     """
     scene: SceneSpec | None = None
-    """How a log with a scene draws the run."""
+    """How the scene of a log is drawn."""
 
 
 @dataclass(frozen=True)
 class LogUniform(Part):
-    """Uniform in the logarithm between two positive values."""
+    """Log-uniform between two positive values."""
 
     _tag: ClassVar[str | None] = "log_uniform"
     _holds_one: ClassVar[bool] = True
@@ -1195,15 +1223,15 @@ class MagneticField(Part):
     """
 
     coefficients: Vector | None = None
-    """The first coefficients g11, h11 and g10 of the field (T), a vector in axes that turn with the planet:
-    z along its axis, x through its meridian 0; default: the Earth's of IGRF-13 for 2020.
+    """Coefficients g11, h11 and g10 of the field (T), a vector in axes that rotate with the planet: z along
+    its axis, x through its prime meridian; default: the Earth's from IGRF-13 for 2020.
     """
     radius: float | None = None
-    """The radius a at which they are (m); default: the Earth's mean one. Default: 6371200.0."""
+    """Reference radius a of the coefficients (m); default: the Earth's mean radius. Default: 6371200.0."""
     rotation: float | None = None
-    """How fast the planet turns (rad/s); default: the Earth's. Default: 7.292115e-05."""
+    """Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05."""
     meridian: float | None = None
-    """Angle from the inertial x to the meridian 0 at the start (rad). Default: 0.0."""
+    """Angle from the inertial x to the prime meridian at the start (rad). Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1215,7 +1243,7 @@ class Magnetometer(Part):
     period: float
     """Period of its samples (s)."""
     point: str | None = None
-    """The point of the structure at which it is; default: the first of the body's points."""
+    """Point of the structure at which it is mounted; default: the first of the body's points."""
     noise: float | Vector | None = None
     """Standard deviation of the white noise along each axis (T). Default: 0.0."""
     bias: float | Vector | None = None
@@ -1225,48 +1253,50 @@ class Magnetometer(Part):
     scale: float | Vector | None = None
     """Relative error of the scale along each axis. Default: 0.0."""
     misalignment: Rows | None = None
-    """What each axis, a row, measures of the field along the others (rad); the diagonal is 0."""
+    """Misalignment (rad): row i gives what axis i measures of the field along the other axes; the diagonal
+    is 0.
+    """
     latency: float | None = None
-    """Time from a sample to when it is told (s). Default: 0.0."""
+    """Time from a sample to its output (s). Default: 0.0."""
     faults: Sequence[Fault] | None = None
-    """Times at which it fails."""
+    """Intervals in which it fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Magnetorquers(Part):
-    """Magnetic moments of a spatial body in the field of its planet."""
+    """Magnetorquers of a spatial body in the field of its planet."""
 
     _tag: ClassVar[str | None] = "magnetorquers"
 
     moment: float | Vector
-    """Largest magnetic moment along each axis (A m²): one number for all, or three."""
+    """Largest magnetic moment along each axis (A m²): one number for all axes, or a list of three."""
     faults: Sequence[Failure] | None = None
-    """Times at which they fail."""
+    """Intervals in which they fail."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Manoeuvre(Part):
-    """A manoeuvre as a scenario describes it. The body's modes rest at its start."""
+    """A manoeuvre. The modes of the body are at rest at its start."""
 
     _bare: ClassVar[tuple[str, ...]] = ("model", )
 
     angle: float
-    """The angle by which the rigid body turns (rad)."""
+    """Angle by which the rigid body turns (rad)."""
     command: Command
-    """What turns the body."""
+    """Command that turns the body."""
     time: float | None = None
-    """Time of the manoeuvre (s). By default, the shortest that the peak torque allows."""
+    """Duration of the manoeuvre (s); default: the shortest that the peak torque allows."""
     peak_torque: float | None = None
-    """Largest torque (N m); beside a time, a limit that the plan has to keep."""
+    """Largest torque (N m); together with `time`, a limit that the plan must respect."""
     start_rate: float | None = None
-    """Rate before (rad/s): that of the body at its start. Default: 0.0."""
+    """Rate before the manoeuvre (rad/s), equal to the body's rate at the start. Default: 0.0."""
     end_rate: float | None = None
-    """Rate after (rad/s). Default: 0.0."""
+    """Rate after the manoeuvre (rad/s). Default: 0.0."""
     shaper: Shaper | None = None
-    """What the command is convolved with; it takes a part of the time."""
+    """Shaper with which the command is convolved; it uses part of the duration."""
     model: Planar | None = None
-    """The body that the plan is made for; default: the body itself. A campaign that draws keys of the body
-    puts the body as it is written here: the plan does not depend on what is drawn.
+    """Body for which the manoeuvre is planned; default: the body itself. A campaign that draws keys of the
+    body plans for the body as written in the scenario: the plan does not depend on the drawn values.
     """
 
 
@@ -1279,7 +1309,7 @@ class Matrices(Part):
     mass: Rows | str
     """Mass matrix, symmetric and positive definite (kg m² for angles, kg for displacements)."""
     stiffness: Rows | str
-    """Stiffness matrix, symmetric, without strain in the rotation only (N m/rad for angles, N/m for
+    """Stiffness matrix, symmetric; only the rigid rotation is free of strain (N m/rad for angles, N/m for
     displacements).
     """
     coordinates: Sequence[str] | None = None
@@ -1287,57 +1317,57 @@ class Matrices(Part):
     hub: int | None = None
     """Index of the coordinate that is the hub's angle, counted from 0. Default: 0."""
     rotation: Vector | None = None
-    """Displacement of each coordinate under a unit rigid rotation; default: only the hub's angle turns, and
-    all other coordinates are relative to it.
+    """Displacement of each coordinate under a unit rigid rotation; default: 1 for the hub's angle and 0 for
+    all other coordinates, which are relative to it.
     """
     drive: Literal["torque", "motion"] | None = None
-    """What is commanded. Default: "torque"."""
+    """Quantity that the actuator commands. Default: "torque"."""
     damping: float | Vector | None = None
-    """Damping ratio of all modes, or one for each that is kept. Default: 0.0."""
+    """Damping ratio of all modes, or a list with one for each mode that is kept. Default: 0.0."""
     damping_matrix: Rows | str | None = None
-    """Damping matrix, symmetric, without resistance to the rotation (N m s/rad for angles, N s/m for
-    displacements); it adds to those ratios, and may couple the modes.
+    """Damping matrix, symmetric, without resistance to the rigid rotation (N m s/rad for angles, N s/m for
+    displacements). It adds to the damping ratios and may couple the modes.
     """
     keep: int | None = None
-    """How many of the lowest modes are kept; default: all up to 1e3 rad/s."""
+    """Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s."""
     angle: float | None = None
     """Rigid angle at the start (rad). Default: 0.0."""
     rate: float | None = None
     """Rigid rate at the start (rad/s). Default: 0.0."""
     outputs: Sequence[Sum] | None = None
-    """Sums of coordinates that are observed beside the hub's angle."""
+    """Sums of coordinates that are observed in addition to the hub's angle."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MinimumEnergy(Part):
-    """The least integral of the command's square."""
+    """The command with the smallest integral of its square."""
 
     _tag: ClassVar[str | None] = "minimum_energy"
 
     suppress: int | None = None
-    """So many modes of the lowest frequencies. Default: 0."""
+    """Number of modes left at rest, lowest frequencies first. Default: 0."""
     zeros: Sequence[Target] | None = None
-    """Zeros beside them."""
+    """Further zeros."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MinimumPeak(Part):
-    """The least peak."""
+    """The command with the smallest peak."""
 
     _tag: ClassVar[str | None] = "minimum_peak"
 
     suppress: int | None = None
-    """So many modes of the lowest frequencies. Default: 0."""
+    """Number of modes left at rest, lowest frequencies first. Default: 0."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mode(Part):
-    """An elastic mode as a scenario describes it ([Silaev], equation (1), with damping added)."""
+    """An elastic mode ([Silaev], equation (1), with damping added)."""
 
     frequency: float
     """Natural frequency w (rad/s)."""
     gain: float
-    """Modal gain k: modal acceleration for each unit of the rigid body's."""
+    """Modal gain k: modal acceleration per unit of rigid acceleration."""
     damping: float | None = None
     """Damping ratio zeta: 0 undamped, 1 critical. Default: 0.0."""
     displacement: float | None = None
@@ -1353,7 +1383,7 @@ class NamedPoint(Part):
     name: str
     """Name."""
     position: Vector | None = None
-    """Position (m): from the centre of mass, of a spacecraft's hub from its point O, of an appendage from
+    """Position (m): from the centre of mass; on a spacecraft's hub from its point O, on an appendage from
     its root.
     """
 
@@ -1379,21 +1409,21 @@ class Notch(Part):
     frequency: float
     """The frequency w (rad/s)."""
     depth: float
-    """The gain there, below 1."""
+    """Gain at that frequency, below 1."""
     damping: float | None = None
-    """The damping ratio zeta of the denominator: the notch is the wider the larger it is. Default: 0.6."""
+    """Damping ratio zeta of the denominator; a larger one makes the notch wider. Default: 0.6."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Open(Part):
-    """None: what a scenario with a manoeuvre has by default."""
+    """No law: the default of a scenario with a manoeuvre."""
 
     _tag: ClassVar[str | None] = "open"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Output(Part):
-    """A coordinate that is observed beside the hub's angle: y = rigid x_r + sum modes[i] x_i."""
+    """A coordinate that is observed in addition to the hub's angle: y = rigid x_r + sum modes[i] x_i."""
 
     name: str
     """Name, such as `tip`."""
@@ -1410,9 +1440,9 @@ class Pair(Part):
     """The two groups of an axis."""
 
     plus: Sequence[str]
-    """Those that push to positive rates."""
+    """Thrusters whose torque is positive."""
     minus: Sequence[str]
-    """Those that push to negative rates."""
+    """Thrusters whose torque is negative."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1430,15 +1460,15 @@ class Panels(Part):
     count: int | None = None
     """Number of equal panels. Default: 2."""
     kinematics: Literal["linear", "exact"] | None = None
-    """How the sections turn. Default: "linear"."""
+    """Kinematics of the sections. Default: "linear"."""
     tolerance: float | None = None
-    """Error of each step of the exact kinematics (rad). Default: 1e-12."""
+    """Error tolerance of each integration step of the exact kinematics (rad). Default: 1e-12."""
     drive: Literal["torque", "motion"] | None = None
-    """What is commanded. Default: "torque"."""
+    """Quantity that the actuator commands. Default: "torque"."""
     damping: float | Vector | None = None
-    """Damping ratio of all modes, or one for each that is kept. Default: 0.0."""
+    """Damping ratio of all modes, or a list with one for each mode that is kept. Default: 0.0."""
     keep: int | None = None
-    """How many of the lowest modes are kept; default: all up to 1e3 rad/s."""
+    """Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s."""
     angle: float | None = None
     """Rigid angle at the start (rad). Default: 0.0."""
     rate: float | None = None
@@ -1447,12 +1477,12 @@ class Panels(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Pd(Part):
-    """Sampled proportional and derivative feedback of the angle."""
+    """Sampled proportional-derivative feedback of the angle."""
 
     _tag: ClassVar[str | None] = "pd"
 
     k_p: float
-    """Proportional gain (N m/rad; for a wheel, units of its command for each rad)."""
+    """Proportional gain (N m/rad; for a wheel, units of its command per rad)."""
     k_d: float
     """Derivative gain (N m s/rad; without the second where the difference is raw)."""
     period: float
@@ -1460,18 +1490,20 @@ class Pd(Part):
     differentiation: Literal["exact", "difference", "raw"] | None = None
     """How the derivative is taken. Default: "exact"."""
     error: Literal["quaternion", "rodrigues"] | None = None
-    """How a rotation counts as an error, on a body with three axes."""
+    """How a rotation is converted into an error, on a body with three axes."""
     extra: Extra | None = None
-    """The extra loop over the dominant mode."""
+    """Extra loop on the dominant mode."""
     limit: float | None = None
     """Largest torque (N m); no limit by default."""
     track: bool | None = None
-    """Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends."""
+    """Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the
+    manoeuvre.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
 class PerAxis(Part):
-    """A law of its own about each of three axes."""
+    """A separate law about each of three axes."""
 
     _tag: ClassVar[str | None] = "per_axis"
 
@@ -1485,44 +1517,45 @@ class PerAxis(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Periodic(Part):
-    """A torque in the body's axes, constant + amplitude sin(2 pi t/period + phase) about each."""
+    """A torque in the body's axes: constant + amplitude sin(2 pi t/period + phase) about each."""
 
     constant: Vector | None = None
     """Constant part (N m)."""
     amplitude: Vector | None = None
     """Amplitude of the periodic part (N m)."""
     period: float | None = None
-    """Its period (s): of a station in a low orbit about 5560 s. Default: 5560.0."""
+    """Period (s); about 5560 s for a station in a low orbit. Default: 5560.0."""
     phase: Vector | None = None
     """Its phase at the start (rad)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PhasePlane(Part):
-    """A relay in the phase plane, with pulses of measured length."""
+    """A relay in the phase plane, with pulses of computed length."""
 
     _tag: ClassVar[str | None] = "phase_plane"
 
     period: float
     """Cycle of gyro, estimator, law and jets (s)."""
     dead_zone: float
-    """Half width of the angles that are left alone (rad)."""
+    """Half width of the dead zone (rad)."""
     rate_limit: float
     """Largest rate at which the law turns the body (rad/s)."""
     switch_on: float
-    """The jets begin to fire where the rate is further than this from where it should be (rad/s), near and
-    beyond the edges of the dead zone where it is less far.
+    """Rate error above which the jets begin to fire (rad/s); near and beyond the edges of the dead zone
+    they begin at a smaller one.
     """
     switch_off: float
-    """They end where it is nearer than this (rad/s), at which rate the body returns at least."""
+    """Rate error below which they stop (rad/s); it is also the smallest return rate."""
     slope: float | None = None
-    """Largest rate of the return for each unit of the angle beyond the dead zone (1/s). Default: 0.05."""
+    """Largest return rate per unit of the angle beyond the dead zone (1/s). Default: 0.05."""
     braking: float | None = None
-    """Part of the jets' acceleration that slowing down may take. Default: 0.5."""
+    """Fraction of the jets' acceleration used for slowing down. Default: 0.5."""
     targets: Sequence[AttitudeTarget] | None = None
-    """Attitudes to turn to, in the order of their times; before the first it is the inertial one."""
+    """Target attitudes, in the order of their times; before the first one, the target is the inertial axes.
+    """
     damping: ActiveDamping | None = None
-    """What the jets do against elastic motion while they have nothing else to do; default: nothing."""
+    """Active damping of elastic motion while the rigid motion needs no jets; none by default."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1532,23 +1565,21 @@ class Planar(Part):
     _tag: ClassVar[str | None] = "planar"
 
     inertia: float | None = None
-    """Moment of inertia (kg m²). By default, it is 1, and every torque is a reduced moment (rad/s²).
-    Default: 1.0.
-    """
+    """Moment of inertia (kg m²); default: 1, and every torque is a reduced moment (rad/s²). Default: 1.0."""
     angle: float | None = None
     """Rigid angle at the start (rad). Default: 0.0."""
     rate: float | None = None
     """Rigid rate at the start (rad/s). Default: 0.0."""
     drive: Literal["torque", "motion"] | None = None
-    """What is commanded. Default: "torque"."""
+    """Quantity that the actuator commands. Default: "torque"."""
     damping_matrix: Rows | None = None
-    """Damping that couples the modes, beside their own ratios (1/s): x_i'' has also -sum_j
-    `damping_matrix`[i][j] x_j'.
+    """Damping that couples the modes (1/s): it adds -sum_j `damping_matrix`[i][j] x_j' to x_i'', beside the
+    damping ratios.
     """
     modes: Sequence[Mode] | None = None
     """Elastic modes."""
     outputs: Sequence[Output] | None = None
-    """Coordinates that are observed beside the hub's angle."""
+    """Coordinates that are observed in addition to the hub's angle."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1558,29 +1589,31 @@ class Point(Part):
     time: float
     """Time (s)."""
     ratio: float
-    """Ratio there."""
+    """Ratio at that time."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pointing(Part):
-    """What is asked of the pointing over a part of the run."""
+    """Pointing requirement over a part of the run."""
 
     window: Vector
-    """From when to when (s) the angle beyond the target counts, for the metric `pointing_rms_rad`."""
+    """Start and end (s) of the interval in which the pointing error is assessed, for the metric
+    `pointing_rms_rad`.
+    """
     rms: float | None = None
-    """What its root mean square is to be at most (rad), for the metric `requirement`; default: nothing is
-    asked.
+    """Largest allowed root mean square of the pointing error (rad), for the metric `requirement`; default:
+    no requirement.
     """
 
 
 @dataclass(frozen=True, kw_only=True)
 class Polynomial(Part):
-    """A polynomial of the angle."""
+    """A polynomial for the angle."""
 
     _tag: ClassVar[str | None] = "polynomial"
 
     degree: int
-    """Its degree: 3, 5, 7, 9, 11 or 13."""
+    """Degree of the polynomial: 3, 5, 7, 9, 11 or 13."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1588,37 +1621,37 @@ class Pulses(Part):
     """A train of pulses: on from the start of each period."""
 
     period: float
-    """From the start of one pulse to that of the next (s)."""
+    """Time from the start of one pulse to the start of the next (s)."""
     on: float
-    """How long each lasts (s)."""
+    """Duration of each pulse (s)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Ramp(Part):
-    """From 1 on a straight line to another ratio, which holds from then on."""
+    """A linear change from 1 to another ratio, which then stays constant."""
 
     _tag: ClassVar[str | None] = "ramp"
 
     time: float
-    """How long it lasts (s)."""
+    """Duration (s)."""
     to: float
-    """The ratio after it."""
+    """The ratio afterwards."""
     from_: float | None = None
-    """When it begins (s). Default: 0.0."""
+    """Start time (s). Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RandomSearch(Part):
-    """Random search with learning, by the window means of the envelope."""
+    """Random search with learning, based on the window means of the envelope."""
 
     _tag: ClassVar[str | None] = "random_search"
 
     step: float
     """Largest move of the gain in one window, delta `k_t`."""
     bounds: Vector
-    """The gain stays between these two."""
+    """Smallest and largest gain."""
     tunes: str | None = None
-    """The number of the law that is tuned: `k_t` of a relay, `k_p` or `k_d` of a PD law."""
+    """Tuned parameter of the law: `k_t` of a relay, `k_p` or `k_d` of a PD law."""
     tolerance: float | None = None
     """A relative change of the mean below this counts as settled, `delta_0`. Default: 0.05."""
     settled: int | None = None
@@ -1642,41 +1675,42 @@ class Recurrence(Part):
     damping: float | None = None
     """Damping ratio of the mode, which is not identified. Default: 0.005."""
     coast: RecurrenceWeights | None = None
-    """W1 to W3, for cycles in which no thruster fired."""
+    """Weights W1 to W3, for cycles in which no thruster fires."""
     active: RecurrenceWeights | None = None
-    """W5 to W7, for cycles in which one did."""
+    """Weights W5 to W7, for cycles in which a thruster fires."""
     frequency_gain: float | None = None
-    """W4 times the amplitude of the elastic rate, kappa. With the weights as they are left out it converges
-    below 0.043. Default: 0.006.
+    """Frequency gain kappa: W4 times the amplitude of the elastic rate. With the default weights it
+    converges below 0.043. Default: 0.006.
     """
     influence_gain: float | None = None
-    """W8 times the absolute value of what it learns from. Default: 0.25."""
-    gate: float | None = None
-    """While the elastic rate is below this amplitude (rad/s), the frequency learns nothing. Default: 5e-06.
+    """Influence gain: W8 times the absolute value of the excitation from which the influence is identified.
+    Default: 0.25.
     """
+    gate: float | None = None
+    """Amplitude of the elastic rate (rad/s) below which the frequency is not updated. Default: 5e-06."""
     influence_bounds: Vector | None = None
-    """Between which multiples of its value at the start the influence is looked for."""
+    """Bounds of the influence, as multiples of its initial value."""
     reach: float | None = None
-    """A frequency without bounds of its own is looked for from its value divided by this to its value times
-    this. Default: 3.0.
+    """Default bounds of a frequency: its initial value divided by this factor, and multiplied by it.
+    Default: 3.0.
     """
 
 
 @dataclass(frozen=True, kw_only=True)
 class RecurrenceWeights(Part):
-    """What parts of an innovation the estimates take."""
+    """Fractions of an innovation by which the estimates are corrected."""
 
     rigid: float
     """The rigid rate: W1 or W5."""
     elastic: float
     """The elastic rate: W2 or W6."""
     next: float
-    """The elastic rate of the next sample, taken off: W3 or W7."""
+    """The elastic rate of the next sample, subtracted: W3 or W7."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Reference(Part):
-    """Levels of other runs that the metrics compare with."""
+    """Reference values for the metrics."""
 
     envelope: float | None = None
     """Mean envelope without adaptation (rad), for the metric `envelope_reduction`; default: the mean over
@@ -1684,16 +1718,16 @@ class Reference(Part):
     """
     band: float | None = None
     """Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s` and
-    `settling_time_s`. By default, what is promised: after a manoeuvre a thousandth of its angle, by a PD
-    law 5 % of the distance at which the goal begins, by a relay its dead zone and its hysteresis.
+    `settling_time_s`. Default: after a manoeuvre, a thousandth of its angle; for a PD law, 5 % of the
+    distance at the start of the goal; for a relay, the sum of its dead zone and hysteresis.
     """
     pointing: Pointing | None = None
-    """What is asked of the pointing of a body with three axes over a part of the run."""
+    """Pointing requirement of a body with three axes over a part of the run."""
 
 
 @dataclass(frozen=True)
 class RelativeNormal(Part):
-    """The scenario's own value, times a normal factor of mean 1 and this standard deviation."""
+    """The scenario's own value times a normal factor with mean 1 and this standard deviation."""
 
     _tag: ClassVar[str | None] = "relative_normal"
     _holds_one: ClassVar[bool] = True
@@ -1703,7 +1737,7 @@ class RelativeNormal(Part):
 
 @dataclass(frozen=True)
 class RelativeUniform(Part):
-    """The scenario's own value, times a factor uniform on 1 - this to 1 + this."""
+    """The scenario's own value times a factor that is uniform between 1 - this and 1 + this."""
 
     _tag: ClassVar[str | None] = "relative_uniform"
     _holds_one: ClassVar[bool] = True
@@ -1726,7 +1760,7 @@ class Relay(Part):
     weak: float
     """Weak torque `m_eps` in the dead zone (N m; rad/s² on a body without inertia)."""
     k_t: float
-    """Braking gain: duration of the brake for each second of the push."""
+    """Braking gain: duration of the brake per second of the push."""
     sides: Literal["two", "one"] | None = None
     """Which boundaries of the dead zone push back. Default: "two"."""
 
@@ -1738,9 +1772,9 @@ class RigidRate(Part):
     _tag: ClassVar[str | None] = "rigid_rate"
 
     correction: float
-    """Part l of the innovation by which each sample corrects the rate."""
+    """Fraction l of the innovation by which each sample corrects the rate."""
     rate: float | Vector | None = None
-    """What the rates are believed to be before the first sample (rad/s). Default: 0.0."""
+    """Estimated rates before the first sample (rad/s). Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1752,7 +1786,7 @@ class Rotor(Part):
     speed: float | None = None
     """Speed at the start (rad/s). Default: 0.0."""
     speed_limit: float | None = None
-    """Largest speed (rad/s), at which no torque drives it further; no limit by default."""
+    """Largest speed (rad/s), beyond which the motor cannot accelerate it; no limit by default."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1771,56 +1805,54 @@ class Sampled(Part):
     """Quantum of the output (rad); 0 for none. Default: 0.0."""
     rate_noise: float | None = None
     """Standard deviation of the white noise of a rate gyro (rad/s); default: there is no gyro, and the rate
-    is the difference of the last two angles over the period.
+    is the difference of the last two angles divided by the period.
     """
     point: str | None = None
-    """The point of the structure at which it is, on a body with three axes; default: the first of the
+    """Point of the structure at which it is mounted, on a body with three axes; default: the first of the
     body's points.
     """
     faults: Sequence[Fault] | None = None
-    """Times at which the sensor fails."""
+    """Intervals in which the sensor fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scaled(Part):
-    """It gives a part of what it should."""
+    """A fraction of the commanded output."""
 
     _tag: ClassVar[str | None] = "scaled"
 
     from_: float
-    """When it begins (s)."""
+    """Start time (s)."""
     factor: float
-    """The part; below 0, it acts the other way."""
+    """The fraction; a negative one reverses the output."""
     to: float | None = None
-    """When it ends (s); default: with the run."""
+    """End time (s); default: the end of the run."""
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis of which it fails, on a body with three; default: of all."""
+    """Axis that fails, on a body with three; default: all."""
     wheel: int | None = None
-    """The wheel that fails, counted from 1; default: all do."""
+    """Wheel that fails, counted from 1; default: all."""
     thruster: str | None = None
-    """The thruster that fails, of jets; default: all do."""
+    """Thruster of `jets` that fails; default: all."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SceneSpec(Part):
-    """How a run is drawn."""
+    """How the scene of a run is drawn."""
 
     period: float | None = None
     """Period of the frames (s); default: that of the log, and at least 0.04 s."""
     bending: float | None = None
-    """How many times the elastic motion is drawn as large as it is; default: so many times that what the
-    actuator or the initial state excites shows.
+    """Magnification of the elastic motion; default: chosen so that the motion excited by the actuator or
+    the initial state is visible.
     """
     turning: float | None = None
-    """How many times the rotation of the body is drawn as large as it is; default: so many times that it
-    shows.
-    """
+    """Magnification of the body's rotation; default: chosen so that it is visible."""
 
 
 @dataclass(frozen=True)
 class Schedule(Part):
-    """A gain that follows the estimated frequency: straight lines between points, held before the first and
-    after the last.
+    """A gain scheduled by the estimated frequency: linear interpolation between points, constant before the
+    first and after the last.
     """
 
     _tag: ClassVar[str | None] = "schedule"
@@ -1836,7 +1868,7 @@ class ScheduledGain(Part):
     frequency: float
     """Frequency of the dominant mode (rad/s)."""
     gain: float
-    """Gain there."""
+    """Gain at that frequency."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1846,7 +1878,7 @@ class Section(Part):
     length: float
     """Length l (m)."""
     mass_per_length: float
-    """Mass for each unit of length m (kg/m)."""
+    """Mass per unit length m (kg/m)."""
     hinge_stiffness: float
     """Stiffness c of the hinge at the inner end (N m/rad)."""
     tip_mass: float | None = None
@@ -1858,21 +1890,21 @@ class Shape(Part):
     """The shape of a mode at a point."""
 
     translation: Vector | None = None
-    """Displacement of the point for a unit of the mode (1/sqrt(kg))."""
+    """Displacement of the point per unit of the modal displacement (1/sqrt(kg))."""
     rotation: Vector | None = None
-    """Rotation at the point for a unit of the mode (rad/(m sqrt(kg)))."""
+    """Rotation at the point per unit of the modal displacement (rad/(m sqrt(kg)))."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Silent(Part):
-    """It gives no number."""
+    """It gives no measurement."""
 
     _tag: ClassVar[str | None] = "silent"
 
     from_: float
-    """When it begins (s)."""
+    """Start time (s)."""
     to: float | None = None
-    """When it ends (s); default: with the run."""
+    """End time (s); default: the end of the run."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1894,9 +1926,9 @@ class SineCommand(Part):
     _tag: ClassVar[str | None] = "sine"
 
     suppress: int | None = None
-    """So many modes of the lowest frequencies. Default: 0."""
+    """Number of modes left at rest, lowest frequencies first. Default: 0."""
     zeros: Sequence[Target] | None = None
-    """Zeros beside them."""
+    """Further zeros."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1908,11 +1940,11 @@ class Sinusoid(Part):
     _tag: ClassVar[str | None] = "sinusoid"
 
     amplitude: float
-    """Half of what lies between the smallest and the largest ratio."""
+    """Half the difference between the largest and the smallest ratio."""
     period: float
     """Period (s)."""
     phase: float | None = None
-    """Time on the cosine at the start of the run (s). Default: 0.0."""
+    """Time shift of the cosine at the start of the run (s). Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1922,17 +1954,17 @@ class SolarPressure(Part):
     force: Vector
     """The force (N), in inertial axes."""
     at: Vector
-    """Where it acts, the centre of pressure (m): from the point O of a spacecraft, or from the centre of
-    mass of a spatial body.
+    """Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a spatial
+    body.
     """
     shadow: Rows | None = None
-    """When there is none, [from, to] (s): the body is in shadow, beside that of the orbit's planet."""
+    """Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Spacecraft(Part):
-    """A spacecraft: its rigid hub, to which the appendages are clamped. Positions are from a point O of the
-    user's choice, in the axes of the hub, which are the body's.
+    """A spacecraft: the rigid hub, to which appendages are clamped. Positions are measured from a point O
+    of the user's choice, in the axes of the hub, which are the body's axes.
     """
 
     mass: float
@@ -1948,22 +1980,20 @@ class Spacecraft(Part):
     ones.
     """
     rate: Vector | None = None
-    """Rates at the start (rad/s), in the body's axes: of the spacecraft as a whole, which are those of the
-    hub while nothing vibrates.
+    """Rates of the whole spacecraft at the start (rad/s), in the body's axes; without vibration they are
+    the rates of the hub.
     """
     whole_damping: bool | None = None
-    """Whether the damping of the free modes is kept whole even where what is beside the diagonal of its
-    matrix hardly counts.
+    """Whether the full damping matrix of the free modes is kept even if its off-diagonal terms are
+    negligible.
     """
     points: Sequence[NamedPoint] | None = None
-    """Named points of the hub, at which jets push and gyros look. By default, there is one at O, named
-    `hub`.
-    """
+    """Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Spatial(Part):
-    """Three axes, and modes with shapes at points of the structure."""
+    """Three axes, and elastic modes with shapes at points of the structure."""
 
     _tag: ClassVar[str | None] = "spatial"
 
@@ -1976,11 +2006,11 @@ class Spatial(Part):
     rate: Vector | None = None
     """Rates at the start (rad/s), in the body's axes."""
     points: Sequence[NamedPoint] | None = None
-    """Named points of the structure, at which jets push and gyros look."""
+    """Named points of the structure, at which jets and sensors are mounted."""
     modes: Sequence[SpatialMode] | str | None = None
     """Elastic modes: a table, or the path of a CSV file."""
     disturbance: Periodic | None = None
-    """A torque that the surroundings exert; none by default."""
+    """Torque of the environment; none by default."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1996,33 +2026,34 @@ class SpatialMode(Part):
     rate: float | None = None
     """Its rate at the start (m sqrt(kg)/s). Default: 0.0."""
     shapes: Mapping[str, Shape] | None = None
-    """The mode's shape at each point, by the point's name."""
+    """Shape of the mode at each point, by the name of the point."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedBias(Part):
-    """A speed at which four wheels turn beside what the torque asks of them, two one way and two the other.
+    """A bias speed of four wheels, two in one direction and two in the other, in addition to what the
+    torque requires.
     """
 
     speed: float
-    """The speed (rad/s), of the first one."""
+    """Bias speed of the first wheel (rad/s)."""
     gain: float
-    """How fast they are brought there (1/s)."""
+    """Gain with which the wheels are brought to the bias speed (1/s)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stage(Part):
-    """A law that acts from a time on."""
+    """A law that acts from a given time on."""
 
     law: Law
     """The law."""
     from_: float | None = None
-    """From when on (s); of the first 0. Default: 0.0."""
+    """Start time (s); 0 for the first stage. Default: 0.0."""
 
 
 @dataclass(frozen=True)
 class Stages(Part):
-    """Laws one after the other."""
+    """Laws that act one after another."""
 
     _tag: ClassVar[str | None] = "stages"
     _holds_one: ClassVar[bool] = True
@@ -2032,33 +2063,35 @@ class Stages(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class StarTracker(Part):
-    """The attitude at exposures, told later."""
+    """The attitude at the exposures, available after a latency."""
 
     _tag: ClassVar[str | None] = "star_tracker"
 
     period: float
     """Period of its exposures (s)."""
     point: str | None = None
-    """The point of the structure at which it is; default: the first of the body's points."""
+    """Point of the structure at which it is mounted; default: the first of the body's points."""
     noise: Vector | None = None
-    """Standard deviation of the white noise about each of its axes (rad): x and y across its boresight, z
+    """Standard deviation of the white noise about each of its axes (rad): x and y across the boresight, z
     about it.
     """
     axes: Vector | None = None
-    """The rotation from the body's axes to its own, [w, x, y, z]: it turns its vectors into the body's;
-    default: they are the body's.
+    """Orientation of its axes in the body, a unit quaternion [w, x, y, z] that turns vectors of its axes
+    into the body's; default: its axes are the body's.
     """
     latency: float | None = None
-    """Time from an exposure to when it is told (s). Default: 0.0."""
+    """Time from an exposure to its output (s). Default: 0.0."""
     blackout_rate: float | None = None
-    """Rate of the body at the tracker from which on it sees nothing (rad/s); default: it always sees."""
+    """Rate of the body at the tracker at and above which it gives no measurement (rad/s); default: no
+    limit.
+    """
     faults: Sequence[Fault] | None = None
-    """Times at which it fails."""
+    """Intervals in which it fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class StateSpace(Part):
-    """A sampled compensator, by its matrices."""
+    """A sampled compensator, given by its matrices."""
 
     _tag: ClassVar[str | None] = "state_space"
 
@@ -2067,42 +2100,44 @@ class StateSpace(Part):
     a: Rows | None = None
     """Matrix A, row by row; default: there are no states."""
     b: Rows | None = None
-    """Matrix B: a row for each state, a column for the error of the angle (rad) and, if there are two, of
-    the rate (rad/s).
+    """Matrix B: one row per state; one column for the angle error (rad) and optionally a second for the
+    rate error (rad/s).
     """
     c: Rows | None = None
     """Matrix C: one row."""
     d: Rows | None = None
     """Matrix D: one row; default: it is zero."""
     of: Literal["samples", "held", "tustin"] | None = None
-    """What the matrices are of. Default: "samples"."""
+    """Whether the matrices are in discrete or continuous time. Default: "samples"."""
     command: Literal["torque", "acceleration"] | None = None
-    """What it commands. Default: "torque"."""
+    """Quantity that it commands. Default: "torque"."""
     limit: float | None = None
     """Largest command, in its unit; no limit by default."""
     track: bool | None = None
-    """Whether it follows a manoeuvre while it lasts; else it takes over when the manoeuvre ends."""
+    """Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the
+    manoeuvre.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
 class StuckFailure(Part):
-    """It gives the same all the time."""
+    """A constant output, whatever the command."""
 
     _tag: ClassVar[str | None] = "stuck"
 
     from_: float
-    """When it begins (s)."""
+    """Start time (s)."""
     to: float | None = None
-    """When it ends (s); default: with the run."""
+    """End time (s); default: the end of the run."""
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """The axis of which it fails, on a body with three; default: of all."""
+    """Axis that fails, on a body with three; default: all."""
     wheel: int | None = None
-    """The wheel that fails, counted from 1; default: all do."""
+    """Wheel that fails, counted from 1; default: all."""
     thruster: str | None = None
-    """The thruster that fails, of jets; default: all do."""
+    """Thruster of `jets` that fails; default: all."""
     at: float | None = None
-    """What: a torque (N m), of magnetorquers a moment (A m²), of jets the part of their thrust; default:
-    what is given when it begins.
+    """The output: a torque (N m); for magnetorquers a moment (A m²), for jets a fraction of their thrust;
+    default: the output when the failure begins.
     """
 
 
@@ -2113,9 +2148,9 @@ class StuckFault(Part):
     _tag: ClassVar[str | None] = "stuck"
 
     from_: float
-    """When it begins (s)."""
+    """Start time (s)."""
     to: float | None = None
-    """When it ends (s); default: with the run."""
+    """End time (s); default: the end of the run."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2139,13 +2174,13 @@ class SunSensor(Part):
     period: float
     """Period of its samples (s)."""
     boresight: Vector | None = None
-    """The middle of its field of view in the body's axes, of any length; default: z."""
+    """Centre of its field of view, a direction in the body's axes, of any length; default: z."""
     field_of_view: float | None = None
-    """Half of the angle of the field of view (rad); default: it sees all around. Default:
+    """Half angle of the field of view (rad); default: all directions are visible. Default:
     3.141592653589793.
     """
     point: str | None = None
-    """The point of the structure at which it is; default: the first of the body's points."""
+    """Point of the structure at which it is mounted; default: the first of the body's points."""
     noise: float | Vector | None = None
     """Standard deviation of the white noise along each axis (rad). Default: 0.0."""
     bias: float | Vector | None = None
@@ -2155,16 +2190,18 @@ class SunSensor(Part):
     scale: float | Vector | None = None
     """Relative error of the scale along each axis. Default: 0.0."""
     misalignment: Rows | None = None
-    """What each axis, a row, measures of the direction along the others (rad); the diagonal is 0."""
+    """Misalignment (rad): row i gives what axis i measures of the direction along the other axes; the
+    diagonal is 0.
+    """
     latency: float | None = None
-    """Time from a sample to when it is told (s). Default: 0.0."""
+    """Time from a sample to its output (s). Default: 0.0."""
     faults: Sequence[Fault] | None = None
-    """Times at which it fails."""
+    """Intervals in which it fails."""
 
 
 @dataclass(frozen=True)
 class Table(Part):
-    """Straight lines between points, held before the first and after the last."""
+    """Linear interpolation between points, constant before the first and after the last."""
 
     _tag: ClassVar[str | None] = "table"
     _holds_one: ClassVar[bool] = True
@@ -2174,20 +2211,20 @@ class Table(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Tachometer(Part):
-    """The speeds of wheels, which their drives know by it; it tells nothing of the body."""
+    """The speeds of the wheels, for their drives; it measures nothing of the body's motion."""
 
     _tag: ClassVar[str | None] = "tachometer"
 
     period: float
     """Period of the readings (s)."""
     pulses: int | None = None
-    """Pulses in a turn: a reading is those of a period over the period, what is left counts in the next. By
-    default, the speed at the instant is read.
+    """Pulses per turn: a reading is the count over a period divided by the period, and the remainder
+    carries over to the next one. By default, the speed at the instant is read.
     """
     noise: float | None = None
     """Standard deviation of the white noise of each reading (rad/s). Default: 0.0."""
     faults: Sequence[Fault] | None = None
-    """Times at which they fail: then the drives keep the last reading."""
+    """Intervals in which they fail; the drives then keep the last reading."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2197,10 +2234,10 @@ class Target(Part):
     mode: int
     """Index of the mode."""
     shift: float | None = None
-    """Shift of its frequency, relative to it. Default: 0.0."""
+    """Shift of the zero from the mode's frequency, relative to that frequency. Default: 0.0."""
     times: int | None = None
-    """So many times: each time more flattens the spectrum there by one derivative with frequency. Default:
-    1.
+    """Multiplicity of the zero: each additional one makes one more derivative of the spectrum vanish there.
+    Default: 1.
     """
 
 
@@ -2209,9 +2246,9 @@ class Thermal(Part):
     """Thermal bending."""
 
     deflection: Vector
-    """By how much each mode is displaced in sunlight beyond the shadow, in the end (m sqrt(kg))."""
+    """Steady displacement of each mode in sunlight relative to shadow (m sqrt(kg))."""
     time_constant: float
-    """Time constant with which it gets there (s)."""
+    """Time constant of that displacement (s)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2221,23 +2258,23 @@ class Thruster(Part):
     name: str
     """Name."""
     point: str
-    """The point of the structure to which it is fixed."""
+    """Point of the structure on which it is mounted."""
     direction: Vector
     """Direction of the force on the body, of length 1."""
     thrust: float
     """Thrust (N)."""
     offset: Vector | None = None
-    """Its nozzle from there (m)."""
+    """Position of its nozzle relative to that point (m)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Thrusters(Part):
-    """In each period one pulse of full torque, centred in it, with the impulse that a hold would have."""
+    """One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold."""
 
     _tag: ClassVar[str | None] = "thrusters"
 
     torque: float | Vector
-    """Torque of a pulse (N m); one, or one for each of three axes."""
+    """Torque of a pulse (N m): one number for all axes, or a list of three."""
     period: float
     """Period of the pulses (s)."""
     minimum_on: float | None = None
@@ -2245,12 +2282,12 @@ class Thrusters(Part):
     quantum: float | None = None
     """Quantum of a pulse's length (s); 0 for none. Default: 0.0."""
     faults: Sequence[Failure] | None = None
-    """Times at which they fail."""
+    """Intervals in which they fail."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tracker(Part):
-    """A mode as an observer of one channel begins with it."""
+    """Initial values of one mode in the observer of a channel."""
 
     frequency: float
     """Natural frequency (rad/s)."""
@@ -2259,8 +2296,7 @@ class Tracker(Part):
     rate that the input makes about its own axis ([Timakov14], page 41; dimensionless).
     """
     bounds: Vector | None = None
-    """`[low, high]` between which the frequency is looked for (rad/s); default: up to the middle between it
-    and its neighbours.
+    """Bounds `[low, high]` of the frequency (rad/s); default: the midpoints between it and its neighbours.
     """
 
 
@@ -2271,8 +2307,8 @@ class Truth(Part):
     _tag: ClassVar[str | None] = "truth"
 
     feeds: Literal["modes", "hub", "rigid"] | None = None
-    """What the law reads of it beside the dominant mode: `modes` for angle and rate as measured, `hub`, or
-    `rigid`; left out, `modes` for a law that reads the dominant mode, else `hub`.
+    """Angle and rate that the law reads in addition to the dominant mode: `modes` for the measured ones,
+    `hub`, or `rigid`; default: `modes` for a law that reads the dominant mode, else `hub`.
     """
 
 
@@ -2281,7 +2317,7 @@ class Turn(Part):
     """A turn about a fixed axis."""
 
     about: Vector
-    """The axis, of any length but 0."""
+    """Axis, of any nonzero length."""
     by: float
     """The angle (rad)."""
 
@@ -2298,36 +2334,36 @@ class Uniform(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Unloading(Part):
-    """How wheels are unloaded: by jets or by magnetorquers."""
+    """Unloading of the wheels by jets or by magnetorquers."""
 
     _bare: ClassVar[tuple[str, ...]] = ("jets", "magnetorquers", )
 
     above: float
-    """Momentum of the wheels together beyond which it begins (N m s)."""
+    """Total momentum of the wheels above which unloading begins (N m s)."""
     below: float
-    """Momentum below which it ends (N m s)."""
+    """Total momentum below which it ends (N m s)."""
     torque: float | None = None
-    """Largest mean torque of the jets about each axis over their cycles (N m), which the wheels take up
-    meanwhile.
-    """
+    """Largest mean torque of the jets about each axis over a cycle (N m), which the wheels counteract."""
     jets: Jets | None = None
-    """The jets, with a period of their own and without a delay."""
+    """Jets for unloading, with their own period and without a delay."""
     magnetorquers: Magnetorquers | None = None
-    """The magnetorquers."""
+    """Magnetorquers for unloading."""
     gain: float | None = None
-    """Of magnetorquers, the part of the momentum across the field that they take in a second (1/s)."""
+    """For magnetorquers: the fraction of the momentum perpendicular to the field that they remove per
+    second (1/s).
+    """
     period: float | None = None
-    """Of magnetorquers, the period of their commands (s)."""
+    """For magnetorquers: the period of their commands (s)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class UnscentedKalman(Part):
-    """The same by an unscented Kalman filter."""
+    """An unscented Kalman filter of the motion and the natural frequencies."""
 
     _tag: ClassVar[str | None] = "unscented_kalman"
 
     modes: Sequence[Mode] | None = None
-    """The modes of the filter's model; default: they are the body's own at the start."""
+    """Modes of the filter's model; default: the body's own at the start."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
@@ -2335,37 +2371,37 @@ class UnscentedKalman(Part):
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
-    """What the filter takes for the state at the start. Default: "drawn"."""
+    """Initial state estimate of the filter. Default: "drawn"."""
     dominant: Literal["excitability", "amplitude"] | None = None
-    """What makes a mode the dominant one. Default: "excitability"."""
+    """Criterion for the dominant mode. Default: "excitability"."""
     assess: Vector | None = None
-    """When the metrics judge the filter, from one time to another (s); always by default."""
+    """Interval over which the metrics assess the filter (s); default: the whole run."""
     feeds: Literal["modes", "hub", "rigid"] | None = None
-    """What the law reads of it: `modes` for the dominant mode alone, beside angle and rate as measured;
-    `hub` for angle and rate of the hub, elastic part included; `rigid` for those of the body as if it
-    were rigid. By default, `modes` for a law that reads the dominant mode, else `hub`.
+    """Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as measured;
+    `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By
+    default, `modes` for a law that reads the dominant mode, else `hub`.
     """
     watch_only: bool | None = None
-    """Whether it is there to be assessed only: no law reads it."""
+    """Whether the filter runs for assessment only: the law does not read it."""
     ratios: Literal["common", "each"] | None = None
     """Which frequencies drift together. Default: "common"."""
     ratio: float | None = None
-    """Ratio that the filter takes the frequencies to have at the start. Default: 1.0."""
+    """Initial estimate of the frequency ratio. Default: 1.0."""
     ratio_sd: float | None = None
-    """Standard deviation of that ratio. Default: 0.03."""
+    """Standard deviation of the initial ratio. Default: 0.03."""
     ratio_rate_sd: float | None = None
-    """Standard deviation of its rate at the start, which is taken for 0 (1/s). Default: 0.003."""
+    """Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s). Default: 0.003."""
     ratio_noise: float | None = None
     """Spectral density of the white noise in a ratio (1/s). Default: 1e-08."""
     ratio_rate_noise: float | None = None
     """Spectral density of the white noise in the rate of a ratio (1/s³). Default: 1e-08."""
     bounds: Vector | None = None
-    """`[low, high]` of a ratio; the filter that reaches them has lost the body."""
+    """Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock."""
     substeps: int | None = None
-    """Steps in which a period is predicted. Default: 2."""
+    """Number of prediction steps per period. Default: 2."""
     gate: float | None = None
-    """While the dominant mode's amplitude is below so many standard deviations of the angle, the ratios
-    learn nothing. Default: 3.0.
+    """Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios are not
+    updated. Default: 3.0.
     """
 
 
@@ -2376,25 +2412,23 @@ class Wheel(Part):
     _tag: ClassVar[str | None] = "wheel"
 
     gain: float
-    """Torque for each unit of the law's command (N m; k'_u of [Wheel11, Sukhanov] times the body's
-    inertia).
-    """
+    """Torque per unit of the law's command (N m; k'_u of [Wheel11, Sukhanov] times the body's inertia)."""
     back_emf: float | None = None
-    """Torque for each unit of the rate (N m s; k'_omega times the body's inertia). Default: 0.0."""
+    """Back-EMF torque per unit of the rate (N m s; k'_omega times the body's inertia). Default: 0.0."""
     opposes: Literal["body_rate", "rigid_rate"] | None = None
     """The rate that the back-EMF opposes. Default: "body_rate"."""
     rotor: Rotor | None = None
     """The wheel."""
     dead_zone: float | None = None
-    """Commands of less than this are not executed. Default: 0.0."""
+    """Commands smaller than this are not executed. Default: 0.0."""
     quantum: float | None = None
     """Quantum of the command; 0 for none. Default: 0.0."""
     limit: float | None = None
     """Largest command; no limit by default."""
     delay: float | None = None
-    """Time from a sample to the command that is computed from it (s). Default: 0.0."""
+    """Time from a sample to the execution of the command computed from it (s). Default: 0.0."""
     faults: Sequence[Failure] | None = None
-    """Times at which what its motor gives of a command fails; its back-EMF stays."""
+    """Intervals in which the motor fails to execute commands; its back-EMF still acts."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2404,41 +2438,43 @@ class Wheels(Part):
     _tag: ClassVar[str | None] = "wheels"
 
     inertia: float
-    """Moment of inertia of each about its axis (kg m²)."""
+    """Moment of inertia of each wheel about its axis (kg m²)."""
     arrangement: Literal["orthogonal", "pyramid"] | None = None
-    """How they are arranged; default: their `axes` are given."""
+    """Arrangement of the wheels; default: given by `axes`."""
     cant: float | None = None
-    """Of a pyramid, the angle of each axis above the plane of x and y (rad); default: the one with equal
-    torques about all three axes, 0.6155 rad.
+    """For a pyramid: angle of each axis above the xy plane (rad); default: 0.6155 rad, which gives equal
+    torques about all three axes.
     """
     axes: Rows | None = None
-    """The axis of each wheel in the body's axes, of any length."""
+    """Axis of each wheel in the body's axes, of any length."""
     torque: float | None = None
-    """Largest torque of each motor (N m); no limit by default. A torque that asks more of one is made
-    smaller as a whole: it keeps its axis.
+    """Largest torque of each motor (N m); no limit by default. If a demanded torque exceeds it, the whole
+    torque is scaled down and keeps its axis.
     """
     momentum: float | None = None
-    """Largest momentum of each about its axis (N m s), at which no torque drives it further; no limit by
-    default.
+    """Largest momentum of each wheel about its axis (N m s), beyond which its motor cannot accelerate it;
+    no limit by default.
     """
     speed_limit: float | None = None
-    """Largest speed of each (rad/s), at which no torque drives it further; no limit by default."""
+    """Largest speed of each wheel (rad/s), beyond which its motor cannot accelerate it; no limit by
+    default.
+    """
     speeds: Vector | None = None
-    """Speed of each at the start, relative to the body (rad/s); default: 0."""
+    """Speed of each wheel at the start, relative to the body (rad/s); default: 0."""
     friction: Friction | None = None
-    """Friction in their bearings; none by default."""
+    """Friction of the bearings; none by default."""
     compensation: Compensation | None = None
-    """Torque that their drives add against friction, by the speeds that they know; none by default."""
+    """Friction compensation by the drives, from the wheel speeds available to them; none by default."""
     imbalance: Imbalance | None = None
-    """Imbalance; default: they have none."""
+    """Imbalance of the wheels; none by default."""
     allocation: Literal["pseudo_inverse", "least_largest"] | None = None
-    """Which of all torques that give what is wanted are taken. Default: "pseudo_inverse"."""
+    """How the demanded torque is distributed over the wheels. Default: "pseudo_inverse"."""
     speed_bias: SpeedBias | None = None
-    """Of four wheels, a speed that torques which cancel each other keep; none by default."""
+    """For four wheels: a bias speed, maintained by torques that cancel each other; none by default."""
     unloading: Unloading | None = None
-    """How jets or magnetorquers unload them; default: none do."""
+    """Unloading by jets or magnetorquers; none by default."""
     faults: Sequence[Failure] | None = None
-    """Times at which their motors fail."""
+    """Intervals in which their motors fail."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2472,7 +2508,7 @@ class Zvdd(Part):
 
 
 Actuator: TypeAlias = Ideal | Hold | Thrusters | Wheel | Wheels | Jets | Magnetorquers
-"""The kinds of actuator. Those of one angle act on a body with three axes about each."""
+"""The kinds of actuator. On a body with three axes, an actuator for one angle acts about each of them."""
 Adaptation: TypeAlias = RandomSearch
 """The kinds of adaptation."""
 Body: TypeAlias = Planar | Matrices | Panels | Spatial
@@ -2495,7 +2531,7 @@ Estimator: TypeAlias = (
 )
 """The kinds of estimator."""
 Extra: TypeAlias = Gain | Schedule
-"""The extra loop over the dominant mode: its gain is k_d of the papers."""
+"""The extra loop on the dominant mode; its gain is k_d of the papers."""
 Failure: TypeAlias = Dead | Scaled | StuckFailure | Added
 """A failure of an actuator."""
 Fault: TypeAlias = StuckFault | Silent
@@ -2503,7 +2539,7 @@ Fault: TypeAlias = StuckFault | Silent
 Filter: TypeAlias = Notch | LowPass | Lead | Biquad
 """The kinds of filter."""
 FilterForm: TypeAlias = Complementary
-"""How gains are found."""
+"""How the gains are computed."""
 Law: TypeAlias = Relay | Pd | AttitudeLaw | StateSpace | Open | PhasePlane | PerAxis | BDot | Stages
 """The kinds of law."""
 ObserverForm: TypeAlias = Gradient | Recurrence
@@ -2520,10 +2556,10 @@ class Keys(TypedDict, total=False):
     """The keys of a scenario, as `flexsc.Scenario` takes them."""
 
     about: str
-    """What the study is about."""
+    """Description of the study."""
 
     seed: int
-    """Seed of all randomness."""
+    """Seed of all random numbers."""
 
     duration: float
     """Simulated time (s)."""
@@ -2532,54 +2568,54 @@ class Keys(TypedDict, total=False):
     """Date and time of the start; a log counts its time from here."""
 
     body: Body
-    """What is controlled, if it is not a `spacecraft`."""
+    """The controlled body, unless it is a `spacecraft`."""
 
     spacecraft: Spacecraft
-    """A spacecraft that is controlled, put together from its parts: the hub."""
+    """The hub of a controlled spacecraft, which is built from its parts."""
 
     appendage: Sequence[Appendage]
-    """What is clamped to the hub of the spacecraft."""
+    """Appendages clamped to the hub of the spacecraft."""
 
     drift: Drift
-    """How the natural frequencies drift; default: they do not."""
+    """Drift of the natural frequencies; default: none."""
 
     sensor: Sensor | Literal["continuous"] | Sequence[Sensor | Literal["continuous"]]
-    """How the motion is measured: one sensor, or an array of several."""
+    """The sensor, or an array of several."""
 
     estimator: Estimator
-    """What is estimated."""
+    """The estimator."""
 
     adaptation: Adaptation
-    """What is adapted."""
+    """The adaptation."""
 
     manoeuvre: Manoeuvre
-    """What is planned ahead."""
+    """The planned manoeuvre."""
 
     law: Law
-    """What commands the torque. Only a scenario with a manoeuvre can do without."""
+    """The control law. Only a scenario with a manoeuvre can omit it."""
 
     actuator: Actuator | Literal["ideal"]
-    """How the commanded torque is executed."""
+    """The actuator, which executes the commanded torque."""
 
     disturbance: Sequence[Disturbance]
-    """Disturbance torques."""
+    """Disturbance torques and forces."""
 
     environment: Environment
-    """What surrounds a body with three axes; default: nothing."""
+    """Environment of a body with three axes; default: none."""
 
     log: Log
-    """What a full log holds."""
+    """Contents of a full log."""
 
     target: Sequence[AttitudeTarget]
-    """Attitudes that a body with three axes shall turn to, in the order of their times; before the first it
-    is the inertial one. A law `phase_plane` may have them of its own.
+    """Target attitudes of a body with three axes, in the order of their times; before the first one, the
+    target is the inertial axes. A law `phase_plane` may have targets of its own.
     """
 
     reference: Reference
-    """What the metrics compare with."""
+    """Reference values for the metrics."""
 
     uncertain: Mapping[str, Distribution]
-    """Distributions of keys that a campaign draws anew for each run."""
+    """Distributions of keys from which a campaign draws a value for each run."""
 
     correlated: Sequence[Correlated]
-    """Keys of `uncertain` that are drawn together."""
+    """Correlated keys of `uncertain`."""
