@@ -41,7 +41,8 @@ def alone(wheel: Path, extra: str, directory: Path) -> list[str]:
     pip = [python, "-m", "pip", "--quiet", "--disable-pip-version-check"]
     subprocess.run([*pip, "install", f"{wheel}[{extra}]" if extra else str(wheel)], check=True)
     subprocess.run([python, "-c", USES.get(extra, "import flexsc")], check=True)
-    listed = subprocess.run([*pip, "list", "--format", "json"], check=True, capture_output=True, text=True)
+    listing = [python, *pip[1:3], *pip[4:], "list", "--format", "json"]
+    listed = subprocess.run(listing, check=True, capture_output=True, text=True)
     return sorted({package["name"].lower() for package in json.loads(listed.stdout)} - OWN)
 
 

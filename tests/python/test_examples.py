@@ -1,10 +1,8 @@
-"""Every public name says what it is, with an example that runs; so do the pages about Python."""
+"""Every public name says what it is, with an example that runs."""
 
 import doctest
 import importlib
 import inspect
-import re
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -12,11 +10,9 @@ import flexsc
 import numpy
 import pytest
 
-ROOT = Path(__file__).parents[2]
 # They read files of other programs: the page about imports has examples, and tests of their own run them.
 OF_FILES = {"appendage_from_nastran", "from_nastran"}
 MODULES = {"parts", "plot", "scenario", "structure"}
-PAGES = ["results.md"]
 
 
 def run(found: list[doctest.DocTest]) -> int:
@@ -53,17 +49,3 @@ def test_every_module_has_an_example_that_runs(name: str) -> None:
     text = module.__doc__ if name != "flexsc._part" else module.Part.to_dict.__doc__
     assert text
     assert run([doctest.DocTestParser().get_doctest(text, {}, name, None, None)]) > 0
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_the_code_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("MPLBACKEND", "agg")
-    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
-    blocks = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
-    assert len(blocks) > 2
-    names: dict[str, Any] = {}
-    for block in blocks:
-        for missing in re.findall(r"^import (\w+)", block, re.MULTILINE):
-            pytest.importorskip(missing)
-        exec(compile(block, page, "exec"), names)
