@@ -41,7 +41,7 @@ def alone(wheel: Path, extra: str, directory: Path) -> list[str]:
     pip = [python, "-m", "pip", "--quiet", "--disable-pip-version-check"]
     subprocess.run([*pip, "install", f"{wheel}[{extra}]" if extra else str(wheel)], check=True)
     subprocess.run([python, "-c", USES.get(extra, "import flexsc")], check=True)
-    listing = [python, *pip[1:3], *pip[4:], "list", "--format", "json"]
+    listing = [python, "-m", "pip", "--disable-pip-version-check", "list", "--format", "json"]
     listed = subprocess.run(listing, check=True, capture_output=True, text=True)
     return sorted({package["name"].lower() for package in json.loads(listed.stdout)} - OWN)
 
