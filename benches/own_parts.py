@@ -1,6 +1,6 @@
 """Measures what a law in Python costs beside the same law of the engine: CPU time of a run, side by side.
 
-pip install .
+pip install . scipy
 python3 benches/own_parts.py
 """
 
