@@ -1,12 +1,13 @@
 """Campaigns and sweeps: tables of runs, each the same alone and among others."""
 
+import shutil
 from pathlib import Path
 from typing import Any
 
 import flexsc
 import numpy as np
 import pytest
-from conftest import SCENARIOS, Command, json_lines
+from conftest import SCENARIOS, Command, json_lines, shipped
 from flexsc import Scenario, ScenarioError, Table
 
 
@@ -178,3 +179,11 @@ def test_what_makes_no_campaign(fixed: Scenario) -> None:
         flexsc.sweep(fixed, "law.relay.kt", [0.31])
     with pytest.raises(ScenarioError, match="must be a number between 0 and 1"):
         flexsc.sweep(fixed, "law.relay.k_t", [np.nan])
+
+
+def test_a_directory_that_is_gone_is_an_error(tmp_path: Path) -> None:
+    table = flexsc.campaign(shipped("relay-sampled").with_("duration", 100.0), runs=3, out=tmp_path / "out")
+    assert len(table["run"]) == 3
+    shutil.rmtree(tmp_path / "out")
+    with pytest.raises(FileNotFoundError, match="no longer exists"):
+        table["duty"]

@@ -89,6 +89,11 @@ def test_axes_are_the_users_own_and_hold_si(run: Result) -> None:
         plot.draw(run, "wheel")
 
 
+def test_a_figure_that_does_not_exist_is_named(run: Result) -> None:
+    with pytest.raises(ValueError, match="no figure 'angel' of it; it has phase-plane"):
+        plot.draw(run, "angel")
+
+
 def test_logs_and_subfigures(run: Result, tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     run.to_mcap(path)

@@ -292,3 +292,8 @@ def test_all_mistakes_come_at_once() -> None:
         Scenario.parse(text)
     assert "did you mean `k_t`?" in str(told.value)
     assert "did you mean `duration`?" in str(told.value)
+
+
+def test_an_example_that_does_not_exist_suggests_one() -> None:
+    with pytest.raises(KeyError, match="did you mean 'relay-fixed'"):
+        flexsc.Scenario.example("relay-fixd")

@@ -316,3 +316,8 @@ def test_the_examples_of_the_docstrings_run() -> None:
     told = doctest.testmod(_simulator, extraglobs={"flexsc": flexsc, "numpy": np})
     assert told.attempted > 5
     assert not told.failed
+
+
+def test_the_number_of_copies_is_bounded() -> None:
+    with pytest.raises(ValueError, match="runs must be at most 10000000"):
+        flexsc.Simulators(shipped("relay-fixed"), 10**12)

@@ -238,10 +238,6 @@ impl Directory {
         Work(Arc::new(self.0.work().clone()))
     }
 
-    fn missing(&self) -> PyResult<Vec<Span>> {
-        self.0.missing().map(spans).map_err(failed)
-    }
-
     fn write_part(&self, py: Python<'_>, runs: Span, jobs: usize) -> PyResult<PathBuf> {
         let directory = self.0.clone();
         aside(py, move |stop| directory.write_part(runs.0..runs.1, jobs, stop))?.map_err(failed)

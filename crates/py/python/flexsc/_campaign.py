@@ -300,9 +300,17 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
     return place(path).table()
 
 
-def of_directory(directory: engine.Directory, kept: object = None) -> Table:
+def of_directory(path: str | os.PathLike[str], kept: object = None) -> Table:
     """Create the table of a directory. `kept` lives as long as the table."""
-    table = Table(directory.work, directory.column, directory.statistics)
+    directory = engine.Directory.open(path)
+
+    def column(name: str) -> Any:
+        # Without its parts it would be a campaign that has no rows yet.
+        if not os.path.isdir(path):
+            raise FileNotFoundError(f"{os.fspath(path)}: the directory of the campaign no longer exists")
+        return directory.column(name)
+
+    table = Table(directory.work, column, directory.statistics)
     table._kept = kept
     return table
 

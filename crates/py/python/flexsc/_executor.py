@@ -53,7 +53,7 @@ class Local:
 
     def table(self) -> Table:
         """The rows present so far."""
-        return of_directory(engine.Directory.open(self.name))
+        return of_directory(self.name)
 
 
 class Remote:
@@ -103,7 +103,7 @@ class Remote:
         for name in _names(files, f"{root}/{_RUNS}"):
             if name.endswith(".parquet"):
                 files.get_file(f"{root}/{_RUNS}/{name}", str(kept.path / _RUNS / name))
-        return of_directory(engine.Directory.open(kept.path), kept)
+        return of_directory(kept.path, kept)
 
 
 class _Temporary:
@@ -171,7 +171,7 @@ def run(
         store.end()
     if kept is None:
         return store.table()
-    return of_directory(engine.Directory.open(kept.path), kept)
+    return of_directory(kept.path, kept)
 
 
 def _hand_out(

@@ -95,7 +95,13 @@ class Scenario:
         Raises:
             KeyError: There is no scenario of this name.
         """
-        return cls.parse(dict(engine.examples())[name], name)
+        examples = dict(engine.examples())
+        if name not in examples:
+            from difflib import get_close_matches
+
+            near = "".join(f"; did you mean {one!r}?" for one in get_close_matches(name, examples, 1))
+            raise KeyError(f"no example {name!r}{near or '; flexsc.examples() has them all'}")
+        return cls.parse(examples[name], name)
 
     @property
     def name(self) -> str:

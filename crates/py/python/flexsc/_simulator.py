@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 Event = Literal["sample", "decision", "switching", "window"]
 """The events that a run can be advanced to: see `Simulator.run_until`."""
 
+# More copies than this are a mistake: each takes some kilobytes.
+_MOST = 10_000_000
+
 
 class Quantities(Mapping[str, "npt.NDArray[np.float64]"]):
     """The quantities of motion of a run at an instant: arrays by name, with units.
@@ -319,6 +322,9 @@ class Simulators:
         jobs: int | None = None,
         seed: int | None = None,
     ) -> None:
+        count = runs if isinstance(runs, int) else len(runs)
+        if count > _MOST:
+            raise ValueError(f"runs must be at most {_MOST}, got {count}")
         numbers = range(run_number(runs)) if isinstance(runs, int) else [run_number(run) for run in runs]
         if jobs is not None and not 1 <= jobs <= 1024:
             raise ValueError(f"jobs must be from 1 to 1024, got {jobs}")

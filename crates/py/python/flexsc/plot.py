@@ -171,7 +171,13 @@ def _of_campaign(source: Source, kind: str | None, metrics: Sequence[str]) -> di
 def _figure(source: Source, name: str) -> engine.Figure:
     log = _log(source)
     if log is not None:
-        return engine.log_figure(log, name)
+        try:
+            return engine.log_figure(log, name)
+        except ValueError as error:
+            # A name that no figure has.
+            if "invalid variant" not in str(error):
+                raise
+        raise ValueError(f"there is no figure {name!r} of it; it has {', '.join(engine.log_figures(log))}")
     there = _of_campaign(source, None, ())
     if name not in there and isinstance(source, Table):
         kind, _, metric = name.partition("-")
