@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::Planar;
 use crate::motion::linear::{Linear, System};
-use crate::motion::{Phase, State};
 use crate::numerics::exponential::{exponential, exponentials};
 
 /// The matrices of a body at constant frequencies.
@@ -92,24 +91,6 @@ fn apart(whole: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
         whole.view((0, 0), (order, order)).into_owned(),
         whole.view((0, order), (order, 1)).column(0).into_owned(),
     )
-}
-
-impl State {
-    /// The state as one vector, of modes with these frequencies (rad/s).
-    pub fn to_vector(&self, frequencies: &[f64]) -> DVector<f64> {
-        let mut z = vec![self.rigid_angle, self.rigid_rate];
-        let modes = self.modes.iter().zip(frequencies);
-        z.extend(modes.flat_map(|(mode, w)| [mode.displacement, w * mode.quadrature]));
-        DVector::from_vec(z)
-    }
-
-    /// Takes the state from one vector.
-    pub fn set_vector(&mut self, z: &DVector<f64>, frequencies: &[f64]) {
-        (self.rigid_angle, self.rigid_rate) = (z[0], z[1]);
-        for (i, (mode, w)) in self.modes.iter_mut().zip(frequencies).enumerate() {
-            *mode = Phase { displacement: z[2 + 2 * i], quadrature: z[3 + 2 * i] / w };
-        }
-    }
 }
 
 #[cfg(test)]

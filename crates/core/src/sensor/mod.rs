@@ -19,9 +19,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::{AXES, Vector, beyond, rotation};
-use crate::document::{self, Parts};
+use crate::document;
 use crate::environment::Seen;
 use crate::own::{Halt, Own};
+use crate::parts::Parts;
 use crate::quantity::Positive;
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};

@@ -14,7 +14,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Shape;
 use super::{LARGEST, csv};
-use crate::quantity::{Finite, Frequency, NonNegative};
+use flexsc_motion::quantity::{Finite, Frequency, NonNegative};
 
 /// What a column of a point's shape ends with, after the point's name and a dot: three translations, three rotations.
 const COMPONENTS: [&str; 6] = ["tx", "ty", "tz", "rx", "ry", "rz"];

@@ -4,8 +4,8 @@ use nalgebra::Matrix3;
 
 use super::{Driving, Posed};
 use crate::attitude::Vector;
-use crate::motion::turning::Surroundings;
 use crate::numerics::gauss_legendre::NODES;
+use crate::turning::Surroundings;
 
 /// The memory of the steps of a driven body.
 #[derive(Clone, Debug, Default)]

@@ -15,7 +15,7 @@ use super::left_out::npz;
 use super::npz;
 use super::{csv, market};
 use crate::document::Fault;
-use crate::quantity::Finite;
+use flexsc_motion::quantity::Finite;
 
 /// A dense matrix, or where one is.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,11 +4,11 @@ use nalgebra::Quaternion;
 
 use super::{Driving, Posed};
 use crate::attitude::{Vector, rotation};
-use crate::motion::turning::flow::Turning;
-use crate::motion::turning::model::Model;
-use crate::motion::turning::pace::Pace;
-use crate::motion::turning::rotation::Bend;
-use crate::motion::turning::state::{Seen, State};
+use crate::turning::flow::Turning;
+use crate::turning::model::Model;
+use crate::turning::pace::Pace;
+use crate::turning::rotation::Bend;
+use crate::turning::state::{Seen, State};
 
 /// What a state is without its mean axes.
 struct Bare {
@@ -36,7 +36,7 @@ impl Driving {
     }
 
     /// Looks at a state `now` seconds after the departure, in which rotors have this momentum (N m s): in the modes of that instant.
-    pub(in crate::motion::turning) fn look(&self, now: f64, state: &State, rotors: &Vector, seen: &mut Seen) {
+    pub(in crate::turning) fn look(&self, now: f64, state: &State, rotors: &Vector, seen: &mut Seen) {
         let mut posed = Posed::default();
         self.posed(self.began + now, &mut posed);
         let Bare { attitude, momentum, eta, mut pi, .. } = self.bare(state);

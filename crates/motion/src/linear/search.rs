@@ -1,8 +1,8 @@
 //! The certified search on a linear flow: any number of guards on any outputs, in one search.
 
 use super::segment::{Seen, Segment};
+use crate::crossing::{Approach, first_root};
 use crate::guard::Guard;
-use crate::motion::crossing::{Approach, first_root};
 use crate::time::Span;
 
 /// The horizon beyond which no pole counts as slow (s).

@@ -82,7 +82,26 @@ fn fitting(why: &str) -> Option<Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::Law;
+    use flexsc_motion::quantity::Positive;
+
+    #[derive(serde::Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    #[allow(dead_code)]
+    enum Law {
+        Relay(Relay),
+        Pd(f64),
+    }
+
+    #[derive(serde::Deserialize)]
+    #[serde(deny_unknown_fields)]
+    #[allow(dead_code)]
+    struct Relay {
+        dead_zone: Positive,
+        hysteresis: Positive,
+        strong: Positive,
+        weak: Positive,
+        k_t: Positive,
+    }
 
     #[test]
     fn all_mistakes_are_found_and_nothing_else() {

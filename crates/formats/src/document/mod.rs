@@ -6,7 +6,6 @@ pub mod key;
 mod mistake;
 mod mistakes;
 mod nearest;
-mod parts;
 mod quantity;
 mod reader;
 mod units;
@@ -24,7 +23,6 @@ use toml::{Table, Value};
 pub use fault::Fault;
 pub use mistake::{Mistake, Place};
 pub use nearest::meant as nearest;
-pub use parts::Parts;
 pub use quantity::unit_at;
 pub use reader::{DATE, read_value};
 pub use wrong::Wrong;
@@ -254,8 +252,7 @@ fn too_long(length: u64) -> String {
     format!("a scenario has at most {LONGEST} bytes, this file has {length}")
 }
 
-/// Reads a part from a TOML text, as the tests of parts do.
-#[cfg(test)]
+/// Reads a part of a scenario, such as one law, from a TOML text of its own: for the tests of parts.
 pub fn from_text<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ScenarioError> {
     let table = text.parse().map_err(|error| unparsed("text", text, &error).alone())?;
     read_value(&Value::Table(table)).map_err(|wrong| unfit("text", text, &wrong).alone())

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use super::cluster::moved;
 use super::flow::{Linear, Modal};
-use crate::motion::Sensed;
+use crate::Sensed;
 use crate::numerics::phasor::{Phasor, abs};
 
 /// A motion under one constant input.

@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector, Matrix3};
 
 use super::{Angles, Driven, Posed};
 use crate::attitude::Vector;
-use crate::motion::turning::free::Free;
-use crate::motion::turning::model::{Flexible, FreeMode};
+use crate::turning::free::Free;
+use crate::turning::model::{Flexible, FreeMode};
 
 /// The free modes of one angle.
 #[derive(Clone, Debug)]

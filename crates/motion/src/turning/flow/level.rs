@@ -2,9 +2,9 @@
 
 use super::{BESIDE, Regular, Turning};
 use crate::attitude::Vector;
-use crate::motion::turning::Surroundings;
-use crate::motion::turning::pace::Pose;
-use crate::motion::turning::response::Response;
+use crate::turning::Surroundings;
+use crate::turning::pace::Pose;
+use crate::turning::response::Response;
 
 impl Turning {
     /// The level of the next step.

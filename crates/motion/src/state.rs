@@ -1,5 +1,7 @@
 //! Where a body with one angle is, and what is measurable of it.
 
+use nalgebra::DVector;
+
 /// Where a body is.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
@@ -31,6 +33,22 @@ impl State {
         self.rigid_angle.is_finite()
             && self.rigid_rate.is_finite()
             && self.modes.iter().all(|m| m.displacement.is_finite() && m.quadrature.is_finite())
+    }
+
+    /// The state as one vector, of modes with these frequencies (rad/s).
+    pub fn to_vector(&self, frequencies: &[f64]) -> DVector<f64> {
+        let mut z = vec![self.rigid_angle, self.rigid_rate];
+        let modes = self.modes.iter().zip(frequencies);
+        z.extend(modes.flat_map(|(mode, w)| [mode.displacement, w * mode.quadrature]));
+        DVector::from_vec(z)
+    }
+
+    /// Takes the state from one vector.
+    pub fn set_vector(&mut self, z: &DVector<f64>, frequencies: &[f64]) {
+        (self.rigid_angle, self.rigid_rate) = (z[0], z[1]);
+        for (i, (mode, w)) in self.modes.iter_mut().zip(frequencies).enumerate() {
+            *mode = Phase { displacement: z[2 + 2 * i], quadrature: z[3 + 2 * i] / w };
+        }
     }
 }
 

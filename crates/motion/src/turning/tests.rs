@@ -11,7 +11,7 @@ use crate::numerics::gauss_legendre::{NODES, WEIGHTS};
 
 macro_rules! golden {
     ($name:literal) => {
-        include_str!(concat!("../../../../../tests/golden/turning/", $name))
+        include_str!(concat!("../../../../tests/golden/turning/", $name))
     };
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix3xX};
 
 use super::Driven;
 use crate::attitude::Vector;
-use crate::motion::turning::free::{Free, Held};
+use crate::turning::free::{Free, Held};
 
 /// The coefficients at an instant, all in the body's axes and about the centre of mass.
 #[derive(Clone, Debug, Default)]

@@ -1,0 +1,4 @@
+//! What flexsc reads: TOML documents with errors that point at the very value, and structures from the files of other programs.
+
+pub mod document;
+pub mod structure;

@@ -1,0 +1,19 @@
+//! Numbers: special functions, quadrature, integration, roots. Nothing here knows a spacecraft.
+
+pub mod biquad;
+pub mod delay_margin;
+pub mod elliptic;
+pub mod exponential;
+pub mod extrapolation;
+pub mod gauss_legendre;
+pub mod normal;
+pub mod phasor;
+pub mod phi;
+pub mod polynomial;
+pub mod polynomials;
+pub mod quadrature;
+pub mod simplex;
+pub mod stumpff;
+pub mod swing_integral;
+pub mod swing_series;
+pub mod trig;
