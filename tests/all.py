@@ -11,10 +11,11 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 import venv
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,15 +46,32 @@ class Step:
     quick: bool = False
 
 
-def run(*command: str | Path) -> str:
-    """Runs a command, which must succeed, and returns what it printed, which is also shown."""
-    print("+", " ".join(map(str, command)), flush=True)
-    printed = bytearray()
-    with subprocess.Popen([str(word) for word in command], cwd=ROOT, stdout=subprocess.PIPE) as process:
-        assert process.stdout is not None
-        while piece := os.read(process.stdout.fileno(), 4096):
+class Out(threading.local):
+    """Where a thread shows what its commands print: at once, or of work side by side when it is done."""
+
+    kept: bytearray | None = None
+
+    def show(self, piece: bytes) -> None:
+        if self.kept is None:
             sys.stdout.buffer.write(piece)
             sys.stdout.flush()
+        else:
+            self.kept += piece
+
+
+OUT = Out()
+
+
+def run(*command: str | Path) -> str:
+    """Runs a command, which must succeed, and returns what it printed, which is also shown."""
+    words = [str(word) for word in command]
+    OUT.show(f"+ {' '.join(words)}\n".encode())
+    printed = bytearray()
+    errors = None if OUT.kept is None else subprocess.STDOUT
+    with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=errors) as process:
+        assert process.stdout is not None
+        while piece := os.read(process.stdout.fileno(), 4096):
+            OUT.show(piece)
             printed += piece
     if process.returncode != 0:
         sys.exit(f"{command[0]} failed with {process.returncode}")
@@ -175,13 +193,49 @@ def nastran() -> str:
     python = environment(NASTRAN)
     for options in (["--force-reinstall", "--no-deps", built()], [f"{built()}[nastran]", "pytest"]):
         install = [python, *PIP, "install", *options]
-        print("+", " ".join(map(str, install)), flush=True)
-        if subprocess.run(install, cwd=ROOT, check=False).returncode != 0:
+        OUT.show(f"+ {' '.join(map(str, install))}\n".encode())
+        if subprocess.run(install, cwd=ROOT, check=False, stdout=subprocess.DEVNULL).returncode != 0:
             return (
                 "pyNastran cannot be installed here: the tests of tests/python/test_nastran*.py are left out"
             )
     files = sorted(map(str, (ROOT / "tests/python").glob("test_nastran*.py")))
     return tally(run(python, "-m", "pytest", *files, "-q"))
+
+
+def side_by_side(*works: Callable[[], str | None]) -> str:
+    """Work that keeps one core busy, on all of them: each shows what it printed when it is done."""
+
+    def kept(work: Callable[[], str | None]) -> tuple[bytes, str | SystemExit | None]:
+        OUT.kept = bytearray()
+        try:
+            told: str | SystemExit | None = work()
+        except SystemExit as failure:
+            told = failure
+        printed, OUT.kept = bytes(OUT.kept), None
+        return printed, told
+
+    results = []
+    with ThreadPoolExecutor(len(works)) as pool:
+        for done in as_completed([pool.submit(kept, work) for work in works]):
+            printed, told = done.result()
+            OUT.show(printed)
+            results.append(told)
+    for told in results:
+        if isinstance(told, SystemExit):
+            raise told
+    return ", ".join(str(told) for told in results if told)
+
+
+def around() -> str:
+    """What surrounds the wheel, one after the other."""
+    extras()
+    told = nastran()
+    site()
+    return f"with pyNastran {told}"
+
+
+def python_and_around() -> str:
+    return side_by_side(python, around)
 
 
 STEPS = [
@@ -194,10 +248,11 @@ STEPS = [
     Step("docs/papers.md is what the program computes", 20, papers),
     Step("fuzzing", 50, fuzz),
     Step("the wheel", 65, wheel),
-    Step("Python tests", 150, python),
-    Step("the wheel alone, and with an extra", 30, extras),
-    Step("Python tests with pyNastran", 30, nastran),
-    Step("the documentation site, with its tutorials", 80, site),
+    Step(
+        "Python tests; the wheel with an extra, with pyNastran, and the documentation site",
+        200,
+        python_and_around,
+    ),
 ]
 QUICK = [
     *(step for step in STEPS if step.quick),
