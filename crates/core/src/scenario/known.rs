@@ -1,7 +1,9 @@
 //! What the estimator and the monitor of the envelope are told of a scenario before a run.
 
 use super::Scenario;
+use crate::adaptation::{Adaptation, Meter, Objective, Searching};
 use crate::estimator::{Estimator, Known, Monitor};
+use crate::law::Goal;
 use crate::random::Seed;
 
 impl Scenario {
@@ -26,6 +28,24 @@ impl Scenario {
     /// The monitor of the envelope that it asks for, if any.
     pub fn monitor(&self, seed: Seed) -> Option<Monitor> {
         let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
-        Some(Monitor::new(envelope, &self.model, self.adaptation.as_ref(), &self.law.tunable(), seed))
+        let learns = self.objective() == Some(Objective::EnvelopeMean);
+        Some(Monitor::new(envelope, &self.model, self.searching(seed).filter(|_| learns)))
+    }
+
+    /// The meter of another objective of its adaptation, if any.
+    pub fn meter(&self, seed: Seed) -> Option<Meter> {
+        let (adaptation, objective) = (self.adaptation.as_ref()?, self.objective()?);
+        let window = adaptation.window().filter(|_| objective != Objective::EnvelopeMean)?;
+        let goal = if self.axis_count() == 1 { self.goal() } else { Goal::default() };
+        Some(Meter::new(objective, window, goal, self.searching(seed)?))
+    }
+
+    /// What its adaptation measures, if it has one.
+    pub fn objective(&self) -> Option<Objective> {
+        self.adaptation.as_ref().map(Adaptation::objective)
+    }
+
+    fn searching(&self, seed: Seed) -> Option<Searching> {
+        Some(Searching::new(self.adaptation.as_ref()?, &self.law.tunable(), seed))
     }
 }

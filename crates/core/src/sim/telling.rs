@@ -7,6 +7,7 @@ use super::failing::Failures;
 use super::plant::{Plant, SpatialPlant};
 use super::reference::Reference;
 use super::{Simulation, SimulationError};
+use crate::adaptation::Measured;
 use crate::estimator::Closed;
 use crate::law::{Cause, Phase};
 use crate::motion::turning::{Slip, Turned};
@@ -111,6 +112,19 @@ impl Telling {
         let due = [arrives, self.next_dense, self.next_frames, self.next_cycle];
         let due = due.into_iter().chain([self.failures.due(), self.accelerometers.due()]);
         due.flatten().min()
+    }
+
+    /// A window of the objective that ended, and what the adaptation made of it.
+    pub fn objective(
+        &self,
+        now: Instant,
+        measured: &Measured,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        record.record(now, Sample::Objective(&measured.row))?;
+        let Some((row, before)) = &measured.step else { return Ok(()) };
+        record.record(now, Sample::Adaptation(row))?;
+        self.events.adapted(now, row, *before, record)
     }
 
     /// A window that ended, and what the adaptation made of it.
@@ -259,6 +273,7 @@ impl Simulation {
         // A law that is never asked aims at the targets all the same.
         self.turn_to_target(now);
         let origin = self.origin;
+        self.measure_cycle(&truth);
         if let Plant::Spatial(plant) = &self.plant {
             let error = truth.orientation.beyond(&origin);
             let (rigid, elastic) = plant.rates();
