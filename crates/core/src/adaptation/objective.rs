@@ -31,6 +31,25 @@ pub enum Objective {
 }
 
 impl Objective {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::EnvelopeMean,
+        Self::PointingErrorMean,
+        Self::PointingErrorRms,
+        Self::PointingErrorPeak,
+        Self::RateErrorRms,
+        Self::ElasticRms,
+        Self::TorqueMean,
+        Self::Switchings,
+        Self::Firings,
+        Self::WheelPowerMean,
+    ];
+
+    /// The one of a word in a scenario.
+    pub fn named(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|objective| objective.word() == word)
+    }
+
     /// Whether it is the default.
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
     pub fn is_default(&self) -> bool {
@@ -75,24 +94,14 @@ mod tests {
 
     #[test]
     fn words_are_those_of_scenarios() {
-        for word in [
-            "envelope_mean",
-            "pointing_error_mean",
-            "pointing_error_rms",
-            "pointing_error_peak",
-            "rate_error_rms",
-            "elastic_rms",
-            "torque_mean",
-            "switchings",
-            "firings",
-            "wheel_power_mean",
-        ] {
-            #[derive(Deserialize)]
-            struct Of {
-                objective: Objective,
-            }
-            let of: Of = crate::document::from_text(&format!("objective = \"{word}\"")).unwrap();
-            assert_eq!(of.objective.word(), word);
+        #[derive(Deserialize)]
+        struct Of {
+            objective: Objective,
+        }
+        for objective in Objective::ALL {
+            let text = format!("objective = \"{}\"", objective.word());
+            assert_eq!(crate::document::from_text::<Of>(&text).unwrap().objective, objective);
+            assert_eq!(Objective::named(objective.word()), Some(objective));
         }
     }
 }

@@ -96,8 +96,9 @@ impl Control for Relay {
         Box::new(self.clone())
     }
 
+    /// Always k_t, by which limit cycles are judged.
     fn tuned(&self) -> f64 {
-        self.tuned.last().unwrap_or(self.k_t.get())
+        self.tuned.of("k_t", self.k_t.get())
     }
 
     fn tune(&mut self, key: &str, value: f64) {

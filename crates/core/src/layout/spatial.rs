@@ -1,5 +1,6 @@
 //! The panels of a body with three axes.
 
+use super::planar::adaptation;
 use super::panel::{Line, MOST_LINES, Panel, line};
 use super::{Tab, metrics};
 use crate::actuator::Actuator;
@@ -109,6 +110,9 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         tabs.push(Tab { title: "Attitude filter", panels: filter() });
     }
     tabs.push(Tab { title: "Elastic modes", panels: elastic });
+    if scenario.adaptation.is_some() {
+        tabs.push(Tab { title: "Adaptation", panels: adaptation(scenario) });
+    }
     tabs.push(Tab { title: "Log", panels: log });
     tabs
 }

@@ -8,6 +8,7 @@ use super::{
     GAIN_FROZEN_AT, GAIN_INITIAL, IMPULSE, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, REDUCTION, SWITCHINGS,
     Told, Value, WINDOW_MEANS,
 };
+use crate::adaptation::Objective;
 use crate::analysis::cycle::CycleWatch;
 use crate::law::{Goal, Phase};
 use crate::motion::Stretch;
@@ -29,6 +30,8 @@ pub struct Switchings {
     means: Vec<f64>,
     windows_from: Vec<f64>,
     gain: (f64, f64),
+    /// The number that the adaptation tunes, at the start.
+    tuned: Option<f64>,
     frozen_at: f64,
     cycle: CycleWatch,
     observed: bool,
@@ -55,10 +58,11 @@ impl Switchings {
             means: Vec::new(),
             windows_from: Vec::new(),
             gain: (f64::NAN, f64::NAN),
+            tuned: scenario.tuned(),
             frozen_at: f64::NAN,
             cycle: CycleWatch::new(&scenario.model, smooth),
             observed: scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()),
-            adapted: scenario.adaptation.is_some(),
+            adapted: scenario.objective() == Some(Objective::EnvelopeMean),
             reduced: scenario.model.commands_acceleration(),
             goal: scenario.goal(),
             verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
@@ -177,7 +181,8 @@ impl Record for Switchings {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
             Sample::Begin(law) => {
-                self.gain = (law.gain, law.gain);
+                let gain = self.tuned.unwrap_or(law.gain);
+                self.gain = (gain, gain);
                 self.enter(now, law.state, law.torque_nm);
             }
             Sample::Switching(command, _) => {

@@ -40,9 +40,20 @@ impl Scenario {
         Some(Meter::new(objective, window, goal, self.searching(seed)?))
     }
 
+    /// The unit of its torques.
+    pub fn torque_unit(&self) -> &'static str {
+        if self.axis_count() == 1 { self.model.commanded().1 } else { "N m" }
+    }
+
     /// What its adaptation measures, if it has one.
     pub fn objective(&self) -> Option<Objective> {
         self.adaptation.as_ref().map(Adaptation::objective)
+    }
+
+    /// The number of the law that its adaptation tunes, as it is at the start; none without one.
+    pub fn tuned(&self) -> Option<f64> {
+        let tunes = self.adaptation.as_ref()?.tunes();
+        self.law.tunable().into_iter().find(|number| number.key == tunes).map(|number| number.value)
     }
 
     fn searching(&self, seed: Seed) -> Option<Searching> {

@@ -2,7 +2,7 @@
 
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
-use crate::adaptation::{Beside, Objective};
+use crate::adaptation::{Beside, Meter, Objective, Searching};
 use crate::attitude::Vector;
 use crate::estimator::Monitor;
 use crate::law::Phase;
@@ -14,10 +14,16 @@ impl Simulation {
     /// Lets laws know which of their numbers is tuned: its value is logged from the start on.
     pub(super) fn name_tuned(&mut self) {
         let monitored = self.monitor.as_ref().and_then(Monitor::search);
-        if let Some(search) = monitored.or(self.meter.as_ref().map(super::Meter::search)) {
+        if let Some(search) = monitored.or(self.meter.as_ref().map(Meter::search)) {
             let (key, value) = search.tunes();
             self.laws.tune(key, value);
         }
+    }
+
+    /// The number of the law that is tuned, as the monitor of the envelope logs it.
+    pub(super) fn tuned(&self) -> f64 {
+        let search = self.monitor.as_ref().and_then(Monitor::search).map(Searching::tunes);
+        search.filter(|(key, _)| *key != "k_t").map_or_else(|| self.laws.about(0).tuned(), |(_, value)| value)
     }
 
     /// Measures the motion about one axis until now.

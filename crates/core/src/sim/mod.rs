@@ -349,7 +349,7 @@ impl Simulation {
     /// Closes the envelope's window that ends now, and lets the law have what the adaptation learned.
     fn close_window(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         self.plant.view(self.now)?;
-        let gain = self.laws.about(0).tuned();
+        let gain = self.tuned();
         let Some(monitor) = &mut self.monitor else { return Ok(()) };
         let closed = monitor.close(self.now, &self.plant.about(0, &self.origin), gain);
         if let (Some((row, _)), Some(search)) = (&closed.step, monitor.search()) {
