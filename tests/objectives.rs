@@ -281,7 +281,7 @@ fn a_number_that_is_tuned_is_the_number_that_acts() {
             1.0,
         ),
     ];
-    for (tunes, _, law, value) in cases {
+    for (tunes, law, value) in cases {
         let body = BODIES[1];
         let text = format!("duration = 20.0\nseed = 3\nlaw = {{ {law} }}\n{body}");
         let plain = Scenario::parse("plain.toml", &text).expect("a scenario");
