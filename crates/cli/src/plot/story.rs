@@ -80,7 +80,11 @@ impl Story {
         let steps = rows(&adaptation, ["time_s", "gain"]).zip(decisions);
         let steps = steps.map(|([time, gain], decision)| Step { time, decision, gain }).collect();
         let told = about.get("time_s").and_then(|time| time.parse().ok());
-        let last = switchings.last().map(|s| s.time).into_iter().chain(means.last().or(objective.last()).map(|mean| mean.to));
+        let last = switchings
+            .last()
+            .map(|s| s.time)
+            .into_iter()
+            .chain(means.last().or(objective.last()).map(|mean| mean.to));
         let end = match about.get("end").map(String::as_str) {
             Some("complete") => scenario.duration.seconds(),
             _ => last.chain(told).fold(0.0, f64::max),

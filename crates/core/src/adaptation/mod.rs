@@ -1,7 +1,5 @@
 //! Adaptation loops: they improve a parameter of the law, and never call it.
 
-mod at_work;
-mod meter;
 mod objective;
 mod random_search;
 
@@ -15,8 +13,6 @@ use crate::own::{Halt, Own};
 use crate::random::Seed;
 use crate::time::{Instant, Span};
 
-pub use at_work::Searching;
-pub use meter::{Beside, Measured, Meter};
 pub use objective::Objective;
 pub use random_search::{Decision, RandomSearch, Search, Step};
 

@@ -1,8 +1,8 @@
 //! The envelope monitor: its observer, its windows, and the adaptation that learns from their means.
 
-use super::{Envelope, EnvelopeMonitor};
-use crate::adaptation::Searching;
+use super::{Envelope, EnvelopeMonitor, Searching};
 use crate::body::Planar;
+use crate::body::spatial::SpatialMode;
 use crate::motion::State;
 use crate::record::{self, ModeEnvelope, WindowMean};
 use crate::time::{Instant, Span};
@@ -33,8 +33,17 @@ pub struct Closed {
 impl Monitor {
     /// The monitor of a body, with the adaptation that learns from it.
     pub fn new(spec: &Envelope, model: &Planar, search: Option<Searching>) -> Self {
+        Self::of(spec, EnvelopeMonitor::new(spec, &model.modes, model.inertia.get()), search)
+    }
+
+    /// The same of three axes: each free mode with its rotation at the sensor.
+    pub fn of_three_axes(spec: &Envelope, modes: &[(SpatialMode, f64)], search: Option<Searching>) -> Self {
+        Self::of(spec, EnvelopeMonitor::of_three_axes(spec, modes), search)
+    }
+
+    fn of(spec: &Envelope, observer: EnvelopeMonitor, search: Option<Searching>) -> Self {
         Self {
-            observer: EnvelopeMonitor::new(spec, &model.modes, model.inertia.get()),
+            observer,
             window: spec.window,
             opened: Instant::START,
             closes: Instant::START + spec.window,
@@ -48,6 +57,19 @@ impl Monitor {
     pub fn command(&mut self, now: Instant, state: &State, torque: f64) {
         self.observer.advance(now, state);
         self.observer.command(torque);
+    }
+
+    /// The same of modal forces of three axes (N/sqrt(kg)).
+    pub fn push(&mut self, now: Instant, state: &State, forces: &[f64]) {
+        self.observer.advance(now, state);
+        self.observer.push(forces);
+    }
+
+    /// Follows the true state, if that is what it reads.
+    pub fn see(&mut self, now: Instant, state: impl FnOnce() -> State) {
+        if self.observer.is_true() {
+            self.observer.advance(now, &state());
+        }
     }
 
     /// Closes the window that ends now, while the law had this tunable number, and lets the adaptation learn.

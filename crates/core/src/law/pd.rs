@@ -6,7 +6,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule, Tunable, Tuned};
+use super::{
+    Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule, Tunable,
+    Tuned,
+};
 use crate::belief::Belief;
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::{Instant, Span};
@@ -138,9 +141,10 @@ impl Control for Pd {
             return Hold { until: Some(goal.from), ..Hold::NONE };
         }
         let (angle, rate) = goal.at(now);
-        let gain = self.extra.as_ref().map_or(0.0, |extra| {
-            self.tuned.of("extra.gain", extra.gain(belief.dominant.frequency))
-        });
+        let gain = self
+            .extra
+            .as_ref()
+            .map_or(0.0, |extra| self.tuned.of("extra.gain", extra.gain(belief.dominant.frequency)));
         let error = self.error.of(belief) - angle + gain * belief.dominant.displacement;
         let difference = error - self.last.unwrap_or(error);
         let derivative = match self.differentiation {

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use super::damping::{ActiveDamping, DampingRelay};
 use super::{
-    Authority, Cause, Command, Control, Frame, Goal, Guards, Hold, Phase, Reads, Rule, SwitchingLines, Tunable,
+    Authority, Cause, Command, Control, Frame, Goal, Guards, Hold, Phase, Reads, Rule, SwitchingLines,
+    Tunable,
 };
 use crate::attitude::turned;
 use crate::belief::{Belief, Damped};

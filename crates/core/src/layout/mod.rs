@@ -114,7 +114,8 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
     };
     let estimator = scenario.estimator.as_ref();
     let window = scenario.adaptation.as_ref().and_then(Adaptation::window);
-    let measures = window.is_some_and(|window| scenario.goal().from + window <= Instant::START + scenario.duration);
+    let measures =
+        window.is_some_and(|window| scenario.goal().from + window <= Instant::START + scenario.duration);
     add(measures, "/objective", Events);
     add(measures, "/adaptation", Events);
     add(!scenario.failing().is_empty(), "/faults", Events);
@@ -138,6 +139,11 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         }
         add(matches!(estimator, Some(Estimator::Adaptive(_))), "/tracking", Full);
         add(scenario.study.moving.is_some(), "/position", Full);
+        let window = estimator.and_then(Estimator::envelope).map(|envelope| envelope.window);
+        let closes = window.is_some_and(|window| window <= scenario.duration);
+        add(closes, "/envelope_mean", Events);
+        add(closes && scenario.objective() == Some(Objective::EnvelopeMean), "/adaptation", Events);
+        add(window.is_some(), "/envelope", Full);
         add(true, "/plumes", Scene);
         return topics;
     }

@@ -159,20 +159,22 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
 
 /// What an adaptation decides; its objective, unless that is the envelope, and the number that it tunes.
 pub fn adaptation(scenario: &Scenario) -> Vec<Panel> {
-    let search = Panel::states(
-        "search",
-        "Search for the gain",
-        vec![line("/adaptation.decision", "decision")],
-    );
+    let search =
+        Panel::states("search", "Search for the gain", vec![line("/adaptation.decision", "decision")]);
     let Some(adaptation) = scenario.adaptation.as_ref().filter(|of| of.window().is_some()) else {
         return vec![search];
     };
     let (objective, tunes) = (adaptation.objective(), adaptation.tunes());
     let (name, unit) = (objective.word().replace('_', " "), objective.unit(scenario.torque_unit()));
-    let title = if unit.is_empty() { format!("Objective: {name}") } else { format!("Objective: {name} ({unit})") };
+    let title =
+        if unit.is_empty() { format!("Objective: {name}") } else { format!("Objective: {name} ({unit})") };
     vec![
         Panel::plot("objective", &title, vec![line("/objective.value", "in each window")]),
-        Panel::plot("tuned", &format!("Tuned number: {tunes}"), vec![line("/objective.gain", "in each window")]),
+        Panel::plot(
+            "tuned",
+            &format!("Tuned number: {tunes}"),
+            vec![line("/objective.gain", "in each window")],
+        ),
         search,
     ]
 }

@@ -1,7 +1,7 @@
 //! The panels of a body with three axes.
 
-use super::planar::adaptation;
 use super::panel::{Line, MOST_LINES, Panel, line};
+use super::planar::adaptation;
 use super::{Tab, metrics};
 use crate::actuator::Actuator;
 use crate::attitude::AXES;
@@ -99,6 +99,13 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         elastic.push(Panel::plot("damping", "Elastic rates that damping acts on (rad/s)", lines));
         elastic.push(Panel::states("latched", "Active damping: the threshold", channels("latched")));
         elastic.push(Panel::states("resting", "Active damping: the watchdog", channels("resting")));
+    }
+    if scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) {
+        let lines = vec![
+            line("/envelope_mean.mean_rad", "window mean").thick(),
+            line("/envelope.envelope_rad", "envelope"),
+        ];
+        elastic.push(Panel::plot("envelope", "Envelope of the elastic modes (rad)", lines));
     }
     if scenario.study.adaptive.is_some() {
         elastic.push(Panel::states("trusted", "Observers", channels("trusted")));

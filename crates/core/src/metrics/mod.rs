@@ -2,6 +2,7 @@
 
 mod adapted;
 mod attitude;
+mod envelope;
 mod filter;
 pub mod goal;
 mod rotation;
@@ -21,6 +22,7 @@ pub use selection::Selection;
 
 use adapted::Adapted;
 use attitude::Known;
+use envelope::Windows;
 use filter::Filter;
 use rotation::Rotation;
 pub use rotation::{Courses, Passed};
@@ -204,6 +206,7 @@ pub struct Gather {
     filter: Option<Filter>,
     known: Option<Known>,
     adapted: Option<Adapted>,
+    windows: Option<Windows>,
     tracked: Tracked,
 }
 
@@ -233,6 +236,7 @@ impl Gather {
             filter: Filter::new(scenario),
             known: Known::new(scenario),
             adapted: Adapted::new(scenario),
+            windows: Windows::alone(scenario),
             tracked: Tracked::new(scenario),
         }
     }
@@ -260,6 +264,7 @@ impl Gather {
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(Filter::finish));
         metrics.extend(self.known.into_iter().flat_map(Known::finish));
+        metrics.extend(self.windows.iter().flat_map(Windows::finish));
         metrics.extend(self.adapted.into_iter().flat_map(Adapted::finish));
         Metrics(metrics)
     }
@@ -294,6 +299,9 @@ impl Record for Gather {
         }
         if let (Some(known), Sample::AttitudeEstimate(estimate)) = (&mut self.known, sample) {
             known.see(now, estimate);
+        }
+        if let (Some(windows), Sample::Window(window)) = (&mut self.windows, sample) {
+            windows.see(window);
         }
         if let Some(adapted) = &mut self.adapted {
             adapted.see(now, sample);

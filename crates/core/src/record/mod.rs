@@ -41,10 +41,10 @@ pub use topics::{
     Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
     BearingMotion, Bearings, ChannelState, Command, DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope,
     Estimate, Estimates, FaultEvent, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
-    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit, OrbitAxis, OutputMotion,
-    OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary, TOPICS,
-    ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel,
-    WheelEvent, WheelMotion, Wheels, WindowMean,
+    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit, OrbitAxis,
+    OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary,
+    TOPICS, ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
+    Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -370,6 +370,7 @@ trait TakeRow {
                 if let Some(magnetorquers) = &motion.magnetorquers {
                     self.take(now, magnetorquers)?;
                 }
+                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))?;
                 motion.drives.as_ref().map_or(Ok(()), |drives| self.take(now, drives))?;
                 motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take(now, bearings))?;
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))

@@ -11,7 +11,8 @@ impl Scenario {
     pub(super) fn adaptation_inconsistency(&self) -> Option<Fault> {
         let adaptation = self.adaptation.as_ref()?;
         let tunable = self.law.tunable();
-        let at = |key: &str, why: String| Some(Fault::new(format!("adaptation.{}{key}", adaptation.kind()), why));
+        let at =
+            |key: &str, why: String| Some(Fault::new(format!("adaptation.{}{key}", adaptation.kind()), why));
         let Some(number) = tunable.iter().find(|number| number.key == adaptation.tunes()) else {
             let tunes = if tunable.is_empty() { "" } else { ".tunes" };
             return at(tunes, self.untunable(adaptation.tunes(), &tunable));
@@ -72,7 +73,9 @@ impl Scenario {
             Objective::WheelPowerMean if !self.spins() => {
                 "needs wheels whose speed is known: an `[actuator.wheels]`, or a wheel with a `rotor`"
             }
-            Objective::Firings if !matches!(self.actuator, Actuator::Thrusters(_)) && self.actuator.jets().is_none() => {
+            Objective::Firings
+                if !matches!(self.actuator, Actuator::Thrusters(_)) && self.actuator.jets().is_none() =>
+            {
                 "counts pulses of thrusters or jets, and there are none"
             }
             Objective::Switchings if !(0..self.axis_count()).any(|axis| self.has_states(axis)) => {

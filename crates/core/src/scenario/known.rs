@@ -1,8 +1,8 @@
 //! What the estimator and the monitor of the envelope are told of a scenario before a run.
 
 use super::Scenario;
-use crate::adaptation::{Adaptation, Meter, Objective, Searching};
-use crate::estimator::{Estimator, Known, Monitor};
+use crate::adaptation::{Adaptation, Objective};
+use crate::estimator::{Estimator, Known, Meter, Monitor, Searching};
 use crate::law::Goal;
 use crate::random::Seed;
 
@@ -29,7 +29,14 @@ impl Scenario {
     pub fn monitor(&self, seed: Seed) -> Option<Monitor> {
         let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
         let learns = self.objective() == Some(Objective::EnvelopeMean);
-        Some(Monitor::new(envelope, &self.model, self.searching(seed).filter(|_| learns)))
+        let search = self.searching(seed).filter(|_| learns);
+        let Some(body) = self.body.spatial() else {
+            return Some(Monitor::new(envelope, &self.model, search));
+        };
+        let point = self.study.sensed_at.first().map_or("", String::as_str);
+        let rotations = body.shapes(point).into_iter().map(|(_, rotation)| rotation.norm());
+        let modes: Vec<_> = body.modes.iter().cloned().zip(rotations).collect();
+        Some(Monitor::of_three_axes(envelope, &modes, search))
     }
 
     /// The meter of another objective of its adaptation, if any.
@@ -57,6 +64,6 @@ impl Scenario {
     }
 
     fn searching(&self, seed: Seed) -> Option<Searching> {
-        Some(Searching::new(self.adaptation.as_ref()?, &self.law.tunable(), seed))
+        Some(Searching::new(self.adaptation.as_ref()?, self.tuned()?, seed))
     }
 }

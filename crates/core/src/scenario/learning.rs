@@ -35,8 +35,31 @@ impl Scenario {
         })
     }
 
+    /// What is wrong with a monitor of the envelope of three axes.
+    pub(super) fn envelope_inconsistency(&self) -> Option<Fault> {
+        let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
+        let at = |key: &str, why: &str| Some(Fault::new(format!("estimator.envelope{key}"), why));
+        if envelope.modes.is_some() {
+            return at(".modes", "are those of one angle: about three axes the monitor knows the body's");
+        }
+        if self.mode_count() == 0 {
+            return at("", "has no modes to follow: the body has none");
+        }
+        if self.study.drives.is_some() {
+            let why = "follows modes that stay the same, and an appendage that turns changes them";
+            return at("", why);
+        }
+        let spatial = self.body.spatial()?;
+        let damped = spatial.modes.iter().find(|mode| mode.damping.get() >= 1.0)?;
+        let why = format!("must be below 1 for a mode to have an envelope, got {}", damped.damping.get());
+        Some(Fault::new(format!("{}.damping", self.body.key()), why))
+    }
+
     /// What is wrong with an estimator that acts at each sample.
     pub(super) fn filter_inconsistency(&self, estimator: &Estimator) -> Option<Fault> {
+        if estimator.envelope().is_some() {
+            return None;
+        }
         let kind = estimator.kind();
         let at = |key: &str, why: String| Some(Fault::new(format!("estimator.{kind}{key}"), why));
         if let Estimator::Own(_) = estimator {

@@ -1,12 +1,13 @@
 //! What the meter of an adaptation's objective is told of a run.
 
 use super::plant::Plant;
+use super::telling::Telling;
 use super::{Simulation, SimulationError};
-use crate::adaptation::{Beside, Meter, Objective, Searching};
+use crate::adaptation::Objective;
 use crate::attitude::Vector;
-use crate::estimator::Monitor;
+use crate::estimator::{Beside, Closed, Measured, Meter, Monitor, Searching};
 use crate::law::Phase;
-use crate::record::Record;
+use crate::record::{Record, RecordError, Sample};
 use crate::sensor::Truth;
 use crate::time::Instant;
 
@@ -61,6 +62,9 @@ impl Simulation {
 
     /// Measures three axes at the start of a control cycle.
     pub(super) fn measure_cycle(&mut self, truth: &Truth) {
+        if let (Some(monitor), Plant::Spatial(plant)) = (&mut self.monitor, &self.plant) {
+            monitor.see(self.now, || plant.swings());
+        }
         let Some(meter) = &mut self.meter else { return };
         if self.beliefs.len() == 1 {
             return;
@@ -88,10 +92,9 @@ impl Simulation {
                 let alone = if all.is_empty() { 0..3 } else { 0..0 };
                 wheels.chain(alone.filter_map(about)).map(f64::abs).sum()
             }
-            Objective::EnvelopeMean
-            | Objective::TorqueMean
-            | Objective::Switchings
-            | Objective::Firings => return,
+            Objective::EnvelopeMean | Objective::TorqueMean | Objective::Switchings | Objective::Firings => {
+                return;
+            }
         };
         meter.sample(value);
     }
@@ -111,6 +114,18 @@ impl Simulation {
         meter.switched(self.now, u32::try_from(count).unwrap_or(u32::MAX));
     }
 
+    /// Closes the envelope's window that ends now, and lets the law have what the adaptation learned.
+    pub(super) fn close_window(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+        self.plant.view(self.now)?;
+        let gain = self.tuned();
+        let Some(monitor) = &mut self.monitor else { return Ok(()) };
+        let closed = monitor.close(self.now, &self.plant.swings(&self.origin), gain);
+        if let (Some((row, _)), Some(search)) = (&closed.step, monitor.search()) {
+            self.laws.tune(search.tunes().0, row.gain);
+        }
+        Ok(self.telling.window(self.now, &closed, record)?)
+    }
+
     /// Closes the window of the objective, if it ends now, and lets the law have what the adaptation learned.
     pub(super) fn close_objective(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
         let now = self.now;
@@ -125,5 +140,28 @@ impl Simulation {
             self.laws.tune(meter.search().tunes().0, row.gain);
         }
         Ok(self.telling.objective(now, &measured, record)?)
+    }
+}
+
+impl Telling {
+    /// A window that ended, and what the adaptation made of it.
+    pub fn window(&self, now: Instant, closed: &Closed, record: &mut impl Record) -> Result<(), RecordError> {
+        record.record(now, Sample::Window(&closed.mean))?;
+        let Some((row, before)) = &closed.step else { return Ok(()) };
+        record.record(now, Sample::Adaptation(row))?;
+        self.events.adapted(now, row, *before, record)
+    }
+
+    /// A window of the objective that ended, and what the adaptation made of it.
+    pub fn objective(
+        &self,
+        now: Instant,
+        measured: &Measured,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        record.record(now, Sample::Objective(&measured.row))?;
+        let Some((row, before)) = &measured.step else { return Ok(()) };
+        record.record(now, Sample::Adaptation(row))?;
+        self.events.adapted(now, row, *before, record)
     }
 }

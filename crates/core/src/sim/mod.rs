@@ -24,10 +24,9 @@ mod slipping;
 mod stepping;
 mod telling;
 
-use crate::adaptation::Meter;
 use crate::belief::Belief;
 use crate::environment::into;
-use crate::estimator::{self, Estimate, Monitor, Taken};
+use crate::estimator::{self, Estimate, Meter, Monitor, Taken};
 use crate::law::{Cause, Controls, Event};
 use crate::random::Seed;
 use crate::record::{Record, RecordError};
@@ -195,7 +194,15 @@ impl Simulation {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.monitor.as_ref().map(|monitor| monitor.closes);
         let measured = self.meter.as_ref().map(|meter| meter.closes);
-        let due = [trip, self.laws.until(), self.drive.due, self.sensing.next, closes, measured, self.telling.due()];
+        let due = [
+            trip,
+            self.laws.until(),
+            self.drive.due,
+            self.sensing.next,
+            closes,
+            measured,
+            self.telling.due(),
+        ];
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
@@ -346,18 +353,6 @@ impl Simulation {
         self.tell_switching(before, cause, &truth, record)
     }
 
-    /// Closes the envelope's window that ends now, and lets the law have what the adaptation learned.
-    fn close_window(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
-        self.plant.view(self.now)?;
-        let gain = self.tuned();
-        let Some(monitor) = &mut self.monitor else { return Ok(()) };
-        let closed = monitor.close(self.now, &self.plant.about(0, &self.origin), gain);
-        if let (Some((row, _)), Some(search)) = (&closed.step, monitor.search()) {
-            self.laws.tune(search.tunes().0, row.gain);
-        }
-        Ok(self.telling.window(self.now, &closed, record)?)
-    }
-
     /// Begins a motion under what acts from now on, and finds the next trip.
     fn depart(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
         let now = self.now;
@@ -374,7 +369,13 @@ impl Simulation {
         let (constant, feedback) = (actuator.torque(0), actuator.asked(0));
         self.exerted = Exerted { constant, feedback, back_emf: actuator.back_emf() };
         if let Some(monitor) = &mut self.monitor {
-            monitor.command(now, &self.plant.about(0, &self.origin), self.exerted.constant);
+            let state = self.plant.swings(&self.origin);
+            match &self.plant {
+                Plant::Planar(_) => monitor.command(now, &state, self.exerted.constant),
+                Plant::Spatial(plant) => {
+                    monitor.push(now, &state, &plant.modal_forces(&self.drive.commanded(now)));
+                }
+            }
         }
         self.plant.depart(self.drive.wrench(now));
         self.measure_torque();

@@ -1,8 +1,7 @@
 //! Parts of a program's own in a run: where one cannot go on, the run ends.
 
 use super::{Simulation, SimulationError};
-use crate::adaptation::{Meter, Searching};
-use crate::estimator::Monitor;
+use crate::estimator::{Meter, Monitor, Searching};
 
 impl Simulation {
     /// Ends a run with a part of a program's own that cannot go on.

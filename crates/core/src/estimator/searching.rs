@@ -1,7 +1,6 @@
 //! An adaptation at work, with the number that it tunes.
 
-use super::{Adaptation, Learn};
-use crate::law::Tunable;
+use crate::adaptation::{Adaptation, Learn};
 use crate::own::Halt;
 use crate::random::Seed;
 use crate::record;
@@ -18,11 +17,9 @@ pub struct Searching {
 }
 
 impl Searching {
-    /// An adaptation in a run, which tunes one of these numbers of the law.
-    pub fn new(adaptation: &Adaptation, tunable: &[Tunable], seed: Seed) -> Self {
-        let key = adaptation.tunes().to_owned();
-        let value = tunable.iter().find(|number| number.key == key).map_or(f64::NAN, |number| number.value);
-        Self { search: adaptation.start(value, seed), key, value }
+    /// An adaptation in a run, of a number of the law that begins with this value.
+    pub fn new(adaptation: &Adaptation, value: f64, seed: Seed) -> Self {
+        Self { search: adaptation.start(value, seed), key: adaptation.tunes().to_owned(), value }
     }
 
     /// Learns what was measured over a window that ends now: its step, and the value before it.

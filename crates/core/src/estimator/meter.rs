@@ -3,8 +3,8 @@
 //! About one axis integrals and peaks are those of the exact motion, stretch by stretch. About three they are means over the
 //! control cycles, as the metrics of these bodies are; torques hold between the instants at which the actuator acts.
 
-use super::at_work::Searching;
-use super::objective::Objective;
+use super::searching::Searching;
+use crate::adaptation::Objective;
 use crate::law::Goal;
 use crate::motion::Stretch;
 use crate::numerics::polynomial::Polynomial;
