@@ -59,6 +59,7 @@ mod lqg;
 mod magnetic;
 mod manoeuvres;
 mod newcomers;
+mod objectives;
 mod outside;
 mod own_parts;
 #[cfg(feature = "parquet")]

@@ -19,6 +19,7 @@ macro_rules! shipped {
 
 /// Name and text of each.
 pub const EXAMPLES: &[(&str, &str)] = shipped![
+    "adaptive-bandwidth",
     "attitude-hold",
     "canted-jets",
     "detumble-and-point",

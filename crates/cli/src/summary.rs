@@ -16,6 +16,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     if scenario.axis_count() == 3 {
         say!("{head}, {:.1} ms", took * 1e3);
         spatial(metrics, modes > 0);
+        adaptation(scenario, metrics);
     } else if scenario.law.switches() {
         say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
         switchings(scenario, metrics);
@@ -23,6 +24,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     } else {
         say!("{head}, {:.1} ms", took * 1e3);
         rotation(scenario, metrics);
+        adaptation(scenario, metrics);
     }
 }
 
@@ -116,11 +118,7 @@ fn switchings(scenario: &Scenario, metrics: &Metrics) {
         let change = 100.0 * (last / first - 1.0);
         say!("  envelope       {first:.3e} -> {last:.3e} rad  (window means, {change:+.0} %)");
     }
-    if scenario.adaptation.is_some() {
-        let frozen = number("gain_frozen_at_s");
-        let end = if frozen.is_finite() { format!("frozen at {frozen} s") } else { "not frozen".to_owned() };
-        say!("  k_t            {:.4} -> {:.4}, {end}", number("gain_initial"), number("gain_final"));
-    }
+    adaptation(scenario, metrics);
     if let Some(Value::Word(kind)) = metrics.get("cycle_kind") {
         let (period, largest) = (number("cycle_period_s"), number("cycle_multiplier_max"));
         if period.is_finite() {
@@ -130,6 +128,26 @@ fn switchings(scenario: &Scenario, metrics: &Metrics) {
         } else {
             say!("  cycle          {kind}: the run is not periodic at its end");
         }
+    }
+}
+
+/// The number that an adaptation tunes, and its objective if that is not the envelope.
+fn adaptation(scenario: &Scenario, metrics: &Metrics) {
+    let Some(adaptation) = &scenario.adaptation else { return };
+    let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
+    if number("objective_final").is_finite() {
+        let objective = adaptation.objective();
+        let unit = objective.unit(scenario.torque_unit());
+        let (first, last) = (number("objective_initial"), number("objective_final"));
+        say!("  objective      {}: {first:.3e} -> {last:.3e} {unit}", objective.word());
+    }
+    let frozen = number("gain_frozen_at_s");
+    let end = if frozen.is_finite() { format!("frozen at {frozen} s") } else { "not frozen".to_owned() };
+    let (tunes, first, last) = (adaptation.tunes(), number("gain_initial"), number("gain_final"));
+    if first.abs() < 1e-3 {
+        say!("  {tunes:<14} {first:.4e} -> {last:.4e}, {end}");
+    } else {
+        say!("  {tunes:<14} {first:.4} -> {last:.4}, {end}");
     }
 }
 

@@ -31,6 +31,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
     let topics = [
         ("/command", scenario.axis_count() == 1 && !matches!(scenario.law, Law::Open(_))),
         ("/envelope_mean", envelope.is_some()),
+        ("/objective", scenario.adaptation.as_ref().is_some_and(|adaptation| adaptation.window().is_some())),
         ("/adaptation", scenario.adaptation.is_some()),
         ("/arrival", scenario.plan.is_some()),
         ("/jets", scenario.study.fires()),

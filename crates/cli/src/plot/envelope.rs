@@ -40,6 +40,15 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     Figure { title: title(story, what), panels: vec![whole, end], panel_height: 220 }
 }
 
+/// The window means alone, of three axes.
+pub fn over_windows(story: &Story) -> Figure {
+    let all = story.means.iter().map(|mean| mean.value);
+    let line = Layer::new("window means", colour::VERMILLION, Shape::Line(2.0), means(&story.means));
+    let panel = Panel::new(time(0.0..story.end), Axis::from_zero("envelope a", "rad", all), vec![line]);
+    let what = "envelope of the elastic modes";
+    Figure { title: title(story, what), panels: vec![panel], panel_height: 300 }
+}
+
 /// The window means as a line: each over its window.
 pub fn means(means: &[Mean]) -> Vec<Point> {
     means.iter().flat_map(|m| [(m.from, m.value), (m.to, m.value)]).collect()

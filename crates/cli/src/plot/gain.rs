@@ -1,9 +1,9 @@
-//! Figure `gain`: the gain and what the adaptation decided, and the window means that it learnt from.
+//! Figure `gain`: the gain and what the adaptation decided, and the windows that it learnt from.
 
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
 
 use super::envelope::means;
-use super::story::Story;
+use super::story::{Mean, Story};
 use super::{time, title};
 
 pub fn figure(story: &Story) -> Figure {
@@ -21,16 +21,29 @@ pub fn figure(story: &Story) -> Figure {
         ("ignore", colour::ORANGE, Shape::Square),
         ("freeze", colour::BLUE, Shape::Diamond),
     ];
-    let y = Axis::around("gain k_t", "", line.iter().map(|(_, gain)| *gain));
-    let mut layers = vec![Layer::new("k_t", colour::BLACK, Shape::Line(1.2), line)];
+    let tunes = story.tunes();
+    let y = Axis::around(&format!("gain {tunes}"), "", line.iter().map(|(_, gain)| *gain));
+    let mut layers = vec![Layer::new(tunes, colour::BLACK, Shape::Line(1.2), line)];
     let marks = kinds.map(|(decision, colour, shape)| Layer::new(decision, colour, shape, decided(decision)));
     layers.extend(marks.into_iter().filter(|layer| !layer.points.is_empty()));
     let gain = Panel::new(x.unnamed(), y, layers);
-    let all = story.means.iter().map(|mean| mean.value);
+    let (name, unit, layer, windows) = learnt(story);
+    let all = windows.iter().map(|mean| mean.value);
     let means = Panel::new(
         x,
-        Axis::from_zero("mean envelope", "rad", all),
-        vec![Layer::new("window means", colour::BLUE, Shape::Line(1.6), means(&story.means))],
+        Axis::from_zero(&name, unit, all),
+        vec![Layer::new(layer, colour::BLUE, Shape::Line(1.6), means(windows))],
     );
     Figure { title: title(story, "adaptation"), panels: vec![gain, means], panel_height: 220 }
+}
+
+/// What the adaptation learnt from: its name, its unit, and its windows with their name.
+fn learnt(story: &Story) -> (String, &'static str, &'static str, &[Mean]) {
+    match story.scenario.objective().filter(|_| !story.objective.is_empty()) {
+        None => ("mean envelope".to_owned(), "rad", "window means", &story.means),
+        Some(objective) => {
+            let unit = objective.unit(story.scenario.torque_unit());
+            (objective.word().replace('_', " "), unit, "windows", &story.objective)
+        }
+    }
 }

@@ -237,11 +237,14 @@ fn title(story: &Story, what: &str) -> String {
     let last = story.steps.last().map_or(first, |step| step.gain);
     let moved = if last == first { String::new() } else { format!(" → {}", short(last)) };
     let run = if story.run == 0 { String::new() } else { format!(", run {}", story.run) };
-    format!("{}: {what} (k_t = {}{moved}, seed {seed}{run})", scenario.name, short(first))
+    format!("{}: {what} ({} = {}{moved}, seed {seed}{run})", scenario.name, story.tunes(), short(first))
 }
 
-/// A gain with at most four decimals.
+/// A gain with at most four decimals, or digits of a small one.
 fn short(gain: f64) -> String {
+    if gain != 0.0 && gain.abs() < 1e-3 {
+        return format!("{gain:.3e}");
+    }
     format!("{gain:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 

@@ -26,6 +26,8 @@ pub struct Story {
     pub switchings: Vec<Switching>,
     /// Every window mean of the envelope.
     pub means: Vec<Mean>,
+    /// Every window of another objective of the adaptation.
+    pub objective: Vec<Mean>,
     /// Every step of the adaptation.
     pub steps: Vec<Step>,
 }
@@ -64,23 +66,30 @@ impl Story {
         let scenario = Scenario::parse(&format!("{}: scenario.toml", path.display()), toml)?;
         let about = log.metadata();
         let run = about.get("run").and_then(|run| run.parse().ok()).unwrap_or(0);
-        let [law, command, means, adaptation] =
-            topics(log, ["/law", "/command", "/envelope_mean", "/adaptation"])?;
+        let [law, command, means, objective, adaptation] =
+            topics(log, ["/law", "/command", "/envelope_mean", "/objective", "/adaptation"])?;
         let first = |name: &str| law.numbers(name).and_then(|column| column.first().copied());
-        let start = (first("torque_nm").unwrap_or(f64::NAN), first("gain").unwrap_or(scenario.law.tuned()));
+        let gain = scenario.tuned().or(first("gain")).unwrap_or(scenario.law.tuned());
+        let start = (first("torque_nm").unwrap_or(f64::NAN), gain);
         let switchings = switchings(&command);
         let means = rows(&means, ["from_s", "to_s", "mean_rad"]);
         let means: Vec<_> = means.map(|[from, to, value]| Mean { from, to, value }).collect();
+        let objective = rows(&objective, ["from_s", "to_s", "value"]);
+        let objective: Vec<_> = objective.map(|[from, to, value]| Mean { from, to, value }).collect();
         let decisions = labels(&adaptation, "decision");
         let steps = rows(&adaptation, ["time_s", "gain"]).zip(decisions);
         let steps = steps.map(|([time, gain], decision)| Step { time, decision, gain }).collect();
         let told = about.get("time_s").and_then(|time| time.parse().ok());
-        let last = switchings.last().map(|s| s.time).into_iter().chain(means.last().map(|mean| mean.to));
+        let last = switchings
+            .last()
+            .map(|s| s.time)
+            .into_iter()
+            .chain(means.last().or(objective.last()).map(|mean| mean.to));
         let end = match about.get("end").map(String::as_str) {
             Some("complete") => scenario.duration.seconds(),
             _ => last.chain(told).fold(0.0, f64::max),
         };
-        Ok(Self { scenario, run, end, shown: None, start, switchings, means, steps })
+        Ok(Self { scenario, run, end, shown: None, start, switchings, means, objective, steps })
     }
 
     /// The motion as a full log has it, or else as the run repeated has it. The run repeated keeps the whole
@@ -126,6 +135,11 @@ impl Story {
             motion.smoothed(period, frequencies.fold(0.0, f64::max));
         }
         motion
+    }
+
+    /// The key of the number of the law that is tuned; k_t if nothing is.
+    pub fn tunes(&self) -> &str {
+        self.scenario.adaptation.as_ref().map_or("k_t", |adaptation| adaptation.tunes())
     }
 
     /// Whether the law is one that switches.

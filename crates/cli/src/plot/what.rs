@@ -123,6 +123,7 @@ impl What {
             Self::Angle if story.switches() => dead_zone::figure(story, motion),
             Self::Angle => angle::figure(story, motion),
             Self::Outputs => outputs::figure(story, motion),
+            Self::Envelope if story.scenario.axis_count() == 3 => envelope::over_windows(story),
             Self::Envelope => envelope::figure(story, motion),
             Self::Gain => gain::figure(story),
             Self::Modes => modes::figure(story, motion),

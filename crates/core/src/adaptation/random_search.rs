@@ -1,13 +1,13 @@
-//! Random search with learning: a law's gain follows the falling mean envelope (\[Silaev\], steps 1-6).
+//! Random search with learning: a law's gain follows the falling objective, in the paper the mean envelope (\[Silaev\], steps 1-6).
 //!
-//! After each window the gain moves by a random part of `step`. The sign of the move is kept while the mean
+//! After each window the gain moves by a random part of `step`. The sign of the move is kept while the objective
 //! falls and turned when it rises, except for one rise after `memory` falls. From `earliest_freeze` on, the gain
-//! is frozen once the mean has changed by less than `tolerance` in `settled` consecutive windows.
+//! is frozen once the objective has changed by less than `tolerance` in `settled` consecutive windows.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Learn;
+use super::{Learn, Objective};
 use crate::label::labels;
 use crate::quantity::{Finite, Positive};
 use crate::random::{Seed, Stream};
@@ -17,20 +17,27 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSearch {
-    /// Tuned parameter of the law: `k_t` of a relay, `k_p` or `k_d` of a PD law.
+    /// Tuned parameter of the law, by its key within the law's table: `k_t` of a relay, `k_p` of a PD law, `bandwidth` of an
+    /// attitude law, `yaw.pd.k_d` of a law `per_axis`.
     #[serde(default = "k_t", skip_serializing_if = "is_k_t")]
     pub tunes: String,
+    /// What is measured over each window and made smaller.
+    #[serde(default, skip_serializing_if = "Objective::is_default")]
+    pub objective: Objective,
+    /// Length of the windows (s); for `envelope_mean`, they are those of the `[estimator.envelope]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window: Option<Span>,
     /// Largest move of the gain in one window, delta `k_t`.
     pub step: Positive,
     /// Smallest and largest gain.
     pub bounds: [Finite; 2],
-    /// A relative change of the mean below this counts as settled, `delta_0`.
+    /// A relative change of the objective below this counts as settled, `delta_0`.
     #[serde(default = "five_percent")]
     pub tolerance: Positive,
     /// Consecutive settled windows after which the gain is frozen (the paper's six).
     #[serde(default = "six")]
     pub settled: u32,
-    /// Consecutive falls of the mean after which one rise is ignored (the paper's four); 0 for never.
+    /// Consecutive falls of the objective after which one rise is ignored (the paper's four); 0 for never.
     #[serde(default = "four")]
     pub memory: u32,
     /// The gain is not frozen before this time, `T_min` (s).
@@ -112,7 +119,7 @@ impl Search {
         Self { constants, gain, draw: 0.0, previous: None, falls: 0, settled: 0, frozen: false }
     }
 
-    /// Learns the mean envelope of the window that ends now, with a fresh uniform number of [0, 1). Answers
+    /// Learns the objective over the window that ends now, such as the mean envelope, with a fresh uniform number of [0, 1). Answers
     /// nothing once the gain is frozen.
     pub fn learn(&mut self, now: Instant, mean: f64, uniform: f64) -> Option<Step> {
         if self.frozen {
@@ -122,7 +129,8 @@ impl Search {
             self.draw = 2.0 * uniform - 1.0;
             return Some(self.advance(Decision::Begin, f64::NAN));
         };
-        let change = ((mean - previous) / mean).abs();
+        // Counts may stay at 0.
+        let change = if mean == previous { 0.0 } else { ((mean - previous) / mean).abs() };
         self.settled = if change < self.constants.tolerance.get() { self.settled + 1 } else { 0 };
         let late_enough = now.since(Instant::START) >= self.constants.earliest_freeze;
         if self.constants.freeze && late_enough && self.settled >= self.constants.settled {

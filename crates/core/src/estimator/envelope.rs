@@ -3,15 +3,19 @@
 //! Each mode is a phasor Z = x + i (x' + s x)/w_d with s = zeta w and w_d its damped frequency; a_i = abs(Z).
 //! Without damping that is the paper's a_i² = x_i² + (x_i'/w_i)² (\[Silaev\], equation (4)). While the torque
 //! is constant, Z turns about its equilibrium c: Z = c + W exp(-(s + i w_d) h).
+//!
+//! On three axes x is the size of the rotation that a free mode gives the first sensor, and c follows from its modal force.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Mode;
+use crate::body::spatial::SpatialMode;
 use crate::motion::State;
 use crate::numerics::phasor::{Complex, Phasor, abs, polar};
 use crate::numerics::swing_integral;
 use crate::numerics::trig::sincos_any;
+use crate::quantity::Finite;
 use crate::time::{Instant, Span};
 
 /// An envelope monitor.
@@ -59,6 +63,8 @@ struct Track {
     damped: f64,
     decay: f64,
     excitability: f64,
+    /// Of three axes, the rotation of the sensor by a unit of the mode.
+    rotation: f64,
     /// In the turning frame, whose axis is at exp(-i w_d t): the phasor itself (dynamic), or its deviation from
     /// equilibrium (trigonometric).
     frame: Phasor,
@@ -80,6 +86,30 @@ impl EnvelopeMonitor {
             now: Instant::START,
             integral: 0.0,
         }
+    }
+
+    /// An observer of the free modes of three axes: each with its rotation at the sensor.
+    pub fn of_three_axes(spec: &Envelope, modes: &[(SpatialMode, f64)]) -> Self {
+        let track = |(mode, rotation): &(SpatialMode, f64)| {
+            let start = Mode::at_rest(mode.frequency, Finite::default(), mode.damping);
+            let mut track = Track::new(&start);
+            track.frame = track.phasor(rotation * mode.displacement.get(), rotation * mode.rate.get());
+            track.deviation = track.frame;
+            track.rotation = *rotation;
+            track
+        };
+        Self {
+            form: spec.form,
+            mobility: f64::NAN,
+            tracks: modes.iter().map(track).collect(),
+            now: Instant::START,
+            integral: 0.0,
+        }
+    }
+
+    /// Whether it reads the true state, which it likes to see often.
+    pub fn is_true(&self) -> bool {
+        self.form == Form::Truth
     }
 
     /// Follows the modes to `now` under the torque that held since the last call. `truth` is the body's state
@@ -116,8 +146,19 @@ impl EnvelopeMonitor {
     /// Takes over a torque that is commanded from now on (N m).
     pub fn command(&mut self, torque: f64) {
         let moment = torque * self.mobility;
-        for track in &mut self.tracks {
-            let equilibrium = track.phasor(track.excitability * moment, 0.0);
+        self.hold(|_, track| track.excitability * moment);
+    }
+
+    /// Takes over modal forces of three axes that act from now on (N/sqrt(kg)).
+    pub fn push(&mut self, forces: &[f64]) {
+        let force = |index: usize| forces.get(index).copied().unwrap_or(0.0);
+        self.hold(|index, track| track.rotation * force(index) / (track.frequency * track.frequency));
+    }
+
+    /// Takes over displacements about which modes swing from now on (rad).
+    fn hold(&mut self, at: impl Fn(usize, &Track) -> f64) {
+        for (index, track) in self.tracks.iter_mut().enumerate() {
+            let equilibrium = track.phasor(at(index, track), 0.0);
             let shift = track.equilibrium - equilibrium;
             track.equilibrium = equilibrium;
             track.deviation += shift;
@@ -151,6 +192,7 @@ impl Track {
             damped: frequency * libm::sqrt((1.0 - zeta) * (1.0 + zeta)),
             decay: zeta * frequency,
             excitability: mode.excitability(),
+            rotation: 1.0,
             frame: Phasor::default(),
             equilibrium: Phasor::default(),
             deviation: Phasor::default(),

@@ -6,9 +6,11 @@ mod direct;
 mod envelope;
 mod given;
 pub mod kalman;
+mod meter;
 mod monitor;
 mod rigid_rate;
 mod sampled;
+mod searching;
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -33,8 +35,10 @@ pub use attitude::AttitudeFilter;
 pub use envelope::{Envelope, EnvelopeMonitor, Form};
 pub use given::Given;
 pub use kalman::{FrequencyTracking, Kalman};
+pub use meter::{Beside, Measured, Meter};
 pub use monitor::{Closed, Monitor};
 pub use rigid_rate::RigidRate;
+pub use searching::Searching;
 
 /// The kinds of estimator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,11 +1,9 @@
-//! The envelope monitor: its observer, its windows, and the adaptation that learns from them.
+//! The envelope monitor: its observer, its windows, and the adaptation that learns from their means.
 
-use super::{Envelope, EnvelopeMonitor};
-use crate::adaptation::{Adaptation, Learn};
+use super::{Envelope, EnvelopeMonitor, Searching};
 use crate::body::Planar;
+use crate::body::spatial::SpatialMode;
 use crate::motion::State;
-use crate::own::Halt;
-use crate::random::Seed;
 use crate::record::{self, ModeEnvelope, WindowMean};
 use crate::time::{Instant, Span};
 
@@ -23,15 +21,6 @@ pub struct Monitor {
     search: Option<Searching>,
 }
 
-/// The adaptation at work.
-#[derive(Clone, Debug)]
-struct Searching {
-    search: Box<dyn Learn>,
-    /// The number of the law that it tunes, and its value.
-    key: String,
-    value: f64,
-}
-
 /// What a window that ends brings.
 #[derive(Clone, Debug)]
 pub struct Closed {
@@ -42,21 +31,19 @@ pub struct Closed {
 }
 
 impl Monitor {
-    /// The monitor of a body, whose adaptation tunes one of these numbers of the law.
-    pub fn new(
-        spec: &Envelope,
-        model: &Planar,
-        adaptation: Option<&Adaptation>,
-        tunable: &[(&str, f64)],
-        seed: Seed,
-    ) -> Self {
-        let search = adaptation.map(|adaptation| {
-            let key = adaptation.tunes().to_owned();
-            let value = tunable.iter().find(|(known, _)| *known == key).map_or(f64::NAN, |(_, value)| *value);
-            Searching { search: adaptation.start(value, seed), key, value }
-        });
+    /// The monitor of a body, with the adaptation that learns from it.
+    pub fn new(spec: &Envelope, model: &Planar, search: Option<Searching>) -> Self {
+        Self::of(spec, EnvelopeMonitor::new(spec, &model.modes, model.inertia.get()), search)
+    }
+
+    /// The same of three axes: each free mode with its rotation at the sensor.
+    pub fn of_three_axes(spec: &Envelope, modes: &[(SpatialMode, f64)], search: Option<Searching>) -> Self {
+        Self::of(spec, EnvelopeMonitor::of_three_axes(spec, modes), search)
+    }
+
+    fn of(spec: &Envelope, observer: EnvelopeMonitor, search: Option<Searching>) -> Self {
         Self {
-            observer: EnvelopeMonitor::new(spec, &model.modes, model.inertia.get()),
+            observer,
             window: spec.window,
             opened: Instant::START,
             closes: Instant::START + spec.window,
@@ -70,6 +57,19 @@ impl Monitor {
     pub fn command(&mut self, now: Instant, state: &State, torque: f64) {
         self.observer.advance(now, state);
         self.observer.command(torque);
+    }
+
+    /// The same of modal forces of three axes (N/sqrt(kg)).
+    pub fn push(&mut self, now: Instant, state: &State, forces: &[f64]) {
+        self.observer.advance(now, state);
+        self.observer.push(forces);
+    }
+
+    /// Follows the true state, if that is what it reads.
+    pub fn see(&mut self, now: Instant, state: impl FnOnce() -> State) {
+        if self.observer.is_true() {
+            self.observer.advance(now, &state());
+        }
     }
 
     /// Closes the window that ends now, while the law had this tunable number, and lets the adaptation learn.
@@ -92,29 +92,13 @@ impl Monitor {
         self.opened = now;
         self.closes = now + self.window;
         self.index += 1;
-        let step = self.search.as_mut().and_then(|searching| {
-            let step = searching.search.learn(now, mean.mean_rad)?;
-            let row = record::Adaptation {
-                window: mean.window,
-                decision: step.decision,
-                change: step.change,
-                draw: step.draw,
-                gain: step.gain,
-                settled: u64::from(step.settled),
-            };
-            Some((row, std::mem::replace(&mut searching.value, step.gain)))
-        });
+        let step = self.search.as_mut().and_then(|search| search.learn(now, mean.window, mean.mean_rad));
         Closed { mean, step }
     }
 
-    /// Why an adaptation from outside cannot go on.
-    pub fn halted(&self) -> Option<Halt> {
-        self.search.as_ref().and_then(|searching| searching.search.halted())
-    }
-
-    /// The key of the number that the adaptation tunes.
-    pub fn tunes(&self) -> Option<&str> {
-        self.search.as_ref().map(|searching| searching.key.as_str())
+    /// The adaptation that learns from it.
+    pub fn search(&self) -> Option<&Searching> {
+        self.search.as_ref()
     }
 
     /// The envelope now, as logged.

@@ -8,7 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::filter::Filter;
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule};
+use super::{
+    Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule, Tunable,
+};
 use crate::attitude::{asymmetry, tensor};
 use crate::belief::Belief;
 use crate::document::Fault;
@@ -92,6 +94,8 @@ impl Rule for AttitudeLaw {
             filters: self.filters.iter().filter_map(|filter| filter.sampled(period).ok()).collect(),
             bandwidth: self.bandwidth.get(),
             damping: self.damping.get(),
+            rate_limit: self.rate_limit.map(Positive::get),
+            time: self.integral.map_or(f64::NAN, |integral| integral.time.get()),
             tuned: f64::NAN,
             accelerations: authority.accelerations,
             integral: 0.0,
@@ -112,8 +116,18 @@ impl Rule for AttitudeLaw {
         Reads::Motion
     }
 
-    fn tunable(&self) -> Vec<(&'static str, f64)> {
-        vec![("bandwidth", self.bandwidth.get()), ("damping", self.damping.get())]
+    fn tunable(&self) -> Vec<Tunable> {
+        let mut numbers =
+            vec![Tunable::positive("bandwidth", self.bandwidth), Tunable::positive("damping", self.damping)];
+        numbers.extend(self.integral.map(|integral| Tunable::positive("integral.time", integral.time)));
+        numbers.extend(self.rate_limit.map(|limit| Tunable::positive("rate_limit", limit)));
+        let period = self.period.seconds();
+        let filters = self.filters.iter().enumerate();
+        numbers.extend(filters.filter_map(|(index, filter)| {
+            let number = filter.tunable(period)?;
+            Some(number.within(&format!("filters[{index}].")))
+        }));
+        numbers
     }
 }
 
@@ -123,6 +137,9 @@ struct AtSamples {
     spec: AttitudeLaw,
     bandwidth: f64,
     damping: f64,
+    rate_limit: Option<f64>,
+    /// Time constant of the integral (s).
+    time: f64,
     /// The number that was tuned last.
     tuned: f64,
     filters: Vec<Biquad>,
@@ -136,9 +153,9 @@ impl AtSamples {
     /// The fed-back acceleration (rad/s²) for an error of angle (rad) and rate (rad/s), and whether something is at its limit.
     fn feedback(&mut self, error: f64, rate: f64) -> (f64, bool) {
         let (wn, zeta) = (self.bandwidth, self.damping);
-        let kept = self.spec.integral.map_or(0.0, |integral| self.integral / integral.time.get());
+        let kept = self.spec.integral.map_or(0.0, |_| self.integral / self.time);
         let (angle, gain) = (error + kept, 2.0 * zeta * wn);
-        let (feedback, limited) = match self.spec.rate_limit.map(Positive::get) {
+        let (feedback, limited) = match self.rate_limit {
             None => (-(wn * wn * angle + gain * rate), false),
             Some(limit) => {
                 let wanted = 0.5 * wn / zeta * angle;
@@ -146,6 +163,19 @@ impl AtSamples {
             }
         };
         (self.filters.iter_mut().fold(feedback, |sample, filter| filter.filter(sample)), limited)
+    }
+
+    /// Gives a filter another frequency; what is in it stays.
+    fn retune(&mut self, key: &str, value: f64) {
+        let period = self.spec.period.seconds();
+        for (index, (filter, at_work)) in self.spec.filters.iter().zip(&mut self.filters).enumerate() {
+            let of = filter.tunable(period).map(|number| number.within(&format!("filters[{index}].")));
+            if of.is_some_and(|number| number.key == key)
+                && let Some(Ok(tuned)) = filter.at(value).map(|filter| filter.sampled(period))
+            {
+                at_work.retune(&tuned);
+            }
+        }
     }
 
     /// Integrates the error over a period, unless that drove what is at its limit further.
@@ -194,7 +224,9 @@ impl Control for AtSamples {
         match key {
             "bandwidth" => self.bandwidth = value,
             "damping" => self.damping = value,
-            _ => return,
+            "integral.time" => self.time = value,
+            "rate_limit" => self.rate_limit = Some(value),
+            _ => self.retune(key, value),
         }
         self.tuned = value;
     }

@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Reads, Rule};
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Reads, Rule, Tunable};
 use crate::belief::Belief;
 use crate::quantity::Positive;
 use crate::time::{Instant, Span};
@@ -35,8 +35,8 @@ impl Rule for BDot {
         Reads::Field
     }
 
-    fn tunable(&self) -> Vec<(&'static str, f64)> {
-        vec![("gain", self.gain.get())]
+    fn tunable(&self) -> Vec<Tunable> {
+        vec![Tunable::positive("gain", self.gain)]
     }
 }
 

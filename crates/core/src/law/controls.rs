@@ -21,6 +21,8 @@ pub struct Controls {
 struct Held {
     law: Box<dyn Control>,
     hold: Hold,
+    /// Where it stands within a law of its own about each axis.
+    place: String,
 }
 
 /// What has come up at an instant.
@@ -40,7 +42,10 @@ pub enum Event {
 impl Controls {
     /// The laws before a run, about axes on which the actuator has these authorities.
     pub fn new(law: &Law, authorities: &[Authority]) -> Self {
-        let axis = |(axis, authority)| Held { law: law.about(axis).start(authority), hold: Hold::NONE };
+        let axis = |(axis, authority)| {
+            let place = if let Law::PerAxis(laws) = law { laws.place(axis) } else { String::new() };
+            Held { law: law.about(axis).start(authority), hold: Hold::NONE, place }
+        };
         Self { axes: authorities.iter().enumerate().map(axis).collect(), until: None, steered: None }
     }
 
@@ -129,9 +134,13 @@ impl Controls {
         self.axes.iter().find_map(|held| held.law.halted())
     }
 
-    /// Tunes a number of all of them.
+    /// Tunes a number of all of them, or of the one about an axis that the key names.
     pub fn tune(&mut self, key: &str, value: f64) {
-        self.axes.iter_mut().for_each(|held| held.law.tune(key, value));
+        for held in &mut self.axes {
+            if let Some(key) = key.strip_prefix(held.place.as_str()) {
+                held.law.tune(key, value);
+            }
+        }
     }
 
     /// How far ahead of a sample they want to know elastic rates (s).

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Tunable;
 use crate::document::Fault;
 use crate::numerics::biquad::Biquad;
 use crate::quantity::{Finite, NonNegative, Positive};
@@ -74,6 +75,26 @@ fn butterworth() -> Positive {
 }
 
 impl Filter {
+    /// Its frequency, which an adaptation may tune, at samples this far apart (s); none of a lead and of coefficients.
+    pub fn tunable(&self, period: f64) -> Option<Tunable> {
+        let most = std::f64::consts::PI / period;
+        match self {
+            Self::Notch(notch) => Some(Tunable::positive("notch.frequency", notch.frequency).below(most)),
+            Self::LowPass(pass) => Some(Tunable::positive("low_pass.frequency", pass.frequency).below(most)),
+            Self::Lead(_) | Self::Biquad(_) => None,
+        }
+    }
+
+    /// The same filter at another frequency (rad/s), if it has one.
+    pub fn at(&self, frequency: f64) -> Option<Self> {
+        let frequency = Positive::new(frequency)?;
+        match self {
+            Self::Notch(notch) => Some(Self::Notch(Notch { frequency, ..*notch })),
+            Self::LowPass(pass) => Some(Self::LowPass(LowPass { frequency, ..*pass })),
+            Self::Lead(_) | Self::Biquad(_) => None,
+        }
+    }
+
     /// The digital filter at samples this far apart (s).
     ///
     /// # Errors

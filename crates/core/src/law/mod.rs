@@ -20,6 +20,7 @@ mod slew_tests;
 mod stages;
 mod state_space;
 mod switching_lines;
+mod tunable;
 
 use std::any::Any;
 use std::fmt;
@@ -55,6 +56,7 @@ pub use relay::{Relay, Sides};
 pub use stages::{Stage, Stages};
 pub use state_space::{Commands, Of, StateSpace};
 pub use switching_lines::{SwitchingLines, band};
+pub use tunable::{Tunable, Tuned};
 
 /// The kinds of law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -107,8 +109,8 @@ pub trait Rule {
         Reads::Motion
     }
 
-    /// The numbers that an adaptation may tune, by their keys.
-    fn tunable(&self) -> Vec<(&'static str, f64)> {
+    /// The numbers that an adaptation may tune.
+    fn tunable(&self) -> Vec<Tunable> {
         Vec::new()
     }
 
@@ -134,7 +136,7 @@ pub trait Control: fmt::Debug + Send + Sync {
     /// A copy in the same state.
     fn copy(&self) -> Box<dyn Control>;
 
-    /// The value of its tunable number; NaN if it has none.
+    /// The value of the number that was tuned last, or of its tunable number; NaN if it has none.
     fn tuned(&self) -> f64 {
         f64::NAN
     }
@@ -221,7 +223,7 @@ impl Law {
 
     /// The number that an adaptation tunes unless it names another; NaN of a law without any.
     pub fn tuned(&self) -> f64 {
-        self.tunable().first().map_or(f64::NAN, |(_, value)| *value)
+        self.tunable().first().map_or(f64::NAN, |number| number.value)
     }
 
     /// The inertia tensor that it takes a body with three axes to have, row by row (kg m²), if it has one of its own.

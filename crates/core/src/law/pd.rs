@@ -6,7 +6,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule};
+use super::{
+    Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule, Tunable,
+    Tuned,
+};
 use crate::belief::Belief;
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::time::{Instant, Span};
@@ -38,9 +41,9 @@ pub struct Pd {
     pub track: bool,
     #[serde(skip)]
     active: bool,
-    /// The gains as an adaptation has tuned them.
+    /// Numbers as an adaptation has tuned them.
     #[serde(skip)]
-    tuned: [Option<f64>; 2],
+    tuned: Tuned,
     /// What was fed back at the last sample.
     #[serde(skip)]
     last: Option<f64>,
@@ -120,8 +123,14 @@ impl Rule for Pd {
         if self.extra.is_some() { Reads::DominantMode } else { Reads::Motion }
     }
 
-    fn tunable(&self) -> Vec<(&'static str, f64)> {
-        vec![("k_p", self.k_p.get()), ("k_d", self.k_d.get())]
+    fn tunable(&self) -> Vec<Tunable> {
+        let mut numbers =
+            vec![Tunable::not_negative("k_p", self.k_p), Tunable::not_negative("k_d", self.k_d)];
+        if let Some(Extra::Gain(gain)) = self.extra {
+            numbers.push(Tunable::free("extra.gain", gain.get()));
+        }
+        numbers.extend(self.limit.map(|limit| Tunable::positive("limit", limit)));
+        numbers
     }
 }
 
@@ -132,7 +141,10 @@ impl Control for Pd {
             return Hold { until: Some(goal.from), ..Hold::NONE };
         }
         let (angle, rate) = goal.at(now);
-        let gain = self.extra.as_ref().map_or(0.0, |extra| extra.gain(belief.dominant.frequency));
+        let gain = self
+            .extra
+            .as_ref()
+            .map_or(0.0, |extra| self.tuned.of("extra.gain", extra.gain(belief.dominant.frequency)));
         let error = self.error.of(belief) - angle + gain * belief.dominant.displacement;
         let difference = error - self.last.unwrap_or(error);
         let derivative = match self.differentiation {
@@ -141,9 +153,9 @@ impl Control for Pd {
             Differentiation::Raw => difference,
         };
         self.last = Some(error);
-        let limit = self.limit.map_or(f64::INFINITY, Positive::get);
-        let [k_p, k_d] = [self.k_p, self.k_d].map(NonNegative::get);
-        let torque = -self.tuned[0].unwrap_or(k_p) * error - self.tuned[1].unwrap_or(k_d) * derivative;
+        let limit = self.tuned.of("limit", self.limit.map_or(f64::INFINITY, Positive::get));
+        let (k_p, k_d) = (self.tuned.of("k_p", self.k_p.get()), self.tuned.of("k_d", self.k_d.get()));
+        let torque = -k_p * error - k_d * derivative;
         let command = Command::Torque(torque.clamp(-limit, limit));
         Hold { command, until: Some(now + self.period), guards: Guards::NONE }
     }
@@ -161,13 +173,11 @@ impl Control for Pd {
     }
 
     fn tuned(&self) -> f64 {
-        self.tuned.into_iter().flatten().next().unwrap_or(f64::NAN)
+        self.tuned.last().unwrap_or(f64::NAN)
     }
 
     fn tune(&mut self, key: &str, value: f64) {
-        if let Some(gain) = ["k_p", "k_d"].iter().position(|known| *known == key) {
-            self.tuned[gain] = Some(value);
-        }
+        self.tuned.take(key, value, &["k_p", "k_d", "extra.gain", "limit"]);
     }
 }
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Control, Law, Promise, Reads, Rule};
+use super::{Authority, Control, Law, Promise, Reads, Rule, Tunable};
 use crate::time::Span;
 
 /// A law of one angle for each of three axes.
@@ -22,6 +22,11 @@ impl PerAxis {
     /// The law about an axis.
     pub fn about(&self, axis: usize) -> &Law {
         [&self.roll, &self.pitch, &self.yaw][axis.min(2)]
+    }
+
+    /// Where the law about an axis stands within this one: `roll.pd.` and the like.
+    pub fn place(&self, axis: usize) -> String {
+        format!("{}.{}.", ["roll", "pitch", "yaw"][axis.min(2)], self.about(axis).kind())
     }
 
     fn all(&self) -> [&Law; 3] {
@@ -51,5 +56,13 @@ impl Rule for PerAxis {
         let of = |wanted: Reads| self.all().into_iter().any(|law| law.reads() == wanted);
         let order = [Reads::ElasticRates, Reads::DominantMode, Reads::Motion, Reads::Field];
         order.into_iter().find(|wanted| of(*wanted)).unwrap_or(Reads::Nothing)
+    }
+
+    fn tunable(&self) -> Vec<Tunable> {
+        let of = |axis: usize| {
+            let place = self.place(axis);
+            self.about(axis).tunable().into_iter().map(move |number| number.within(&place))
+        };
+        (0..3).flat_map(of).collect()
     }
 }

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::damping::{ActiveDamping, DampingRelay};
 use super::{
     Authority, Cause, Command, Control, Frame, Goal, Guards, Hold, Phase, Reads, Rule, SwitchingLines,
+    Tunable,
 };
 use crate::attitude::turned;
 use crate::belief::{Belief, Damped};
@@ -165,6 +166,7 @@ impl Rule for PhasePlane {
             authority: *authority,
             firing: false,
             damped: Damped::default(),
+            tuned: f64::NAN,
         })
     }
 
@@ -174,6 +176,17 @@ impl Rule for PhasePlane {
 
     fn reads(&self) -> Reads {
         if self.damping.is_some() { Reads::ElasticRates } else { Reads::Motion }
+    }
+
+    fn tunable(&self) -> Vec<Tunable> {
+        vec![
+            Tunable::positive("dead_zone", self.dead_zone),
+            Tunable::positive("rate_limit", self.rate_limit),
+            Tunable::positive("slope", self.slope),
+            Tunable::fraction("braking", self.braking),
+            Tunable::positive("switch_on", self.switch_on).above(self.switch_off.get()),
+            Tunable::positive("switch_off", self.switch_off).below(self.switch_on.get()),
+        ]
     }
 }
 
@@ -186,6 +199,8 @@ struct InPhasePlane {
     firing: bool,
     damping: Option<DampingRelay>,
     damped: Damped,
+    /// The number that was tuned last.
+    tuned: f64,
 }
 
 impl Control for InPhasePlane {
@@ -222,9 +237,37 @@ impl Control for InPhasePlane {
     fn damped(&self) -> Option<&Damped> {
         self.damping.as_ref().map(|_| &self.damped)
     }
+
+    fn tuned(&self) -> f64 {
+        self.tuned
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        let (spec, positive) = (&mut self.spec, Positive::new(value));
+        let number = match key {
+            "dead_zone" => &mut spec.dead_zone,
+            "rate_limit" => &mut spec.rate_limit,
+            "slope" => &mut spec.slope,
+            "switch_on" => &mut spec.switch_on,
+            "switch_off" => &mut spec.switch_off,
+            "braking" => {
+                spec.braking = Fraction::new(value).unwrap_or(spec.braking);
+                return self.draw(value);
+            }
+            _ => return,
+        };
+        *number = positive.unwrap_or(*number);
+        self.draw(value);
+    }
 }
 
 impl InPhasePlane {
+    /// Draws the switching lines anew after a number was tuned.
+    fn draw(&mut self, tuned: f64) {
+        self.tuned = tuned;
+        self.lines = SwitchingLines::new(&self.spec, &self.authority);
+    }
+
     fn relay(&mut self, excess: f64, allowed: [f64; 2]) -> f64 {
         if is_beyond(excess, allowed) {
             self.firing = true;

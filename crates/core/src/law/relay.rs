@@ -8,7 +8,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Rule};
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Rule, Tunable, Tuned};
 use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::quantity::{Fraction, NonNegative, Positive};
@@ -35,9 +35,9 @@ pub struct Relay {
     phase: Option<Phase>,
     #[serde(skip)]
     pushed_at: Instant,
-    /// k_t as an adaptation has tuned it.
+    /// Numbers as an adaptation has tuned them.
     #[serde(skip)]
-    tuned: Option<f64>,
+    tuned: Tuned,
 }
 
 /// Which boundaries of the dead zone push back.
@@ -66,8 +66,15 @@ impl Rule for Relay {
         Promise::Within(self.dead_zone.get() + self.hysteresis.get())
     }
 
-    fn tunable(&self) -> Vec<(&'static str, f64)> {
-        vec![("k_t", self.k_t.get())]
+    fn tunable(&self) -> Vec<Tunable> {
+        let (zone, hysteresis) = (self.dead_zone.get(), self.hysteresis.get());
+        vec![
+            Tunable::fraction("k_t", self.k_t),
+            Tunable::positive("dead_zone", self.dead_zone).above(0.5 * hysteresis),
+            Tunable::positive("hysteresis", self.hysteresis).below(2.0 * zone),
+            Tunable::positive("strong", self.strong),
+            Tunable::not_negative("weak", self.weak),
+        ]
     }
 }
 
@@ -78,7 +85,7 @@ impl Control for Relay {
             self.pushed_at = now;
         }
         self.phase = Some(phase);
-        self.hold(phase, now, self.tuned())
+        self.hold(phase, now)
     }
 
     fn state(&self) -> Phase {
@@ -89,14 +96,13 @@ impl Control for Relay {
         Box::new(self.clone())
     }
 
+    /// Always k_t, by which limit cycles are judged.
     fn tuned(&self) -> f64 {
-        self.tuned.unwrap_or(self.k_t.get())
+        self.tuned.of("k_t", self.k_t.get())
     }
 
     fn tune(&mut self, key: &str, value: f64) {
-        if key == "k_t" {
-            self.tuned = Some(value);
-        }
+        self.tuned.take(key, value, &["k_t", "dead_zone", "hysteresis", "strong", "weak"]);
     }
 }
 
@@ -120,9 +126,11 @@ impl Relay {
     }
 
     /// What a state that begins now commands.
-    fn hold(&self, phase: Phase, now: Instant, k_t: f64) -> Hold {
-        let back = self.dead_zone.get() - self.hysteresis.get();
-        let (strong, weak) = (self.strong.get(), self.weak.get());
+    fn hold(&self, phase: Phase, now: Instant) -> Hold {
+        let back = self.zone() - self.tuned.of("hysteresis", self.hysteresis.get());
+        let strong = self.tuned.of("strong", self.strong.get());
+        let weak = self.tuned.of("weak", self.weak.get());
+        let k_t = self.tuned.of("k_t", self.k_t.get());
         let until_guards = |torque, guards| Hold { command: Command::Torque(torque), until: None, guards };
         let until_braked = |torque| {
             let push = now.since(self.pushed_at).seconds();
@@ -145,10 +153,14 @@ impl Relay {
     }
 
     fn right(&self) -> Guard {
-        Guard::at_least(self.dead_zone.get())
+        Guard::at_least(self.zone())
     }
 
     fn left(&self) -> Guard {
-        Guard::at_most(-self.dead_zone.get())
+        Guard::at_most(-self.zone())
+    }
+
+    fn zone(&self) -> f64 {
+        self.tuned.of("dead_zone", self.dead_zone.get())
     }
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Control, Goal, Hold, Law, Phase, Promise, Reads, Rule};
+use super::{Authority, Cause, Control, Goal, Hold, Law, Phase, Promise, Reads, Rule, Tunable};
 use crate::belief::Belief;
 use crate::document::Fault;
 use crate::quantity::Time;
@@ -35,6 +35,11 @@ impl Stages {
     /// Its laws.
     pub fn laws(&self) -> impl Iterator<Item = &Law> {
         self.0.iter().map(|stage| &stage.law)
+    }
+
+    /// Where the law of a stage stands within this one: `[0].law.pd.` and the like.
+    fn place(&self, index: usize) -> String {
+        format!("[{index}].law.{}.", self.0[index].law.kind())
     }
 
     /// When the last of them begins.
@@ -77,7 +82,8 @@ impl Stages {
 impl Rule for Stages {
     fn start(&self, authority: &Authority) -> Box<dyn Control> {
         let stages = self.0.iter().map(|stage| (stage.begins(), stage.law.start(authority)));
-        Box::new(InTurn { stages: stages.collect(), active: 0 })
+        let places = (0..self.0.len()).map(|index| self.place(index)).collect();
+        Box::new(InTurn { stages: stages.collect(), active: 0, places, tuned: None })
     }
 
     /// The shortest of its laws.
@@ -95,6 +101,14 @@ impl Rule for Stages {
         let order = [Reads::ElasticRates, Reads::DominantMode, Reads::Motion, Reads::Field];
         order.into_iter().find(|wanted| of(*wanted)).unwrap_or(Reads::Nothing)
     }
+
+    fn tunable(&self) -> Vec<Tunable> {
+        let of = |(index, law): (usize, &Law)| {
+            let place = self.place(index);
+            law.tunable().into_iter().map(move |number| number.within(&place))
+        };
+        self.laws().enumerate().flat_map(of).collect()
+    }
 }
 
 /// The laws at work about an axis.
@@ -103,6 +117,9 @@ struct InTurn {
     stages: Vec<(Instant, Box<dyn Control>)>,
     /// The one that acts.
     active: usize,
+    /// Where each stands among the stages, and which was tuned last.
+    places: Vec<String>,
+    tuned: Option<usize>,
 }
 
 impl Control for InTurn {
@@ -125,6 +142,18 @@ impl Control for InTurn {
 
     fn copy(&self) -> Box<dyn Control> {
         Box::new(self.clone())
+    }
+
+    fn tuned(&self) -> f64 {
+        self.tuned.map_or(f64::NAN, |stage| self.stages[stage].1.tuned())
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        let own = |(index, place): (usize, &String)| Some((index, key.strip_prefix(place.as_str())?));
+        if let Some((index, key)) = self.places.iter().enumerate().find_map(own) {
+            self.stages[index].1.tune(key, value);
+            self.tuned = Some(index);
+        }
     }
 }
 

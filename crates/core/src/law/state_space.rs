@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule};
+use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule, Tunable};
 use crate::belief::Belief;
 use crate::document::Fault;
 use crate::numerics::exponential::exponential;
@@ -42,12 +42,24 @@ pub struct StateSpace {
     /// Quantity that it commands.
     #[serde(default)]
     pub command: Commands,
+    /// Factor on the output.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub gain: Positive,
     /// Largest command, in its unit; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
     /// Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the manoeuvre.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub track: bool,
+}
+
+fn one() -> Positive {
+    Positive::ONE
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_one(gain: &Positive) -> bool {
+    *gain == Positive::ONE
 }
 
 /// Whether the matrices are in discrete or continuous time.
@@ -160,7 +172,7 @@ impl StateSpace {
     pub fn first_command(&self, angle: f64) -> f64 {
         let direct = self.d.first().and_then(|row| row.first()).map_or(0.0, |entry| entry.get());
         let limit = self.limit.map_or(f64::INFINITY, Positive::get);
-        (direct * angle).abs().min(limit)
+        (self.gain.get() * direct * angle).abs().min(limit)
     }
 }
 
@@ -203,6 +215,8 @@ impl Rule for StateSpace {
             state: DMatrix::zeros(matrices.a.nrows(), 1),
             period: self.period,
             command: self.command,
+            gain: self.gain.get(),
+            tuned: f64::NAN,
             limit: self.limit.map_or(f64::INFINITY, Positive::get),
             track: self.track,
             active: false,
@@ -222,6 +236,10 @@ impl Rule for StateSpace {
     fn reads(&self) -> Reads {
         Reads::Motion
     }
+
+    fn tunable(&self) -> Vec<Tunable> {
+        vec![Tunable::positive("gain", self.gain)]
+    }
 }
 
 /// The law at work about an axis.
@@ -232,6 +250,9 @@ struct AtSamples {
     state: DMatrix<f64>,
     period: Span,
     command: Commands,
+    /// Factor on the output, and how it was tuned last.
+    gain: f64,
+    tuned: f64,
     limit: f64,
     track: bool,
     active: bool,
@@ -252,6 +273,7 @@ impl Control for AtSamples {
             output += (c * &self.state)[(0, 0)];
             self.state = a * &self.state + b * &error;
         }
+        output *= self.gain;
         let command = match self.command {
             Commands::Torque => Command::Torque(output.clamp(-self.limit, self.limit)),
             Commands::Acceleration => {
@@ -272,5 +294,15 @@ impl Control for AtSamples {
 
     fn copy(&self) -> Box<dyn Control> {
         Box::new(self.clone())
+    }
+
+    fn tuned(&self) -> f64 {
+        self.tuned
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        if key == "gain" {
+            (self.gain, self.tuned) = (value, value);
+        }
     }
 }

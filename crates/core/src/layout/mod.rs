@@ -13,11 +13,13 @@ mod spatial;
 use serde_json::{Map, Value, json};
 
 use crate::actuator::{Actuator, Firing};
+use crate::adaptation::{Adaptation, Objective};
 use crate::estimator::Estimator;
 use crate::metrics::Gather;
 use crate::motion::turning::Bearing;
 use crate::record::{Detail, Summary};
 use crate::scenario::Scenario;
+use crate::time::Instant;
 
 use panel::Panel;
 
@@ -111,6 +113,11 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         }
     };
     let estimator = scenario.estimator.as_ref();
+    let window = scenario.adaptation.as_ref().and_then(Adaptation::window);
+    let measures =
+        window.is_some_and(|window| scenario.goal().from + window <= Instant::START + scenario.duration);
+    add(measures, "/objective", Events);
+    add(measures, "/adaptation", Events);
     add(!scenario.failing().is_empty(), "/faults", Events);
     if scenario.axis_count() == 3 {
         add(scenario.study.fires(), "/jets", Events);
@@ -132,6 +139,11 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         }
         add(matches!(estimator, Some(Estimator::Adaptive(_))), "/tracking", Full);
         add(scenario.study.moving.is_some(), "/position", Full);
+        let window = estimator.and_then(Estimator::envelope).map(|envelope| envelope.window);
+        let closes = window.is_some_and(|window| window <= scenario.duration);
+        add(closes, "/envelope_mean", Events);
+        add(closes && scenario.objective() == Some(Objective::EnvelopeMean), "/adaptation", Events);
+        add(window.is_some(), "/envelope", Full);
         add(true, "/plumes", Scene);
         return topics;
     }
@@ -145,7 +157,8 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
     let window = estimator.and_then(Estimator::envelope).map(|envelope| envelope.window);
     let closes = window.is_some_and(|window| window <= scenario.duration);
     add(closes, "/envelope_mean", Events);
-    add(closes && scenario.adaptation.is_some(), "/adaptation", Events);
+    let learns = scenario.objective() == Some(Objective::EnvelopeMean);
+    add(closes && learns, "/adaptation", Events);
     add(plan.is_some_and(|plan| plan.time <= scenario.duration.seconds()), "/arrival", Events);
     for topic in ["/attitude", "/rate", "/modes"] {
         add(true, topic, Full);

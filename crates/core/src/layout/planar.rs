@@ -130,11 +130,7 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
         let lines = vec![line("/envelope_mean.gain", "in each window").thick(), line("/law.gain", "sampled")];
         panels.push(Panel::plot("gain", "Braking gain k_t", lines));
     }
-    panels.push(Panel::states(
-        "search",
-        "Search for the gain",
-        vec![line("/adaptation.decision", "decision")],
-    ));
+    panels.extend(adaptation(scenario));
     let plot = |name, title: &str, lines: &[(&str, &str)]| {
         let lines = lines.iter().map(|(field, label)| line(format!("/estimator.{field}"), *label));
         Panel::plot(name, title, lines.collect())
@@ -159,6 +155,28 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
         ),
     ]);
     panels
+}
+
+/// What an adaptation decides; its objective, unless that is the envelope, and the number that it tunes.
+pub fn adaptation(scenario: &Scenario) -> Vec<Panel> {
+    let search =
+        Panel::states("search", "Search for the gain", vec![line("/adaptation.decision", "decision")]);
+    let Some(adaptation) = scenario.adaptation.as_ref().filter(|of| of.window().is_some()) else {
+        return vec![search];
+    };
+    let (objective, tunes) = (adaptation.objective(), adaptation.tunes());
+    let (name, unit) = (objective.word().replace('_', " "), objective.unit(scenario.torque_unit()));
+    let title =
+        if unit.is_empty() { format!("Objective: {name}") } else { format!("Objective: {name} ({unit})") };
+    vec![
+        Panel::plot("objective", &title, vec![line("/objective.value", "in each window")]),
+        Panel::plot(
+            "tuned",
+            &format!("Tuned number: {tunes}"),
+            vec![line("/objective.gain", "in each window")],
+        ),
+        search,
+    ]
 }
 
 /// The dominant mode, as the law reads it and as it really is.

@@ -1,6 +1,7 @@
 //! The panels of a body with three axes.
 
 use super::panel::{Line, MOST_LINES, Panel, line};
+use super::planar::adaptation;
 use super::{Tab, metrics};
 use crate::actuator::Actuator;
 use crate::attitude::AXES;
@@ -99,6 +100,13 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         elastic.push(Panel::states("latched", "Active damping: the threshold", channels("latched")));
         elastic.push(Panel::states("resting", "Active damping: the watchdog", channels("resting")));
     }
+    if scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) {
+        let lines = vec![
+            line("/envelope_mean.mean_rad", "window mean").thick(),
+            line("/envelope.envelope_rad", "envelope"),
+        ];
+        elastic.push(Panel::plot("envelope", "Envelope of the elastic modes (rad)", lines));
+    }
     if scenario.study.adaptive.is_some() {
         elastic.push(Panel::states("trusted", "Observers", channels("trusted")));
     }
@@ -109,6 +117,9 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         tabs.push(Tab { title: "Attitude filter", panels: filter() });
     }
     tabs.push(Tab { title: "Elastic modes", panels: elastic });
+    if scenario.adaptation.is_some() {
+        tabs.push(Tab { title: "Adaptation", panels: adaptation(scenario) });
+    }
     tabs.push(Tab { title: "Log", panels: log });
     tabs
 }

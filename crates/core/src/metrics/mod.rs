@@ -1,6 +1,8 @@
 //! Metrics: what a run comes to, as named numbers with units.
 
+mod adapted;
 mod attitude;
+mod envelope;
 mod filter;
 pub mod goal;
 mod rotation;
@@ -18,7 +20,9 @@ pub use record::measured::{Meaning, Metrics, Quantity, Told, Value};
 
 pub use selection::Selection;
 
+use adapted::Adapted;
 use attitude::Known;
+use envelope::Windows;
 use filter::Filter;
 use rotation::Rotation;
 pub use rotation::{Courses, Passed};
@@ -59,6 +63,11 @@ metrics! {
         "Mean of the total envelope over the whole windows after the freeze (the last one, if it came at the end); null without a freeze";
     FROZEN_REDUCTION = "envelope_frozen_reduction", "",
         "Ratio of the reference of envelope_reduction to envelope_frozen_rad; null without a freeze";
+    OBJECTIVE_WINDOWS = "objective_windows", "", "Objective of the adaptation over each window, in the unit of the objective";
+    OBJECTIVE_INITIAL = "objective_initial", "", "Objective of the adaptation over the first window, in the unit of the objective";
+    OBJECTIVE_LATE = "objective_late_mean", "",
+        "Mean of the objective over the windows that begin in the second half of the run, in the unit of the objective";
+    OBJECTIVE_FINAL = "objective_final", "", "Objective of the adaptation over the last whole window, in the unit of the objective";
     CYCLE_KIND = "cycle_kind", "",
         "The limit cycle at the end of the run: two-sided, one-sided, mixed, or none if the run is not periodic";
     CYCLE_PERIOD = "cycle_period_s", "s", "Period of the limit cycle; null without one";
@@ -186,7 +195,8 @@ pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meani
     let model = scenario.filter(|scenario| scenario.axis_count() == 1).map(|scenario| &scenario.model);
     let accelerations = model.filter(|model| model.commands_acceleration()).and_then(|_| of(ACCELERATIONS));
     let unit_inertia = model.filter(|model| model.has_unit_inertia()).and_then(|_| of(UNIT_INERTIA));
-    accelerations.or(unit_inertia).or_else(|| of(ALL))
+    let objectives = scenario.and_then(adapted::meanings).and_then(|some| of(some));
+    accelerations.or(unit_inertia).or(objectives).or_else(|| of(ALL))
 }
 
 /// Gathers the metrics of a run.
@@ -195,6 +205,8 @@ pub struct Gather {
     kind: Kind,
     filter: Option<Filter>,
     known: Option<Known>,
+    adapted: Option<Adapted>,
+    windows: Option<Windows>,
     tracked: Tracked,
 }
 
@@ -223,6 +235,8 @@ impl Gather {
             kind,
             filter: Filter::new(scenario),
             known: Known::new(scenario),
+            adapted: Adapted::new(scenario),
+            windows: Windows::alone(scenario),
             tracked: Tracked::new(scenario),
         }
     }
@@ -250,6 +264,8 @@ impl Gather {
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(Filter::finish));
         metrics.extend(self.known.into_iter().flat_map(Known::finish));
+        metrics.extend(self.windows.iter().flat_map(Windows::finish));
+        metrics.extend(self.adapted.into_iter().flat_map(Adapted::finish));
         Metrics(metrics)
     }
 }
@@ -283,6 +299,12 @@ impl Record for Gather {
         }
         if let (Some(known), Sample::AttitudeEstimate(estimate)) = (&mut self.known, sample) {
             known.see(now, estimate);
+        }
+        if let (Some(windows), Sample::Window(window)) = (&mut self.windows, sample) {
+            windows.see(window);
+        }
+        if let Some(adapted) = &mut self.adapted {
+            adapted.see(now, sample);
         }
         match &mut self.kind {
             Kind::Switchings(switchings) => switchings.record(now, sample),

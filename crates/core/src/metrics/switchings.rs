@@ -1,13 +1,14 @@
 //! What the switchings of a relay law come to: pushes, impulse, envelope, adaptation, limit cycle.
 
+use super::envelope::Windows;
 use super::goal::Verdict;
 use super::{
     CYCLE_DUTY, CYCLE_IMPULSE, CYCLE_KIND, CYCLE_MULTIPLIER_ARGUMENTS, CYCLE_MULTIPLIER_MAX,
     CYCLE_MULTIPLIERS, CYCLE_ORDER, CYCLE_PERIOD, CYCLE_REDUCED_IMPULSE, CYCLE_SYMMETRIC, DUTY,
-    ENVELOPE_FINAL, ENVELOPE_FROZEN, ENVELOPE_LATE, ENVELOPE_MEAN, FROZEN_REDUCTION, GAIN_FINAL, GAIN_FROZEN,
-    GAIN_FROZEN_AT, GAIN_INITIAL, IMPULSE, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, REDUCTION, SWITCHINGS,
-    Told, Value, WINDOW_MEANS,
+    ENVELOPE_FROZEN, FROZEN_REDUCTION, GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, IMPULSE,
+    PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS, Told, Value,
 };
+use crate::adaptation::Objective;
 use crate::analysis::cycle::CycleWatch;
 use crate::law::{Goal, Phase};
 use crate::motion::Stretch;
@@ -19,16 +20,16 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug)]
 pub struct Switchings {
     duration: f64,
-    reference: Option<f64>,
     count: u64,
     pushes: (u64, u64),
     strong: Span,
     impulse: f64,
     /// When the torque was switched last, to what, and whether it is strong.
     since: (Instant, f64, bool),
-    means: Vec<f64>,
-    windows_from: Vec<f64>,
+    windows: Windows,
     gain: (f64, f64),
+    /// The number that the adaptation tunes, at the start.
+    tuned: Option<f64>,
     frozen_at: f64,
     cycle: CycleWatch,
     observed: bool,
@@ -46,19 +47,18 @@ impl Switchings {
         let smooth = scenario.study.sampling.is_none() && scenario.linear.is_none();
         Self {
             duration: scenario.duration.seconds(),
-            reference: scenario.reference.envelope.map(crate::quantity::Positive::get),
             count: 0,
             pushes: (0, 0),
             strong: Span::ZERO,
             impulse: 0.0,
             since: (Instant::START, 0.0, false),
-            means: Vec::new(),
-            windows_from: Vec::new(),
+            windows: Windows::new(scenario),
             gain: (f64::NAN, f64::NAN),
+            tuned: scenario.tuned(),
             frozen_at: f64::NAN,
             cycle: CycleWatch::new(&scenario.model, smooth),
             observed: scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()),
-            adapted: scenario.adaptation.is_some(),
+            adapted: scenario.objective() == Some(Objective::EnvelopeMean),
             reduced: scenario.model.commands_acceleration(),
             goal: scenario.goal(),
             verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
@@ -77,7 +77,7 @@ impl Switchings {
             (if self.reduced { &REDUCED_IMPULSE } else { &IMPULSE }, Value::Number(self.impulse / hours)),
         ];
         if self.observed {
-            metrics.extend(self.envelope());
+            metrics.extend(self.windows.finish());
         }
         metrics.push((&GAIN_INITIAL, Value::Number(self.gain.0)));
         metrics.push((&GAIN_FINAL, Value::Number(self.gain.1)));
@@ -90,32 +90,17 @@ impl Switchings {
         metrics
     }
 
-    fn envelope(&self) -> Vec<Told> {
-        let late = self.windows_from.iter().position(|from| *from >= 0.5 * self.duration);
-        let late = late.map_or(&[][..], |first| &self.means[first..]);
-        let first = self.means.first().copied().unwrap_or(f64::NAN);
-        let last = self.means.last().copied().unwrap_or(f64::NAN);
-        vec![
-            (&WINDOW_MEANS, Value::Numbers(self.means.clone())),
-            (&ENVELOPE_MEAN, Value::Number(mean(&self.means))),
-            (&ENVELOPE_LATE, Value::Number(mean(late))),
-            (&ENVELOPE_FINAL, Value::Number(last)),
-            (&REDUCTION, Value::Number(self.reference.unwrap_or(first) / last)),
-        ]
-    }
-
     fn frozen(&self) -> [Told; 3] {
-        let first = self.means.first().copied().unwrap_or(f64::NAN);
-        let after = self.windows_from.iter().position(|from| *from >= self.frozen_at);
-        let (gain, level) = match (self.frozen_at.is_nan(), after) {
-            (true, _) => (f64::NAN, f64::NAN),
-            (false, Some(after)) => (self.gain.1, mean(&self.means[after..])),
-            (false, None) => (self.gain.1, self.means.last().copied().unwrap_or(f64::NAN)),
+        let level = if self.frozen_at.is_nan() {
+            f64::NAN
+        } else {
+            self.windows.since(self.frozen_at).unwrap_or(self.windows.last())
         };
+        let gain = if self.frozen_at.is_nan() { f64::NAN } else { self.gain.1 };
         [
             (&GAIN_FROZEN, Value::Number(gain)),
             (&ENVELOPE_FROZEN, Value::Number(level)),
-            (&FROZEN_REDUCTION, Value::Number(self.reference.unwrap_or(first) / level)),
+            (&FROZEN_REDUCTION, Value::Number(self.windows.reference() / level)),
         ]
     }
 
@@ -134,11 +119,6 @@ impl Switchings {
         self.pushes.1 += u64::from(phase == Phase::LeftPush);
         self.switch(now, torque, phase.is_strong());
     }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    // 0 / 0 where there are none: a mean of nothing is not a number.
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<Told> {
@@ -177,7 +157,8 @@ impl Record for Switchings {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
             Sample::Begin(law) => {
-                self.gain = (law.gain, law.gain);
+                let gain = self.tuned.unwrap_or(law.gain);
+                self.gain = (gain, gain);
                 self.enter(now, law.state, law.torque_nm);
             }
             Sample::Switching(command, _) => {
@@ -186,8 +167,7 @@ impl Record for Switchings {
                 self.cycle.record(now, sample)?;
             }
             Sample::Window(window) => {
-                self.means.push(window.mean_rad);
-                self.windows_from.push(window.from_s);
+                self.windows.see(window);
             }
             Sample::Adaptation(step) => {
                 self.gain.1 = step.gain;

@@ -41,10 +41,10 @@ pub use topics::{
     Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
     BearingMotion, Bearings, ChannelState, Command, DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope,
     Estimate, Estimates, FaultEvent, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
-    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Orbit, OrbitAxis, OutputMotion,
-    OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary, TOPICS,
-    ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel,
-    WheelEvent, WheelMotion, Wheels, WindowMean,
+    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit, OrbitAxis,
+    OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary,
+    TOPICS, ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
+    Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -61,6 +61,8 @@ pub enum Sample<'a> {
     Law(&'a Law),
     /// A window of the envelope's mean ended.
     Window(&'a WindowMean),
+    /// A window of the adaptation's objective ended.
+    Objective(&'a Objective),
     /// The adaptation took a step.
     Adaptation(&'a Adaptation),
     /// The manoeuvre ended.
@@ -328,6 +330,7 @@ trait TakeRow {
             Sample::Begin(law) | Sample::Law(law) => self.take(now, law),
             Sample::Switching(command, _) => self.take(now, command),
             Sample::Window(mean) => self.take(now, mean),
+            Sample::Objective(row) => self.take(now, row),
             Sample::Adaptation(step) => self.take(now, step),
             Sample::Arrival(arrival) => self.take(now, arrival),
             Sample::Estimate(estimate) => self.take(now, estimate),
@@ -367,6 +370,7 @@ trait TakeRow {
                 if let Some(magnetorquers) = &motion.magnetorquers {
                     self.take(now, magnetorquers)?;
                 }
+                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))?;
                 motion.drives.as_ref().map_or(Ok(()), |drives| self.take(now, drives))?;
                 motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take(now, bearings))?;
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))

@@ -1,7 +1,7 @@
 //! What is reported of a body with three axes.
 
 use super::{
-    Bearings, DrivesMotion, Energy, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques,
+    Bearings, DrivesMotion, Energy, Envelope, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques,
     Vibrations, Wheels,
 };
 
@@ -55,4 +55,6 @@ pub struct SpatialMotion {
     pub orbit: Option<Orbit>,
     /// Magnetic moments of torquers.
     pub magnetorquers: Option<Magnetorquers>,
+    /// Envelope, if the scenario has an observer.
+    pub envelope: Option<Envelope>,
 }

@@ -90,6 +90,7 @@ impl Scenario {
             .or_else(|| self.schedule_inconsistency())
             .or_else(|| self.timing_inconsistency())
             .or_else(|| self.rate_inconsistency())
+            .or_else(|| self.envelope_inconsistency())
             .or_else(|| self.filter_inconsistency(estimator?))
             .or_else(|| self.adaptation_inconsistency())
     }

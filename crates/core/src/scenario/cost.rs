@@ -235,6 +235,9 @@ impl Scenario {
         if let Some(envelope) = self.estimator.as_ref().and_then(Estimator::envelope) {
             each("estimator.envelope.window".to_owned(), duration, envelope.window);
         }
+        if let Some((adaptation, window)) = self.adaptation.as_ref().and_then(|of| Some((of, of.window()?))) {
+            each(format!("adaptation.{}.window", adaptation.kind()), duration, window);
+        }
         for (index, disturbance) in self.disturbance.iter().enumerate() {
             let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
             if let Some(pulse) = disturbance.pulse {

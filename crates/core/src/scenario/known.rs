@@ -1,7 +1,9 @@
 //! What the estimator and the monitor of the envelope are told of a scenario before a run.
 
 use super::Scenario;
-use crate::estimator::{Estimator, Known, Monitor};
+use crate::adaptation::{Adaptation, Objective};
+use crate::estimator::{Estimator, Known, Meter, Monitor, Searching};
+use crate::law::Goal;
 use crate::random::Seed;
 
 impl Scenario {
@@ -26,6 +28,42 @@ impl Scenario {
     /// The monitor of the envelope that it asks for, if any.
     pub fn monitor(&self, seed: Seed) -> Option<Monitor> {
         let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
-        Some(Monitor::new(envelope, &self.model, self.adaptation.as_ref(), &self.law.tunable(), seed))
+        let learns = self.objective() == Some(Objective::EnvelopeMean);
+        let search = self.searching(seed).filter(|_| learns);
+        let Some(body) = self.body.spatial() else {
+            return Some(Monitor::new(envelope, &self.model, search));
+        };
+        let point = self.study.sensed_at.first().map_or("", String::as_str);
+        let rotations = body.shapes(point).into_iter().map(|(_, rotation)| rotation.norm());
+        let modes: Vec<_> = body.modes.iter().cloned().zip(rotations).collect();
+        Some(Monitor::of_three_axes(envelope, &modes, search))
+    }
+
+    /// The meter of another objective of its adaptation, if any.
+    pub fn meter(&self, seed: Seed) -> Option<Meter> {
+        let (adaptation, objective) = (self.adaptation.as_ref()?, self.objective()?);
+        let window = adaptation.window().filter(|_| objective != Objective::EnvelopeMean)?;
+        let goal = if self.axis_count() == 1 { self.goal() } else { Goal::default() };
+        Some(Meter::new(objective, window, goal, self.searching(seed)?))
+    }
+
+    /// The unit of its torques.
+    pub fn torque_unit(&self) -> &'static str {
+        if self.axis_count() == 1 { self.model.commanded().1 } else { "N m" }
+    }
+
+    /// What its adaptation measures, if it has one.
+    pub fn objective(&self) -> Option<Objective> {
+        self.adaptation.as_ref().map(Adaptation::objective)
+    }
+
+    /// The number of the law that its adaptation tunes, as it is at the start; none without one.
+    pub fn tuned(&self) -> Option<f64> {
+        let tunes = self.adaptation.as_ref()?.tunes();
+        self.law.tunable().into_iter().find(|number| number.key == tunes).map(|number| number.value)
+    }
+
+    fn searching(&self, seed: Seed) -> Option<Searching> {
+        Some(Searching::new(self.adaptation.as_ref()?, self.tuned()?, seed))
     }
 }

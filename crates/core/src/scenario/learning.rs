@@ -1,11 +1,10 @@
-//! What does not fit of an estimator, or of an adaptation: its own keys, the modes that it knows, the law that it tunes.
+//! What does not fit of an estimator: its own keys, and the modes that it knows.
 
 use super::Scenario;
-use crate::adaptation::Adaptation;
 use crate::body::{Body, Drive};
 use crate::document::Fault;
 use crate::estimator::{Estimator, Form};
-use crate::quantity::{Finite, Positive};
+use crate::quantity::Positive;
 
 /// No filter of an axis of three estimates more modes: its matrices are full.
 const MOST_FILTERED: usize = 24;
@@ -36,8 +35,31 @@ impl Scenario {
         })
     }
 
+    /// What is wrong with a monitor of the envelope of three axes.
+    pub(super) fn envelope_inconsistency(&self) -> Option<Fault> {
+        let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
+        let at = |key: &str, why: &str| Some(Fault::new(format!("estimator.envelope{key}"), why));
+        if envelope.modes.is_some() {
+            return at(".modes", "are those of one angle: about three axes the monitor knows the body's");
+        }
+        if self.mode_count() == 0 {
+            return at("", "has no modes to follow: the body has none");
+        }
+        if self.study.drives.is_some() {
+            let why = "follows modes that stay the same, and an appendage that turns changes them";
+            return at("", why);
+        }
+        let spatial = self.body.spatial()?;
+        let damped = spatial.modes.iter().find(|mode| mode.damping.get() >= 1.0)?;
+        let why = format!("must be below 1 for a mode to have an envelope, got {}", damped.damping.get());
+        Some(Fault::new(format!("{}.damping", self.body.key()), why))
+    }
+
     /// What is wrong with an estimator that acts at each sample.
     pub(super) fn filter_inconsistency(&self, estimator: &Estimator) -> Option<Fault> {
+        if estimator.envelope().is_some() {
+            return None;
+        }
         let kind = estimator.kind();
         let at = |key: &str, why: String| Some(Fault::new(format!("estimator.{kind}{key}"), why));
         if let Estimator::Own(_) = estimator {
@@ -97,52 +119,6 @@ impl Scenario {
         let ratio = filter.ratio.get();
         if !(low..=high).contains(&ratio) {
             return at(".ratio", format!("must lie within the bounds [{low}, {high}], got {ratio}"));
-        }
-        None
-    }
-
-    pub(super) fn adaptation_inconsistency(&self) -> Option<Fault> {
-        let adaptation = self.adaptation.as_ref()?;
-        let tunable = self.law.tunable();
-        let tunes = adaptation.tunes();
-        let kind = if let Adaptation::Own(_) = adaptation { "own" } else { "random_search" };
-        let Some(gain) = tunable.iter().find(|(key, _)| *key == tunes).map(|(_, value)| *value) else {
-            let known: Vec<_> = tunable.iter().map(|(key, _)| format!("`{key}`")).collect();
-            let why = match (known.is_empty(), tunes) {
-                (true, "k_t") => "adapts the gain k_t of a law `relay`, and there is none".to_owned(),
-                (true, _) => format!("tunes a number of the law, and the law `{}` has none", self.law.kind()),
-                (false, tunes) => {
-                    format!(
-                        "must name a number of the law `{}`, {}, got `{tunes}`",
-                        self.law.kind(),
-                        known.join(" or ")
-                    )
-                }
-            };
-            let tunes = if known.is_empty() { "" } else { ".tunes" };
-            let key = format!("adaptation.{kind}{tunes}");
-            return Some(Fault::new(key, why));
-        };
-        let bounds = "adaptation.random_search.bounds".to_owned();
-        if self.estimator.as_ref().is_none_or(|estimator| estimator.envelope().is_none()) {
-            let why = "needs the window means of an `[estimator.envelope]`, and there is none";
-            return Some(Fault::new(format!("adaptation.{kind}"), why));
-        }
-        let Adaptation::RandomSearch(search) = adaptation else { return None };
-        let [low, high] = search.bounds.map(Finite::get);
-        if low >= high {
-            return Some(Fault::new(
-                bounds,
-                format!("must be [low, high] in this order, got [{low}, {high}]"),
-            ));
-        }
-        if search.tunes == "k_t" && (low <= 0.0 || high >= 1.0) {
-            let why = format!("must lie between 0 and 1, as k_t itself, got [{low}, {high}]");
-            return Some(Fault::new(bounds, why));
-        }
-        if !(low..=high).contains(&gain) {
-            let why = format!("must lie within the adaptation's bounds [{low}, {high}], got {gain}");
-            return Some(Fault::new(format!("law.{}.{}", self.law.kind(), search.tunes), why));
         }
         None
     }

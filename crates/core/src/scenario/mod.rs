@@ -1,5 +1,6 @@
 //! The scenario: everything that a user writes about a study, and nothing that moves.
 
+mod adapting;
 mod authority;
 mod consistency;
 mod cost;

@@ -118,10 +118,6 @@ impl Scenario {
                 return Some(fault.within(&format!("disturbance[{index}]")));
             }
         }
-        if self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) {
-            let why = "follows the modes of one angle: the modes of three axes are in the log";
-            return refused("estimator.envelope", why);
-        }
         if let Actuator::Wheel(wheel) = &self.actuator
             && wheel.back_emf.get() > 0.0
         {

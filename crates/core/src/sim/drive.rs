@@ -94,6 +94,13 @@ impl Drive {
         &self.wrench
     }
 
+    /// What the actuator alone exerts from now on.
+    pub fn commanded(&self, now: Instant) -> Wrench {
+        let mut wrench = Wrench::default();
+        self.actuator.exert(now, &mut wrench);
+        wrench
+    }
+
     /// The disturbances about an axis (N m).
     pub fn disturbance(&self, now: Instant, axis: usize) -> f64 {
         self.sum(|disturbance| disturbance.torque(now, axis))

@@ -13,6 +13,7 @@ mod events;
 mod failing;
 mod instants;
 mod journal;
+mod metering;
 mod own;
 mod plant;
 mod reference;
@@ -25,7 +26,7 @@ mod telling;
 
 use crate::belief::Belief;
 use crate::environment::into;
-use crate::estimator::{self, Estimate, Monitor, Taken};
+use crate::estimator::{self, Estimate, Meter, Monitor, Taken};
 use crate::law::{Cause, Controls, Event};
 use crate::random::Seed;
 use crate::record::{Record, RecordError};
@@ -61,6 +62,8 @@ pub struct Simulation {
     /// Until when the estimator knows what a waveform gave.
     given: Instant,
     monitor: Option<Monitor>,
+    /// The meter of the adaptation's objective, unless that is the envelope.
+    meter: Option<Meter>,
     reference: Reference,
     /// From where angles count, and until when.
     origin: Orientation,
@@ -102,6 +105,7 @@ impl Simulation {
             estimates: scenario.estimator.is_some(),
             given: Instant::START,
             monitor: scenario.monitor(seed),
+            meter: scenario.meter(seed),
             origin: reference.origin(Instant::START),
             next_target: reference.next_target(Instant::START),
             beliefs: vec![Belief::default(); axes],
@@ -169,6 +173,7 @@ impl Simulation {
         self.steered = false;
         self.drive.serve(self.now, truth.rigid);
         self.depart(record)?;
+        self.name_tuned();
         self.turned(self.now);
         self.tell_first_slips();
         self.check_own_parts()?;
@@ -188,7 +193,16 @@ impl Simulation {
     fn next(&self) -> Instant {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.monitor.as_ref().map(|monitor| monitor.closes);
-        let due = [trip, self.laws.until(), self.drive.due, self.sensing.next, closes, self.telling.due()];
+        let measured = self.meter.as_ref().map(|meter| meter.closes);
+        let due = [
+            trip,
+            self.laws.until(),
+            self.drive.due,
+            self.sensing.next,
+            closes,
+            measured,
+            self.telling.due(),
+        ];
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
@@ -213,6 +227,7 @@ impl Simulation {
         if self.monitor.as_ref().is_some_and(|monitor| monitor.closes == now) {
             self.close_window(record)?;
         }
+        self.close_objective(record)?;
         self.tell_arrival(record)?;
         Ok(event)
     }
@@ -329,29 +344,20 @@ impl Simulation {
             self.estimator.carry(now, &self.origin, &mut self.beliefs);
         }
         let before = self.laws.about(0).state();
+        let states = self.states();
         let cause = self.ask(event);
+        self.count_switchings(states);
         self.feel(&truth);
         self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
         self.depart(record)?;
         self.tell_switching(before, cause, &truth, record)
     }
 
-    /// Closes the window that ends now, and lets the law have what the adaptation learned.
-    fn close_window(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
-        self.plant.view(self.now)?;
-        let gain = self.laws.about(0).tuned();
-        let Some(monitor) = &mut self.monitor else { return Ok(()) };
-        let closed = monitor.close(self.now, &self.plant.about(0, &self.origin), gain);
-        if let (Some((row, _)), Some(key)) = (&closed.step, monitor.tunes()) {
-            self.laws.tune(key, row.gain);
-        }
-        Ok(self.telling.window(self.now, &closed, record)?)
-    }
-
     /// Begins a motion under what acts from now on, and finds the next trip.
     fn depart(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
         let now = self.now;
         self.plant.tell_course(now, &self.exerted, record)?;
+        self.measure_course(now);
         let (actuator, axes) = (&self.drive.actuator, self.beliefs.len());
         if self.estimates {
             let mut moments = [0.0; 3];
@@ -363,9 +369,16 @@ impl Simulation {
         let (constant, feedback) = (actuator.torque(0), actuator.asked(0));
         self.exerted = Exerted { constant, feedback, back_emf: actuator.back_emf() };
         if let Some(monitor) = &mut self.monitor {
-            monitor.command(now, &self.plant.about(0, &self.origin), self.exerted.constant);
+            let state = self.plant.swings(&self.origin);
+            match &self.plant {
+                Plant::Planar(_) => monitor.command(now, &state, self.exerted.constant),
+                Plant::Spatial(plant) => {
+                    monitor.push(now, &state, &plant.modal_forces(&self.drive.commanded(now)));
+                }
+            }
         }
         self.plant.depart(self.drive.wrench(now));
+        self.measure_torque();
         self.trip = None;
         // A sampled sensor trips its guards at samples.
         if self.sensing.next.is_none() && !self.laws.guards().is_empty() {

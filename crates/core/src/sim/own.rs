@@ -1,7 +1,7 @@
 //! Parts of a program's own in a run: where one cannot go on, the run ends.
 
 use super::{Simulation, SimulationError};
-use crate::estimator::Monitor;
+use crate::estimator::{Meter, Monitor, Searching};
 
 impl Simulation {
     /// Ends a run with a part of a program's own that cannot go on.
@@ -10,7 +10,9 @@ impl Simulation {
             return Ok(());
         }
         let halted = || {
-            let adaptation = self.monitor.as_ref().and_then(Monitor::halted);
+            let monitored = self.monitor.as_ref().and_then(Monitor::search);
+            let search = monitored.or(self.meter.as_ref().map(Meter::search));
+            let adaptation = search.and_then(Searching::halted);
             let all = [
                 ("sensor", self.sensing.halted()),
                 ("estimator", self.estimator.halted()),

@@ -7,7 +7,6 @@ use super::failing::Failures;
 use super::plant::{Plant, SpatialPlant};
 use super::reference::Reference;
 use super::{Simulation, SimulationError};
-use crate::estimator::Closed;
 use crate::law::{Cause, Phase};
 use crate::motion::turning::{Slip, Turned};
 use crate::record::{
@@ -111,14 +110,6 @@ impl Telling {
         let due = [arrives, self.next_dense, self.next_frames, self.next_cycle];
         let due = due.into_iter().chain([self.failures.due(), self.accelerometers.due()]);
         due.flatten().min()
-    }
-
-    /// A window that ended, and what the adaptation made of it.
-    pub fn window(&self, now: Instant, closed: &Closed, record: &mut impl Record) -> Result<(), RecordError> {
-        record.record(now, Sample::Window(&closed.mean))?;
-        let Some((row, before)) = &closed.step else { return Ok(()) };
-        record.record(now, Sample::Adaptation(row))?;
-        self.events.adapted(now, row, *before, record)
     }
 }
 
@@ -259,6 +250,7 @@ impl Simulation {
         // A law that is never asked aims at the targets all the same.
         self.turn_to_target(now);
         let origin = self.origin;
+        self.measure_cycle(&truth);
         if let Plant::Spatial(plant) = &self.plant {
             let error = truth.orientation.beyond(&origin);
             let (rigid, elastic) = plant.rates();
@@ -385,6 +377,7 @@ impl Simulation {
             wheels: (!wheels.is_empty()).then_some(Wheels { wheels }),
             orbit: plant.orbit(),
             magnetorquers: actuator.magnetic(),
+            envelope: self.monitor.as_ref().map(|monitor| monitor.envelope(self.now)),
             bearings: self.bearings(plant),
             drives: plant.drives(),
         }

@@ -32,6 +32,11 @@ impl Biquad {
         a2.abs() < 1.0 && a1.abs() < 1.0 + a2
     }
 
+    /// Takes the coefficients of another, and keeps its state.
+    pub fn retune(&mut self, other: &Self) {
+        *self = Self { state: self.state, ..*other };
+    }
+
     /// Takes a sample, and gives one.
     pub fn filter(&mut self, sample: f64) -> f64 {
         let ([b0, b1, b2], [a1, a2]) = (self.numerator, self.denominator);

@@ -53,6 +53,18 @@ impl Polynomial {
         less
     }
 
+    /// The polynomial less another.
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        Self(std::array::from_fn(|n| self.0[n] - other.0[n]))
+    }
+
+    /// The polynomial times a number.
+    #[must_use]
+    pub fn scaled(&self, by: f64) -> Self {
+        Self(self.0.map(|c| c * by))
+    }
+
     /// The part between two points, on the interval from 0 to 1.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
@@ -108,7 +120,9 @@ impl Polynomial {
         rest.iter().fold((*first, *first), |(low, high), c| (low + c.min(0.0), high + c.max(0.0)))
     }
 
-    fn derivative(&self) -> Self {
+    /// The derivative.
+    #[must_use]
+    pub fn derivative(&self) -> Self {
         let mut derivative = [0.0; TERMS];
         for (n, c) in self.0.iter().enumerate().skip(1) {
             derivative[n - 1] = n as f64 * c;

@@ -279,26 +279,30 @@ class Actuator(_Part):
 
 
 class Adaptation(_Part):
-    """An adaptation: after each window of an `[estimator.envelope]` it may change a parameter of the law.
+    """An adaptation: after each window it may change a parameter of the law.
 
     >>> class Descent(Adaptation):
     ...     tunes = "k_t"
     ...     def start(self, value, draws):
     ...         self.value = value
-    ...     def learn(self, time, mean):
+    ...     def learn(self, time, measured):
     ...         self.value += 1e-4
     ...         return self.value
     """
 
     tunes: str
-    """The name of the parameter of the law, one of its `tunable`."""
+    """The parameter of the law, by its key within the law's table; of a law of your own, one of its `tunable`."""
+    objective: str = "envelope_mean"
+    """What is measured over each window, as `objective` of `[adaptation.random_search]`."""
+    window: float | None = None
+    """Length of the windows (s); None for `envelope_mean`, whose windows are those of the `[estimator.envelope]`."""
 
     def start(self, value: float, draws: Draws) -> None:
         """Start a run with the initial value of the parameter."""
 
     @abstractmethod
-    def learn(self, time: float, mean: float) -> float | None:
-        """Process the mean envelope (rad) of the window that ends now (s).
+    def learn(self, time: float, measured: float) -> float | None:
+        """Process the objective, such as the mean envelope (rad), over the window that ends now (s).
 
         Returns:
             The new value of the parameter; None leaves it unchanged.

@@ -2,13 +2,15 @@
 
 use std::any::Any;
 
-use flexsc_core::adaptation::{Adapt, Decision, Learn, Step};
+use flexsc_core::adaptation::{Adapt, Decision, Learn, Objective, Step};
 use flexsc_core::own::Halt;
 use flexsc_core::random::Seed;
-use flexsc_core::time::Instant;
+use flexsc_core::time::{Instant, Span};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::draws::Draws;
+use super::law::positive;
 use super::object::{Method, Object};
 
 /// An adaptation as a scenario has it.
@@ -16,18 +18,39 @@ use super::object::{Method, Object};
 pub struct Brought {
     object: Object,
     tunes: String,
+    objective: Objective,
+    window: Option<Span>,
 }
 
 impl Brought {
     /// Reads what an adaptation says of itself.
     pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Ok(Self { object: Object::new(part), tunes: part.getattr("tunes")?.extract()? })
+        let word: String = part.getattr("objective")?.extract()?;
+        let objective = Objective::named(&word).ok_or_else(|| {
+            let all = Objective::ALL.map(|objective| format!("'{}'", objective.word())).join(", ");
+            PyValueError::new_err(format!("objective must be one of {all}, got {word:?}"))
+        })?;
+        let window: Option<f64> = part.getattr("window")?.extract()?;
+        Ok(Self {
+            object: Object::new(part),
+            tunes: part.getattr("tunes")?.extract()?,
+            objective,
+            window: window.map(|window| positive(window, "window")).transpose()?,
+        })
     }
 }
 
 impl Adapt for Brought {
     fn tunes(&self) -> &str {
         &self.tunes
+    }
+
+    fn objective(&self) -> Objective {
+        self.objective
+    }
+
+    fn window(&self) -> Option<Span> {
+        self.window
     }
 
     fn start(&self, value: f64, seed: Seed) -> Box<dyn Learn> {
@@ -48,21 +71,21 @@ impl Adapt for Brought {
 struct Learning {
     method: Method,
     value: f64,
-    /// The mean of the last window (rad).
+    /// The objective over the last window.
     last: f64,
 }
 
 impl Learn for Learning {
-    fn learn(&mut self, now: Instant, mean: f64) -> Option<Step> {
-        let before = std::mem::replace(&mut self.last, mean);
+    fn learn(&mut self, now: Instant, measured: f64) -> Option<Step> {
+        let before = std::mem::replace(&mut self.last, measured);
         let told = Python::attach(|py| {
             self.method.other(py, |part| {
-                let told = part.call_method1(pyo3::intern!(py, "learn"), (now.seconds(), mean))?;
+                let told = part.call_method1(pyo3::intern!(py, "learn"), (now.seconds(), measured))?;
                 told.extract::<Option<f64>>()
             })
         });
         self.value = told.flatten()?;
-        let change = ((mean - before) / mean).abs();
+        let change = ((measured - before) / measured).abs();
         let decision = if before.is_nan() { Decision::Begin } else { Decision::Keep };
         Some(Step { decision, change, draw: 0.0, gain: self.value, settled: 0 })
     }

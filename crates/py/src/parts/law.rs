@@ -6,7 +6,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use flexsc_core::belief::{Belief, Reads};
 use flexsc_core::law::{
-    Authority as EngineAuthority, Cause, Control, Goal, Hold as Held, Phase, Promise, Rule,
+    Authority as EngineAuthority, Cause, Control, Goal, Hold as Held, Phase, Promise, Rule, Tunable,
 };
 use flexsc_core::own::Halt;
 use flexsc_core::time::{Instant as Exact, Span};
@@ -252,8 +252,8 @@ impl Rule for Brought {
         self.reads
     }
 
-    fn tunable(&self) -> Vec<(&'static str, f64)> {
-        self.tunable.clone()
+    fn tunable(&self) -> Vec<Tunable> {
+        self.tunable.iter().map(|(key, value)| Tunable::free(*key, *value)).collect()
     }
 
     fn any(&self) -> Option<&dyn Any> {

@@ -116,15 +116,14 @@ fn signals(path: &Path) -> Result<Vec<Signal>, Failure> {
         signals.push(signal("pointing error", "rad", cycles.over_time(|c| length(c.error_rad)), false));
         signals.push(signal("elastic energy", "J", cycles.over_time(|c| c.elastic_energy_j), false));
         signals.push(signal("propellant", "kg", cycles.over_time(|c| c.jets.fuel_kg), false));
+        signals.extend(of_adaptation(&story));
     } else if story.switches() {
         if !story.means.is_empty() {
             let ends = story.means.iter().flat_map(|mean| [(mean.from, mean.value), (mean.to, mean.value)]);
             signals.push(signal("mean envelope", "rad", ends.collect(), true));
         }
         if story.scenario.adaptation.is_some() {
-            let steps = story.steps.iter().map(|step| (step.time, step.gain));
-            let gains = [(0.0, story.start.1)].into_iter().chain(steps).chain([last(&story)]);
-            signals.push(signal("gain k_t", "", gains.collect(), true));
+            signals.extend(of_adaptation(&story));
         }
         let counts = story.switchings.iter().enumerate().map(|(index, s)| (s.time, (index + 1) as f64));
         let all = (story.end, story.switchings.len() as f64);
@@ -133,8 +132,26 @@ fn signals(path: &Path) -> Result<Vec<Signal>, Failure> {
     } else {
         let motion = story.motion(&log, path, 0.0, 0.0)?;
         signals.extend(of_rotation(&story, &motion));
+        signals.extend(of_adaptation(&story));
     }
     Ok(signals)
+}
+
+/// The number that is tuned, and the objective if that is not the envelope.
+fn of_adaptation(story: &Story) -> Vec<Signal> {
+    let signal = |name: String, unit, line| Signal { name, unit, line, held: true };
+    let mut signals = Vec::new();
+    let Some(adaptation) = &story.scenario.adaptation else { return signals };
+    let windows = story.objective.iter().flat_map(|of| [(of.from, of.value), (of.to, of.value)]);
+    if !story.objective.is_empty() {
+        let objective = adaptation.objective();
+        let unit = objective.unit(story.scenario.torque_unit());
+        signals.push(signal(objective.word().replace('_', " "), unit, windows.collect()));
+    }
+    let steps = story.steps.iter().map(|step| (step.time, step.gain));
+    let gains = [(0.0, story.start.1)].into_iter().chain(steps).chain([last(story)]);
+    signals.push(signal(format!("gain {}", story.tunes()), "", gains.collect()));
+    signals
 }
 
 /// The gain at the end.

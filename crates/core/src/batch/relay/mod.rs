@@ -82,7 +82,7 @@ fn suits(scenario: &Scenario, law: &Relay) -> bool {
         .as_ref()
         .is_none_or(|estimator| estimator.envelope().is_some_and(|envelope| envelope.form == Form::Dynamic));
     let learns = scenario.adaptation.as_ref().is_none_or(
-        |adaptation| matches!(adaptation, Adaptation::RandomSearch(search) if search.tunes == "k_t"),
+        |adaptation| matches!(adaptation, Adaptation::RandomSearch(search) if search.tunes == "k_t" && search.objective.is_default()),
     );
     let duration = scenario.duration.seconds();
     let modes = model.modes.iter().chain(watched(scenario));

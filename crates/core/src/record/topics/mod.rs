@@ -12,7 +12,8 @@ use crate::label::Labels;
 
 pub use one_angle::{
     Adaptation, Arrival, Attitude, Command, Envelope, Estimate, GoalMotion, Law, ModeEnvelope, ModeEstimate,
-    ModeMotion, Modes, OutputMotion, Outputs, Rate, Residual, Torque, Trigger, WheelMotion, WindowMean,
+    ModeMotion, Modes, Objective, OutputMotion, Outputs, Rate, Residual, Torque, Trigger, WheelMotion,
+    WindowMean,
 };
 pub use run::{FaultEvent, Metric, MetricLine, MetricPage, Metrics, OutputName, Params, Summary};
 pub use three_axes::{

@@ -164,13 +164,26 @@ rows! {
         /// The law's tunable parameter during the window (k_t of the relay law).
         gain: f64,
     }
+    /// The objective of the adaptation over the last window, unless that is the mean envelope.
+    Objective = "/objective" {
+        /// Number of the window, from 0.
+        window: u64,
+        /// Start of the window (s).
+        from_s: f64,
+        /// End of the window (s).
+        to_s: f64,
+        /// Value over the window, in the unit of the objective.
+        value: f64,
+        /// Tuned parameter during the window.
+        gain: f64,
+    }
     /// A step of the adaptation, taken at the end of a window.
     Adaptation = "/adaptation" {
         /// Number of the window that ended, from 0.
         window: u64,
         /// Decision.
         decision: Decision,
-        /// Change of the mean envelope relative to the previous window.
+        /// Change of the objective relative to the previous window.
         change: f64,
         /// Random part of the largest move, in [-1, 1].
         draw: f64,

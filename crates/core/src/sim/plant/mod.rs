@@ -124,6 +124,15 @@ impl Plant {
         }
     }
 
+    /// The modes as the monitor of the envelope takes them: those of one angle, or the rotations that those of three axes give the
+    /// first sensor.
+    pub fn swings(&self, target: &Orientation) -> Cow<'_, State> {
+        match self {
+            Self::Planar(_) => self.about(0, target),
+            Self::Spatial(plant) => Cow::Owned(plant.swings()),
+        }
+    }
+
     /// The motion about an axis, of three axes beyond a target, as if that axis were alone.
     pub fn about(&self, axis: usize, target: &Orientation) -> Cow<'_, State> {
         match self {

@@ -177,12 +177,52 @@ impl PlanarPlant {
         if let Motion::Lent(lent) = &mut self.motion { lent.departed() } else { None }
     }
 
+    /// Takes the motion apart from an instant to another, not before the first: what is observed, and the rigid angle.
+    pub fn measure(
+        &self,
+        [since, until]: [Instant; 2],
+        exerted: &Exerted,
+        mut take: impl FnMut(&Stretch, &Polynomial),
+    ) {
+        let first = since.max(self.departed).since(self.departed).seconds();
+        let _ = self.pieces(until, |series, h, length| {
+            let late = (first - h).max(0.0);
+            if late < length {
+                let whole = self.observed(series, (h, length), exerted);
+                let rigid = Polynomial::of(&series.coordinates[0], length);
+                let from = late / length;
+                if late > 0.0 {
+                    let part = Stretch {
+                        from: whole.from + late,
+                        length: length - late,
+                        angle: whole.angle.part(from, 1.0),
+                        applied: whole.applied.part(from, 1.0),
+                        ..whole
+                    };
+                    take(&part, &rigid.part(from, 1.0));
+                } else {
+                    take(&whole, &rigid);
+                }
+            }
+            Ok(())
+        });
+    }
+
     /// Takes the motion apart, from its departure to an instant.
     pub fn walk(
         &self,
         until: Instant,
         exerted: &Exerted,
         mut take: impl FnMut(&Stretch) -> Result<(), RecordError>,
+    ) -> Result<(), RecordError> {
+        self.pieces(until, |series, h, length| take(&self.observed(series, (h, length), exerted)))
+    }
+
+    /// The series of the motion from its departure to an instant, each with when it begins after it and how long it is (s).
+    fn pieces(
+        &self,
+        until: Instant,
+        mut take: impl FnMut(&Expansion, f64, f64) -> Result<(), RecordError>,
     ) -> Result<(), RecordError> {
         let span = until.since(self.departed).seconds();
         let mut unfolded = match &self.motion {
@@ -205,7 +245,7 @@ impl PlanarPlant {
             };
             // What does not move, or is no number, is one stretch.
             let next = if reach > 0.0 && h + reach > h { span.min(h + reach) } else { span };
-            take(&self.observed(&series, (h, next - h), exerted))?;
+            take(&series, h, next - h)?;
             h = next;
         }
         Ok(())

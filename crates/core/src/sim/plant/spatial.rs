@@ -15,6 +15,7 @@ use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 
 mod logged;
+mod swinging;
 
 /// A mode is seen by a sensor that it turns by at least such a part of what the mode does that turns it most.
 const VISIBLE: f64 = 0.1;

@@ -1,0 +1,107 @@
+//! The objectives of an adaptation: what it measures over each window, and makes smaller.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What is measured over each window.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Objective {
+    /// Mean of the envelope (rad), over the windows of the `[estimator.envelope]`.
+    #[default]
+    EnvelopeMean,
+    /// Mean distance from the goal (rad); on three axes the norm of the pointing error.
+    PointingErrorMean,
+    /// Root mean square of that distance (rad).
+    PointingErrorRms,
+    /// Largest such distance (rad).
+    PointingErrorPeak,
+    /// Root mean square of the rate beyond that of the goal (rad/s).
+    RateErrorRms,
+    /// Root mean square of the elastic part of the angle (rad); on three axes of the elastic rotation at the first sensor.
+    ElasticRms,
+    /// Mean absolute torque of the actuator (N m); on three axes the norm.
+    TorqueMean,
+    /// Number of switchings of the law, about all axes.
+    Switchings,
+    /// Number of pulses of thrusters or jets.
+    Firings,
+    /// Mean of the absolute mechanical power of all wheels (W).
+    WheelPowerMean,
+}
+
+impl Objective {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::EnvelopeMean,
+        Self::PointingErrorMean,
+        Self::PointingErrorRms,
+        Self::PointingErrorPeak,
+        Self::RateErrorRms,
+        Self::ElasticRms,
+        Self::TorqueMean,
+        Self::Switchings,
+        Self::Firings,
+        Self::WheelPowerMean,
+    ];
+
+    /// The one of a word in a scenario.
+    pub fn named(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|objective| objective.word() == word)
+    }
+
+    /// Whether it is the default.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The word for it in a scenario.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::EnvelopeMean => "envelope_mean",
+            Self::PointingErrorMean => "pointing_error_mean",
+            Self::PointingErrorRms => "pointing_error_rms",
+            Self::PointingErrorPeak => "pointing_error_peak",
+            Self::RateErrorRms => "rate_error_rms",
+            Self::ElasticRms => "elastic_rms",
+            Self::TorqueMean => "torque_mean",
+            Self::Switchings => "switchings",
+            Self::Firings => "firings",
+            Self::WheelPowerMean => "wheel_power_mean",
+        }
+    }
+
+    /// Its unit, where torques have this one.
+    pub fn unit(self, torque: &'static str) -> &'static str {
+        match self {
+            Self::EnvelopeMean
+            | Self::PointingErrorMean
+            | Self::PointingErrorRms
+            | Self::PointingErrorPeak
+            | Self::ElasticRms => "rad",
+            Self::RateErrorRms => "rad/s",
+            Self::TorqueMean => torque,
+            Self::Switchings | Self::Firings => "",
+            Self::WheelPowerMean => "W",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_those_of_scenarios() {
+        #[derive(Deserialize)]
+        struct Of {
+            objective: Objective,
+        }
+        for objective in Objective::ALL {
+            let text = format!("objective = \"{}\"", objective.word());
+            assert_eq!(crate::document::from_text::<Of>(&text).unwrap().objective, objective);
+            assert_eq!(Objective::named(objective.word()), Some(objective));
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! What an adaptation comes to: its objective over the windows, and the number that it tunes.
+
+use super::{
+    GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, Meaning, OBJECTIVE_FINAL, OBJECTIVE_INITIAL,
+    OBJECTIVE_LATE, OBJECTIVE_WINDOWS, Told, Value,
+};
+use crate::adaptation::{Decision, Objective};
+use crate::record::Sample;
+use crate::scenario::Scenario;
+use crate::time::Instant;
+
+/// The units of objectives, and what the metrics mean in each.
+static UNITS: [[Meaning; 4]; 6] =
+    [in_unit(""), in_unit("rad"), in_unit("rad/s"), in_unit("N m"), in_unit("rad/s²"), in_unit("W")];
+
+const fn in_unit(unit: &'static str) -> [Meaning; 4] {
+    [
+        Meaning { unit, ..OBJECTIVE_WINDOWS },
+        Meaning { unit, ..OBJECTIVE_INITIAL },
+        Meaning { unit, ..OBJECTIVE_LATE },
+        Meaning { unit, ..OBJECTIVE_FINAL },
+    ]
+}
+
+/// What the metrics of the objective mean in a scenario, if it has one other than the envelope.
+pub fn meanings(scenario: &Scenario) -> Option<&'static [Meaning; 4]> {
+    let objective = scenario.objective().filter(|objective| *objective != Objective::EnvelopeMean)?;
+    let unit = objective.unit(scenario.torque_unit());
+    UNITS.iter().find(|meanings| meanings[0].unit == unit)
+}
+
+/// Gathers the windows of an objective and the steps of the adaptation.
+#[derive(Clone, Debug)]
+pub struct Adapted {
+    /// Of an objective other than the envelope, its windows.
+    meanings: Option<&'static [Meaning; 4]>,
+    /// Whether the number that is tuned is told elsewhere.
+    gains: bool,
+    duration: f64,
+    /// When each window begins (s), and the objective over it.
+    windows: Vec<(f64, f64)>,
+    gain: [f64; 2],
+    frozen_at: f64,
+}
+
+impl Adapted {
+    /// An empty gathering for runs of a scenario with an adaptation.
+    pub fn new(scenario: &Scenario) -> Option<Self> {
+        let gain = scenario.tuned()?;
+        Some(Self {
+            meanings: meanings(scenario),
+            gains: scenario.axis_count() == 3 || !scenario.law.switches(),
+            duration: scenario.duration.seconds(),
+            windows: Vec::new(),
+            gain: [gain; 2],
+            frozen_at: f64::NAN,
+        })
+    }
+
+    /// Takes what happens.
+    pub fn see(&mut self, now: Instant, sample: Sample<'_>) {
+        match sample {
+            Sample::Objective(row) => self.windows.push((row.from_s, row.value)),
+            Sample::Adaptation(step) => {
+                self.gain[1] = step.gain;
+                if step.decision == Decision::Freeze {
+                    self.frozen_at = now.seconds();
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The metrics of the run that has ended.
+    pub fn finish(self) -> Vec<Told> {
+        let Self { windows, frozen_at, gain: [first, last], .. } = self;
+        let mut metrics: Vec<Told> = Vec::new();
+        if let Some([all, initial, late, end]) = self.meanings {
+            let begun_late: Vec<f64> =
+                windows.iter().filter(|(from, _)| *from >= 0.5 * self.duration).map(|(_, of)| *of).collect();
+            let value = |window: Option<&(f64, f64)>| Value::Number(window.map_or(f64::NAN, |(_, of)| *of));
+            metrics.extend([
+                (all, Value::Numbers(windows.iter().map(|(_, of)| *of).collect())),
+                (initial, value(windows.first())),
+                (late, Value::Number(begun_late.iter().sum::<f64>() / begun_late.len() as f64)),
+                (end, value(windows.last())),
+            ]);
+        }
+        let frozen = (&GAIN_FROZEN, Value::Number(if frozen_at.is_nan() { f64::NAN } else { last }));
+        if self.gains {
+            metrics.push((&GAIN_INITIAL, Value::Number(first)));
+            metrics.push((&GAIN_FINAL, Value::Number(last)));
+            metrics.push((&GAIN_FROZEN_AT, Value::Number(frozen_at)));
+            metrics.push(frozen);
+        } else if self.meanings.is_some() {
+            metrics.push(frozen);
+        }
+        metrics
+    }
+}

@@ -1,0 +1,106 @@
+//! What does not fit of an adaptation: the number that it tunes, and what it measures.
+
+use super::Scenario;
+use crate::actuator::Actuator;
+use crate::adaptation::{Adaptation, Objective};
+use crate::document::Fault;
+use crate::law::{Law, Tunable};
+use crate::quantity::Finite;
+
+impl Scenario {
+    pub(super) fn adaptation_inconsistency(&self) -> Option<Fault> {
+        let adaptation = self.adaptation.as_ref()?;
+        let tunable = self.law.tunable();
+        let at =
+            |key: &str, why: String| Some(Fault::new(format!("adaptation.{}{key}", adaptation.kind()), why));
+        let Some(number) = tunable.iter().find(|number| number.key == adaptation.tunes()) else {
+            let tunes = if tunable.is_empty() { "" } else { ".tunes" };
+            return at(tunes, self.untunable(adaptation.tunes(), &tunable));
+        };
+        if let Some((key, why)) = self.objective_fault(adaptation) {
+            return at(key, why);
+        }
+        let Adaptation::RandomSearch(search) = adaptation else { return None };
+        let [low, high] = search.bounds.map(Finite::get);
+        if low >= high {
+            return at(".bounds", format!("must be [low, high] in this order, got [{low}, {high}]"));
+        }
+        if let Some(why) = number.refuses([low, high]) {
+            return at(".bounds", why);
+        }
+        let value = number.value;
+        if !(low..=high).contains(&value) {
+            let why = format!("must lie within the adaptation's bounds [{low}, {high}], got {value}");
+            let place = if let Law::Stages(_) = self.law { "" } else { "." };
+            return Some(Fault::new(format!("law.{}{place}{}", self.law.kind(), search.tunes), why));
+        }
+        None
+    }
+
+    /// Why the law has no such number.
+    fn untunable(&self, tunes: &str, tunable: &[Tunable]) -> String {
+        let known: Vec<_> = tunable.iter().map(|number| format!("`{}`", number.key)).collect();
+        match (known.is_empty(), tunes) {
+            (true, "k_t") => "adapts the gain k_t of a law `relay`, and there is none".to_owned(),
+            (true, _) => format!("tunes a number of the law, and the law `{}` has none", self.law.kind()),
+            (false, tunes) => {
+                let (kind, known) = (self.law.kind(), known.join(" or "));
+                format!("must name a number of the law `{kind}`, {known}, got `{tunes}`")
+            }
+        }
+    }
+
+    /// Why the objective of an adaptation cannot be measured: a key within it, and the reason.
+    fn objective_fault(&self, adaptation: &Adaptation) -> Option<(&'static str, String)> {
+        let objective = adaptation.objective();
+        if objective == Objective::EnvelopeMean {
+            if self.estimator.as_ref().is_none_or(|estimator| estimator.envelope().is_none()) {
+                let why = "needs the window means of an `[estimator.envelope]`, and there is none: give it one, or another \
+                           `objective`";
+                return Some(("", why.to_owned()));
+            }
+            let why = "is that of the `[estimator.envelope]`: leave it out for the objective `envelope_mean`";
+            return adaptation.window().map(|_| (".window", why.to_owned()));
+        }
+        let word = objective.word();
+        if adaptation.window().is_none_or(|window| window == crate::time::Span::ZERO) {
+            return Some((".window", format!("must be given for the objective `{word}`")));
+        }
+        let why = match objective {
+            Objective::ElasticRms if self.mode_count() == 0 || self.chain.is_some() => {
+                "needs elastic modes, and the body has none"
+            }
+            Objective::WheelPowerMean if !self.spins() => {
+                "needs wheels whose speed is known: an `[actuator.wheels]`, or a wheel with a `rotor`"
+            }
+            Objective::Firings
+                if !matches!(self.actuator, Actuator::Thrusters(_)) && self.actuator.jets().is_none() =>
+            {
+                "counts pulses of thrusters or jets, and there are none"
+            }
+            Objective::Switchings if !(0..self.axis_count()).any(|axis| self.has_states(axis)) => {
+                "counts the switchings of a law `relay` or `phase_plane`, and there is none"
+            }
+            Objective::TorqueMean if matches!(self.actuator, Actuator::Magnetorquers(_)) => {
+                "is not known of magnetorquers, whose torque changes with the field"
+            }
+            _ => return None,
+        };
+        Some((".objective", format!("`{word}` {why}")))
+    }
+
+    /// Whether there are wheels whose speed is known.
+    fn spins(&self) -> bool {
+        match &self.actuator {
+            Actuator::Wheels(_) => true,
+            Actuator::Wheel(wheel) => wheel.rotor.is_some(),
+            _ => false,
+        }
+    }
+
+    /// Whether the law about an axis has states between which it switches.
+    fn has_states(&self, axis: usize) -> bool {
+        let law = self.law.about(axis);
+        law.switches() || matches!(law, Law::PhasePlane(_) | Law::Own(_))
+    }
+}
