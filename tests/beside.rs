@@ -28,8 +28,10 @@ fn taken(what: &str, scenario: &Scenario) -> usize {
     let runs = runs(scenario);
     let alone: Vec<String> =
         runs.iter().map(|run| format!("{:?}", Campaign::simulate(run, ()).map_err(|_| "failed"))).collect();
-    let jobs: Vec<Job<'_>> =
-        runs.iter().map(|run| Job { number: run.number, scenario: &run.scenario }).collect();
+    let jobs: Vec<Job<'_>> = runs
+        .iter()
+        .map(|run| Job { number: run.number, scenario: &run.scenario, selection: &Selection::ALL })
+        .collect();
     let mut widest = None;
     for processor in Processor::all() {
         let beside = batch::simulate_on(processor, &jobs);
@@ -157,6 +159,46 @@ fn rows_depend_on_no_thread_and_no_neighbour() {
         assert_eq!(alone.len(), 37);
         for threads in [1, 2, 8] {
             assert_eq!(rows(threads, true), alone, "{name} on {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn a_metric_does_not_depend_on_which_others_are_wanted() {
+    let quarter = ("duration", "3000.0");
+    for (name, changes) in [
+        ("relay-fixed", &[quarter][..]),
+        ("relay-adaptive", &[("duration", "9000.0")]),
+        ("relay-sampled", &[quarter]),
+        ("wheel-ekf", &[SHORT]),
+        ("wheel-slow-mode", &[SHORT]),
+        ("rotation-robust", &[]),
+        ("rotation-sine", &[]),
+        ("iss-manoeuvre", &[("duration", "300.0")]),
+        ("earth-observer", &[("duration", "60.0")]),
+    ] {
+        let study = Campaign::new(scenario(name, changes), "selected", None).expect("a campaign");
+        let study = Arc::new(study);
+        let told = |selection: &Selection| -> Vec<Vec<(&'static str, String)>> {
+            let wanted = selection.clone();
+            let work = move |run: &Run| Ok(Campaign::simulate_for(run, &wanted, ())?);
+            let mut rows = Vec::new();
+            let tell = |outcome: Option<Outcome>| -> Result<(), Infallible> {
+                rows.extend(outcome.map(|outcome| {
+                    let metrics = outcome.metrics.expect("a run").0.into_iter();
+                    metrics.map(|(meaning, value)| (meaning.name, format!("{value:?}"))).collect::<Vec<_>>()
+                }));
+                Ok(())
+            };
+            let Ok(()) = study.each_beside(0..3, 1, selection, work, tell);
+            rows
+        };
+        let all = told(&Selection::ALL);
+        for (at, (metric, _)) in all[0].iter().enumerate() {
+            let one = told(&Selection::of([metric]).expect("a metric"));
+            for (run, row) in one.iter().enumerate() {
+                assert_eq!(row[..], all[run][at..=at], "{name}: {metric} of run {run}");
+            }
         }
     }
 }

@@ -22,7 +22,7 @@ use toml::{Table, Value};
 
 use crate::document::{Document, ScenarioError, key};
 use crate::layout::Layout;
-use crate::metrics::{Gather, Metrics, Selection};
+use crate::metrics::{self, Gather, Metrics, Selection};
 use crate::record::{Attachment, Detail, OutputName, Provenance, Record};
 use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
@@ -183,6 +183,17 @@ impl Campaign {
         Ok(Run { number, scenario, drawn })
     }
 
+    /// A run of which nothing but some metrics is wanted: without a monitor of the envelope that only others need.
+    fn run_for(&self, number: u64, selection: &Selection) -> Result<Run, ScenarioError> {
+        let mut run = self.run(number)?;
+        let monitored =
+            run.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
+        if monitored && run.scenario.adaptation.is_none() && !selection.wants_any(metrics::OF_ENVELOPE) {
+            run.scenario.estimator = None;
+        }
+        Ok(run)
+    }
+
     /// Whether the manoeuvre is planned for the body before its keys are drawn.
     fn plans_first(&self) -> bool {
         let itself = self.scenario.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.model.is_none());
@@ -200,7 +211,7 @@ impl Campaign {
         selection: &Selection,
         record: impl Record,
     ) -> Result<Metrics, SimulationError> {
-        let mut both = (Gather::new(&run.scenario), record);
+        let mut both = (Gather::of(&run.scenario, selection), record);
         let mut simulation = Simulation::new(&run.scenario, run.number);
         if both.scene() {
             simulation.draw(&run.scenario);
@@ -210,9 +221,14 @@ impl Campaign {
     }
 
     /// What a run comes to; `work` simulates it.
-    pub(crate) fn outcome(&self, number: u64, work: impl Fn(&Run) -> Result<Metrics, RunError>) -> Outcome {
+    pub(crate) fn outcome(
+        &self,
+        number: u64,
+        selection: &Selection,
+        work: impl Fn(&Run) -> Result<Metrics, RunError>,
+    ) -> Outcome {
         let began = WallInstant::now();
-        let (drawn, metrics) = match self.run(number) {
+        let (drawn, metrics) = match self.run_for(number, selection) {
             Ok(run) => {
                 let metrics = work(&run);
                 (run.drawn, metrics)

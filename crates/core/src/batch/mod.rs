@@ -7,7 +7,7 @@ mod relay;
 mod sampled;
 
 use crate::lanes::Processor;
-use crate::metrics::Metrics;
+use crate::metrics::{Metrics, Selection};
 use crate::scenario::Scenario;
 
 /// A run to simulate, without a log.
@@ -17,6 +17,8 @@ pub struct Job<'a> {
     pub number: u64,
     /// What is simulated.
     pub scenario: &'a Scenario,
+    /// The metrics that are wanted; others may be wrong.
+    pub selection: &'a Selection,
 }
 
 /// A way to simulate runs of one structure side by side.

@@ -12,6 +12,7 @@ use crate::body::Lent;
 use crate::lanes::{Mask, Processor, Real, Work};
 use crate::law::Law;
 use crate::metrics::{Courses, Gather, Metrics, Passed};
+use crate::record::{Course, Record};
 use crate::scenario::Scenario;
 use crate::sim::{Exerted, Simulation};
 use crate::time::Instant;
@@ -44,7 +45,7 @@ impl Batch for Side {
             // What differs in nothing but its noises begins alike.
             let alike = jobs.iter().zip(&gathers).find(|(other, _)| other.scenario == job.scenario);
             let gather = alike.map(|(_, gather)| gather.clone());
-            gathers.push(gather.unwrap_or_else(|| Gather::new(job.scenario)));
+            gathers.push(gather.unwrap_or_else(|| Gather::of(job.scenario, job.selection)));
         }
         if gathers.iter_mut().any(|gather| gather.rotation().is_none()) {
             return vec![None; jobs.len()];
@@ -120,6 +121,7 @@ impl Work for Rounds<'_> {
         }
         let mut filters = filters::of(kind, runs);
         let mut courses = Courses::new(kind);
+        let wants_course = gathers.iter().any(|gather| gather.course() != Course::None);
         // Where the bodies are: angles and rates of all coordinates.
         let mut here = vec![zero; 2 * count];
         let mut rows = vec![[0.0; 16]; 2 * count];
@@ -177,26 +179,28 @@ impl Work for Rounds<'_> {
                 counts[lane] = (departs[lane] || run.is_whole) && spans[lane] > 0.0;
                 froms[lane] = before[lane].0.seconds();
             }
-            let load = |of: &dyn Fn(usize) -> f64| -> R {
-                let mut each = [0.0; 16];
-                for lane in 0..runs.len() {
-                    each[lane] = of(lane);
-                }
-                kind.load(&each)
-            };
-            courses.see(
-                gathers,
-                &Passed {
-                    from: kind.load(&froms),
-                    length: h,
-                    series: &motions.series,
-                    count,
-                    constant: load(&|lane| before[lane].1.constant),
-                    back_emf: (load(&|lane| before[lane].1.back_emf.0), before[0].1.back_emf.1),
-                    feedback: load(&|lane| before[lane].1.feedback),
-                    counts: &counts,
-                },
-            );
+            if wants_course {
+                let load = |of: &dyn Fn(usize) -> f64| -> R {
+                    let mut each = [0.0; 16];
+                    for lane in 0..runs.len() {
+                        each[lane] = of(lane);
+                    }
+                    kind.load(&each)
+                };
+                courses.see(
+                    gathers,
+                    &Passed {
+                        from: kind.load(&froms),
+                        length: h,
+                        series: &motions.series,
+                        count,
+                        constant: load(&|lane| before[lane].1.constant),
+                        back_emf: (load(&|lane| before[lane].1.back_emf.0), before[0].1.back_emf.1),
+                        feedback: load(&|lane| before[lane].1.feedback),
+                        counts: &counts,
+                    },
+                );
+            }
             // Those that depart do so from where they are.
             fresh = departs.iter().any(|departs| *departs);
             if fresh {

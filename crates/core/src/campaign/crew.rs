@@ -156,7 +156,7 @@ impl Campaign {
             let goes_on = if numbers.end - numbers.start > 1 {
                 self.beside(numbers, selection, work, &mut tell)
             } else {
-                tell(self.outcome(numbers.start, work))
+                tell(self.outcome(numbers.start, selection, work))
             };
             if !goes_on {
                 return;
@@ -174,10 +174,10 @@ impl Campaign {
         tell: &mut impl FnMut(Outcome) -> bool,
     ) -> bool {
         let began = Instant::now();
-        let runs: Vec<_> = numbers.map(|number| (number, self.run(number))).collect();
+        let runs: Vec<_> = numbers.map(|number| (number, self.run_for(number, selection))).collect();
         let whole = || runs.iter().filter_map(|(_, run)| run.as_ref().ok());
         let jobs: Vec<Job<'_>> =
-            whole().map(|run| Job { number: run.number, scenario: &run.scenario }).collect();
+            whole().map(|run| Job { number: run.number, scenario: &run.scenario, selection }).collect();
         let mut found = batch::simulate(&jobs).into_iter();
         // What they took together is told of each alike.
         let seconds = began.elapsed().as_secs_f64() / runs.len().max(1) as f64;

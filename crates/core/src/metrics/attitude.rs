@@ -1,9 +1,12 @@
 //! How well an attitude filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
-use super::{ATTITUDE_ERROR, BIAS_ERROR, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told, Value};
+use super::{ATTITUDE_ERROR, BIAS_ERROR, Meaning, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told, Value};
 use crate::record::{AttitudeEstimate, AxisEstimate, Use};
 use crate::scenario::Scenario;
 use crate::time::Instant;
+
+/// What it tells.
+pub(super) const TOLD: &[Meaning] = &[NEES_MEAN, NIS_MEAN, NIS_INSIDE, ATTITUDE_ERROR, BIAS_ERROR];
 
 /// Chi-square of three degrees of freedom lies between these with a probability of 95 %.
 const INSIDE: [f64; 2] = [0.215_795_282_623_897_85, 9.348_403_604_496_148];

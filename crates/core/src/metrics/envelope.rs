@@ -1,8 +1,11 @@
 //! The envelope over windows, of runs whose law is no relay of one angle.
 
-use super::{ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, REDUCTION, Told, Value, WINDOW_MEANS};
+use super::{ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, Meaning, REDUCTION, Told, Value, WINDOW_MEANS};
 use crate::record::WindowMean;
 use crate::scenario::Scenario;
+
+/// What it tells.
+pub const TOLD: &[Meaning] = &[WINDOW_MEANS, ENVELOPE_MEAN, ENVELOPE_LATE, ENVELOPE_FINAL, REDUCTION];
 
 /// Gathers the means of the envelope's windows.
 #[derive(Clone, Debug)]

@@ -1,12 +1,16 @@
 //! How well a Kalman filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
 use super::{
-    FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told,
-    Value,
+    FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, Meaning, NEES_MEAN, NIS_INSIDE,
+    NIS_MEAN, Told, Value,
 };
 use crate::record::{Estimate, Lock, Use};
 use crate::scenario::Scenario;
 use crate::time::Instant;
+
+/// What it tells.
+pub(super) const TOLD: &[Meaning] =
+    &[NEES_MEAN, NIS_MEAN, NIS_INSIDE, FREQUENCY_ERROR_RMS, FREQUENCY_ERROR_MAX, LOCK_LOST, LOCK_LOST_AT];
 
 /// Chi-square lies between these with a probability of 95 %, of one and of two degrees of freedom.
 const INSIDE: [[f64; 2]; 2] =

@@ -1,10 +1,12 @@
 //! Whether a run meets its goal: inside a band about it, without a break, up to the end.
 
-use super::{GOAL, GOAL_BAND, REQUIREMENT, TIME_OUTSIDE, Told, Value};
+use super::{GOAL, GOAL_BAND, Meaning, REQUIREMENT, TIME_OUTSIDE, Told, Value};
 use crate::numerics::polynomial::Polynomial;
 
 /// The goal is met if the run ends with so much of its time inside the band.
 const LAST: f64 = 0.1;
+/// What it tells of one angle.
+pub(super) const TOLD: &[Meaning] = &[GOAL, GOAL_BAND, TIME_OUTSIDE];
 /// The names of verdicts among the metrics.
 pub const NAMES: [&str; 2] = [GOAL.name, REQUIREMENT.name];
 /// What it says.

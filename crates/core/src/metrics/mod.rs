@@ -18,6 +18,7 @@ use crate::time::Instant;
 
 pub use record::measured::{Meaning, Metrics, Quantity, Told, Value};
 
+pub use envelope::TOLD as OF_ENVELOPE;
 pub use selection::Selection;
 
 use adapted::Adapted;
@@ -224,17 +225,22 @@ enum Kind {
 impl Gather {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
+        Self::of(scenario, &Selection::ALL)
+    }
+
+    /// The same for some of the metrics: what only the others need is not computed.
+    pub fn of(scenario: &Scenario, selection: &Selection) -> Self {
         let kind = if scenario.axis_count() == 3 {
             Kind::Spatial(Box::new(Spatial::new(scenario)))
         } else if scenario.law.switches() {
-            Kind::Switchings(Box::new(Switchings::new(scenario)))
+            Kind::Switchings(Box::new(Switchings::new(scenario, selection)))
         } else {
-            Kind::Rotation(Box::new(Rotation::new(scenario)))
+            Kind::Rotation(Box::new(Rotation::new(scenario, selection)))
         };
         Self {
             kind,
-            filter: Filter::new(scenario),
-            known: Known::new(scenario),
+            filter: Filter::new(scenario).filter(|_| selection.wants_any(filter::TOLD)),
+            known: Known::new(scenario).filter(|_| selection.wants_any(attitude::TOLD)),
             adapted: Adapted::new(scenario),
             windows: Windows::alone(scenario),
             tracked: Tracked::new(scenario),

@@ -4,12 +4,12 @@
 
 mod beside;
 
-use super::goal::Verdict;
+use super::goal::{self, Verdict};
 use super::{
-    ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, OUTPUT_RESIDUALS,
-    OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_ACCELERATION, PEAK_FEEDBACK, PEAK_FEEDBACK_ACCELERATION,
-    PEAK_OUTPUTS, PEAK_TORQUE, Quantity, RESIDUAL_ENERGY, RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME,
-    SPECTRAL_RADIUS, Told, Value,
+    ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, Meaning,
+    OUTPUT_RESIDUALS, OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_ACCELERATION, PEAK_FEEDBACK,
+    PEAK_FEEDBACK_ACCELERATION, PEAK_OUTPUTS, PEAK_TORQUE, Quantity, RESIDUAL_ENERGY,
+    RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME, SPECTRAL_RADIUS, Selection, Told, Value,
 };
 use crate::analysis::sampled_loop::{Held, Loop};
 use crate::law::{Goal, Law, Promise};
@@ -49,7 +49,22 @@ pub struct Rotation {
     /// Of a sampled loop, its spectral radius.
     radius: Option<f64>,
     outputs: Vec<Seen>,
+    /// Whether anything that the motion tells is wanted.
+    wants_course: bool,
 }
+
+/// What the motion tells.
+const OF_COURSE: &[Meaning] = &[
+    PEAK_TORQUE,
+    PEAK_FEEDBACK,
+    PEAK_OUTPUTS,
+    ANGLE_ERROR_PEAK,
+    SETTLING_TIME,
+    ITAE,
+    ANGLE_ERROR_LATE,
+    OUTPUT_SWINGS,
+    OUTPUT_SWINGS_LATE,
+];
 
 /// What is seen of an observed coordinate.
 #[derive(Clone, Debug)]
@@ -102,7 +117,7 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
 
 impl Rotation {
     /// An empty gathering for runs of a scenario.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &Scenario, selection: &Selection) -> Self {
         let (model, end) = (&scenario.model, scenario.duration.seconds());
         let seen =
             |unit: &String| Seen { unit: unit.clone(), peak: 0.0, after: Range::EMPTY, late: Range::EMPTY };
@@ -118,8 +133,11 @@ impl Rotation {
             error: (f64::NAN, f64::NAN),
             verdict: None,
             itae: (0.0, 0.0),
-            radius: matches!(scenario.law, Law::Pd(_)).then(|| spectral_radius(scenario)),
+            radius: matches!(scenario.law, Law::Pd(_)).then(|| {
+                if selection.wants_any(&[SPECTRAL_RADIUS]) { spectral_radius(scenario) } else { f64::NAN }
+            }),
             outputs: model.outputs.iter().map(|output| seen(&output.unit)).collect(),
+            wants_course: selection.wants_any(OF_COURSE) || selection.wants_any(goal::TOLD),
         }
     }
 
@@ -250,7 +268,7 @@ fn integral(value: &Polynomial, begins: f64, length: f64) -> f64 {
 
 impl Record for Rotation {
     fn course(&self) -> Course {
-        Course::All
+        if self.wants_course { Course::All } else { Course::None }
     }
 
     fn record(&mut self, _: Instant, sample: Sample<'_>) -> Result<(), RecordError> {

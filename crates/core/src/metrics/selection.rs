@@ -1,6 +1,6 @@
 //! Which metrics are wanted: all, or those that are named.
 
-use super::{ALL, Metrics};
+use super::{ALL, Meaning, Metrics};
 use crate::document::nearest;
 
 /// The metrics that a campaign's table has.
@@ -38,6 +38,11 @@ impl Selection {
     /// Whether a metric is wanted.
     pub fn wants(&self, name: &str) -> bool {
         self.0.as_ref().is_none_or(|names| names.contains(&name))
+    }
+
+    /// Whether any of some metrics is wanted.
+    pub fn wants_any(&self, metrics: &[Meaning]) -> bool {
+        metrics.iter().any(|meaning| self.wants(meaning.name))
     }
 
     /// The names of those that are wanted, unless all are.

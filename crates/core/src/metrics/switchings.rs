@@ -1,12 +1,12 @@
 //! What the switchings of a relay law come to: pushes, impulse, envelope, adaptation, limit cycle.
 
 use super::envelope::Windows;
-use super::goal::Verdict;
+use super::goal::{self, Verdict};
 use super::{
     CYCLE_DUTY, CYCLE_IMPULSE, CYCLE_KIND, CYCLE_MULTIPLIER_ARGUMENTS, CYCLE_MULTIPLIER_MAX,
     CYCLE_MULTIPLIERS, CYCLE_ORDER, CYCLE_PERIOD, CYCLE_REDUCED_IMPULSE, CYCLE_SYMMETRIC, DUTY,
     ENVELOPE_FROZEN, FROZEN_REDUCTION, GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, IMPULSE,
-    PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS, Told, Value,
+    Meaning, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS, Selection, Told, Value,
 };
 use crate::adaptation::Objective;
 use crate::analysis::cycle::CycleWatch;
@@ -38,11 +38,27 @@ pub struct Switchings {
     reduced: bool,
     goal: Goal,
     verdict: Verdict,
+    /// Whether the cycle and the verdict are wanted.
+    wants_cycle: bool,
+    wants_verdict: bool,
 }
+
+/// What the limit cycle comes to.
+const OF_CYCLE: &[Meaning] = &[
+    CYCLE_KIND,
+    CYCLE_PERIOD,
+    CYCLE_ORDER,
+    CYCLE_SYMMETRIC,
+    CYCLE_DUTY,
+    CYCLE_IMPULSE,
+    CYCLE_MULTIPLIERS,
+    CYCLE_MULTIPLIER_ARGUMENTS,
+    CYCLE_MULTIPLIER_MAX,
+];
 
 impl Switchings {
     /// An empty gathering for runs of a scenario.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &Scenario, selection: &Selection) -> Self {
         // The multipliers are those of modes that move on their own.
         let smooth = scenario.study.sampling.is_none() && scenario.linear.is_none();
         Self {
@@ -62,6 +78,8 @@ impl Switchings {
             reduced: scenario.model.commands_acceleration(),
             goal: scenario.goal(),
             verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
+            wants_cycle: selection.wants_any(OF_CYCLE),
+            wants_verdict: selection.wants_any(goal::TOLD),
         }
     }
 
@@ -142,6 +160,9 @@ fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<Told> {
 
 impl Record for Switchings {
     fn course(&self) -> Course {
+        if !self.wants_verdict {
+            return Course::None;
+        }
         // About a goal that is 0 from the start on, bounds of the angle show most motions to be inside.
         if self.goal == Goal::default() { Course::Beyond(self.verdict.band()) } else { Course::All }
     }
@@ -164,7 +185,9 @@ impl Record for Switchings {
             Sample::Switching(command, _) => {
                 self.count += 1;
                 self.enter(now, command.state, command.torque_nm);
-                self.cycle.record(now, sample)?;
+                if self.wants_cycle {
+                    self.cycle.record(now, sample)?;
+                }
             }
             Sample::Window(window) => {
                 self.windows.see(window);

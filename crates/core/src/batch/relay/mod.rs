@@ -21,7 +21,7 @@ use crate::motion::crossing::locate;
 use crate::motion::{self, State};
 use crate::numerics::trig::FARTHEST;
 use crate::random::Seed;
-use crate::record::{self, Command, Record, Sample, Trigger};
+use crate::record::{self, Command, Course, Record, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
@@ -184,7 +184,7 @@ impl Crew for Runs<'_> {
             if Self::structure(job.scenario) != Self::structure(self.jobs[0].scenario) {
                 continue;
             }
-            let mut gather = Gather::new(job.scenario);
+            let mut gather = Gather::of(job.scenario, job.selection);
             let row = record::Law { state: Phase::Start, torque_nm: law.weak.get(), gain: law.k_t.get() };
             if gather.record(Instant::START, Sample::Begin(&row)).is_err() {
                 continue;
@@ -270,7 +270,9 @@ impl Crew for Runs<'_> {
     }
 
     fn strays(&mut self, lane: usize, place: Place, from: &Sight, until: (u64, u64)) {
-        let Some(lane) = &mut self.lanes[lane] else { return };
+        let Some(lane) = self.lanes[lane].as_mut().filter(|lane| lane.gather.course() != Course::None) else {
+            return;
+        };
         lane.depart(place, from);
         let band = lane.scenario.promise().band(f64::NAN);
         let span: Span = instant(until).since(instant(from.at));

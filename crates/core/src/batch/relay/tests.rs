@@ -7,6 +7,7 @@ use crate::Scenario;
 use crate::batch::{Batch, Job};
 use crate::campaign::{Campaign, Run};
 use crate::lanes::Processor;
+use crate::metrics::Selection;
 
 fn shipped(name: &str, changes: &[(&str, String)]) -> Scenario {
     let path = format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -24,8 +25,11 @@ fn alone(number: u64, scenario: &Scenario) -> String {
 }
 
 fn compare(scenarios: &[Scenario], least: usize) {
-    let jobs: Vec<Job<'_>> =
-        scenarios.iter().zip(7..).map(|(scenario, number)| Job { number, scenario }).collect();
+    let jobs: Vec<Job<'_>> = scenarios
+        .iter()
+        .zip(7..)
+        .map(|(scenario, number)| Job { number, scenario, selection: &Selection::ALL })
+        .collect();
     assert!(scenarios.iter().all(|scenario| Side.takes(scenario)));
     let expected: Vec<String> = jobs.iter().map(|job| alone(job.number, job.scenario)).collect();
     for processor in Processor::all() {
