@@ -44,10 +44,12 @@ if TYPE_CHECKING:
     from flexsc.structure import (
         StateSpace,
         Structure,
+        appendage_from_matrices,
         appendage_from_nastran,
         from_csv,
         from_nastran,
         from_state_space,
+        read_matrices,
         write_scenario,
     )
 
@@ -81,6 +83,7 @@ __all__ = [
     "Table",
     "Topic",
     "__version__",
+    "appendage_from_matrices",
     "appendage_from_nastran",
     "campaign",
     "examples",
@@ -97,6 +100,7 @@ __all__ = [
     "plot",
     "read_campaign",
     "read_log",
+    "read_matrices",
     "relay_damping",
     "rigid_cycles",
     "robust_gains",
@@ -116,10 +120,12 @@ _LATER = {
     "Signal": "_linear",
     "StateSpace": "structure",
     "Structure": "structure",
+    "appendage_from_matrices": "structure",
     "appendage_from_nastran": "structure",
     "from_csv": "structure",
     "from_nastran": "structure",
     "from_state_space": "structure",
+    "read_matrices": "structure",
     "write_scenario": "structure",
 }
 
