@@ -72,7 +72,7 @@ impl Simulators {
     fn each(
         &mut self,
         py: Python<'_>,
-        on: impl Fn(usize, &mut Flight, &mut [f64], &Stop) + Send + Sync,
+        on: impl Fn(usize, &mut Flight, &mut [f64], &mut Stop) + Send + Sync,
     ) -> PyResult<Vec<f64>> {
         let (flights, width, pool) = (&mut self.flights, self.width, &self.pool);
         let mut rows = vec![0.0; flights.len() * width];
@@ -85,7 +85,7 @@ impl Simulators {
                     let each = flights.par_iter_mut().zip(rows.par_chunks_exact_mut(width));
                     each.with_min_len(TOGETHER)
                         .enumerate()
-                        .for_each(|(index, (flight, row))| on(index, flight, row, &asked));
+                        .for_each_with(asked, |asked, (index, (flight, row))| on(index, flight, row, asked));
                     // Nobody waits any more where Python raised.
                     let _ = done.send(());
                 });
@@ -189,7 +189,7 @@ impl Simulators {
         let rows = self.each(py, |index, flight, row, stop| {
             if mask.as_ref().is_none_or(|mask| mask[index]) {
                 let number = runs.as_ref().map_or(flight.number, |runs| runs[index]);
-                *flight = Flight::new(&campaign, number, &mut stop.clone());
+                *flight = Flight::new(&campaign, number, stop);
             }
             flight.go(row, |_| Ok(()));
         })?;
@@ -215,7 +215,7 @@ impl Simulators {
                 if let Some(values) = &values {
                     simulation.steer(commands(&values[index * axes..(index + 1) * axes]));
                 }
-                Ok(simulation.run_up_to(simulation.time() + span, &mut stop.clone())?)
+                Ok(simulation.run_up_to(simulation.time() + span, stop)?)
             });
         })?;
         rows.into_pyarray(py).reshape([self.flights.len(), self.width])

@@ -75,8 +75,14 @@ impl SpatialPlant {
         let around = study.around.clone();
         let two_way = flexible.map(|of| {
             let shapes = [&sensed[..], &hub];
-            let two_way =
-                TwoWay::new(body, of, around.clone(), study.moving.clone(), shapes, &study.bearings);
+            let two_way = TwoWay::new(
+                body,
+                of,
+                around.clone(),
+                study.moving.clone(),
+                shapes,
+                (&study.bearings, &study.common),
+            );
             Box::new(two_way.driven(study.drives.as_ref()))
         });
         let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
@@ -218,7 +224,6 @@ impl SpatialPlant {
 
     /// Begins a new motion at the instant seen last, under what acts from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
-        self.origin.clone_from(&self.state);
         self.departed = self.seen;
         if let Some(around) = &mut self.around {
             around.hold(wrench.moment);
@@ -228,6 +233,7 @@ impl SpatialPlant {
             two_way.show(&self.rigid, &mut self.state);
             return;
         }
+        self.origin.clone_from(&self.state);
         let sum = |of: fn(&Rotor) -> f64| -> Vector {
             wrench.rotors.iter().fold(Vector::zeros(), |sum, rotor| sum + rotor.axis * of(rotor))
         };
