@@ -43,7 +43,10 @@ impl DriftingModes {
     /// Begins a motion under constant modal forces (N/sqrt(kg)), from where the modes were seen last, at a time (s).
     pub fn depart(&mut self, now: f64, forces: &[f64]) {
         let forces = forces.iter().copied().chain(std::iter::repeat(0.0));
-        self.modes.iter_mut().zip(forces).for_each(|(mode, force)| mode.depart(now, force));
+        for (mode, force) in self.modes.iter_mut().zip(forces) {
+            mode.rest_hub();
+            mode.depart(now, force);
+        }
     }
 
     /// Brings the modes to `h` seconds after departure, not before a time gone to earlier. A phase holds q'/w, w at the start.
