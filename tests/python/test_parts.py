@@ -18,7 +18,7 @@ import flexsc
 import numpy as np
 import pytest
 from conftest import shipped
-from flexsc.parts import Event
+from flexsc.parts import Draws, Event
 from own import AlphaBeta, Descent, Encoder, Mekf, Notes, Pd, Relay, Servo, times, turn
 
 SMALL = """
@@ -130,6 +130,31 @@ def test_an_adaptation_in_python_tunes() -> None:
     # A law in Python is tuned as well.
     relay = Relay.of(shipped("relay-adaptive"))
     np.testing.assert_array_equal(scenario.with_parts(law=relay).simulate()["adaptation"]["gain"], gains)
+
+
+def test_an_adaptation_in_python_has_an_objective() -> None:
+    class Faster(flexsc.Adaptation):
+        tunes = "bandwidth"
+        objective = "pointing_error_rms"
+        window = 100.0
+
+        def start(self, value: float, draws: Draws) -> None:
+            self.value = value
+            self.measured: list[float] = []
+
+        def learn(self, time: float, measured: float) -> float:
+            self.value += 0.01
+            self.measured.append(measured)
+            return self.value
+
+    study = shipped("adaptive-bandwidth").with_("duration", 1000.0)
+    result = study.with_parts(adaptation=Faster()).simulate()
+    rows = result["objective"]
+    np.testing.assert_allclose(rows["gain"], 0.02 + 0.01 * np.arange(10))
+    assert rows["value"][-1] < 0.3 * rows["value"][0]
+    assert result.metrics["objective_final"] == rows["value"][-1]
+    with pytest.raises(ValueError, match="objective must be one of 'envelope_mean', "):
+        study.with_parts(adaptation=type("Odd", (Faster,), {"objective": "speed"})())
 
 
 class Wrong(flexsc.Law):

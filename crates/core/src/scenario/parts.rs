@@ -110,8 +110,9 @@ impl Scenario {
                 "is for bodies with one angle: one with three axes has `[[target]]`",
             );
         }
-        if self.drift.is_some() {
-            return refused("drift", "is for bodies with one angle: the modes of three axes keep theirs");
+        if self.drift.is_some() && self.body.craft().is_some() {
+            let why = "is of modes that are given: those of a `[spacecraft]` follow from its appendages, which a `drive` may turn";
+            return refused("drift", why);
         }
         for (index, disturbance) in self.disturbance.iter().enumerate() {
             if let Some(fault) = disturbance.three_axes_fault() {

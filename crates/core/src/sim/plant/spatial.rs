@@ -5,7 +5,7 @@ use nalgebra::Quaternion;
 use super::two_way::{Mount, TwoWay};
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
-use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
+use crate::body::spatial::{DriftingModes, Elastic, Periodic, Rigid, SpatialState};
 use crate::environment::{Around, Seen};
 use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
 use crate::motion::{Phase, State};
@@ -31,6 +31,8 @@ pub struct SpatialPlant {
     around: Option<Around>,
     disturbance: Option<Periodic>,
     elastic: Elastic,
+    /// The modes, where their frequencies drift.
+    drifting: Option<DriftingModes>,
     /// Rotations of the modes at the first sensor, and where torques act.
     sensed: Vec<Vector>,
     hub: Vec<Vector>,
@@ -91,6 +93,7 @@ impl SpatialPlant {
             around,
             disturbance: body.disturbance.clone(),
             elastic: Elastic::new(body, study.tick.seconds()),
+            drifting: None,
             visible: sensed.iter().map(|rotation| rotation.norm() >= VISIBLE * most).collect(),
             sensed,
             hub,
@@ -124,6 +127,7 @@ impl SpatialPlant {
             self.go(self.departed + longest, record)?;
             self.origin.clone_from(&self.state);
             self.departed = self.seen;
+            self.drift_on();
         }
         self.go(now, record)
     }
@@ -149,8 +153,12 @@ impl SpatialPlant {
                 turn.clone_from(&self.origin.turn);
                 let around = self.around.as_ref().map(|around| around as &dyn Surroundings);
                 self.rigid.advance(turn, &self.torque, rotors, around, (began, h), || record.poll())?;
-                self.state.modes.clone_from(&self.origin.modes);
-                self.elastic.advance(&mut self.state.modes, &self.forces, h);
+                if let Some(drifting) = &mut self.drifting {
+                    drifting.go(h, &mut self.state.modes);
+                } else {
+                    self.state.modes.clone_from(&self.origin.modes);
+                    self.elastic.advance(&mut self.state.modes, &self.forces, h);
+                }
             }
             self.seen = met.unwrap_or(now);
             self.truth = None;
@@ -248,6 +256,7 @@ impl SpatialPlant {
             self.forces.resize(self.hub.len(), 0.0);
             self.forces.iter_mut().zip(&self.hub).for_each(|(force, shape)| *force += shape.dot(&hub));
         }
+        self.drift_on();
     }
 
     /// Momentum of the rotors of a body whose modes do not act back (N m s), and its rate (N m).
@@ -340,7 +349,10 @@ impl SpatialPlant {
     fn energies(&self) -> Vec<f64> {
         match self.two_way.as_deref() {
             Some(two_way) if two_way.modes().is_some() => two_way.modal_energies().collect(),
-            _ => self.elastic.energies(&self.state.modes).collect(),
+            _ => match &self.drifting {
+                Some(drifting) => drifting.energies(self.seen.seconds(), &self.state.modes),
+                None => self.elastic.energies(&self.state.modes).collect(),
+            },
         }
     }
 
