@@ -1,6 +1,7 @@
 """Modes of three axes whose frequencies drift, by SciPy (DOP853, 1e-13) under a constant torque.
 
-For tests/drifting_axes.rs: prints `time, mode, displacement, rate` of q'' + 2 zeta w r q' + w² r² q = phi . M.
+For tests/drifting_axes.rs: prints `time, mode, displacement, rate` of
+q'' + 2 zeta w r q' + w² r² q = phi . M.
 
     python3 drifting_oracle.py > drifting_axes.csv
 """
