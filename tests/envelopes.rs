@@ -3,7 +3,7 @@
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
-use crate::study::close;
+use crate::study::{close, nested};
 
 const BODY: &str = "[body.spatial]
 inertia = [[100.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 60.0]]
@@ -91,8 +91,8 @@ fn the_envelope_is_that_of_the_logged_modes() {
             .iter()
             .enumerate()
     {
-        let [q, rate] = ["displacement", "rate"]
-            .map(|name| column(&trace, "/vibrations", &format!("modes[{mode}].{name}")));
+        let [q, rate] =
+            ["displacement", "rate"].map(|name| nested(&trace, "/vibrations", ["modes", name], (mode, 2)));
         let (decay, damped) = (zeta * w, w * f64::sqrt(1.0 - zeta * zeta));
         for (sum, (q, rate)) in sums.iter_mut().zip(q.iter().zip(&rate)) {
             *sum += rotation * q.hypot((rate + decay * q) / damped);
