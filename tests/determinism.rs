@@ -43,7 +43,7 @@ fn runs_repeat_to_the_last_bit() {
     let runs = [
         ("relay-adaptive", "", "/command", 0x4886_7bcb_5000_12ea),
         ("relay-adaptive", "", "/adaptation", 0xb22e_04cb_1fc7_5d23),
-        ("adaptive-bandwidth", "", "/objective", 0),
+        ("adaptive-bandwidth", "", "/objective", 0xeb61_fb4a_dc4d_ee0d),
         ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),

@@ -1,8 +1,10 @@
 //! Modes of three axes whose frequencies drift: against SciPy, in the log, and with filters.
 
-use flexsc_core::record::{Column, Detail, Trace};
+use flexsc_core::record::{Detail, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
+
+use crate::study::nested;
 
 const BODY: &str = "[body.spatial]
 inertia = [[100.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 60.0]]
@@ -53,16 +55,17 @@ fn energies_and_filters_know_the_drift() {
                    estimator = { extended_kalman = { angle_noise = 1e-6 } }\nlog.period = 0.2";
     let mut trace = Trace::new(Detail::Full);
     Simulation::new(&scenario(law, sensors), 0).run(&mut trace).expect("a run");
-    let column = |topic: &str, name: &str| match trace.topic(topic).and_then(|rows| rows.get(name)) {
-        Some(Column::Numbers(values)) => values.clone(),
-        _ => panic!("{topic}.{name}"),
+    let last = |topic: &str, names: [&str; 2], place: (usize, usize)| {
+        *nested(&trace, topic, names, place).last().expect("a row")
     };
-    let last = |topic: &str, name: &str| *column(topic, name).last().expect("a row");
     // At the end the second mode has 0.6 of its frequency.
-    let (q, rate) = (last("/vibrations", "modes[1].displacement"), last("/vibrations", "modes[1].rate"));
+    let (q, rate) = (
+        last("/vibrations", ["modes", "displacement"], (1, 2)),
+        last("/vibrations", ["modes", "rate"], (1, 2)),
+    );
     let energy = 0.5 * (rate * rate + 1.5 * 1.5 * q * q);
-    assert!((last("/vibrations", "modes[1].energy_j") / energy - 1.0).abs() < 1e-12);
-    let dominant = last("/estimators", "axes[1].true_frequency_rad_s");
+    assert!((last("/vibrations", ["modes", "energy_j"], (1, 2)) / energy - 1.0).abs() < 1e-12);
+    let dominant = last("/estimators", ["axes", "true_frequency_rad_s"], (1, 3));
     assert!((dominant - 1.5).abs() < 1e-12, "{dominant}");
 }
 

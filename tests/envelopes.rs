@@ -3,7 +3,7 @@
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
-use crate::study::close;
+use crate::study::{close, nested};
 
 const BODY: &str = "[body.spatial]
 inertia = [[100.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 60.0]]
@@ -58,7 +58,7 @@ fn a_mode_that_rings_down_has_the_envelope_of_its_closed_form() {
         assert_eq!(found.len(), 8);
         for (window, mean) in found.into_iter().enumerate() {
             let from = 7.0 * window as f64;
-            let of = |t: f64| libm::exp(-0.01 * t);
+            let of = |t: f64| (-0.01 * t).exp();
             close(mean, 2e-4 * 0.05 * (of(from) - of(from + 7.0)) / (0.01 * 7.0), 1e-9);
         }
     }
@@ -87,15 +87,15 @@ fn the_envelope_is_that_of_the_logged_modes() {
     let trace = run(BODY, PD, rest);
     let mut sums = vec![0.0; 6000];
     for (mode, (w, zeta, rotation)) in
-        [(1.0, 0.01, 0.05), (2.5, 0.004, libm::sqrt(0.01 * 0.01 + 0.04 * 0.04 + 0.03 * 0.03))]
+        [(1.0, 0.01, 0.05), (2.5, 0.004, (0.01_f64 * 0.01 + 0.04 * 0.04 + 0.03 * 0.03).sqrt())]
             .iter()
             .enumerate()
     {
-        let [q, rate] = ["displacement", "rate"]
-            .map(|name| column(&trace, "/vibrations", &format!("modes[{mode}].{name}")));
-        let (decay, damped) = (zeta * w, w * libm::sqrt(1.0 - zeta * zeta));
+        let [q, rate] =
+            ["displacement", "rate"].map(|name| nested(&trace, "/vibrations", ["modes", name], (mode, 2)));
+        let (decay, damped) = (zeta * w, w * f64::sqrt(1.0 - zeta * zeta));
         for (sum, (q, rate)) in sums.iter_mut().zip(q.iter().zip(&rate)) {
-            *sum += rotation * libm::hypot(*q, (rate + decay * q) / damped);
+            *sum += rotation * q.hypot((rate + decay * q) / damped);
         }
     }
     let logged = column(&trace, "/envelope", "envelope_rad");

@@ -1,5 +1,7 @@
-"""Modes of three axes whose frequencies drift, integrated by SciPy (DOP853, 1e-13) under a constant torque, for
-tests/drifting_axes.rs: prints `time, mode, displacement, rate` of q'' + 2 zeta w r q' + w² r² q = phi . M.
+"""Modes of three axes whose frequencies drift, by SciPy (DOP853, 1e-13) under a constant torque.
+
+For tests/drifting_axes.rs: prints `time, mode, displacement, rate` of
+q'' + 2 zeta w r q' + w² r² q = phi . M.
 
     python3 drifting_oracle.py > drifting_axes.csv
 """
@@ -7,7 +9,7 @@ tests/drifting_axes.rs: prints `time, mode, displacement, rate` of q'' + 2 zeta 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-# Frequency (rad/s), damping ratio, displacement and rate at the start, phi . M of the torque (0, 0.01, 0.02) N m.
+# Frequency (rad/s), damping ratio, displacement and rate at the start, phi . M of (0, 0.01, 0.02) N m.
 MODES = [
     (1.0, 0.01, 2e-4, -1e-5, 0.02 * 0.04),
     (2.5, 0.004, 0.0, 3e-4, 0.01 * 0.04 - 0.02 * 0.03),
@@ -27,6 +29,7 @@ def ratio(mode, t):
 def main():
     times = [7.3, 25.0, 41.0, 60.0]
     for mode, (w, zeta, x, v, force) in enumerate(MODES):
+
         def slope(t, z, w=w, zeta=zeta, force=force, mode=mode):
             wt = w * ratio(mode, t)
             return [z[1], force - 2.0 * zeta * wt * z[1] - wt * wt * z[0]]

@@ -1,8 +1,9 @@
-"""Objectives of an adaptation over its windows, apart from flexsc: SciPy's matrix exponential, quadrature.
+"""Objectives of an adaptation over its windows, by SciPy's matrix exponential and quadrature.
 
-A body with one mode and a PD law through a wheel; after each window the gain k_p grows by a tenth. The
-motion between two samples is linear; the integrals are by Gauss-Legendre quadrature between the zeros of
-what they integrate. python3 objective_oracle.py # prints objective.csv: window, objective, value
+A body with one mode and a PD law through a wheel; after each window the gain k_p grows by a tenth. The motion
+between two samples is linear; integrals are by Gauss-Legendre quadrature between the zeros of the integrand.
+
+    python3 objective_oracle.py      # prints objective.csv: window, objective, value
 """
 
 from itertools import pairwise

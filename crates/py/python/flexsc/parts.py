@@ -291,11 +291,11 @@ class Adaptation(_Part):
     """
 
     tunes: str
-    """The parameter of the law, by its key within the law's table; of your own law, one of its `tunable`."""
+    """The parameter, by its key within the law's table; of a law of your own, one of its `tunable`."""
     objective: str = "envelope_mean"
     """What is measured over each window, as `objective` of `[adaptation.random_search]`."""
     window: float | None = None
-    """Length of the windows (s); None for `envelope_mean`, with the windows of `[estimator.envelope]`."""
+    """Length of the windows (s); None for `envelope_mean`, which has those of the `[estimator.envelope]`."""
 
     def start(self, value: float, draws: Draws) -> None:
         """Start a run with the initial value of the parameter."""

@@ -9,7 +9,7 @@ use crate::body::spatial::{DriftingModes, Elastic, Periodic, Rigid, SpatialState
 use crate::environment::{Around, Seen};
 use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
 use crate::motion::{Phase, State};
-use crate::record::{Energy, Pointing, Position, Record, RecordError, Vibration, Vibrations};
+use crate::record::{Energy, Pointing, Position, Record, RecordError};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
@@ -372,18 +372,6 @@ impl SpatialPlant {
     pub fn position(&self) -> Option<Position> {
         let [at, speed] = self.two_way.as_deref()?.place()?;
         Some(Position { x_m: at.x, y_m: at.y, z_m: at.z, x_m_s: speed.x, y_m_s: speed.y, z_m_s: speed.z })
-    }
-
-    /// The modes, as logged.
-    pub fn vibrations(&self) -> Vibrations {
-        let modes = &self.state.modes;
-        let rates = self.elastic.rates(modes).zip(self.energies());
-        let of = |(phase, (rate, energy_j)): (&Phase, (f64, f64))| Vibration {
-            displacement: phase.displacement,
-            rate,
-            energy_j,
-        };
-        Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
     }
 
     /// The attitude, as logged, with the angles by which it is beyond its target (rad).
