@@ -55,6 +55,7 @@ fn runs_repeat_to_the_last_bit() {
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
     ];
+    let mut others = Vec::new();
     for (name, runs, topic, expected) in runs {
         let dir = Dir::with(&[name]);
         dir.run(&format!("simulate {name}.toml --log events{runs}")).exits(0);
@@ -64,6 +65,9 @@ fn runs_repeat_to_the_last_bit() {
             _ => dir.run(&format!("export {log} --topic {topic}")).exits(0).prints(&[]),
         };
         let found = fingerprint(&table);
-        assert_eq!(found, expected, "{name}{runs} {topic}: {found:#018x}");
+        if found != expected {
+            others.push(format!("{name}{runs} {topic}: {found:#018x}"));
+        }
     }
+    assert!(others.is_empty(), "{others:#?}");
 }
