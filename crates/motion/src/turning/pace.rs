@@ -268,4 +268,28 @@ mod tests {
         let pose = Pose { rate: 1e-3, carried: 1e-3, acceleration: 0.0, amplitudes: Some(&[]) };
         assert!(pace.length(pace.level(pose)) * 1e-3 <= TURN);
     }
+
+    #[test]
+    fn what_damping_ends_makes_unresolved_steps_no_shorter() {
+        let turns = |damping: f64| {
+            let mode = |frequency: f64| FreeMode {
+                frequency,
+                damping,
+                rotation: Vector::new(0.04, 0.0, 0.0),
+                moments: Matrix3::from_diagonal_element(10.0),
+            };
+            let inertia = Matrix3::from_diagonal_element(300.0);
+            let body = Flexible { inertia, modes: vec![mode(1.0), mode(90.0)], damping: None };
+            turning(&Model::new(&body))
+        };
+        for (undamped, damped) in turns(0.0).iter().zip(turns(0.005)) {
+            assert_eq!((undamped.turned, undamped.turned), (undamped.unresolved, damped.turned));
+        }
+        // phi m/W of the slow mode, whose swing ends within 100 s of 1e4 s.
+        let (alone, moments) = (0.04, 10.0 * libm::sqrt(3.0));
+        let coupled = 0.04 * 90.0 * 0.04 * moments * (0.01 + 1e-2 / 90.0 / 90.0);
+        let sum = alone + coupled + moments * libm::sqrt(3.0) / 300.0;
+        let found = turns(0.005)[1].unresolved;
+        assert!((found - sum).abs() < 1e-6 * sum, "{found} {sum}");
+    }
 }
