@@ -83,7 +83,7 @@ impl Instant {
     }
 
     /// The instant of whole seconds and femtoseconds past them, less than a second.
-    pub(crate) fn of_parts(whole: u64, part: u64) -> Self {
+    pub fn of_parts(whole: u64, part: u64) -> Self {
         Self(Ticks { whole: whole as i64, part: part as i64 })
     }
 
