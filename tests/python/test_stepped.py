@@ -3,6 +3,7 @@
 import doctest
 import pickle
 from pathlib import Path
+from typing import Any
 
 import flexsc
 import flexsc.plot
@@ -31,7 +32,11 @@ def flown(name: str) -> flexsc.Scenario:
 def same_metrics(one: flexsc.Metrics, other: flexsc.Metrics) -> None:
     assert one.keys() == other.keys()
     for name, value in one.items():
-        np.testing.assert_array_equal(value, other[name], name)
+        if isinstance(value, float | np.ndarray):
+            # A sum over the last piece of a motion may round elsewhere where the run is cut.
+            np.testing.assert_allclose(value, other[name], rtol=1e-14, err_msg=name)
+        else:
+            assert value == other[name], name
 
 
 @pytest.mark.parametrize("name", FLOWN)
@@ -58,11 +63,11 @@ def test_without_commands_the_log_has_the_bytes_of_the_run(name: str, tmp_path: 
 def test_the_log_is_that_of_the_command(tmp_path: Path, command: Command) -> None:
     scenario = flown("earth-observer").with_("seed", 5)
     (tmp_path / "earth.toml").write_text(scenario.to_toml())
-    command("simulate", "earth.toml", "--log", "full", "--out", "earth.mcap")
+    command("simulate", "earth.toml", "--log", "full", "--out", "out")
     sim = Simulator(flexsc.Scenario.load(tmp_path / "earth.toml"))
     sim.run_until(scenario.duration)
     sim.to_mcap(tmp_path / "steps.mcap", "full")
-    assert (tmp_path / "steps.mcap").read_bytes() == (tmp_path / "earth.mcap").read_bytes()
+    assert (tmp_path / "steps.mcap").read_bytes() == next((tmp_path / "out").glob("*.mcap")).read_bytes()
 
 
 @pytest.mark.parametrize("name", FLOWN)
@@ -96,6 +101,12 @@ def test_a_commanded_run_is_sampled_at_any_instant() -> None:
     assert scenario.simulate(log="none").at(4.62)["rate"]["rate_rad_s"] != seen[-1][2]
 
 
+def longest(source: flexsc.Result | flexsc.Log, figure: str) -> Any:
+    """The line with the most points."""
+    lines = flexsc.plot.figure(source, figure).axes[0].lines
+    return max((np.asarray(line.get_xydata()) for line in lines), key=len)
+
+
 def test_the_log_of_a_commanded_run_repeats_it(tmp_path: Path) -> None:
     for name, figure in (("relay-fixed", "angle"), ("four-clamped-modes", "pointing")):
         sim = commanded(shipped(name).with_("duration", 20.0))
@@ -104,10 +115,10 @@ def test_the_log_of_a_commanded_run_repeats_it(tmp_path: Path) -> None:
         events, full = (flexsc.read_log(tmp_path / f"{kind}.mcap") for kind in ("events", "full"))
         assert events.metadata["end"] == "interrupted"
         # Figures of a log of events repeat the run, under its commands.
-        drawn = [flexsc.plot.figure(log, figure).axes[0].lines[0].get_xydata() for log in (events, full)]
+        drawn = [longest(log, figure) for log in (events, full)]
         assert drawn[0][-1] == pytest.approx(drawn[1][-1], rel=1e-6)
         plain = shipped(name).with_("duration", sim.time).simulate()
-        alone = flexsc.plot.figure(plain, figure).axes[0].lines[0].get_xydata()
+        alone = longest(plain, figure)
         assert drawn[0][-1] != pytest.approx(alone[-1], rel=1e-3)
 
 

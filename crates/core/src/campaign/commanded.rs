@@ -144,3 +144,50 @@ impl Commanded {
         Some(all)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::time::Span;
+
+    const TEXT: &str = "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0";
+
+    fn at(seconds: f64) -> Instant {
+        Instant::START + Span::from_seconds(seconds)
+    }
+
+    fn given() -> Commanded {
+        let mut given = Commanded::default();
+        given.push(at(1.0), [9.0, 0.0, 0.0]);
+        // One that was never executed is not kept.
+        given.push(at(1.0), [0.5, 0.0, 0.0]);
+        given.push(at(3.0), [-0.1, 0.0, 0.0]);
+        given
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        assert_eq!(Commanded::parse(&given().to_csv()), Some(given()));
+        assert_eq!(Commanded::parse(&Commanded::default().to_csv()), Some(Commanded::default()));
+        for wrong in
+            ["", "1,2,3,4,5", "1,0,0,0", "1,0,0,0,inf", "2,0,0,0,0\n1,0,0,0,0", "0,1000000000000000,0,0,0"]
+        {
+            assert_eq!(Commanded::parse(&format!("{HEADER}\n{wrong}x")), None, "{wrong}");
+            assert_eq!(
+                Commanded::parse(&format!("{HEADER}\n{wrong}")).is_none(),
+                !wrong.is_empty(),
+                "{wrong}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_repeated_run_moves_as_it_was_commanded() {
+        let scenario = Scenario::parse("steered.toml", TEXT).expect("a scenario");
+        let mut simulation = Simulation::new(&scenario, 0);
+        given().run_until(&mut simulation, at(5.0), &mut ()).expect("a run");
+        // 0.5 N m on 2 kg m² for 2 s, then -0.1 N m for 2 s.
+        let rate = simulation.state().map(|state| state.rigid_rate);
+        assert!((rate.expect("one angle") - 0.4).abs() < 1e-15);
+    }
+}

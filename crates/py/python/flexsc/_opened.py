@@ -102,11 +102,12 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
         observer, push = estimator(told["estimators"], prefixes)
         inner, pushed = seen.then(observer), np.vstack([pushed, push])
     inner = inner.then(law)
-    pushed = np.vstack([pushed, np.zeros((len(law.a), count))]) * gain
+    pushed = np.vstack([pushed, np.zeros((len(law.a), count))])
     # What acts over the coming period: of torques that are late, those under way.
     by_state, by_input = _acting(plant, len(body.a), count, period, delay)
     inside, outside = len(plant.a), len(inner.a)
-    torque = plant.b * (gain if loop != "torque" else 1.0)
+    scale = gain if loop != "torque" else 1.0
+    torque, by_input = plant.b * scale, by_input * scale
     unit = body.inputs[0].unit if gain == 1.0 else f"{body.inputs[0].unit}/{gain:g}"
     known = pushed @ by_state
     if loop == "measurement":
@@ -115,9 +116,6 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
         out = np.hstack([plant.c, np.zeros((2 * count, outside))])
         signals = plant.outputs, plant.outputs
     else:
-        # What a filter knows is the command to the actuator; where torques are the input it is divided out.
-        pushed = pushed / (gain if loop == "torque" else 1.0)
-        known = pushed @ by_state
         whole = np.block([[plant.a, np.zeros((inside, outside))], [inner.b @ plant.c + known, inner.a]])
         into = np.vstack([torque, pushed @ by_input])
         out = np.hstack([inner.d @ plant.c, inner.c]) * (gain if loop == "torque" else 1.0)
