@@ -72,8 +72,8 @@ def test_the_poles_are_those_of_law_and_filter(feeds: str, loop: Any) -> None:
 
 @pytest.mark.parametrize("delay", [0.0, 0.5, 1.0])
 def test_the_loop_moves_as_the_simulated_one(delay: float) -> None:
-    # A filter that begins with the truth and knows the body stays with it, if it knows what acts, and when. Of delays
-    # that are no whole periods it takes the mean torque.
+    # A filter that begins with the truth and knows the body stays with it, if it knows what acts, and when.
+    # Of delays that are no whole periods it takes the mean torque.
     keys: dict[str, Any] = {}
     if delay > 0.0:
         keys = {"actuator": {"wheel": {"gain": 2.0, "delay": delay}}, "law.pd.k_p": 20.0, "law.pd.k_d": 125.0}

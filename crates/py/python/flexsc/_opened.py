@@ -88,12 +88,12 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
     seen = Block.gain(np.eye(2 * count))
     if _differs(name, keys, period):
         # Rates are differences of angles: the angles of the sample before are states.
-        each = np.eye(count)
+        each: Any = np.eye(count)
         seen = Block(
             np.zeros((count, count)),
-            np.kron(each, [[1.0, 0.0]]),
-            np.kron(each, [[0.0], [-1.0 / period]]),
-            np.kron(each, [[1.0, 0.0], [1.0 / period, 0.0]]),
+            np.kron(each, np.array([[1.0, 0.0]])),
+            np.kron(each, np.array([[0.0], [-1.0 / period]])),
+            np.kron(each, np.array([[1.0, 0.0], [1.0 / period, 0.0]])),
             [Signal(f"last_{name}", "rad") for name in names[::2]],
         )
     inner = seen
