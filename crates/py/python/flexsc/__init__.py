@@ -32,8 +32,11 @@ from flexsc._damping import identify, observer_margin, observer_region, persiste
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
-from flexsc._scenario import Log, Result, Samples, Scenario
-from flexsc._simulator import Quantities, Simulator, Simulators, Snapshot
+from flexsc._quantities import Quantities
+from flexsc._result import Log, Result, Samples
+from flexsc._scenario import Scenario
+from flexsc._simulator import Simulator, Snapshot
+from flexsc._simulators import Simulators
 from flexsc._topic import Topic
 from flexsc._units import Metrics
 from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor

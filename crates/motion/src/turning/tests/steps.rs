@@ -1,7 +1,7 @@
 //! How much steps lose: by the rule of their lengths, and by halving them.
 
 use super::*;
-use crate::motion::turning::Common;
+use crate::turning::Common;
 
 /// The step of the rule errs by less than 1e-10 rad in 1e4 s: against steps a quarter as long, over 200 s.
 #[test]
