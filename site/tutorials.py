@@ -19,14 +19,18 @@ def made(source: Path) -> dict[str, str | bytes]:
     notebook = jupytext.read(source)
     notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
     NotebookClient(
-        notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": source.parent}}
+        notebook,
+        timeout=300,
+        kernel_name="python3",
+        coalesce_streams=True,
+        resources={"metadata": {"path": source.parent}},
     ).execute()
     prefix = source.stem
     page, resources = MarkdownExporter().from_notebook_node(
         notebook, resources={"unique_key": prefix, "output_files_dir": f"{prefix}-figures"}
     )
     title, rest = page.split("\n", 1)
-    taken = f"\n[Take this page along as a notebook]({prefix}.ipynb){{ download }}\n"
+    taken = f"\n[Download this page as a notebook]({prefix}.ipynb){{ download }}\n"
     files: dict[str, str | bytes] = {
         f"{prefix}.md": f"{title}\n{taken}{rest}",
         f"{prefix}.ipynb": nbformat.writes(notebook),

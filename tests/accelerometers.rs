@@ -168,7 +168,7 @@ fn where_none_can_be_it_is_refused() {
         refused(&HUB_AND_MASS.replace("watch_only = true, period = 0.5, point = \"bench\"", "period = 0.5"));
     assert!(found.contains("accelerometer.watch_only` must be true"), "{found}");
     let found = refused(&HUB_AND_MASS.replace("    \"continuous\",\n", ""));
-    assert!(found.contains("is read by nothing: list a sensor of the body beside it"), "{found}");
+    assert!(found.contains("is not used by the law: list a sensor of the body beside it"), "{found}");
     let found = refused(&HUB_AND_MASS.replace("point = \"slider\"", "point = \"nowhere\""));
     assert!(found.contains("must be one of the body's points"), "{found}");
 }

@@ -33,7 +33,7 @@ const CASES: &[Case] = &[
     ("switch_off = 1.0", "switch_off = 1.0\n[estimator.rigid_rate]\ncorrection = 1.0", 19, &["`estimator.rigid_rate.correction`", "must be a number between 0 and 1, got 1"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[estimator.envelope]\nwindow = 1.0\nmodes = [{ frequency = 1.0, gain = 0.1 }]", 20, &["`estimator.envelope.modes` are those of one angle"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[[target]]\nfrom = 9\n[[target]]\nfrom = 5", 21, &["`target[1].from` must be later than the one before, got 5"]),
-    ("switch_off = 1.0", "switch_off = 1.0\n[manoeuvre]\nangle = 1.0\ntime = 10.0\ncommand = { bang_bang = {} }", 18, &["`manoeuvre` is for bodies with one angle", "one with three axes has `[[target]]`"]),
+    ("switch_off = 1.0", "switch_off = 1.0\n[manoeuvre]\nangle = 1.0\ntime = 10.0\ncommand = { bang_bang = {} }", 18, &["`manoeuvre` is for bodies with one angle", "use `[[target]]` for three axes"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[[disturbance]]\ntorque = 1.0", 18, &["`disturbance[0].about` must be given for a torque on a body with three axes: `roll`, `pitch` or `yaw`"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[drift.common]\nsinusoid = { amplitude = 0.5, period = 10.0 }", 19, &["`drift.common.sinusoid.amplitude` must be below 0.5"]),
     ("specific_impulse = 200.0", "specific_impulse = 0", 19, &["`actuator.jets.specific_impulse`", "must be a positive number, got 0"]),
@@ -80,7 +80,11 @@ fn parts_of_a_loop_fit_each_other() {
         (format!("{planar}{law}{gyro}"), "sensor.gyro.point", spatial),
         (format!("{planar}{law}{jets}"), "actuator.jets", spatial),
         (format!("{planar}{law}[[target]]\nfrom = 1.0"), "target", spatial),
-        (format!("{planar}{law}[[disturbance]]\nabout = \"yaw\""), "disturbance[0].about", "names an axis"),
+        (
+            format!("{planar}{law}[[disturbance]]\nabout = \"yaw\""),
+            "disturbance[0].about",
+            "names one of three axes",
+        ),
     ] {
         dir.write("bad.toml", text);
         dir.run("check bad.toml").exits(2).says(&[&format!("`{key}` {why}")]);

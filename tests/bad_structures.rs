@@ -63,7 +63,7 @@ const BAD: &[Case] = &[
     ("no stiffness", &[(3, "")], "[body.matrices]", &["`body.matrices`", "missing key `stiffness`"]),
     ("an unknown kind of file", &[(2, "mass = \"m.txt\"")], "\"m.txt\"", &["`body.matrices.mass` must be rows of numbers, or the path of a .csv, .mtx or .npz file", "m.txt"]),
     ("a missing file", &[(2, "mass = \"none.csv\"")], "\"none.csv\"", &["`body.matrices.mass` cannot be used", "none.csv: No such file"]),
-    ("words in a file", &[(2, "mass = \"words.csv\"")], "\"words.csv\"", &["words.csv: line 2: must have numbers parted by commas, got `x` in column 1"]),
+    ("words in a file", &[(2, "mass = \"words.csv\"")], "\"words.csv\"", &["words.csv: line 2: must have numbers separated by commas, got `x` in column 1"]),
     ("a short line in a file", &[(2, "mass = \"short.csv\"")], "\"short.csv\"", &["short.csv: line 2: must have 2 numbers, as the first row, got 1"]),
     ("infinity in a file", &[(2, "mass = \"infinite.csv\"")], "\"infinite.csv\"", &["`body.matrices.mass[0][1]` must be a finite number, got inf"]),
     ("no market", &[(2, "mass = \"words.mtx\"")], "\"words.mtx\"", &["words.mtx: line 1: must begin with `%%MatrixMarket matrix`"]),
@@ -75,7 +75,7 @@ const BAD: &[Case] = &[
     ("no sections", &[(1, "[body.panels]\nhub_inertia = 1\nroot = 1\nsections = []"), (2, ""), (3, ""), (4, "")], "[]", &["`body.panels.sections` must be 1 to 99, got 0"]),
     ("no panels", &[(1, "[body.panels]\nhub_inertia = 1\nroot = 1\ncount = 0\nsections = [{ length = 1, mass_per_length = 1, hinge_stiffness = 1 }]"), (2, ""), (3, ""), (4, "")], "0", &["`body.panels.count` must be 1 or more, got 0"]),
     ("a section without length", &[(1, "[body.panels]\nhub_inertia = 1\nroot = 1\nsections = [{ length = 0, mass_per_length = 1, hinge_stiffness = 1 }]"), (2, ""), (3, ""), (4, "")], "0", &["`body.panels.sections[0].length`", "must be a positive number, got 0"]),
-    ("sections far apart", &[(1, "[body.panels]\nhub_inertia = 1\nroot = 1\nsections = [{ length = 1, mass_per_length = 1, tip_mass = 1e308, hinge_stiffness = 1 }]"), (2, ""), (3, ""), (4, "")], "[{", &["`body.panels.sections` hold numbers too far apart"]),
+    ("sections far apart", &[(1, "[body.panels]\nhub_inertia = 1\nroot = 1\nsections = [{ length = 1, mass_per_length = 1, tip_mass = 1e308, hinge_stiffness = 1 }]"), (2, ""), (3, ""), (4, "")], "[{", &["`body.panels.sections` hold numbers that differ too much in size"]),
 ];
 
 #[test]

@@ -187,5 +187,5 @@ fn what_cannot_be_is_refused() {
     let error = parse(&format!("{both}{spatial}"));
     assert!(error.contains("sensor[1].tachometer") && error.contains("there are none"), "{error}");
     let error = parse(&format!("sensor = {{ tachometer = {{ period = 0.1 }} }}\n{spatial}{wheels}"));
-    assert!(error.contains("sensor.tachometer") && error.contains("wheels alone"), "{error}");
+    assert!(error.contains("sensor.tachometer") && error.contains("measures only wheels"), "{error}");
 }

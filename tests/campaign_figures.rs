@@ -223,9 +223,9 @@ fn bad_tables_are_named() {
     for (table, words) in [
         ("", "must be `run`, ..., `error`"),
         ("a,b\n1,2\n", "must be `run`, ..., `error`"),
-        (header, "there is no run in it"),
+        (header, "contains no runs"),
         (&format!("{header}x,1,2,\n"), "line 2: `run` must be the number of a run, got `x`"),
-        (&format!("{header}1,1\n"), "no table of a campaign"),
+        (&format!("{header}1,1\n"), "not the table of a campaign"),
         (&format!("{header}1,1,0.5,\n2,1,0.5,\n"), "no metric varies"),
     ] {
         dir.write("empty/runs.csv", table);
@@ -249,5 +249,5 @@ fn a_torn_log_is_left_out() {
     dir.run("plot c --what fan -o drawn").exits(2).says(&["torn.mcap"]);
     dir.run("plot c/relay-sampled-0.mcap --worst 2")
         .exits(2)
-        .says(&["--worst: ", "no directory of a campaign"]);
+        .says(&["--worst: ", "not the directory of a campaign"]);
 }

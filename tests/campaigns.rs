@@ -197,7 +197,7 @@ fn a_sweep_of_other_values_is_another_one() {
     std::fs::remove_file(dir.path("out/scenario.toml")).expect("there");
     dir.run(&format!("{vary}=0.3:0.4:5"))
         .exits(2)
-        .says(&["out/runs.csv", "exists, and its campaign is unknown"]);
+        .says(&["out/runs.csv", "exists, but its campaign is unknown"]);
 }
 
 #[test]
@@ -207,12 +207,12 @@ fn a_log_of_other_settings_is_not_replaced() {
     dir.run(run).exits(0);
     let before = dir.read("relay-fixed.mcap");
     for (other, why) in [
-        ("--set law.relay.k_t=0.32", "(`law.relay.k_t`: 0.31 there, 0.32 here)"),
+        ("--set law.relay.k_t=0.32", "(`law.relay.k_t`: 0.31 before, 0.32 now)"),
         ("--seed 5", "(`seed`: "),
         ("--set law.relay.k_t=0.32 --log full", "`law.relay.k_t`"),
     ] {
         let ran = dir.run(&format!("{run} {other}")).exits(2);
-        ran.says(&["error: relay-fixed.mcap: holds a run of other settings", why, "-o", "--force"]);
+        ran.says(&["error: relay-fixed.mcap: holds a run with other settings", why, "-o", "--force"]);
         assert_eq!(dir.names("."), ["relay-fixed.mcap", "relay-fixed.toml"]);
         assert_eq!(dir.read("relay-fixed.mcap"), before, "{other}");
     }
@@ -222,7 +222,7 @@ fn a_log_of_other_settings_is_not_replaced() {
     dir.run(&format!("{run} --set law.relay.k_t=0.32 -o out")).exits(0);
     dir.run(&format!("{run} --set law.relay.k_t=0.32 --force")).exits(0);
     dir.write("relay-fixed.mcap", "notes");
-    dir.run(run).exits(2).says(&["relay-fixed.mcap: is no log of flexsc"]);
+    dir.run(run).exits(2).says(&["relay-fixed.mcap: is not a log of flexsc"]);
     assert_eq!(dir.text("relay-fixed.mcap"), "notes");
     // Logs of a campaign, too.
     dir.write("u.toml", UNCERTAIN);
@@ -244,7 +244,7 @@ fn two_processes_do_not_share_a_table() {
         ("simulate u.toml --runs 3 --table csv -o out --force", "another process is writing it"),
         (
             "simulate u.toml --runs 3 --seed 8 --table csv -o out",
-            "another campaign (`seed`: 7 there, 8 here)",
+            "another campaign (`seed`: 7 before, 8 now)",
         ),
         ("simulate u.toml --runs 3:5 --seed 8 --table csv -o out", "another campaign"),
         ("sweep u.toml --vary duration=1:2:3 --table csv -o out", "another campaign"),

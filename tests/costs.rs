@@ -132,8 +132,8 @@ fn long_work_needs_a_yes() {
     let words = [
         "`sensor.sampled.period` makes 2.0e11 steps: about",
         "h on one core",
-        "needs a yes",
-        "hint: `--yes` does it all the same",
+        "must be confirmed",
+        "hint: `--yes` runs it anyway",
     ];
     refused(dir.run_bounded("simulate a.toml --log none"), &words);
     let told = dir.run_bounded("check a.toml").exits(0).says(&["accepted", words[0]]);
@@ -179,13 +179,13 @@ fn campaigns_and_grids_have_bounds() {
     );
     refused(
         dir.run_bounded("sweep b.toml --vary duration=1:1e10:10000"),
-        &["in each of 10000 runs", "needs a yes"],
+        &["in each of 10000 runs", "must be confirmed"],
     );
 
     let grid = "--frequency 0.1:1:100000";
     refused(
         dir.run_bounded(&format!("map a.toml {grid} --period 0.1:1:100000")),
-        &["the grid makes 1.0e10 steps", "needs a yes"],
+        &["the grid makes 1.0e10 steps", "must be confirmed"],
     );
     refused(
         dir.run_bounded("map a.toml --yes --frequency 0.1:1:3 --period 1e-15:1:3"),

@@ -133,20 +133,20 @@ fn what_does_not_go_with_coupled_damping_is_refused() {
     let two = "[[0.01,0.0],[0.0,0.01]]";
     let four = "[[0.01,0,0,0],[0,0,0,0],[0,0,0,0],[0,0,0,0]]";
     let cases = [
-        ("relay-fixed", two, "couples modes, which an `[estimator.envelope]` follows each on its own"),
+        ("relay-fixed", two, "couples modes, and an `[estimator.envelope]` treats each mode on its own"),
         ("relay-wheel", "[[0.01,0.0]]", "must have one row for each of 2 modes, got 1"),
         (
             "relay-wheel",
             "[[0.01,0.0],[0.0]]",
             "`body.planar.damping_matrix[1]` must have one number for each of 2 modes, got 1",
         ),
-        ("wheel-ekf", four, "`body.planar.damping_matrix` leaves no closed form of modes that drift"),
+        ("wheel-ekf", four, "`body.planar.damping_matrix` has no closed form for modes that drift"),
     ];
     for (name, matrix, words) in cases {
         let set = format!("body.planar.damping_matrix={matrix}");
         dir.run(&format!("simulate {name}.toml --set {set}")).exits(2).says(&[words]);
     }
-    dir.run("cycle relay-wheel.toml").exits(2).says(&["not by a wheel"]);
+    dir.run("cycle relay-wheel.toml").exits(2).says(&["not for a wheel"]);
 }
 
 /// Damping that is proportional, written as a matrix, is what ratios are.

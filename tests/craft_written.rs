@@ -113,7 +113,7 @@ const CASES: &[Case] = &[
     ("points = [{ name = \"tip\", position = [0.0, 4.0, 0.0] }]", "points = [{ name = \"tip\" }, { name = \"root\" }]", 13, &["`appendage[0].modes[0].shapes` must have a shape at each point, and `root` is missing"]),
     ("frequency = 2.0", "frequency = 0.0", 13, &["`appendage[0].modes[0].frequency`", "must be a natural frequency"]),
     ("[law.pd]", "[[appendage]]\nname = \"panel\"\nmass = 1\n[law.pd]", 16, &["`appendage[1].name` must differ from the other names, got `panel` again"]),
-    ("[law.pd]", "[body.planar]\n[law.pd]", 2, &["`spacecraft` is a body: leave out `body`, which is another"]),
+    ("[law.pd]", "[body.planar]\n[law.pd]", 2, &["`spacecraft` is itself a body: leave out `body`"]),
     ("modes = [", "plate = \"z\"\nmodes = [", 12, &["`appendage[0].plate`", "`x`"]),
 ];
 

@@ -128,19 +128,19 @@ fn what_does_not_go_with_drives_is_refused() {
         (("rate = 0.05,", "rate = 0.4,"), "`appendage[0].drive.rate` must be slower than 0.18"),
         (
             ("torque = 0.1\n", "torque = 0.1\nfriction = { coulomb = 0.01 }\n"),
-            "`actuator.wheels.friction` goes with",
+            "`actuator.wheels.friction` needs",
         ),
         (
             ("rate = 0.05, angle = 0.3", "track = \"sun\""),
             "`appendage[0].drive.track` follows `environment.sun`",
         ),
-        (("rate = 0.05, angle = 0.3", "angle = 0.3"), "`appendage[0].drive` says how it turns"),
+        (("rate = 0.05, angle = 0.3", "angle = 0.3"), "`appendage[0].drive` needs exactly one of"),
         (
             (
                 "[law.open]",
                 "[[sensor]]\ngyro = { period = 0.1 }\n[[sensor]]\naccelerometer = { period = 0.1, watch_only = true }\n[law.open]",
             ),
-            "goes with appendages that do not turn",
+            "cannot be used with appendages that turn",
         ),
         (
             (

@@ -213,9 +213,9 @@ fn the_sun_of_the_date_is_a_direction() {
     let given = sun(&text("[0.0, 0.917482, 0.397777]", ""));
     assert!((found - given).norm() < 4e-4, "{found} {given}");
     for (sun, words) in [
-        ("\"epoch\"", "`environment.sun` is that of the scenario's `epoch`, and there is none"),
+        ("\"epoch\"", "`environment.sun` follows from the scenario's `epoch`, and there is none"),
         ("\"epok\"", "did you mean `epoch`?"),
-        ("[0, 0, 0]", "`environment.sun` must have a length"),
+        ("[0, 0, 0]", "`environment.sun` must not be zero"),
     ] {
         let error = Scenario::parse("sun.toml", &text(sun, "")).expect_err(sun).to_string();
         assert!(error.contains(words), "{error}");

@@ -349,9 +349,9 @@ fn filters_that_cannot_work_are_refused() {
         ("kalman]", "kalman]\nbounds = [1.0, 0.5]", "bounds", "must be [low, high] in this order"),
         ("kalman]", "kalman]\nratio = 4.0", "ratio", "must lie within the bounds [0.1, 3], got 4"),
         ("kalman]", "kalman]\nassess = [100, 30]", "assess", "must be [from, to] in this order"),
-        ("watch_only = true", "", "estimator.extended_kalman", "is read by nothing"),
+        ("watch_only = true", "", "estimator.extended_kalman", "is not used"),
         ("watch_only = true", "watch_only = false", "`watch_only = true`", "the filter is assessed"),
-        ("extended_kalman]\nwatch_only = true", "truth]", "estimator.truth", "is read by nothing"),
+        ("extended_kalman]\nwatch_only = true", "truth]", "estimator.truth", "is not used"),
         ("kalman]", "kalman]\nsubsteps = 0", "substeps", "must be 1 to 100 steps, got 0"),
     ];
     let good = format!(

@@ -100,9 +100,9 @@ fn what_is_no_force_is_refused() {
             "force = [1, 0, 0]\npoint = \"tip\"",
             "`disturbance[0].point` must be one of the body's points, `hub`, got `tip`",
         ),
-        ("force = [1, 0, 0]\nabout = \"roll\"", "`disturbance[0].about` is of a torque"),
-        ("force = [1, 0, 0]\ntorque = 1.0", "`disturbance[0].force` stands alone"),
-        ("about = \"roll\"\npoint = \"hub\"", "`disturbance[0].point` is where a `force` acts"),
+        ("force = [1, 0, 0]\nabout = \"roll\"", "`disturbance[0].about` applies only to a torque"),
+        ("force = [1, 0, 0]\ntorque = 1.0", "`disturbance[0].force` must be alone"),
+        ("about = \"roll\"\npoint = \"hub\"", "`disturbance[0].point` applies only to a `force`"),
         (
             "about = \"roll\"\ntorque = 1.0\npulse = { period = 1.0, on = 1.0 }",
             "`disturbance[0].pulse.on` must be shorter",
@@ -113,7 +113,7 @@ fn what_is_no_force_is_refused() {
     }
     for (mode, words) in [
         ("along = [0, 0, 0]", "`appendage[0].modes[0].along` must be a direction"),
-        ("along = [1, 0, 0], translation = [1, 0, 0]", "`appendage[0].modes[0].along` stands in place of"),
+        ("along = [1, 0, 0], translation = [1, 0, 0]", "`appendage[0].modes[0].along` replaces"),
     ] {
         let error = scenario(&body.replace("along = [0, 2, 0]", mode)).expect_err(mode).to_string();
         assert!(error.contains(words), "{mode}: {error}");

@@ -85,7 +85,7 @@ fn every_type_of_a_foreign_schema_is_read() {
     for reader in &READERS[1..] {
         refused(
             dir.run(reader),
-            &["holds no scenario, so it is no log of flexsc", "`flexsc export` reads any MCAP log"],
+            &["contains no scenario, so it is not a log of flexsc", "`flexsc export` reads any MCAP log"],
         );
     }
 }
@@ -225,7 +225,7 @@ fn offsets_and_lengths_that_lie_are_harmless() {
         let dir = Dir::holding("a.mcap", with(&index, &summary));
         assert_eq!(dir.run_bounded("export a.mcap --topic /a").exits(0).out, "time_s,x\n0e0,0e0\n");
         for reader in &READERS[1..] {
-            refused(dir.run_bounded(reader), &["holds no scenario"]);
+            refused(dir.run_bounded(reader), &["contains no scenario"]);
         }
     }
     for footer in [[&far[..], &far, &[0; 4]].concat(), vec![0xff; 3]] {

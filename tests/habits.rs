@@ -131,7 +131,7 @@ fn a_run_does_not_replace_what_another_scenario_left() {
     assert_eq!(dir.read("relay-fixed.mcap"), before);
     dir.run("simulate relay-fixed.toml --set duration=500")
         .exits(2)
-        .says(&["`duration`: 400.0 there, 500.0 here", "--force"]);
+        .says(&["`duration`: 400.0 before, 500.0 now", "--force"]);
     assert_eq!(dir.read("relay-fixed.mcap"), before);
     dir.run("simulate relay-fixed.toml --set duration=500 --force").exits(0);
     assert_ne!(dir.read("relay-fixed.mcap"), before);

@@ -125,12 +125,12 @@ fn what_does_not_go_with_it_is_refused() {
         assert!(error.contains(words), "{error}");
     };
     let groups = "groups = { roll = { plus = [\"a\"], minus = [\"b\"] }, pitch = { plus = [\"a\"], minus = [\"b\"] }, yaw = { plus = [\"a\"], minus = [\"b\"] } }\nspecific";
-    refused("specific", groups, "`actuator.jets.groups` are those of `allocation");
+    refused("specific", groups, "`actuator.jets.groups` apply only to `allocation");
     refused("allocation = \"least_propellant\"\n", "", "`actuator.jets.groups` must be given, or");
     refused(
         "allocation = \"least_propellant\"\n",
         "force_free = true\n",
-        "`actuator.jets.force_free` is that of",
+        "`actuator.jets.force_free` applies only to",
     );
     let only = jets.find("    { name = \"e\"").expect("a thruster");
     let last = jets.find("]\n\n[reference]").expect("an end");

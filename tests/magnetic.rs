@@ -322,11 +322,11 @@ fn what_does_not_fit_is_refused() {
     );
     refused(&[("7e6", "6e6")], &["`environment.orbit.semi_major_axis`", "above the planet's radius"]);
     refused(&[("gain = 2e-4, ", "")], &["`actuator.wheels.unloading.gain`", "must be given"]);
-    refused(&[("gain = 2e-4", "gain = 2e-4, torque = 1.0")], &["unloading.torque", "that of `jets`"]);
+    refused(&[("gain = 2e-4", "gain = 2e-4, torque = 1.0")], &["unloading.torque", "applies only to `jets`"]);
     let b_dot = ("attitude = { period = 0.5, bandwidth = 0.1 }", "b_dot = { period = 1.0, gain = 1e5 }");
     refused(&[b_dot], &["`law.b_dot`", "[sensor.magnetometer]"]);
     let magnetometer = ("gyro = { period = 0.5 }", "magnetometer = { period = 0.5 }");
-    refused(&[magnetometer], &["`sensor.magnetometer`", "no attitude"]);
+    refused(&[magnetometer], &["`sensor.magnetometer`", "neither attitude"]);
     refused(&[magnetometer, (field, "")], &["`sensor.magnetometer`", "there is none"]);
     refused(
         &[("gyro = { period = 0.5 }", "sun_sensor = { period = 0.5 }")],

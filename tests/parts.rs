@@ -86,10 +86,10 @@ fn what_does_not_fit_changes_nothing() {
     dir.run("simulate u.toml --runs 20 -o out").exits(0);
     let manifest = dir.text("out/manifest.toml");
     for (other, why) in [
-        ("simulate u.toml --runs 20 --seed 8 -o out", "another campaign (`seed`: 7 there, 8 here)"),
+        ("simulate u.toml --runs 20 --seed 8 -o out", "another campaign (`seed`: 7 before, 8 now)"),
         (
             "simulate u.toml --runs 20 --replicas 2 -o out",
-            "another campaign (nothing there, 2 runs of each point here)",
+            "another campaign (nothing before, 2 runs of each point now)",
         ),
         ("sweep u.toml --vary duration=1,2,3 -o out", "duration = [1.0, 2.0, 3.0] here"),
         ("simulate u.toml --runs 10 -o out", "holds 20 runs of this campaign, and 10 would replace them"),
@@ -112,7 +112,7 @@ fn what_does_not_fit_changes_nothing() {
     dir.run("simulate u.toml --runs 3 --seed 9 -o out").exits(2).says(&["out/manifest.toml: was changed"]);
     std::fs::remove_file(dir.path("out/manifest.toml")).expect("there");
     dir.run("simulate u.toml --runs 3 --seed 9 -o out").exits(2).says(&["its campaign is unknown"]);
-    dir.run("top out").exits(2).says(&["out: is no campaign: it has no manifest.toml"]);
+    dir.run("top out").exits(2).says(&["out: is not a campaign: it has no manifest.toml"]);
 }
 
 #[test]
@@ -149,8 +149,8 @@ fn any_row_is_run_again_with_its_log() {
     assert!(rates.chunks(3).all(|point| point[0] == point[1] && point[1] == point[2]));
     assert!(rates.windows(2).filter(|pair| pair[0] != pair[1]).count() == 9);
     dir.run("simulate --from out --row 30").exits(2).says(&["out: has runs 0 to 29, not 30"]);
-    dir.run("simulate --from u.toml --row 3").exits(2).says(&["u.toml: is no campaign"]);
-    dir.run("simulate --from missing --row 3").exits(2).says(&["missing: is no campaign"]);
+    dir.run("simulate --from u.toml --row 3").exits(2).says(&["u.toml: is not a campaign"]);
+    dir.run("simulate --from missing --row 3").exits(2).says(&["missing: is not a campaign"]);
     dir.run("simulate u.toml --from out --row 3").exits(2);
     // What the figures of it list.
     let drawn = dir.run("plot out -o figures").exits(0).out;
@@ -247,7 +247,7 @@ fn designs_have_lists_tables_ranges_and_replicas() {
         dir.write("points.csv", text);
         dir.run(&format!("{sweep} none --points points.csv")).exits(2).says(&["points.csv", why]);
     }
-    dir.run("simulate relay-fixed.toml --sample sobol").exits(2).says(&["by --runs"]);
+    dir.run("simulate relay-fixed.toml --sample sobol").exits(2).says(&["(--runs)"]);
     dir.run("simulate relay-fixed.toml --runs 4 --sample sobol").exits(2).says(&["no key is uncertain"]);
 }
 

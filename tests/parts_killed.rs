@@ -47,7 +47,7 @@ fn ctrl_c_keeps_whole_parts_and_one_process_is_at_work() {
     }
     run.signal("INT")
         .exits(130)
-        .says(&["interrupted at run ", "of 1000000 runs, and the same command goes on"]);
+        .says(&["interrupted at run ", "of 1000000 runs, and the same command continues"]);
     assert!(
         dir.names("out/runs").iter().all(|name| name.ends_with(".parquet")),
         "{:?}",

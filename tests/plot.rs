@@ -180,7 +180,7 @@ fn a_file_holds_one_figure_or_a_sheet_of_all() {
             .says(&[other, ".svg, .png or .pdf"]);
         assert!(!dir.has(other));
     }
-    dir.run("plot relay-adaptive.mcap --metric duty").exits(2).says(&["no directory of a campaign"]);
+    dir.run("plot relay-adaptive.mcap --metric duty").exits(2).says(&["not the directory of a campaign"]);
 }
 
 #[test]

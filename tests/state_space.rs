@@ -107,18 +107,18 @@ fn three_axes_turn_by_accelerations() {
 #[test]
 fn matrices_that_do_not_fit_are_refused() {
     for (law, key, why) in [
-        ("", "law.state_space.d", "must be there where there are no states"),
+        ("", "law.state_space.d", "must be given if there are no states"),
         ("d = [[1.0, 2.0, 3.0]]", "law.state_space.d[0]", "angle and rate, got 3"),
         ("d = [[1.0], [2.0]]", "law.state_space.d", "must be one row, got 2"),
         ("a = [[1.0, 2.0]]\nb = [[1.0]]\nc = [[1.0]]", "law.state_space.a[0]", "must have 1 column, got 2"),
         ("a = [[0.5]]\nb = [[1.0], [1.0]]\nc = [[1.0]]", "law.state_space.b", "each of the 1 states, got 2"),
-        ("a = [[0.5]]\nb = [[1.0]]", "law.state_space.c", "states are not seen"),
+        ("a = [[0.5]]\nb = [[1.0]]", "law.state_space.c", "states have no effect"),
         (
             "a = [[4.0]]\nb = [[1.0]]\nc = [[1.0]]\nof = \"tustin\"",
             "law.state_space.a",
             "eigenvalue at 2/period = 4",
         ),
-        ("a = [[4e3]]\nb = [[1.0]]\nc = [[1.0]]\nof = \"held\"", "law.state_space.a", "beyond all numbers"),
+        ("a = [[4e3]]\nb = [[1.0]]\nc = [[1.0]]\nof = \"held\"", "law.state_space.a", "overflows within"),
         ("d = [[nan]]", "law.state_space.d", "finite"),
     ] {
         let error = parse(law).expect_err(law);

@@ -147,7 +147,7 @@ fn what_no_filter_with_modes_can_be_is_refused() {
     for (change, words) in [
         (("modes = [0], noise", "modes = [7], noise"), "`estimator.attitude.elastic.modes[0]` must be below"),
         (("modes = [0], noise", "modes = [0, 0], noise"), "names mode 0 again"),
-        (("modes = [0], noise", "modes = [], noise"), "must name a mode at least"),
+        (("modes = [0], noise", "modes = [], noise"), "must name at least one mode"),
         (("feeds = \"hub\"", "feeds = \"modes\""), "must be `rigid` or `hub`"),
         (
             ("modes = [0], noise", "modes = [0], frequencies = [1, 2], noise"),
@@ -155,7 +155,7 @@ fn what_no_filter_with_modes_can_be_is_refused() {
         ),
         (
             ("[estimator.attitude]\n", "[estimator.attitude]\nform = \"steady\"\n"),
-            "constant gains know no modes",
+            "constant gains cannot estimate modes",
         ),
     ] {
         let error = changed(&[change]).expect_err("refused");

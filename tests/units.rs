@@ -58,7 +58,7 @@ fn wrong_units_are_told_all_at_once_with_their_places() {
     for words in [
         "x:2:12: `duration` has the unit `kg`, expected a unit such as `s`",
         "`appendage[0].modes[0].frequency` has the unit `fortnights`, which is not known; expected a unit such as `rad/s`",
-        "`law.attitude.damping` has the unit `deg`, and takes a number without one",
+        "`law.attitude.damping` has the unit `deg`, but takes a number without a unit",
     ] {
         assert!(told.contains(words), "no `{words}` in\n{told}");
     }

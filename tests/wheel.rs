@@ -219,7 +219,7 @@ fn what_does_not_go_with_a_wheel_is_refused() {
             "actuator.wheel.gain=1.0",
             "`actuator.wheel` executes a `[manoeuvre]` sample by sample",
         ),
-        ("rotation-sine", "drift.common.ramp={time=1.0,to=0.5}", "`drift` leaves no closed form"),
+        ("rotation-sine", "drift.common.ramp={time=1.0,to=0.5}", "`drift` has no closed form"),
         ("wheel-fixed-gain", "drift={each=[]}", "must have a profile for each of 4 modes, got 0"),
         (
             "wheel-fixed-gain",

@@ -39,10 +39,10 @@ for resonance in theory["resonances"]:
 # ## The limit cycle of the flexible body
 #
 # A run of 20 000 s takes a few milliseconds, because the motion between two switchings has a closed form and only the
-# switchings are computed. `log="full"` also records the motion.
+# switchings are computed. `log="full"` also records the motion; `log.period` is how often between the switchings.
 
 # %%
-run = scenario.simulate(log="full")
+run = scenario.with_("log.period", 0.2).simulate(log="full")
 print("switchings:", run.metrics["switchings"])
 print("cycle:", run.metrics["cycle_kind"], run.metrics["cycle_period_s"], "s")
 

@@ -16,7 +16,7 @@ print("natural frequencies [rad/s]:", np.round(modes["frequency"], 3))
 
 # %% [markdown]
 # The body is a hub with two panels, each of four hinged sections ([manoeuvres](../manoeuvres.md)). In 12 s the lowest
-# mode oscillates a few times.
+# mode oscillates six times.
 #
 # ## Plan the torque
 #
@@ -66,16 +66,18 @@ assert left[2] < 1e-8 and left[0] > 0.1
 # `compare` plans the same slew with the other commands, each in the same time, and gives their residuals.
 
 # %%
-print("command               time   peak torque   outermost section left   at worst with 10 % error")
+print("command                     time   peak torque   outermost section left   at worst with 10 % error")
 for row in plans[2].compare():
     swing, worst = (row[key]["section_4"] for key in ("residual_rad", "residual_worst_rad"))
     print(
-        f"{row['command']:<20} {row['time_s']:4.1f} s  {row['peak_torque_nm']:7.0f} N m  {swing:14.1e} rad  {worst:18.1e} rad"
+        f"{row['command']:<26} {row['time_s']:4.1f} s  {row['peak_torque_nm']:7.0f} N m  {swing:14.1e} rad  {worst:18.1e} rad"
     )
 
 # %% [markdown]
-# The row `sine p=2` is the plan above. A lower peak torque means more oscillation or less robustness; if the
-# frequencies are uncertain, the last column is the relevant one.
+# The row `sine p=2` is the plan above: `p` is the number of suppressed modes. `w1²` stands for the first mode with a
+# doubled zero of the spectrum (below), and ZV, ZVD and EI are input shapers ([theory](../theory/manoeuvres.md)). The
+# last column is the worst residual if all frequencies are off by up to 10 %; if the frequencies are uncertain, it is the
+# relevant one. A lower peak torque means more oscillation or less robustness.
 #
 # ## Wrong frequencies
 #
@@ -95,7 +97,7 @@ stiffness = {
     f"body.panels.sections[{index}].hinge_stiffness": k for index, k in enumerate((3e3, 2e3, 2e3, 2e3))
 }
 uncertain = {key: {"relative_uniform": 0.2} for key in stiffness}
-# A run of a campaign carries the body that the plan was made for.
+# Each run of a campaign keeps the nominal body as the model of its plan.
 model = scenario.with_("uncertain", uncertain).draw(0).to_dict()["manoeuvre"]["model"]
 believed = scenario.with_("manoeuvre.model", model)
 residuals, peaks = {}, {}

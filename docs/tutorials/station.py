@@ -25,6 +25,9 @@ _ = axes.legend()
 assert on.metrics["energy_below_1pct_at_s"] < 0.2 * off.metrics["energy_below_1pct_at_s"]
 
 # %% [markdown]
+# The damped curve ends its steep fall where the elastic rate is below the threshold of the damping. The peak at 189 s
+# comes from the attitude control, which fires at the edge of its dead zone and excites the wings again.
+#
 # ## Which modes can be damped
 #
 # A jet acts against the elastic rate measured by the gyro. It starts after a delay, and it acts for a whole pulse. The

@@ -108,7 +108,7 @@ settled = table["settling_time_s"]
 print(
     f"settled: {np.nanmin(settled):.0f} to {np.nanmax(settled):.0f} s, not at all: {np.isnan(settled).sum()} of 200"
 )
-print("filters that lost the body:", int(np.sum(table["lock_lost"] > 0)))
+print("filters that lost lock:", int(np.sum(table["lock_lost"] > 0)))
 
 # %% [markdown]
 # A filter that loses lock reports it: its innovations are then much larger than its covariance predicts. A prior with

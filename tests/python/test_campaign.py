@@ -51,7 +51,7 @@ def test_a_directory_is_the_same_table(
             np.testing.assert_array_equal(read[name], column)
     assert read.statistics()["duty"] == table.statistics()["duty"]
     assert read.scenario.name == "relay-sampled"
-    with pytest.raises(ValueError, match="is no campaign"):
+    with pytest.raises(ValueError, match="is not a campaign"):
         flexsc.read_campaign(tmp_path)
 
 

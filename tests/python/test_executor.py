@@ -183,7 +183,7 @@ def test_another_campaign_is_not_replaced(study: Scenario, tmp_path: Path) -> No
     with pytest.raises(ValueError, match="another campaign"):
         flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path)
     assert len(flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path, force=True)) == 20
-    with pytest.raises(ValueError, match="is no campaign"):
+    with pytest.raises(ValueError, match="is not a campaign"):
         flexsc.read_campaign(tmp_path / "nowhere")
 
 

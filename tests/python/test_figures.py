@@ -84,7 +84,7 @@ def test_axes_are_the_users_own_and_hold_si(run: Result) -> None:
     with pytest.raises(ValueError, match="figure 'angle' has panels 0 to 0, got 1"):
         plot.draw(run, "angle", panel=1)
     with pytest.raises(
-        ValueError, match=r"there is no figure `wheel` of this log(.|\n)*hint: it has phase-plane"
+        ValueError, match=r"there is no figure `wheel` for this log(.|\n)*hint: it has phase-plane"
     ):
         plot.draw(run, "wheel")
 

@@ -283,7 +283,7 @@ def test_scenarios_with_parts_are_scenarios(tmp_path: Path) -> None:
     log = flexsc.read_log(tmp_path / "run.mcap")
     assert log.metadata["own_parts"] == "law, sensor, estimator, actuator"
     assert len(log["law"]["time_s"]) > 0
-    with pytest.raises(flexsc.ScenarioError, match="a program's own"):
+    with pytest.raises(flexsc.ScenarioError, match="defined by a program"):
         log.scenario  # noqa: B018
 
 
@@ -391,7 +391,7 @@ def test_a_relay_in_c_switches_at_the_same_instants(tmp_path: Path) -> None:
     np.testing.assert_array_equal(own.simulate()["command"]["time_s"], theirs["time_s"])
     with pytest.raises(TypeError, match="cannot be pickled"):
         pickle.dumps(own)
-    with pytest.raises(ValueError, match="address must be that of a function"):
+    with pytest.raises(ValueError, match="address must be the address of a function"):
         scenario.with_parts(law=flexsc.CompiledLaw(0))
 
 

@@ -18,7 +18,7 @@ impl Consent {
     pub fn to(self, cost: &Cost) -> Result<(), Failure> {
         match cost.excess() {
             Some(why) if !self.yes => {
-                Err(Failure::Arguments(format!("{why}\n\nhint: `--yes` does it all the same")))
+                Err(Failure::Arguments(format!("{why}\n\nhint: `--yes` runs it anyway")))
             }
             _ => Ok(()),
         }

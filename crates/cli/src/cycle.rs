@@ -32,13 +32,13 @@ pub fn results(scenario: &Scenario) -> Result<RelayCycles, Failure> {
     let body = scenario.one_angle()?;
     let Law::Relay(law) = &scenario.law else {
         return Err(Failure::Arguments(format!(
-            "{}: limit cycles are those of a law `relay`",
+            "{}: limit cycles are computed for a law `relay`",
             scenario.name
         )));
     };
     if matches!(scenario.actuator, Actuator::Wheel(_)) {
         return Err(Failure::Arguments(format!(
-            "{}: limit cycles are those of a torque that is executed as it is, not by a wheel",
+            "{}: limit cycles are computed for an ideal torque, not for a wheel",
             scenario.name
         )));
     }

@@ -122,7 +122,7 @@ impl Target {
         match (said, format) {
             (None, format) => Ok(Self::Directory(out.to_owned(), format.unwrap_or(EVERY))),
             (Some(said), Some(format)) if format != said => Err(Failure::Arguments(format!(
-                "--format: {} says another form\n\nhint: give a directory, or leave out --format",
+                "--format: {} has the extension of another format\n\nhint: give a directory, or leave out --format",
                 out.display()
             ))),
             (Some(said), _) => Ok(Self::File(out.to_owned(), said)),

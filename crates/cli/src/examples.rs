@@ -147,7 +147,7 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
     };
     refuse_existing(&path, args.force)?;
     files::write(&path, text.as_bytes())?;
-    say!("{}: like {}; now: flexsc simulate {}", path.display(), args.like, path.display());
+    say!("{}: a copy of {}; next: flexsc simulate {}", path.display(), args.like, path.display());
     Ok(())
 }
 

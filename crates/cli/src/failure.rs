@@ -57,7 +57,7 @@ pub enum Failure {
     Stdout(io::Error),
     /// A file is being written by another process.
     #[error(
-        "cannot write {}: another process is writing it\n\nhint: wait until that has ended, or give another place with -o",
+        "cannot write {}: another process is writing it\n\nhint: wait until it has ended, or give another path with -o",
         path.display()
     )]
     Busy { path: PathBuf },
@@ -128,7 +128,7 @@ impl Failure {
 #[cfg(feature = "live")]
 fn hint(error: &io::Error) -> &'static str {
     if error.kind() == io::ErrorKind::AddrInUse {
-        "\n\nhint: another run may be live there; --live=127.0.0.1:0 takes any free port"
+        "\n\nhint: another run may be live there; --live=127.0.0.1:0 uses any free port"
     } else {
         ""
     }

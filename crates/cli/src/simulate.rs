@@ -83,7 +83,7 @@ pub fn runs(text: &str) -> Result<Runs, String> {
         None => (0..number(text)?, false),
     };
     if range.is_empty() {
-        return Err("there is no run in it".to_owned());
+        return Err("contains no runs".to_owned());
     }
     let count = range.end - range.start;
     if count > MOST_RUNS {
@@ -98,7 +98,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let selection = args.options.selection()?;
     if args.runs.is_none() && !args.options.are_default() {
-        let why = "--table, --metrics, --fail-fast, --sample, --replicas and --scheduler are of campaigns, by --runs";
+        let why = "--table, --metrics, --fail-fast, --sample, --replicas and --scheduler apply only to campaigns (--runs)";
         return Err(Failure::Arguments(why.to_owned()));
     }
     #[cfg(feature = "live")]
@@ -162,7 +162,7 @@ impl Args {
         let design = self.options.complete(Design::default(), uncertain, self.options.points().or(whole))?;
         match design.runs() {
             Some(all) if range.end > all => {
-                Err(Failure::Arguments(format!("--runs: {all} runs are all that --sample has points for")))
+                Err(Failure::Arguments(format!("--runs: --sample has points for only {all} runs")))
             }
             _ => Ok(design),
         }
@@ -284,5 +284,5 @@ fn single(
 }
 
 fn interrupted(log: Option<Detail>, path: &Path) -> String {
-    if log.is_none() { String::new() } else { format!("; {} holds the run up to there", path.display()) }
+    if log.is_none() { String::new() } else { format!("; {} holds the run up to that time", path.display()) }
 }

@@ -80,7 +80,7 @@ fn spatial(metrics: &Metrics, bends: bool) {
         say!("  requirement    {word}: {rms:.3e} rad rms in its window");
     }
     // Each axis has a band of its own: their root sum of squares may be more.
-    goal(metrics, |band| format!("an axis outside its band of up to {band:.3e} rad"));
+    goal(metrics, |band| format!("an axis outside its band (at most ±{band:.3e} rad)"));
     if let Some(Value::Numbers(frequencies)) = metrics.get("frequency_estimates_hz") {
         let found: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.4}")).collect();
         say!(
@@ -94,7 +94,7 @@ fn spatial(metrics: &Metrics, bends: bool) {
 
 /// What is outside a band about the goal: the angle.
 fn outside(band: f64) -> String {
-    format!("outside {band:.3e} rad of it")
+    format!("outside ±{band:.3e} rad")
 }
 
 /// Whether the run meets its goal; `outside` says what may be outside a band.

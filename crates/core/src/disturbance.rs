@@ -83,15 +83,17 @@ impl Disturbance {
                 "must be given for a torque on a body with three axes: `roll`, `pitch` or `yaw`; or give a `force`",
             ),
             (None, Some(_)) if self.point.is_some() => {
-                refused("point", "is where a `force` acts: a torque acts at the body's first point")
+                refused("point", "applies only to a `force`: a torque acts at the body's first point")
             }
-            (Some(_), Some(_)) => refused("about", "is of a torque: a `force` has a direction of its own"),
+            (Some(_), Some(_)) => {
+                refused("about", "applies only to a torque: a `force` has a direction of its own")
+            }
             (Some(_), None) if !self.sines.is_empty() => {
-                refused("sines", "are of a torque: give it `about` an axis, without a `force`")
+                refused("sines", "apply only to a torque: give `about`, without a `force`")
             }
             (Some(_), None) if self.torque.get() != 0.0 || noisy => refused(
                 "force",
-                "stands alone: give a `torque`, or `noise`, as a `[[disturbance]]` of its own",
+                "must be alone: give a `torque`, or `noise`, as a `[[disturbance]]` of its own",
             ),
             _ => None,
         }

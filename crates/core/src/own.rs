@@ -53,7 +53,7 @@ impl<T: ?Sized> Serialize for Own<T> {
 
 impl<'de, T: ?Sized> Deserialize<'de> for Own<T> {
     fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
-        Err(serde::de::Error::custom("is a part of a program's own, which no scenario file can name"))
+        Err(serde::de::Error::custom("is a part defined by a program, which a scenario file cannot name"))
     }
 }
 

@@ -254,6 +254,6 @@ fn busy() -> io::Error {
 }
 
 fn in_the_way(path: &Path) -> io::Error {
-    let why = format!("{} is in the way: it is no file that can be replaced", path.display());
+    let why = format!("{} is in the way: it is not a file that can be replaced", path.display());
     io::Error::new(io::ErrorKind::AlreadyExists, why)
 }

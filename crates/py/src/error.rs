@@ -72,9 +72,7 @@ pub fn scenario_error(error: flexsc_core::ScenarioError) -> PyErr {
 /// Refuses work that costs too much, unless it is wanted.
 pub fn allowed(cost: &flexsc_core::scenario::Cost, yes: bool) -> PyResult<()> {
     match cost.excess() {
-        Some(why) if !yes => {
-            Err(PyValueError::new_err(format!("{why}\n\nhint: `yes=True` does it all the same")))
-        }
+        Some(why) if !yes => Err(PyValueError::new_err(format!("{why}\n\nhint: `yes=True` runs it anyway"))),
         _ => Ok(()),
     }
 }

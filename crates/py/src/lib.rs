@@ -266,11 +266,11 @@ fn to_mcap(
 fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
     let body = scenario.inner.one_angle().map_err(scenario_error)?;
     let Law::Relay(law) = &scenario.inner.law else {
-        let why = format!("{}: limit cycles are those of a law `relay`", scenario.inner.name);
+        let why = format!("{}: limit cycles are computed for a law `relay`", scenario.inner.name);
         return Err(PyValueError::new_err(why));
     };
     if matches!(scenario.inner.actuator, Actuator::Wheel(_)) {
-        let why = "limit cycles are those of a torque that is executed as it is, not by a wheel";
+        let why = "limit cycles are computed for an ideal torque, not for a wheel";
         return Err(PyValueError::new_err(format!("{}: {why}", scenario.inner.name)));
     }
     let (cycles, resonances) = (cycles(law, body, law.k_t.get()), resonances(law, body));

@@ -136,7 +136,7 @@ impl Simulator {
         gone.map_err(|error| {
             let interrupted = signals.raised.is_some();
             let why = if interrupted { "was interrupted".to_owned() } else { error.to_string() };
-            self.failed = Some(format!("{}: {why}; restore a snapshot, or begin anew", self.name));
+            self.failed = Some(format!("{}: {why}; restore a snapshot, or start again", self.name));
             signals.raised.unwrap_or_else(|| simulation_error(&self.name, error))
         })
     }

@@ -16,7 +16,7 @@ pub const SCENARIO: &str = "scenario.toml";
 /// How that file begins.
 const MARK: &str = "# What the runs beside it were drawn from, by flexsc";
 /// What helps.
-const HINT: &str = "hint: give another directory with -o, or --force to replace what is there";
+const HINT: &str = "hint: give another directory with -o, or use --force to replace what is there";
 
 /// What is kept of a campaign in a directory.
 pub struct Kept<'a> {
@@ -68,7 +68,7 @@ impl<'a> Kept<'a> {
             Err(_) => String::new(),
         };
         if !there.is_empty() && !there.starts_with(MARK) {
-            let why = "is there, and flexsc did not write it";
+            let why = "exists, and flexsc did not write it";
             return refused(path, why, "hint: give another directory with -o");
         }
         let tables = self.tables();
@@ -88,10 +88,10 @@ impl<'a> Kept<'a> {
             return Ok(false);
         }
         match tables.first() {
-            Some(table) if there.is_empty() => refused(table, "exists, and its campaign is unknown", HINT),
+            Some(table) if there.is_empty() => refused(table, "exists, but its campaign is unknown", HINT),
             _ if there.is_empty() => Ok(true),
             _ => {
-                let why = format!("what is there is of another campaign{}", other(&there, &self.text));
+                let why = format!("contains another campaign{}", other(&there, &self.text));
                 refused(path, &why, HINT)
             }
         }
@@ -129,7 +129,7 @@ fn other(there: &str, here: &str) -> String {
         let line = one.iter().find(|line| !other.contains(line));
         line.map_or("nothing".to_owned(), |line| line.trim_start_matches("# ").to_owned())
     };
-    format!(" ({} there, {} here)", not_in(&there, &here), not_in(&here, &there))
+    format!(" ({} before, {} now)", not_in(&there, &here), not_in(&here, &there))
 }
 
 /// The rows of a table; 0 if there is none.

@@ -78,7 +78,7 @@ pub fn logged(
     // Nobody else writes it now.
     if let (There::Other(what), false) = (there(path, &provenance), force) {
         let text = format!(
-            "{}: {what}\n\nhint: give another directory with -o, or --force to replace it",
+            "{}: {what}\n\nhint: give another directory with -o, or use --force to replace it",
             path.display()
         );
         return Err(RecordError::Io(Refused(text).into()).into());

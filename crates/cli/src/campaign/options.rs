@@ -95,7 +95,7 @@ impl Options {
         ];
         match (&self.scheduler, other.into_iter().find(|(_, given)| *given)) {
             (Some(address), Some((option, _))) => Err(Failure::Arguments(format!(
-                "--scheduler {address}: its workers write Parquet files alone, without {option}"
+                "--scheduler {address}: its workers write only Parquet files; leave out {option}"
             ))),
             (address, _) => Ok(address.as_deref()),
         }

@@ -17,7 +17,7 @@ use crate::results::print_lines;
 use crate::{say, stop};
 
 /// What helps where another campaign is in the way.
-const HINT: &str = "hint: give another directory with -o, or --force to replace what is there";
+const HINT: &str = "hint: give another directory with -o, or use --force to replace what is there";
 /// A failure of a directory, for people.
 pub fn failure(error: DirectoryError) -> Failure {
     match error {
@@ -93,7 +93,7 @@ pub fn run(
             drop(making);
             return Err(match failure {
                 Failure::Interrupted(at) => Failure::Interrupted(format!(
-                    "{at}; {} holds {made} of {all} runs, and the same command goes on",
+                    "{at}; {} holds {made} of {all} runs, and the same command continues",
                     path.display()
                 )),
                 failure => failure,

@@ -10,7 +10,7 @@ use super::hub::Hub;
 use crate::{say, stop};
 
 /// What can be typed.
-const HELP: &str = "Enter pauses and goes on, `.` steps, `+` and `-` or a factor set the speed, `q` stops";
+const HELP: &str = "Enter pauses and resumes, `.` steps, `+` and `-` or a factor set the speed, `q` stops";
 
 /// A command.
 #[derive(Debug, PartialEq)]

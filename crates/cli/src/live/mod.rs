@@ -120,7 +120,9 @@ impl Live {
         }
         self.hub.end();
         if self.hub.clients() > 0 && !stop::asked() {
-            say!("  live           the run has ended; Ctrl-C, or the last viewer's leave, ends the server");
+            say!(
+                "  live           the run has ended; Ctrl-C ends the server, as does the last viewer when it disconnects"
+            );
         }
         while self.hub.clients() > 0 && !stop::asked() {
             thread::sleep(LOOK);

@@ -52,7 +52,7 @@ impl Request {
     pub fn read(message: &Message) -> Result<Self, String> {
         match message {
             Message::Text(text) => {
-                let json: Json = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
+                let json: Json = serde_json::from_str(text).map_err(|error| format!("not JSON: {error}"))?;
                 let lists = json.as_object().into_iter().flatten().filter_map(|(_, value)| value.as_array());
                 if lists.into_iter().any(|list| list.len() > MOST_NAMED) {
                     return Err(format!("a request may name at most {MOST_NAMED} things"));

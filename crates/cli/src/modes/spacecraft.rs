@@ -57,9 +57,12 @@ impl Results for Spacecraft {
                 mode.appendage
             );
         }
-        say!("  modes of the whole, hub free; off-diagonal damping {:.2e}", parts.damping_coupling);
+        say!(
+            "  modes of the complete spacecraft, hub free; off-diagonal damping {:.2e}",
+            parts.damping_coupling
+        );
         tell_influences(&parts.free, *jets);
-        say!("  influence of a torque on the hub: at all its points alike, at points of appendages");
+        say!("  influence of a torque, on the hub (the same at all its points) and at points of appendages");
         let (mut hub, ends): (Vec<_>, Vec<_>) =
             parts.points.iter().partition(|point| point.appendage.is_none());
         hub.truncate(1);

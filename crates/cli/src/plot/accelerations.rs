@@ -32,7 +32,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         Panel::new(if place + 1 == all.len() { x } else { x.unnamed() }, y, layers)
     };
     Figure {
-        title: title(story, "specific forces, as accelerometers tell them"),
+        title: title(story, "specific forces, as read by the accelerometers"),
         panels: all.iter().enumerate().map(panel).collect(),
         panel_height: 200,
     }

@@ -169,7 +169,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let of_campaigns = [("metric", !args.metric.is_empty()), ("worst", args.worst.is_some())];
     if let Some((option, _)) = of_campaigns.into_iter().find(|(_, given)| *given) {
         let path = args.path.display();
-        return Err(Failure::Arguments(format!("--{option}: {path} is no directory of a campaign")));
+        return Err(Failure::Arguments(format!("--{option}: {path} is not the directory of a campaign")));
     }
     let beside = args.path.parent().unwrap_or(Path::new(""));
     let target = Target::new(args.out.as_deref(), beside, args.format)?;
@@ -196,7 +196,7 @@ fn drawn_over(
     let chosen = what::chosen(asked, &What::all_in(&story)).map_err(|(missing, there)| {
         let path = path.display();
         Failure::Arguments(format!(
-            "{path}: there is no figure `{missing}` of this log\n\nhint: it has {there}"
+            "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
         ))
     })?;
     let any = |of: &[What]| of.iter().any(|what| chosen.contains(what));

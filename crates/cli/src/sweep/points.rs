@@ -9,7 +9,7 @@ use crate::failure::Failure;
 /// Reads a table.
 pub fn read(path: &Path) -> Result<Block, Failure> {
     let refused = |why: String| Failure::Arguments(format!("{}: {why}", path.display()));
-    let wrong = |error: csv::Error| refused(format!("is no table of points: {error}"));
+    let wrong = |error: csv::Error| refused(format!("is not a table of points: {error}"));
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(wrong)?;
     let keys: Vec<String> = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();
     if let Some(key) = keys.iter().find(|key| key.is_empty() || key.parse::<f64>().is_ok()) {

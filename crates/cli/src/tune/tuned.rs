@@ -40,7 +40,9 @@ impl Tuned {
         let points: String = self.schedule().iter().map(point).collect();
         if points.is_empty() {
             let name = &self.study.name;
-            return Err(Failure::Arguments(format!("{name}: no gain does at any of these frequencies")));
+            return Err(Failure::Arguments(format!(
+                "{name}: no gain is suitable at any of these frequencies"
+            )));
         }
         Ok(format!("[law.pd.extra]\nschedule = [\n{points}]\n"))
     }

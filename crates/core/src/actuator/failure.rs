@@ -150,21 +150,24 @@ impl Failure {
             Parts::Thrusters(names) => (0, 0, names),
         };
         if about.is_some() && axes < 3 {
-            return at("about", "names an axis of an actuator that acts about each of three by itself");
+            return at(
+                "about",
+                "must be left out for an actuator that does not act about three axes independently",
+            );
         }
         if let Some(number) = wheel.filter(|wheel| wheel.get() as usize > wheels) {
             let why = format!("must be one of {wheels} wheels, counted from 1, got {number}");
-            let none = "is of `[actuator.wheels]`: this actuator has none";
+            let none = "applies only to `[actuator.wheels]`, and this actuator has no wheels";
             return at("wheel", if wheels == 0 { none } else { &why });
         }
         if let Some(name) = thruster.filter(|name| !names.iter().any(|known| known == name)) {
             let known: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
             let why = format!("must be one of the thrusters, {}, got `{name}`", known.join(", "));
-            let none = "is of `[actuator.jets]`: this actuator has none";
+            let none = "applies only to `[actuator.jets]`, and this actuator has no jets";
             return at("thruster", if names.is_empty() { none } else { &why });
         }
         if (axes == 0 || !turns) && !self.sines().is_empty() {
-            let why = "are of a torque on the body: wheels, jets and magnetorquers add a constant, and a `[[disturbance]]` has sines";
+            let why = "apply only to a torque on the body: wheels, jets and magnetorquers can only add a constant; a `[[disturbance]]` can have sines";
             return at("sines", why);
         }
         if let Parts::Thrusters(_) = parts {
@@ -178,14 +181,14 @@ impl Failure {
         let at = |key: &str, why: String| Some(Fault::new(format!("{}.{key}", self.kind()), why));
         match self {
             Self::Scaled(of) if of.factor.get() < 0.0 => {
-                at("factor", format!("must be 0 or more of a thruster, got {}", of.factor.get()))
+                at("factor", format!("must be 0 or more for a thruster, got {}", of.factor.get()))
             }
             Self::Stuck(of) => {
                 let part = of.at.map(Finite::get).filter(|part| !(0.0..=1.0).contains(part))?;
-                at("at", format!("must be a part of the thrust, from 0 to 1, got {part}"))
+                at("at", format!("must be a fraction of the thrust, from 0 to 1, got {part}"))
             }
             Self::Added(of) if of.constant.get() < 0.0 => {
-                at("constant", format!("must be 0 or more of a thruster, got {}", of.constant.get()))
+                at("constant", format!("must be 0 or more for a thruster, got {}", of.constant.get()))
             }
             _ => None,
         }

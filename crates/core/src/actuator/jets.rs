@@ -177,7 +177,7 @@ impl Jets {
         }
         if self.allocation == Firing::LeastPropellant {
             if self.groups.is_some() {
-                let why = "are those of `allocation = \"groups\"`: leave them out";
+                let why = "apply only to `allocation = \"groups\"`: leave them out";
                 return Err(Fault::new("groups", why));
             }
             let tensor = body.tensor();
@@ -185,7 +185,7 @@ impl Jets {
             return allocated::largest(self, &self.nozzles_on(body), inertia);
         }
         if self.force_free {
-            return Err(Fault::new("force_free", "is that of `allocation = \"least_propellant\"`"));
+            return Err(Fault::new("force_free", "applies only to `allocation = \"least_propellant\"`"));
         }
         let Some(Groups { roll, pitch, yaw }) = &self.groups else {
             let why = "must be given, or `allocation = \"least_propellant\"`";

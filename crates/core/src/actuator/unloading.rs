@@ -49,7 +49,7 @@ impl Unloading {
         match (&self.jets, &self.magnetorquers) {
             (Some(jets), None) => {
                 if let Some((key, _)) = of_torquers.into_iter().find(|(_, given)| *given) {
-                    return at(key, "is that of `magnetorquers`: leave it out".to_owned());
+                    return at(key, "applies only to `magnetorquers`: leave it out".to_owned());
                 }
                 if self.torque.is_none() {
                     return at("torque", "must be given with `jets`".to_owned());
@@ -58,15 +58,16 @@ impl Unloading {
             }
             (None, Some(_)) => {
                 if self.torque.is_some() {
-                    return at("torque", "is that of `jets`: leave it out".to_owned());
+                    return at("torque", "applies only to `jets`: leave it out".to_owned());
                 }
                 let (key, _) = of_torquers.into_iter().find(|(_, given)| !given)?;
                 at(key, "must be given with `magnetorquers`".to_owned())
             }
             (None, None) => at("jets", "must be given, or `magnetorquers`".to_owned()),
-            (Some(_), Some(_)) => {
-                at("magnetorquers", "must be left out with `jets`: one of them unloads the wheels".to_owned())
-            }
+            (Some(_), Some(_)) => at(
+                "magnetorquers",
+                "must be left out with `jets`: only one of the two can unload the wheels".to_owned(),
+            ),
         }
     }
 

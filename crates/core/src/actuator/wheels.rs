@@ -139,7 +139,7 @@ impl Wheels {
             let why = format!("must be `pseudo_inverse` for more than four wheels, got {count}");
             return Err(Fault::new("allocation", why));
         }
-        let why = "must reach all three axes: these lie in a plane, or nearly";
+        let why = "must span all three axes: the given ones lie in a plane, or nearly so";
         let allocation = Allocation::new(&axes, self.allocation)
             .ok_or_else(|| Fault::new(if self.axes.is_empty() { "cant" } else { "axes" }, why))?;
         if !self.speeds.is_empty() && self.speeds.len() != count {
@@ -234,7 +234,7 @@ impl Wheels {
             return Err(Fault::new("axes", "must be left out with an `arrangement`"));
         }
         if arrangement == Arrangement::Orthogonal {
-            let why = "is that of a pyramid: leave it out";
+            let why = "applies only to a pyramid: leave it out";
             let straight = vec![Vector::x(), Vector::y(), Vector::z()];
             return if self.cant.is_some() { Err(Fault::new("cant", why)) } else { Ok(straight) };
         }
@@ -249,12 +249,12 @@ impl Wheels {
             return Err(Fault::new("axes", "must be given without an `arrangement`"));
         }
         if self.cant.is_some() {
-            return Err(Fault::new("cant", "is that of an `arrangement`, and there is none"));
+            return Err(Fault::new("cant", "applies only to an `arrangement`, and none is given"));
         }
         let unit = |(index, axis): (usize, &[Finite; 3])| {
             let axis = Vector::from(axis.map(Finite::get));
             let length = axis.norm();
-            let why = || Fault::new(format!("axes[{index}]"), "must have a length, got [0, 0, 0]");
+            let why = || Fault::new(format!("axes[{index}]"), "must not be zero, got [0, 0, 0]");
             if length > 0.0 { Ok(axis / length) } else { Err(why()) }
         };
         self.axes.iter().enumerate().map(unit).collect()

@@ -54,7 +54,7 @@ impl LinearModel {
     /// A body that is no linear system: its key, and why.
     pub fn of(scenario: &Scenario, at: f64) -> Result<Self, Fault> {
         if scenario.study.drives.is_some() {
-            let why = "turn appendages, and the body is another from time to time: it is no linear system";
+            let why = "turn appendages, so the body changes with time and is not a linear system";
             return Err(Fault::new("appendage", format!("has drives that {why}")));
         }
         Ok(match scenario.body.spatial() {

@@ -185,5 +185,5 @@ impl Panels {
 
 /// Every panel has modes, unless its numbers are so far apart that rounding takes them.
 fn too_far_apart(why: &str) -> Fault {
-    Fault::new("sections", format!("hold numbers too far apart: the matrix {why}"))
+    Fault::new("sections", format!("hold numbers that differ too much in size: the matrix {why}"))
 }

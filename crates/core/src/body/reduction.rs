@@ -121,7 +121,7 @@ fn coupled(
     let symmetric = (&damping + damping.transpose()) * 0.5;
     let lowest = eigenvalues(&symmetric).ok_or_else(too_large)?.first().copied().unwrap_or(0.0);
     if lowest < -1e-9 * largest {
-        return Err(at(format!("must be positive semidefinite, and drives a mode with {lowest} 1/s")));
+        return Err(at(format!("must be positive semidefinite, but excites a mode at {lowest} 1/s")));
     }
     let element = |n: usize, m: usize| {
         if n == m || damping[(n, m)] == 0.0 {
@@ -132,7 +132,9 @@ fn coupled(
         }
         if damping[(n, m)].abs() > 1e-9 * largest {
             let still = if scale(n) == 0.0 { n } else { m };
-            return Err(at(format!("moves mode {still} by the others, and the hub does not feel that mode")));
+            return Err(at(format!(
+                "couples mode {still} to the others, but that mode does not act on the hub"
+            )));
         }
         Ok(Finite::default())
     };

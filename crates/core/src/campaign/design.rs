@@ -284,7 +284,7 @@ impl Design {
             return Some(format!("{key}: a key can be varied once"));
         }
         if self.replicas == 0 {
-            return Some("a point needs a run: replicas must be at least 1".to_owned());
+            return Some("replicas must be at least 1".to_owned());
         }
         if self.runs().is_some_and(|runs| runs > MOST_POINTS) {
             return Some(format!("a design has at most {MOST_POINTS} runs"));

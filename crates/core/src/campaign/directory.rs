@@ -53,7 +53,7 @@ pub enum DirectoryError {
         why: String,
     },
     /// It is of another campaign.
-    #[error("{}: what is there is of another campaign ({difference})", path.display())]
+    #[error("{}: contains another campaign ({difference})", path.display())]
     Other {
         /// The manifest there.
         path: PathBuf,
@@ -61,7 +61,7 @@ pub enum DirectoryError {
         difference: String,
     },
     /// Another process is at work there.
-    #[error("{}: another process is at work there", path.display())]
+    #[error("{}: another process is working in it", path.display())]
     Busy {
         /// The directory.
         path: PathBuf,
@@ -114,7 +114,7 @@ impl Directory {
         parquet_is_built_in().map_err(unread(path))?;
         let place = path.join(MANIFEST);
         let manifest =
-            read(&place)?.ok_or_else(|| wrong(path, format!("is no campaign: it has no {MANIFEST}")))?;
+            read(&place)?.ok_or_else(|| wrong(path, format!("is not a campaign: it has no {MANIFEST}")))?;
         Ok(Self { path: path.to_owned(), work: Work::of(manifest, &place)?, _lock: None })
     }
 
@@ -261,10 +261,10 @@ impl Directory {
         let path = self.file(runs);
         let reading = Reading::open(&path).map_err(unread(&path))?;
         if reading.note(NOTE).as_deref() != Some(self.work.manifest.hash.as_str()) {
-            return Err(wrong(&path, format!("is no part of the campaign of {MANIFEST}")));
+            return Err(wrong(&path, format!("is not a part of the campaign of {MANIFEST}")));
         }
         if reading.rows() != runs.end - runs.start {
-            return Err(wrong(&path, format!("has {} rows, other than its name says", reading.rows())));
+            return Err(wrong(&path, format!("has {} rows, which does not match its name", reading.rows())));
         }
         Ok(reading)
     }
@@ -289,7 +289,7 @@ fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
         Err(error) if is_none(&error) => return Ok(None),
         Err(error) => return Err(unread(place)(error)),
         Ok(there) if !there.is_file() || there.len() > LARGEST => {
-            return Err(wrong(place, "is no manifest of a campaign"));
+            return Err(wrong(place, "is not the manifest of a campaign"));
         }
         Ok(_) => {}
     }
@@ -307,7 +307,7 @@ fn fitting(
     let Some(there) = read(place)? else {
         return match parts(path)?.first().filter(|_| !force) {
             Some(runs) => {
-                Err(wrong(&path.join(RUNS).join(part::name(runs)), "is there, and its campaign is unknown"))
+                Err(wrong(&path.join(RUNS).join(part::name(runs)), "exists, but its campaign is unknown"))
             }
             None => Ok(None),
         };
@@ -340,7 +340,7 @@ fn parts(path: &Path) -> Result<Vec<Range<u64>>, DirectoryError> {
     parts.sort_by_key(|runs| (runs.start, runs.end));
     for (one, next) in parts.iter().zip(parts.iter().skip(1)) {
         if one.end > next.start {
-            let why = format!("has runs that {} has too", part::name(one));
+            let why = format!("has runs that are also in {}", part::name(one));
             return Err(wrong(&path.join(part::name(next)), why));
         }
     }

@@ -141,19 +141,19 @@ fn what_does_not_fit_is_refused() {
     let other = Manifest::new(&other, 0..2, &Selection::ALL).expect("a manifest");
     let refused = Directory::create(&here.0, other.clone(), false).expect_err("another").to_string();
     assert!(
-        refused.contains("another campaign (nothing there, duration = [100.0, 200.0] here)"),
+        refused.contains("another campaign (nothing before, duration = [100.0, 200.0] now)"),
         "{refused}"
     );
     let mut seeded = manifest(0..16);
     seeded.scenario = seeded.scenario.replace("seed = 7", "seed = 8");
-    assert!(Manifest::parse(&seeded.to_toml()).expect_err("changed").contains("its hash is another"));
+    assert!(Manifest::parse(&seeded.to_toml()).expect_err("changed").contains("its hash does not match"));
     // A part of another campaign under the name of one.
     let part = fs::read(here.0.join("runs/part-0000000000-0000000008.parquet")).expect("there");
     drop(Directory::create(&here.0, other, true).expect("replaced"));
     assert!(!here.0.join("runs/part-0000000000-0000000008.parquet").exists());
     fs::write(here.0.join("runs/part-0000000000-0000000002.parquet"), part).expect("written");
     let refused = Directory::open(&here.0).expect("there").column("run").expect_err("foreign").to_string();
-    assert!(refused.contains("is no part of the campaign"), "{refused}");
+    assert!(refused.contains("is not a part of the campaign"), "{refused}");
 }
 
 #[test]

@@ -54,7 +54,7 @@ impl Manifest {
     /// A campaign that no text can hold.
     pub fn new(campaign: &Campaign, runs: Range<u64>, selection: &Selection) -> Result<Self, Wrong> {
         if campaign.scenario().has_own_parts() {
-            return Err("has parts of a program's own, which no file can hold".to_owned());
+            return Err("has parts defined by a program, which a file cannot contain".to_owned());
         }
         Self::in_memory(campaign, runs, selection)
     }
@@ -69,7 +69,7 @@ impl Manifest {
         if design.runs().is_some_and(|all| runs.end > all) {
             let all = design.runs().unwrap_or_default();
             return Err(format!(
-                "the design has {all} runs, and runs {} to {} are wanted",
+                "the design has {all} runs, and runs {} to {} were requested",
                 runs.start, runs.end
             ));
         }
@@ -110,9 +110,10 @@ impl Manifest {
             format: Option<u32>,
         }
         if !text.starts_with(MARK.trim_end()) {
-            return Err("is no manifest of a campaign".to_owned());
+            return Err("is not the manifest of a campaign".to_owned());
         }
-        let wrong = |error: toml::de::Error| format!("is no manifest of a campaign: {}", error.message());
+        let wrong =
+            |error: toml::de::Error| format!("is not the manifest of a campaign: {}", error.message());
         let form = toml::from_str::<Form>(text).map_err(wrong)?.format;
         if form != Some(FORMAT) {
             let form = form.map_or("none".to_owned(), |form| form.to_string());
@@ -120,7 +121,7 @@ impl Manifest {
         }
         let manifest: Self = toml::from_str(text).map_err(wrong)?;
         if manifest.hash != manifest.hashed() {
-            return Err("was changed: its hash is another".to_owned());
+            return Err("was changed: its hash does not match".to_owned());
         }
         if manifest.from >= manifest.to || manifest.part == 0 || manifest.part > 1 << 24 {
             return Err("has no runs".to_owned());
@@ -153,7 +154,7 @@ impl Manifest {
             return None;
         }
         if self.flexsc != here.flexsc {
-            return Some(format!("flexsc {} there, {} here", self.flexsc, here.flexsc));
+            return Some(format!("flexsc {} before, {} now", self.flexsc, here.flexsc));
         }
         let scenario = difference(&self.scenario, &here.scenario);
         if !scenario.is_empty() {
@@ -161,14 +162,14 @@ impl Manifest {
         }
         if self.metrics != here.metrics {
             let names = |of: &Self| of.metrics.as_ref().map_or("all".to_owned(), |names| names.join(","));
-            return Some(format!("metrics {} there, {} here", names(self), names(here)));
+            return Some(format!("metrics {} before, {} now", names(self), names(here)));
         }
         let told = |of: &Self, other: &Self| {
             let (of, other) = (of.design.describe(), other.design.describe());
             let line = of.lines().find(|line| !other.lines().any(|there| there == *line));
             line.map_or("nothing".to_owned(), |line| line.trim_start_matches("# ").to_owned())
         };
-        Some(format!("{} there, {} here", told(self, here), told(here, self)))
+        Some(format!("{} before, {} now", told(self, here), told(here, self)))
     }
 
     /// The metrics of its rows.

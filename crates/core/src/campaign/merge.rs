@@ -28,7 +28,8 @@ impl Directory {
                 }
                 Some(own) if own == runs => self.same(other, runs)?,
                 Some(own) => {
-                    let why = format!("has runs that {} has too, in another part", self.file(own).display());
+                    let why =
+                        format!("has runs that are also in another part of {}", self.file(own).display());
                     return Err(wrong(&other.file(runs), why));
                 }
             }

@@ -211,7 +211,7 @@ impl Reading {
                     let (values, levels, again) = read_all(reader, rows)?;
                     Column::Lists(lists(&values, &levels, &again))
                 }
-                _ => return Err(ParquetError::General(format!("`{name}` is no column of a campaign"))),
+                _ => return Err(ParquetError::General(format!("`{name}` is not a column of a campaign"))),
             };
             all.append(column);
         }
@@ -231,7 +231,7 @@ fn read_all<D: DataType>(
     while left > 0 {
         let (read, _, _) = reader.read_records(left, Some(&mut levels), Some(&mut again), &mut values)?;
         if read == 0 {
-            return Err(ParquetError::EOF("has fewer rows than it says".to_owned()));
+            return Err(ParquetError::EOF("has fewer rows than it declares".to_owned()));
         }
         left -= read;
     }

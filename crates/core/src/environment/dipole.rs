@@ -87,9 +87,9 @@ impl Dipole {
             let beside =
                 [("from_node", self.from_node != Finite::ZERO), ("local", !self.local.is_identity())];
             if let Some((key, _)) = given.into_iter().chain(beside).find(|(_, given)| *given) {
-                return Some(Fault::new(key, "is that of the environment's `orbit`: leave it out"));
+                return Some(Fault::new(key, "follows from the environment's `orbit`: leave it out"));
             }
-            let why = "is in a field: give the environment its `magnetic_field`";
+            let why = "needs a field: give the environment a `magnetic_field`";
             return (!in_field).then(|| Fault::new("moment", why));
         }
         let (key, _) = given.into_iter().find(|(_, given)| !given)?;

@@ -56,11 +56,11 @@ impl Drag {
     /// What single values cannot show to be wrong: a key within the drag, and why.
     pub(super) fn fault(&self, on_orbit: bool) -> Option<Fault> {
         if !on_orbit {
-            return Some(Fault::new("", "is that along an `orbit`, and there is none"));
+            return Some(Fault::new("", "needs an `orbit`, and there is none"));
         }
         let flat = |plate: &Plate| plate.normal.iter().all(|part| part.get() == 0.0);
         let index = self.plates.iter().position(flat)?;
-        Some(Fault::new(format!("plates[{index}].normal"), "must have a length, got [0, 0, 0]"))
+        Some(Fault::new(format!("plates[{index}].normal"), "must not be zero, got [0, 0, 0]"))
     }
 
     /// The density at a distance from the planet's centre (kg/m³), on an orbit with this semi-major axis (m).

@@ -36,7 +36,7 @@ impl GravityGradient {
         }
         let twice = [("orbit_rate", self.orbit_rate.is_some()), ("local", !self.local.is_identity())];
         let key = twice.into_iter().find(|(_, given)| *given)?.0;
-        Some(Fault::new(key, "is that of the environment's `orbit`: leave it out"))
+        Some(Fault::new(key, "follows from the environment's `orbit`: leave it out"))
     }
 
     /// The direction to the planet in the axes of a body that faces this way, and n² or mu/R³ (1/s²).

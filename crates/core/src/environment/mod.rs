@@ -67,10 +67,10 @@ impl Environment {
             return Some(fault.within("orbit"));
         }
         if self.sun.is_some_and(|sun| sun.is_nowhere()) {
-            return Some(Fault::new("sun", "must have a length, got [0, 0, 0]"));
+            return Some(Fault::new("sun", "must not be zero, got [0, 0, 0]"));
         }
         if self.magnetic_field.is_some() && self.orbit.is_none() {
-            return Some(Fault::new("magnetic_field", "is that along an `orbit`, and there is none"));
+            return Some(Fault::new("magnetic_field", "needs an `orbit`, and there is none"));
         }
         if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
             return Some(fault.within("drag"));

@@ -171,7 +171,7 @@ impl Itinerary {
             let ends = pair[0].begins.seconds() + pair[0].path.duration();
             if pair[1].begins.seconds() < ends {
                 let why = format!(
-                    "must not be before the turn to the one before has ended, {ends:.3} s, got {}",
+                    "must not be before the end of the previous turn, {ends:.3} s, got {}",
                     pair[1].begins.seconds()
                 );
                 return Some(Fault::new(format!("[{}].from", index + 1), why));
@@ -203,7 +203,7 @@ impl Target {
             if let Some((key, _)) = beside.into_iter().find(|(_, given)| *given) {
                 return Some(Fault::new(
                     key,
-                    "must be left out with a `table`, which says where the body is when",
+                    "must be left out with a `table`, which gives the whole motion",
                 ));
             }
             return AttitudeTable::fault(&self.table);
@@ -273,7 +273,7 @@ mod tests {
             "target = [{ from = 0, yaw = 0.4, acceleration = 2e-3, rate_limit = 0.02 }, { from = 29.0 }]",
         );
         assert!(
-            soon.starts_with("`[1].from` must not be before the turn to the one before has ended, 30.000 s"),
+            soon.starts_with("`[1].from` must not be before the end of the previous turn, 30.000 s"),
             "{soon}"
         );
         assert!(
@@ -335,7 +335,8 @@ mod tests {
                 .starts_with("`[0].yaw` must be left out")
         );
         assert!(
-            fault("target = [{ from = 0, table = [{ time = 0 }] }]").starts_with("`[0].table` must have two")
+            fault("target = [{ from = 0, table = [{ time = 0 }] }]")
+                .starts_with("`[0].table` must have at least two")
         );
     }
 }

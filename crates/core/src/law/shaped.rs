@@ -42,8 +42,10 @@ impl Target {
             ("profile", self.profile != Profile::default()),
         ];
         match (&self.command, self.duration) {
-            (Some(_), None) => Some(Fault::new("duration", "must say how long the turn by `command` takes")),
-            (None, Some(_)) => Some(Fault::new("duration", "needs the `command` that takes so long")),
+            (Some(_), None) => {
+                Some(Fault::new("duration", "must be given: it is how long the turn by `command` takes"))
+            }
+            (None, Some(_)) => Some(Fault::new("duration", "needs a `command`, whose duration it is")),
             (Some(_), Some(_)) => limits.iter().find(|(_, given)| *given).map(|(key, _)| {
                 Fault::new(*key, "must be left out with a `command`, which is planned for its `duration`")
             }),
@@ -156,8 +158,8 @@ mod tests {
             found.unwrap_or_else(|| panic!("{keys}")).to_string()
         };
         let cases = [
-            ("duration = 10", "`duration` needs the `command`"),
-            ("command = { bang_bang = {} }", "`duration` must say how long"),
+            ("duration = 10", "`duration` needs a `command`"),
+            ("command = { bang_bang = {} }", "`duration` must be given"),
             (
                 "duration = 10\nacceleration = 1\ncommand = { bang_bang = {} }",
                 "`acceleration` must be left out with a `command`",

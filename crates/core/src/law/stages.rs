@@ -53,7 +53,7 @@ impl Stages {
             return Some(Fault::new("", "must have one law or more, got none"));
         };
         if first.from != Time::ZERO {
-            let why = format!("must be 0, or left out, of the first, got {}", first.from.get());
+            let why = format!("must be 0, or left out, for the first, got {}", first.from.get());
             return Some(Fault::new("[0].from", why));
         }
         if let Some(late) = self.0.windows(2).position(|pair| pair[0].from >= pair[1].from) {
@@ -71,7 +71,7 @@ impl Stages {
                 | Law::Own(_)) => law.inconsistency().map(|fault| fault.within(&key)),
                 Law::Relay(_) | Law::PhasePlane(_) | Law::PerAxis(_) | Law::Stages(_) => {
                     let why =
-                        "must be one of `attitude`, `b_dot`, `pd`, `state_space` and `open`: others are laws of a whole run";
+                        "must be one of `attitude`, `b_dot`, `pd`, `state_space` and `open`: other laws control a whole run";
                     Some(Fault::new(key, why))
                 }
             }

@@ -116,10 +116,10 @@ impl StateSpace {
         let wrong = |key: &str, why: String| Err(Fault::new(key, why));
         let order = self.a.len();
         if order > MOST {
-            return wrong("a", format!("must be of at most {MOST} states, got {order}"));
+            return wrong("a", format!("must have at most {MOST} states, got {order}"));
         }
         let Some(inputs) = self.d.first().or(self.b.first()).map(Vec::len) else {
-            return wrong("d", "must be there where there are no states".to_owned());
+            return wrong("d", "must be given if there are no states".to_owned());
         };
         if !(1..=2).contains(&inputs) {
             let key = if self.d.is_empty() { "b[0]" } else { "d[0]" };
@@ -138,7 +138,7 @@ impl StateSpace {
             many => Err(Fault::new(key, format!("must be one row, got {many}"))),
         };
         if order > 0 && self.c.is_empty() {
-            return wrong("c", format!("must be a row of {order}: without it the states are not seen"));
+            return wrong("c", format!("must be a row of {order}: without it the states have no effect"));
         }
         let (c, d) = (row("c", &self.c, order)?, row("d", &self.d, inputs)?);
         let continuous = Matrices { a, b, c, d };
@@ -163,7 +163,7 @@ impl StateSpace {
             Ok(sampled) => {
                 let all = [&sampled.a, &sampled.b, &sampled.c, &sampled.d];
                 let finite = all.iter().all(|matrix| matrix.iter().all(|entry| entry.is_finite()));
-                (!finite).then(|| Fault::new("a", "grows beyond all numbers within a period"))
+                (!finite).then(|| Fault::new("a", "overflows within a period"))
             }
         }
     }

@@ -72,7 +72,7 @@ pub enum LogError {
         topics: String,
     },
     /// The log was not made by this program.
-    #[error("{}: holds no scenario, so it is no log of flexsc\n\nhint: `flexsc export` reads any MCAP log of protobuf messages", path.display())]
+    #[error("{}: contains no scenario, so it is not a log of flexsc\n\nhint: `flexsc export` reads any MCAP log of protobuf messages", path.display())]
     NoScenario {
         /// The file.
         path: PathBuf,

@@ -28,16 +28,16 @@ pub fn there(path: &Path, run: &Provenance) -> There {
         return if path.exists() { There::Other("cannot be read".to_owned()) } else { There::Nothing };
     };
     let Some(origin) = Origin::read(BufReader::new(file)) else {
-        return There::Other("is no log of flexsc".to_owned());
+        return There::Other("is not a log of flexsc".to_owned());
     };
     let own = (env!("CARGO_PKG_VERSION"), run.seed.to_string(), run.run.to_string());
     let Origin { toml, version, seed, run: number } = origin;
     if version != own.0 {
-        There::Other(format!("holds a run by flexsc {version}, and this is {}", own.0))
+        There::Other(format!("holds a run of flexsc {version}, and this is {}", own.0))
     } else if number != own.2 {
         There::Other(format!("holds run {number}, not run {}", own.2))
     } else if toml != run.toml {
-        There::Other(format!("holds a run of other settings{}", difference(&toml, &run.toml)))
+        There::Other(format!("holds a run with other settings{}", difference(&toml, &run.toml)))
     } else if seed != own.1 {
         There::Other(format!("holds a run with the seed {seed}, not {}", own.1))
     } else {
@@ -52,11 +52,11 @@ pub fn difference(there: &str, here: &str) -> String {
     let short = |value: Option<&Value>| match value {
         None => "nothing".to_owned(),
         Some(value @ (Value::Table(_) | Value::Array(_))) if value.to_string().len() > 60 => {
-            "more".to_owned()
+            "a longer value".to_owned()
         }
         Some(value) => value.to_string(),
     };
-    format!(" (`{key}`: {} there, {} here)", short(there), short(here))
+    format!(" (`{key}`: {} before, {} now)", short(there), short(here))
 }
 
 type Difference<'a> = (String, Option<&'a Value>, Option<&'a Value>);

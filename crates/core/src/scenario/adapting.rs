@@ -59,7 +59,8 @@ impl Scenario {
                            `objective`";
                 return Some(("", why.to_owned()));
             }
-            let why = "is that of the `[estimator.envelope]`: leave it out for the objective `envelope_mean`";
+            let why =
+                "follows from the `[estimator.envelope]`: leave it out for the objective `envelope_mean`";
             return adaptation.window().map(|_| (".window", why.to_owned()));
         }
         let word = objective.word();
@@ -82,7 +83,7 @@ impl Scenario {
                 "counts the switchings of a law `relay` or `phase_plane`, and there is none"
             }
             Objective::TorqueMean if matches!(self.actuator, Actuator::Magnetorquers(_)) => {
-                "is not known of magnetorquers, whose torque changes with the field"
+                "is not known for magnetorquers, whose torque changes with the field"
             }
             _ => return None,
         };

@@ -138,7 +138,7 @@ impl Scenario {
         }
         let continuous = self.study.sampling.is_none();
         if self.chain.is_some() && continuous {
-            let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form, or the sensor `sampled`";
+            let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form; or use a `[sensor.sampled]`";
             return at("body.panels.kinematics", why.to_owned());
         }
         if self.drift.is_some() && continuous {
@@ -161,23 +161,23 @@ impl Scenario {
     fn damping_inconsistency(&self) -> Option<Fault> {
         let couples = |body: &Planar| !body.damping_matrix.is_empty();
         if self.manoeuvre.is_some() && couples(self.planned_for()) {
-            let why = "couples modes, which a `[manoeuvre]` takes each on its own: give it a `model` without";
+            let why = "couples modes, and a `[manoeuvre]` treats each mode on its own: give it a `model` without this matrix";
             return Some(Fault::new(self.damping_key(), why));
         }
         if !couples(&self.model) {
             return None;
         }
         let why = match &self.estimator {
-            _ if self.drift.is_some() => "leaves no closed form of modes that drift",
+            _ if self.drift.is_some() => "has no closed form for modes that drift",
             _ if self.manoeuvre.is_some() && matches!(self.actuator, Actuator::Ideal(_)) => {
                 "needs torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]` or \
                  thrusters"
             }
             Some(Estimator::Envelope(_)) => {
-                "couples modes, which an `[estimator.envelope]` follows each on its own"
+                "couples modes, and an `[estimator.envelope]` treats each mode on its own"
             }
             Some(Estimator::ExtendedKalman(_) | Estimator::UnscentedKalman(_)) => {
-                "couples modes, which a filter of their frequencies predicts each on its own: use `kalman`"
+                "couples modes, and a filter of their frequencies predicts each mode on its own: use `kalman`"
             }
             _ => return None,
         };
@@ -196,7 +196,7 @@ impl Scenario {
             return at(key, why.to_owned());
         }
         if self.manoeuvre.is_some() && matches!(self.actuator, Actuator::Ideal(_)) {
-            let why = "leaves no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters";
+            let why = "has no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters";
             return at(key, why.to_owned());
         }
         if self.chain.is_some() || self.model.drive == Drive::Motion {

@@ -77,7 +77,7 @@ impl Cost {
         let each = if *runs > 1.0 { format!(" in each of {} runs", told(*runs)) } else { String::new() };
         let room = if *disk > 0.0 { format!(", {} for logs", bytes(*disk)) } else { String::new() };
         Some(format!(
-            "{what} makes {} steps{each}: about {} on one core, {} of memory{room}, and more than {}, {} or {} needs a yes",
+            "{what} makes {} steps{each}: about {} on one core, {} of memory{room}, and more than {}, {} or {} must be confirmed",
             told(*steps),
             time(*seconds),
             bytes(*memory),
@@ -165,7 +165,7 @@ impl Scenario {
             [(true, MOST_MODES, "of a body"), (coupled || filtered, MOST_COUPLED, why)]
         {
             if applies && modes > most {
-                let why = format!("gives {modes} modes, and at most {most} {why} are computed");
+                let why = format!("gives {modes} modes, and at most {most} {why} are supported");
                 return Some(Fault::new(self.body.key(), why));
             }
         }
@@ -173,7 +173,7 @@ impl Scenario {
             let waiting = wheel.delay.get().min(self.duration.seconds()) / period.seconds();
             if waiting > MOST_WAITING {
                 let why = format!(
-                    "keeps {} commands waiting, one each {} s: at most {} are kept",
+                    "keeps {} commands waiting, one every {} s: at most {} are supported",
                     told(waiting),
                     period.seconds(),
                     told(MOST_WAITING)
@@ -186,7 +186,7 @@ impl Scenario {
         let (duration, most) = (self.duration.seconds(), told(MOST_STEPS));
         Some(Fault::new(
             key,
-            format!("makes {} steps in the run's {duration} s: at most {most} are done", told(steps)),
+            format!("makes {} steps in the run's {duration} s: at most {most} are allowed", told(steps)),
         ))
     }
 

@@ -251,8 +251,8 @@ impl Scenario {
             return Ok(());
         }
         let why = format!(
-            "must be slower than {limit:.4} rad/s, a fifth of the lowest frequency with the root held, got {most:.4}: beyond, the \
-             model leaves too much out"
+            "must be slower than {limit:.4} rad/s, a fifth of the lowest frequency with the root clamped, got {most:.4}: above it, the \
+             model neglects too much"
         );
         Err(Fault::new(format!("appendage[{index}].drive.rate"), why))
     }
@@ -267,7 +267,8 @@ impl Scenario {
                 || spacecraft.points.is_empty() && point == "hub"
         };
         let place = |key: String| {
-            let why = "must be a point of the hub: beside drives what is on an appendage is not known";
+            let why =
+                "must be a point of the hub: with drives, the motion of points on appendages is not computed";
             Some(Fault::new(key, why))
         };
         for (index, sensor) in self.sensor.iter().enumerate() {
@@ -275,7 +276,7 @@ impl Scenario {
                 return place(format!("{}.point", self.sensor_key(index)));
             }
             if matches!(sensor, Sensor::Accelerometer(_)) {
-                let why = "goes with appendages that do not turn: what a turning one's modes accelerate is not known";
+                let why = "cannot be used with appendages that turn: the acceleration by their modes is not computed";
                 return Some(Fault::new(self.sensor_key(index), why));
             }
         }
@@ -292,8 +293,8 @@ impl Scenario {
         if let Actuator::Wheels(wheels) = &self.actuator
             && let Some(key) = wheels.rubs_or_shakes()
         {
-            let why = "goes with appendages that do not turn: the instants at which wheels stick, and what shakes the modes, are \
-                       searched for with modes that stay";
+            let why = "needs appendages that do not turn: the instants at which wheels stick, and the excitation of modes by imbalance, are \
+                       searched for with constant modes";
             return Some(Fault::new(format!("actuator.wheels.{key}"), why));
         }
         let pressed = self.environment.as_ref().and_then(|around| {

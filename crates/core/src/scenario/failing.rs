@@ -80,20 +80,20 @@ impl Scenario {
         let key = failed?;
         let why = match (&self.actuator, &self.law) {
             (Actuator::Wheel(_), _) => {
-                "leave no closed form with a wheel, whose back-EMF couples the modes: take an `[actuator.hold]`"
+                "have no closed form with a wheel, whose back-EMF couples the modes: use an `[actuator.hold]`"
             }
-            _ if self.drift.is_some() => "leave no closed form of modes that drift",
+            _ if self.drift.is_some() => "have no closed form for modes that drift",
             _ if !self.model.damping_matrix.is_empty() => {
-                "leave no closed form of modes that a damping matrix couples"
+                "have no closed form for modes that a damping matrix couples"
             }
             (_, law)
                 if self.sensor.period(law.period()).is_none()
                     && !matches!(law, Law::Open(_) | Law::Pd(_)) =>
             {
-                "leave a law no crossings in closed form: give it a `[sensor.sampled]`"
+                "leave no closed form for the crossings of the law: use a `[sensor.sampled]`"
             }
             _ if self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) => {
-                "are no torques that are constant for a while, which an `[estimator.envelope]` follows"
+                "are not piecewise constant torques, which an `[estimator.envelope]` needs"
             }
             _ => return None,
         };

@@ -40,13 +40,13 @@ impl Scenario {
         let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
         let at = |key: &str, why: &str| Some(Fault::new(format!("estimator.envelope{key}"), why));
         if envelope.modes.is_some() {
-            return at(".modes", "are those of one angle: about three axes the monitor knows the body's");
+            return at(".modes", "apply only to one angle: about three axes the monitor uses the body's");
         }
         if self.mode_count() == 0 {
             return at("", "has no modes to follow: the body has none");
         }
         if self.study.drives.is_some() {
-            let why = "follows modes that stay the same, and an appendage that turns changes them";
+            let why = "needs constant modes, and an appendage that turns changes them";
             return at("", why);
         }
         let spatial = self.body.spatial()?;
@@ -81,7 +81,7 @@ impl Scenario {
             return at("", "has no modes to estimate: the body has none".to_owned());
         }
         if self.model.drive == Drive::Motion {
-            let why = "sees the modes in the hub's angle, and with `drive = \"motion\"` they do not show";
+            let why = "observes the modes through the hub's angle, where they do not appear with `drive = \"motion\"`";
             return at("", why.to_owned());
         }
         if self.chain.is_some() {
@@ -106,7 +106,7 @@ impl Scenario {
         if self.axis_count() == 3 && estimator.modes().is_some() {
             return at(
                 ".modes",
-                "are those of one angle: about three axes a filter knows the body's".to_owned(),
+                "apply only to one angle: about three axes a filter uses the body's".to_owned(),
             );
         }
         let (Estimator::ExtendedKalman(filter) | Estimator::UnscentedKalman(filter)) = estimator else {

@@ -70,17 +70,17 @@ impl Scenario {
                 gyro.three().map(|key| format!("{}.{key}", self.sensor_key(index)))
             });
             if self.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some()) {
-                let why = "estimates three axes: a body with one angle has `[estimator.kalman]`";
+                let why = "is for three axes: use `[estimator.kalman]` for a body with one angle";
                 return refused("estimator.attitude", why);
             }
             if matches!(self.actuator, Actuator::Wheels(_)) {
-                let why = "turn three axes: a body with one angle has `[actuator.wheel]`";
+                let why = "are for three axes: use `[actuator.wheel]` for a body with one angle";
                 return refused("actuator.wheels", why);
             }
             let trackers =
                 |sensor: &Sensor| matches!(sensor, Sensor::StarTracker(_)) || sensor.is_of_a_vector();
             if let Some(index) = self.sensor.iter().position(trackers) {
-                let why = "measures three axes: the angle of a body with one is that of a `sampled` sensor";
+                let why = "measures three axes: use a `sampled` sensor for a body with one angle";
                 return refused(&self.sensor_key(index), why);
             }
             let pushed = match &self.actuator {
@@ -98,20 +98,20 @@ impl Scenario {
             let forced =
                 |disturbance: &Disturbance| disturbance.force.is_some() || disturbance.point.is_some();
             if let Some(index) = self.disturbance.iter().position(forced) {
-                let why = "acts on a body with three axes: one with one angle feels a `torque`";
+                let why = "acts on a body with three axes: use a `torque` for a body with one angle";
                 return refused(&format!("disturbance[{index}].force"), why);
             }
             let about = self.disturbance.iter().position(|disturbance| disturbance.about.is_some())?;
-            return refused(&format!("disturbance[{about}].about"), "names an axis of a body with three");
-        }
-        if self.manoeuvre.is_some() {
             return refused(
-                "manoeuvre",
-                "is for bodies with one angle: one with three axes has `[[target]]`",
+                &format!("disturbance[{about}].about"),
+                "names one of three axes, and the body has one angle",
             );
         }
+        if self.manoeuvre.is_some() {
+            return refused("manoeuvre", "is for bodies with one angle: use `[[target]]` for three axes");
+        }
         if self.drift.is_some() && self.body.craft().is_some() {
-            let why = "is of modes that are given: those of a `[spacecraft]` follow from its appendages, which a `drive` may turn";
+            let why = "is for modes that are given: those of a `[spacecraft]` follow from its appendages, which a `drive` can turn";
             return refused("drift", why);
         }
         for (index, disturbance) in self.disturbance.iter().enumerate() {
@@ -122,7 +122,7 @@ impl Scenario {
         if let Actuator::Wheel(wheel) = &self.actuator
             && wheel.back_emf.get() > 0.0
         {
-            let why = "couples the modes of one angle: about three axes a wheel has none";
+            let why = "couples the modes of one angle: leave it out for a body with three axes";
             return refused("actuator.wheel.back_emf", why);
         }
         None
@@ -228,7 +228,8 @@ impl Scenario {
                 && law.inertia.is_some()
                 && (self.axis_count() == 1 || matches!(self.law, Law::PerAxis(_)))
             {
-                let why = "is the tensor of three axes that one law turns: a `[law.attitude]` for all of them has it";
+                let why =
+                    "is the tensor for one law about three axes: it needs a `[law.attitude]` for all of them";
                 return at("inertia", why.to_owned());
             }
             let measure = match law {
@@ -237,7 +238,7 @@ impl Scenario {
                 _ => Measure::default(),
             };
             if self.axis_count() == 1 && measure != Measure::default() {
-                let why = "is of rotations about three axes: one angle counts as it is";
+                let why = "applies only to rotations about three axes";
                 return at("error", why.to_owned());
             }
         }
@@ -248,7 +249,7 @@ impl Scenario {
         if let Some((_, key)) = self.actuator.magnetorquers()
             && self.environment.as_ref().is_none_or(|around| around.magnetic_field.is_none())
         {
-            let why = "push against the field of `[environment.magnetic_field]`, and there is none";
+            let why = "need the field of `[environment.magnetic_field]`, and there is none";
             return Some(Fault::new(key, why));
         }
         let Actuator::Jets(jets) = &self.actuator else { return None };

@@ -46,7 +46,10 @@ impl Pointing {
     pub fn fault(&self, axes: usize) -> Option<Fault> {
         let [from, to] = self.window.map(Time::get);
         if axes == 1 {
-            return Some(Fault::new("", "is for a body with three axes: one with one angle has a `band`"));
+            return Some(Fault::new(
+                "",
+                "is for a body with three axes: use `band` for a body with one angle",
+            ));
         }
         let why = format!("must be [from, to] in this order, got [{from}, {to}]");
         (from >= to).then(|| Fault::new("window", why))

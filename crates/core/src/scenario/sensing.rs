@@ -21,7 +21,7 @@ impl Scenario {
                 return Some(fault.within(&self.sensor_key(index)));
             }
             if self.sensor.of_body() > 1 && sensor.is_continuous() {
-                return at(index, "knows the motion at every instant, and there is nothing that others add");
+                return at(index, "gives the motion at every instant, so other sensors add nothing");
             }
         }
         if let Some(fault) = self.tachometer_fault().or_else(|| self.accelerometer_fault()) {
@@ -32,7 +32,7 @@ impl Scenario {
         }
         let moves = |axis: usize| !matches!(self.law.about(axis).reads(), Reads::Nothing | Reads::Field);
         if (0..self.axis_count()).any(moves) && self.sensor.iter().all(Sensor::is_of_a_vector) {
-            let why = "tells no attitude and no rate, which the law reads: give it a `gyro` and an `[estimator.attitude]`";
+            let why = "gives neither attitude nor rate, which the law needs: add a `gyro` and an `[estimator.attitude]`";
             return at(0, why);
         }
         if self.sensor.of_body() == 1 {
@@ -59,12 +59,12 @@ impl Scenario {
             return at(index, "is on the wheels of `[actuator.wheels]`, and there are none");
         }
         if self.sensor.of_body() == 0 {
-            let why = "measures wheels alone: list a sensor of the body beside it, \"continuous\" for one that knows the motion";
+            let why = "measures only wheels: list a sensor of the body beside it, such as \"continuous\", which gives the exact motion";
             return at(index, why);
         }
         let is_one = |(_, sensor): &(usize, &Sensor)| matches!(sensor, Sensor::Tachometer(_));
         let mut tachometers = self.sensor.iter().enumerate().filter(is_one);
-        tachometers.nth(1).and_then(|(other, _)| at(other, "is on each wheel already: list one alone"))
+        tachometers.nth(1).and_then(|(other, _)| at(other, "is on each wheel already: list only one"))
     }
 
     /// An accelerometer on another body than a spacecraft, or without another sensor.
@@ -73,7 +73,7 @@ impl Scenario {
         let why = if self.body.flexible().is_none() {
             "measures at a point of a `[spacecraft]`, whose mass and centre of mass are known, and whose modes act back on it"
         } else if self.sensor.of_body() == 0 {
-            "is read by nothing: list a sensor of the body beside it, \"continuous\" for one that knows the motion"
+            "is not used by the law: list a sensor of the body beside it, such as \"continuous\", which gives the exact motion"
         } else {
             return None;
         };
@@ -125,7 +125,7 @@ impl Scenario {
                 "leave it out"
             };
             let law = self.law.kind();
-            return at("", format!("is read by nothing, for the law is `{law}`: {instead}"));
+            return at("", format!("is not used, because the law is `{law}`: {instead}"));
         }
         None
     }

@@ -20,7 +20,7 @@ impl Scenario {
         if around.sun == Some(Sun::Epoch) && self.epoch.is_none() {
             return Some(Fault::new(
                 "environment.sun",
-                "is that of the scenario's `epoch`, and there is none",
+                "follows from the scenario's `epoch`, and there is none",
             ));
         }
         let turns =

@@ -26,7 +26,7 @@ impl Scenario {
             return if self.body.is_spacecraft() { Err(document.missing("body")) } else { Ok(()) };
         }
         if !self.body.is_spacecraft() {
-            let why = "is a body: leave out `body`, which is another";
+            let why = "is itself a body: leave out `body`";
             return Err(refused(Fault::new("spacecraft", why)));
         }
         for (index, appendage) in self.appendage.iter_mut().enumerate() {

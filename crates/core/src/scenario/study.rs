@@ -281,7 +281,7 @@ fn surroundings(scenario: &Scenario, body: &Spatial) -> Result<Option<Around>, F
         scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some() && around.sun.is_some());
     if !bendings.is_empty() && !sunny {
         let index = scenario.appendage.iter().position(|appendage| appendage.thermal.is_some());
-        let why = "is that of sunlight and shadow: it needs `environment.orbit` and `environment.sun`";
+        let why = "depends on sunlight and shadow: it needs `environment.orbit` and `environment.sun`";
         return Err(Fault::new(format!("appendage[{}].thermal", index.unwrap_or(0)), why));
     }
     let Some(environment) = &scenario.environment else { return Ok(None) };

@@ -59,7 +59,7 @@ impl Accelerometer {
     /// What single values cannot show to be wrong: a key within the accelerometer, and why.
     pub fn inconsistency(&self) -> Option<document::Fault> {
         if !self.watch_only {
-            let why = "must be true: nothing reads an accelerometer, which is logged and changes nothing";
+            let why = "must be true: an accelerometer is only logged, and the law does not use it";
             return Some(document::Fault::new("watch_only", why));
         }
         if self.along.len() > 3 {
@@ -67,7 +67,7 @@ impl Accelerometer {
             return Some(document::Fault::new("along", why));
         }
         let none = self.along.iter().position(|along| along.iter().all(|part| part.get() == 0.0))?;
-        Some(document::Fault::new(format!("along[{none}]"), "must have a length, got [0, 0, 0]"))
+        Some(document::Fault::new(format!("along[{none}]"), "must not be zero, got [0, 0, 0]"))
     }
 
     /// Along how many axes it measures.

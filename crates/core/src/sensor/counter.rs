@@ -165,7 +165,8 @@ mod tests {
             gyro.inconsistency().unwrap().to_string()
         };
         assert!(
-            refused("noise = 1e-5\nquantum = 1e-6\nperiod = 0.1").starts_with("`noise` is that of a gyro")
+            refused("noise = 1e-5\nquantum = 1e-6\nperiod = 0.1")
+                .starts_with("`noise` applies only to a gyro")
         );
         assert!(refused("quantum = 1e-6").starts_with("`period` must be given"));
         let twisted = "misalignment = [[0, 0, 0], [0, 1e-3, 0], [0, 0, 0]]";

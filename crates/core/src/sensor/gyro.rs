@@ -114,7 +114,7 @@ impl Gyro {
         let samples = [("noise", is_zero(&self.noise)), ("resolution", is_zero(&self.resolution))];
         if self.integrates() {
             if let Some((key, _)) = samples.into_iter().find(|(_, zero)| !zero) {
-                let why = "is that of a gyro that samples the rate: one with a random walk or a `quantum` integrates it";
+                let why = "applies only to a gyro that samples the rate: one with a random walk or a `quantum` integrates it";
                 return Some(Fault::new(key, why));
             }
             if self.period.is_none() {
@@ -123,7 +123,7 @@ impl Gyro {
         }
         let rows = self.misalignment.as_ref()?;
         let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
-        let why = format!("must be 0, for `scale` is that error, got {}", rows[axis][axis].get());
+        let why = format!("must be 0, because `scale` gives that error, got {}", rows[axis][axis].get());
         Some(Fault::new(format!("misalignment[{axis}][{axis}]"), why))
     }
 

@@ -81,7 +81,7 @@ impl SunSensor {
     /// What single values cannot show to be wrong: a key within the sensor, and why.
     pub fn inconsistency(&self) -> Option<document::Fault> {
         if self.boresight.iter().all(|part| part.get() == 0.0) {
-            return Some(document::Fault::new("boresight", "must have a length, got [0, 0, 0]"));
+            return Some(document::Fault::new("boresight", "must not be zero, got [0, 0, 0]"));
         }
         self.errors().fault()
     }

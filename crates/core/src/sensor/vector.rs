@@ -52,7 +52,7 @@ impl Errors {
     pub fn fault(&self) -> Option<document::Fault> {
         let rows = &self.misalignment;
         let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
-        let why = format!("must be 0, for `scale` is that error, got {}", rows[axis][axis].get());
+        let why = format!("must be 0, because `scale` gives that error, got {}", rows[axis][axis].get());
         Some(document::Fault::new(format!("misalignment[{axis}][{axis}]"), why))
     }
 }

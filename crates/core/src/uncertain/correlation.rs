@@ -26,7 +26,7 @@ impl Correlated {
         let fault = |key: &str, why: String| Some(Fault::new(key, why));
         let order = self.keys.len();
         if order < 2 {
-            return fault("keys", format!("needs two keys at least, got {order}"));
+            return fault("keys", format!("needs at least two keys, got {order}"));
         }
         if let Some((_, twice)) =
             self.keys.iter().enumerate().find(|(place, key)| self.keys[..*place].contains(key))
@@ -53,7 +53,7 @@ impl Correlated {
             }
         }
         if self.factor().is_none() {
-            let why = "cannot be: no numbers have all these correlations (it has a negative eigenvalue)";
+            let why = "is impossible: no numbers have all these correlations (it has a negative eigenvalue)";
             return fault("matrix", why.to_owned());
         }
         None

@@ -91,7 +91,7 @@ fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, fau
 fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
     let wanted: Vec<&str> = ends.iter().filter_map(|node| node.unit).collect();
     let Some(first) = wanted.first() else {
-        return Err(format!("has the unit `{unit}`, and takes a number without one"));
+        return Err(format!("has the unit `{unit}`, but takes a number without a unit"));
     };
     let Some(given) = Unit::parse(unit) else {
         return Err(format!("has the unit `{unit}`, which is not known; expected a unit such as `{first}`"));

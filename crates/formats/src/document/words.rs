@@ -58,7 +58,7 @@ pub fn told(wrong: &Wrong) -> String {
         path if path.is_empty() => wrong.to_string(),
         // A path without quotes is read as tables within tables.
         path if path.starts_with("uncertain.") && !path.contains('"') => {
-            format!("`{path}`: {wrong}; the path of an uncertain key stands in quotes")
+            format!("`{path}`: {wrong}; the path of an uncertain key must be in quotes")
         }
         path => format!("`{}`: {wrong}", shortened(&path)),
     }
@@ -69,12 +69,12 @@ fn explained(message: &str) -> String {
     let message = message.trim_end();
     if let Some(found) = message.strip_suffix(" as i128, expected any valid TOML value") {
         let found = found.trim_start_matches("invalid type: ");
-        return format!("found {found}, which is too large; a number so large is written with a point");
+        return format!("found {found}, which is too large; write a number this large with a decimal point");
     }
     let known = match message {
         _ if deep::is_limit(message) => deep::WHY,
         "string values must be quoted, expected literal string" => {
-            "found no TOML value; a text stands in quotes"
+            "found no TOML value; a text must be in quotes"
         }
         "invalid float, expected nothing" => "found no valid TOML number",
         "u64 value was too large" => {

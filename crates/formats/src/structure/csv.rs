@@ -21,7 +21,9 @@ pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
         for (index, field) in record.iter().enumerate() {
             let number = field.parse().map_err(|_| {
                 let column = index + 1;
-                format!("line {line}: must have numbers parted by commas, got `{field}` in column {column}")
+                format!(
+                    "line {line}: must have numbers separated by commas, got `{field}` in column {column}"
+                )
             })?;
             numbers.push(number);
         }

@@ -225,7 +225,7 @@ impl Structure {
 }
 
 /// What is wrong with matrices whose modes leave the range of numbers.
-pub const TOO_FAR_APART: &str = "holds numbers too far apart for modes in double precision";
+pub const TOO_FAR_APART: &str = "holds numbers that differ too much in size for modes in double precision";
 
 const DEFINITE: &str = "must be positive definite";
 

@@ -116,7 +116,7 @@ impl Archive {
                 let (indices, starts) = (self.array("indices")?.numbers, self.array("indptr")?.numbers);
                 let most = if format == "csr" { rows } else { columns };
                 if starts.len() != most + 1 || starts.windows(2).any(|ends| ends[0] > ends[1]) {
-                    return Err(format!("array `indptr` must hold {} increasing places", most + 1));
+                    return Err(format!("array `indptr` must hold {} increasing indices", most + 1));
                 }
                 for (major, ends) in starts.windows(2).enumerate() {
                     for k in (ends[0] as usize)..(ends[1] as usize).min(indices.len()).min(data.len()) {

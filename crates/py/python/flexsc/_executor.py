@@ -74,7 +74,7 @@ class Remote:
             there = engine.Work.parse(files.cat_file(at).decode())
             difference = work.difference(there)
             if difference is not None:
-                raise ValueError(f"{self.name}: what is there is of another campaign ({difference})")
+                raise ValueError(f"{self.name}: contains another campaign ({difference})")
             if there.runs != work.runs:
                 was, now = there.runs, work.runs
                 raise ValueError(

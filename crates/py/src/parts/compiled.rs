@@ -33,7 +33,7 @@ impl Brought {
     pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let address: usize = part.getattr("address")?.extract()?;
         if address == 0 {
-            return Err(PyValueError::new_err("address must be that of a function, got 0"));
+            return Err(PyValueError::new_err("address must be the address of a function, got 0"));
         }
         let period: Option<f64> = part.getattr("period")?.extract()?;
         Ok(Self {

@@ -97,12 +97,12 @@ impl Hold {
             (None, None, Some(value), None) => Command::Change(finite("change", value)?),
             (None, None, None, Some(value)) => Command::Moment(finite("moment", value)?),
             _ => {
-                let why = "a hold has one of torque, acceleration, change and moment";
+                let why = "a hold needs exactly one of torque, acceleration, change and moment";
                 return Err(PyValueError::new_err(why));
             }
         };
         if after.is_some() && until.is_some() {
-            return Err(PyValueError::new_err("a hold has one of after and until"));
+            return Err(PyValueError::new_err("a hold needs exactly one of after and until"));
         }
         Ok(Self {
             command,

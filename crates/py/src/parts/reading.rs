@@ -81,7 +81,7 @@ impl Reading {
         let attitude = attitude.map(|of| exactly::<4>(of, "attitude")).transpose()?;
         let at = match (angle, attitude) {
             (Some(_), Some(_)) => {
-                return Err(PyValueError::new_err("a reading has one of angle and attitude"));
+                return Err(PyValueError::new_err("a reading has either an angle or an attitude"));
             }
             (Some(angle), None) => Some(Orientation::Angle(angle)),
             (None, Some([w, x, y, z])) => {
@@ -105,7 +105,7 @@ impl Reading {
                 Some(Sight { vector: Vector::from(vector), inertial: Vector::from(inertial), is_direction })
             }
             (None, None) => None,
-            _ => return Err(PyValueError::new_err("a reading has vector and inertial together")),
+            _ => return Err(PyValueError::new_err("a reading needs both vector and inertial, or neither")),
         };
         let rate = match rate {
             None => None,

@@ -52,7 +52,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     there.extend((!fans.is_empty()).then_some(What::Fan));
     let all = chosen(&args.what, &there).map_err(|(missing, there)| {
         let path = directory.display();
-        Failure::Arguments(format!("{path}: there is no figure `{missing}` of it\n\nhint: it has {there}"))
+        Failure::Arguments(format!("{path}: there is no figure `{missing}` for it\n\nhint: it has {there}"))
     })?;
     let mut figures = Vec::new();
     for runs in &tables {
@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     if figures.is_empty() {
         return Err(Failure::Arguments(format!(
-            "{}: no metric varies from run to run\n\nhint: --metric names one to draw all the same",
+            "{}: no metric varies from run to run\n\nhint: --metric NAME draws one anyway",
             directory.display()
         )));
     }
@@ -123,7 +123,7 @@ fn of_runs(runs: &Runs, kinds: &[What], metric: &[String], path: &Path) -> Resul
     if let Some(missing) = kinds.iter().find(|kind| !all.contains(kind)) {
         let names: Vec<_> = all.iter().map(|what| what.name()).collect();
         return Err(Failure::Arguments(format!(
-            "{}: there is no figure `{}` of it\n\nhint: it has {}",
+            "{}: there is no figure `{}` for it\n\nhint: it has {}",
             path.display(),
             missing.name(),
             names.join(", ")

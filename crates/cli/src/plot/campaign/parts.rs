@@ -40,7 +40,7 @@ pub fn of(
         return Err(Failure::Arguments(format!("{}: has no runs", path.display())));
     };
     if numbers.is_empty() {
-        return Err(Failure::Arguments(format!("{}: there is no run in it yet", path.display())));
+        return Err(Failure::Arguments(format!("{}: contains no runs yet", path.display())));
     }
     let keys: Vec<&str> = campaign.keys().collect();
     let is_number = |field: &&Field| match field.kind {

@@ -121,20 +121,23 @@ fn refused(path: &Path, why: &str) -> Failure {
 
 impl Rows {
     fn read(&mut self, path: &Path) -> Result<(), Failure> {
-        let wrong = |error: csv::Error| refused(path, &format!("is no table of a campaign: {error}"));
+        let wrong = |error: csv::Error| refused(path, &format!("is not the table of a campaign: {error}"));
         let mut reader = csv::Reader::from_path(path).map_err(wrong)?;
         let header: Vec<String> = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();
         if header.first().map(String::as_str) != Some("run")
             || header.last().map(String::as_str) != Some("error")
         {
-            return Err(refused(path, "is no table of a campaign: its columns must be `run`, ..., `error`"));
+            return Err(refused(
+                path,
+                "is not the table of a campaign: its columns must be `run`, ..., `error`",
+            ));
         }
         // A part of nothing but failures has no metrics: the longer header has them.
         let within = |short: &[String], long: &[String]| short.iter().all(|column| long.contains(column));
         if within(&self.header, &header) {
             self.header.clone_from(&header);
         } else if !within(&header, &self.header) {
-            return Err(refused(path, "has other columns than the other parts of the campaign"));
+            return Err(refused(path, "has different columns than the other parts of the campaign"));
         }
         for record in reader.records() {
             let record = record.map_err(wrong)?;
@@ -157,7 +160,7 @@ impl Rows {
 
     fn into_runs(self, directory: &Path, prefix: &str) -> Result<Runs, Failure> {
         if self.rows.is_empty() {
-            return Err(refused(&directory.join(format!("{prefix}runs.csv")), "there is no run in it"));
+            return Err(refused(&directory.join(format!("{prefix}runs.csv")), "contains no runs"));
         }
         let path = directory.join(format!("{prefix}{SCENARIO}"));
         let scenario = if path.is_file() { Some((Scenario::load(&path)?, Source::File(path))) } else { None };

@@ -107,8 +107,8 @@ fn what_cannot_be_built_is_refused_with_its_key() {
         wheels.allocation().unwrap_err().to_string()
     };
     assert!(fault("").starts_with("`axes` must be given without an `arrangement`"));
-    assert!(fault("axes = [[1, 0, 0], [0, 1, 0]]").contains("must reach all three axes"));
-    assert!(fault("axes = [[1, 0, 0], [0, 1, 0], [0, 0, 0]]").starts_with("`axes[2]` must have a length"));
+    assert!(fault("axes = [[1, 0, 0], [0, 1, 0]]").contains("must span all three axes"));
+    assert!(fault("axes = [[1, 0, 0], [0, 1, 0], [0, 0, 0]]").starts_with("`axes[2]` must not be zero"));
     assert!(fault("arrangement = \"pyramid\"\nspeeds = [1.0]").contains("one for each of 4 wheels"));
     let bias = "speed_bias = { speed = 1.0, gain = 1.0 }";
     assert!(fault(&format!("arrangement = \"orthogonal\"\n{bias}")).starts_with("`speed_bias` needs four"));

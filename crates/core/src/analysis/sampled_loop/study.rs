@@ -24,11 +24,11 @@ impl Loop {
         if scenario.axis_count() == 3 {
             return refused(
                 &scenario.body.key(),
-                "turns about three axes: the loop that is analysed has one angle",
+                "turns about three axes: only loops with one angle are analysed",
             );
         }
         let Law::Pd(law) = &scenario.law else {
-            return refused("law", "must be `pd`: the loop that is analysed is a sampled one");
+            return refused("law", "must be `pd`: only sampled loops are analysed");
         };
         let body = scenario.model.clone();
         if body.modes.is_empty() {

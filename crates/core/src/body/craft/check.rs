@@ -40,7 +40,8 @@ pub fn check(spacecraft: &Spacecraft, appendages: &[Appendage]) -> Result<(), Fa
         }
         modes += appendage.modes.len();
         if modes > MOST_MODES {
-            let why = format!("makes {modes} modes with those before, and at most {MOST_MODES} are computed");
+            let why =
+                format!("brings the number of modes to {modes}, and at most {MOST_MODES} are supported");
             return Err(within(Fault::new("modes", why)));
         }
         distinct(&appendage.points, &mut points).map_err(within)?;
@@ -135,12 +136,11 @@ fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), Fault> {
     }
     if let Some(along) = &mode.along {
         if !appendage.is_point() {
-            let why =
-                "is of a point mass, all of which swings: an appendage with `inertia` has a `translation`";
+            let why = "applies only to a point mass, which swings as a whole: an appendage with `inertia` has a `translation`";
             return Err(Fault::new("along", why));
         }
         if vector(&mode.translation) != Vector::zeros() {
-            return Err(Fault::new("along", "stands in place of `translation`: give one of them"));
+            return Err(Fault::new("along", "replaces `translation`: give only one of them"));
         }
         let length = vector(along).norm();
         if !(length > 0.0 && length.is_finite()) {

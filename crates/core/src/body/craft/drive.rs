@@ -98,7 +98,7 @@ impl Drive {
         }
         let ways = [self.rate.is_some(), !self.table.is_empty(), self.track.is_some()];
         if ways.iter().filter(|given| **given).count() != 1 {
-            let why = "says how it turns by one of `rate`, `table` and `track`";
+            let why = "needs exactly one of `rate`, `table` and `track`";
             return Err(Fault::new("", why));
         }
         let beside = [
@@ -114,7 +114,7 @@ impl Drive {
                 "acceleration" => "`rate` or `table`",
                 _ => "`rate`",
             };
-            return Err(Fault::new(key, format!("goes with {with}")));
+            return Err(Fault::new(key, format!("needs {with}")));
         }
         if let Some(normal) = &self.normal {
             let normal = vector(normal);
@@ -122,11 +122,11 @@ impl Drive {
             if !across {
                 return Err(Fault::new(
                     "normal",
-                    "must be across `about`: no turn of the drive moves its part along it",
+                    "must be perpendicular to `about`: the drive cannot change its component along `about`",
                 ));
             }
         } else if self.track.is_some() && self.axis().z.abs() > 1e-6 {
-            return Err(Fault::new("normal", "must be given where the drive's axis is not across z"));
+            return Err(Fault::new("normal", "must be given if the drive's axis is not perpendicular to z"));
         }
         self.fits_in_time()
     }
@@ -141,7 +141,7 @@ impl Drive {
             }
         }
         if self.table.len() == 1 {
-            return Err(Fault::new("table", "must have two points at least"));
+            return Err(Fault::new("table", "must have at least two points"));
         }
         let pieces = self.pieces();
         if let Some(pair) = pieces.windows(2).find(|pair| pair[1][0] < pair[0][0]) {

@@ -21,7 +21,7 @@ impl Craft {
     pub fn rate_limit(&self) -> Option<Limit> {
         let limit = |part: &Part| {
             if part.knows_moments {
-                let why = "a fifth of the lowest frequency with the root held: beyond, the model leaves too much out";
+                let why = "a fifth of the lowest frequency with the root clamped: above it, the model neglects too much";
                 Limit { rate: WITH_MOMENTS * part.frequency, why }
             } else {
                 let why = "a hundredth of the lowest frequency of an appendage without first moments (`moments`, or `plate`)";

@@ -72,8 +72,7 @@ impl Appendage {
             return Err(Fault::new("units", "must be left out: files of 42 are in SI"));
         }
         if self.is_point() {
-            let why =
-                "must be given: a structure in the results of a finite-element program is no point mass";
+            let why = "must be given: a structure from a finite-element program is not a point mass";
             return Err(Fault::new("inertia", why));
         }
         if let Some(keep) = self.keep.filter(|keep| !(1..=MOST_MODES).contains(keep)) {
@@ -110,7 +109,7 @@ impl Appendage {
             ("units", self.units.is_some()),
         ];
         keys.iter().find(|(_, there)| *there).map_or(Ok(()), |(key, _)| {
-            let why = "must be left out: it is for `modes` from a .f06, .frd, .dat or .flex file, and a table says it itself";
+            let why = "must be left out: it applies to `modes` from a .f06, .frd, .dat or .flex file, and a table contains this itself";
             Err(Fault::new(*key, why))
         })
     }
@@ -145,7 +144,7 @@ impl Appendage {
             Some(damping) => damping.of(count).map_err(|why| Fault::new("damping", why)),
             None => modes.iter().map(|mode| mode.damping.and_then(NonNegative::new)).collect::<Option<_>>().ok_or_else(
                 || {
-                    let why = "must say the damping ratio of the modes, or [one for each], as the file tells none; 0 for \
+                    let why = "must say the damping ratio of the modes, or [one for each], because the file has none; 0 for \
                                none, 0.005 is a common guess";
                     Fault::new("damping", why)
                 },

@@ -65,7 +65,7 @@ impl ObserverDesign {
         let axes = measured.inputs.len();
         if axes == 1 && spec.trackers.is_some() {
             let why =
-                "are those of three axes: for a body with one angle `count` says how many modes are tracked";
+                "apply only to three axes: for a body with one angle, `count` is the number of tracked modes";
             return Err(Fault::new("trackers", why));
         }
         let form = spec.working_form();

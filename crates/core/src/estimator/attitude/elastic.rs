@@ -84,7 +84,7 @@ impl ElasticStates {
     /// The key, and why.
     pub fn known(&self, body: &Spatial, at: &[String], gyro: usize) -> Result<KnownModes, Fault> {
         if self.modes.is_empty() {
-            return Err(Fault::new("modes", "must name a mode at least"));
+            return Err(Fault::new("modes", "must name at least one mode"));
         }
         for (index, mode) in self.modes.iter().enumerate() {
             if *mode >= body.modes.len() {

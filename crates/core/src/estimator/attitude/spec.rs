@@ -126,7 +126,7 @@ impl AttitudeFilter {
         let Some((read, gyro)) = gyro else {
             return Err(Fault::new(
                 "",
-                "carries the attitude on by the rates of a `gyro`, and there is none",
+                "propagates the attitude with the rates of a `gyro`, and there is none",
             ));
         };
         let Some(period) = gyro.period.or(cycle) else {
@@ -152,7 +152,7 @@ impl AttitudeFilter {
         };
         let correct = roles.iter().filter(|role| matches!(role, Role::Corrects { .. })).count();
         if self.form == Form::Steady && (correct > 1 || sensors.iter().any(Sensor::is_of_a_vector)) {
-            let why = "has a steady state with one sensor of the attitude, and no vectors: take `extended` or `complementary`";
+            let why = "needs one attitude sensor and no vector sensors to have a steady state: use `extended` or `complementary`";
             return Err(Fault::new("form", why));
         }
         let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
@@ -170,10 +170,10 @@ impl AttitudeFilter {
         let Some(elastic) = &self.elastic else { return Ok(None) };
         let refused = |key: &str, why: &str| Err(Fault::new(key, why));
         if self.form != Form::Extended {
-            return refused("elastic", "goes with `form = \"extended\"`: constant gains know no modes");
+            return refused("elastic", "needs `form = \"extended\"`: constant gains cannot estimate modes");
         }
         if !gyro.integrates() {
-            let why = "needs a gyro that integrates, one with `angle_random_walk`: of a rate at an instant it does not know \
+            let why = "needs a gyro that integrates, one with `angle_random_walk`: the rate at one instant does not show \
                        how far modes have turned its mount";
             return refused("elastic", why);
         }

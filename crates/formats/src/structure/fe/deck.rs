@@ -157,7 +157,7 @@ impl Reader {
             "*MASS" => At::Mass { set: needed("ELSET")? },
             "*SHELLSECTION" if keyword.split(',').any(|word| word == "COMPOSITE") => {
                 return Err(format!(
-                    "line {number}: must have no COMPOSITE section, whose layers the results do not tell"
+                    "line {number}: must have no COMPOSITE section, whose layers the results do not contain"
                 ));
             }
             _ => At::Elsewhere,
@@ -273,9 +273,9 @@ impl Reader {
             }
         }
         for (element, (node, line)) in &self.points {
-            let mass = *weighed.get(element).ok_or_else(|| {
-                format!("line {line}: must have a *MASS of its set, which element {element} has not")
-            })?;
+            let mass = *weighed
+                .get(element)
+                .ok_or_else(|| format!("line {line}: must have a *MASS for the set of element {element}"))?;
             self.deck.masses.push(PointMass { node: *node, mass, line: *line });
         }
         Ok(self.deck)
