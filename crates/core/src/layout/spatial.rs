@@ -104,6 +104,11 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     if scenario.study.adaptive.is_some() {
         elastic.push(Panel::states("trusted", "Observers", channels("trusted")));
     }
+    together(scenario, motion, elastic)
+}
+
+/// The tabs, with the panels of the motion and of the modes.
+fn together(scenario: &Scenario, motion: Vec<Panel>, elastic: Vec<Panel>) -> Vec<Tab> {
     let mut tabs = vec![Tab { title: "Motion", panels: motion }];
     if scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some()) {
         tabs.push(Tab { title: "Attitude filter", panels: filter() });
