@@ -188,7 +188,7 @@ class Linear:
         import numpy as np
 
         if self.b.shape[1] != self.c.shape[0] or self.d.any():
-            raise ValueError("the loop of a model is closed whose outputs are its inputs, with d = 0")
+            raise ValueError("only a model with as many outputs as inputs and d = 0 can be closed as a loop")
         d = np.zeros_like(self.d)
         a = self.a - self.b @ self.c
         return Linear(a, self.b, self.c, d, self.states, self.inputs, self.outputs, self.period)
@@ -231,11 +231,11 @@ def linearise(
     late = own if delay is None else delay
     if loop is not None:
         if period is not None:
-            raise ValueError("period is the law's own where a loop is cut open")
+            raise ValueError("period must be left out where a loop is cut open: it is the law's")
         return _loop(scenario.name, keys, body, late, loop)
     if period is None:
         if delay is not None:
-            raise ValueError("delay goes with a period")
+            raise ValueError("delay needs a period")
         return body
     return body.sampled(period, late)
 
@@ -259,7 +259,7 @@ def _law(name: str, keys: Mapping[str, Any], axis: int) -> tuple[str, dict[str, 
         raise _refused(name, f"the law `{kind}` is not linear: a loop has `pd`, `attitude` or `state_space`")
     for key in ("extra", "filters", "integral"):
         if own.get(key):
-            raise _refused(name, f"law.{kind}.{key} is no part of linear loops: leave it out")
+            raise _refused(name, f"law.{kind}.{key} is not supported in linear loops: leave it out")
     return kind, own
 
 
@@ -327,7 +327,7 @@ def _loop(name: str, keys: Mapping[str, Any], body: Linear, delay: float, loop: 
         raise ValueError(f"loop must be 'command', 'torque' or 'measurement', got {loop!r}")
     if keys.get("estimator") and "envelope" not in keys["estimator"]:
         kind, _ = _kind(keys["estimator"])
-        raise _refused(name, f"the estimator `{kind}` is no part of linear loops: leave it out")
+        raise _refused(name, f"the estimator `{kind}` is not supported in linear loops: leave it out")
     kind_of_actuator, own_keys = _kind(keys["actuator"])
     if kind_of_actuator not in ("ideal", "wheel", "wheels"):
         why = f"the actuator `{kind_of_actuator}` is not linear: a loop has `ideal`, `wheel` or `wheels`"
@@ -338,7 +338,7 @@ def _loop(name: str, keys: Mapping[str, Any], body: Linear, delay: float, loop: 
     parts = [_feedback(kind, own) for kind, own in laws]
     period = parts[0][0]
     if any(part[0] != period for part in parts):
-        raise _refused(name, "the laws of the axes have periods that differ: a linear loop has one")
+        raise _refused(name, "the laws of the axes have different periods: a linear loop has one")
     if any(part[2] != parts[0][2] for part in parts):
         raise _refused(
             name, "the laws of the axes command torques and accelerations: a linear loop has one kind"
@@ -402,7 +402,7 @@ def _differs(name: str, keys: Mapping[str, Any], period: float) -> tuple[bool, f
     sensor = keys["sensor"]
     if isinstance(sensor, list):
         if len(sensor) > 1:
-            raise _refused(name, "several sensors are no part of linear loops: take one")
+            raise _refused(name, "several sensors are not supported in linear loops: use one")
         sensor = sensor[0]
     kind, own = _kind(sensor)
     if kind in ("continuous", "gyro"):
@@ -411,7 +411,7 @@ def _differs(name: str, keys: Mapping[str, Any], period: float) -> tuple[bool, f
         why = f"the sensor `{kind}` is no part of linear loops: take `continuous`, `sampled` or `gyro`"
         raise _refused(name, why)
     if float(own["period"]) != period:
-        raise _refused(name, "the sensor and the law have periods that differ: a linear loop has one")
+        raise _refused(name, "the sensor and the law have different periods: a linear loop has one")
     return own.get("rate_noise") is None, period
 
 
@@ -438,7 +438,7 @@ def law_of(
     if isinstance(controller, Mapping):
         if set(controller) != set(_AXES):
             found = ", ".join(map(str, controller))
-            raise ValueError(f"controllers of the axes are those of {', '.join(_AXES)}, got {found}")
+            raise ValueError(f"controllers must be given for {', '.join(_AXES)}, got {found}")
         each = {axis: law_of(controller[axis], period, method, command, limit, track) for axis in _AXES}
         return {"per_axis": each}
     a, b, c, d, step = _matrices(controller)

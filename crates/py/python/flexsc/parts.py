@@ -179,7 +179,7 @@ class CompiledLaw(Law):
         return self
 
     def __reduce__(self) -> tuple[object, ...]:
-        raise TypeError("a compiled law is a place in this process: it cannot be pickled")
+        raise TypeError("a compiled law is an address in this process and cannot be pickled")
 
 
 class Estimator(_Part):
@@ -291,11 +291,11 @@ class Adaptation(_Part):
     """
 
     tunes: str
-    """The parameter of the law, by its key within the law's table; of a law of your own, one of its `tunable`."""
+    """The parameter of the law: a key of the law's table, or for your own law one of its `tunable`."""
     objective: str = "envelope_mean"
     """What is measured over each window, as `objective` of `[adaptation.random_search]`."""
     window: float | None = None
-    """Length of the windows (s); None for `envelope_mean`, whose windows are those of the `[estimator.envelope]`."""
+    """Length of the windows (s); None for `envelope_mean`, which uses the windows of `[estimator.envelope]`."""
 
     def start(self, value: float, draws: Draws) -> None:
         """Start a run with the initial value of the parameter."""
