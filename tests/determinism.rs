@@ -43,19 +43,20 @@ fn runs_repeat_to_the_last_bit() {
     let runs = [
         ("relay-adaptive", "", "/command", 0x4886_7bcb_5000_12ea),
         ("relay-adaptive", "", "/adaptation", 0xb22e_04cb_1fc7_5d23),
-        ("adaptive-bandwidth", "", "/objective", 0),
+        ("adaptive-bandwidth", "", "/objective", 0xeb61_fb4a_dc4d_ee0d),
         ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
         ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xe18f_c212_5f78_e08b),
-        ("wheel-friction", " --runs 5:6", "/wheel_events", 0xea7a_6a24_f8a5_67c3),
+        ("wheel-friction", " --runs 5:6", "/wheel_events", 0xcea0_ab4c_a7ca_0645),
         ("wheel-friction", " --runs 5:6", "/metrics", 0x27fe_82d2_694e_4e9c),
-        ("flexible-boom", " --runs 5:6", "/metrics", 0xbefd_fdb7_d6b0_a35f),
+        ("flexible-boom", " --runs 5:6", "/metrics", 0x43cf_c127_d43c_9db6),
         ("sun-tracking", " --runs 5:6", "/metrics", 0xec81_1e08_f3cb_9013),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
     ];
+    let mut others = Vec::new();
     for (name, runs, topic, expected) in runs {
         let dir = Dir::with(&[name]);
         dir.run(&format!("simulate {name}.toml --log events{runs}")).exits(0);
@@ -65,6 +66,9 @@ fn runs_repeat_to_the_last_bit() {
             _ => dir.run(&format!("export {log} --topic {topic}")).exits(0).prints(&[]),
         };
         let found = fingerprint(&table);
-        assert_eq!(found, expected, "{name}{runs} {topic}: {found:#018x}");
+        if found != expected {
+            others.push(format!("{name}{runs} {topic}: {found:#018x}"));
+        }
     }
+    assert!(others.is_empty(), "{others:#?}");
 }

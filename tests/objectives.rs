@@ -11,7 +11,7 @@ use flexsc_core::scenario::OwnParts;
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
-use crate::study::{metrics, scenario};
+use crate::study::{metrics, nested, scenario};
 
 /// It adds the same after each window.
 #[derive(Clone, Debug)]
@@ -59,7 +59,7 @@ impl Learn for Climbing {
 fn column(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
     match trace.topic(topic).and_then(|rows| rows.get(name)) {
         Some(Column::Numbers(values)) => values.clone(),
-        _ => Vec::new(),
+        _ => panic!("{topic}.{name}"),
     }
 }
 
@@ -126,12 +126,14 @@ fn objectives_about_three_axes_are_those_of_the_log() {
         };
         values.chunks_exact(160).map(window).collect()
     };
-    let norm = |trace: &Trace, topic: &str, names: [&str; 3]| -> Vec<f64> {
-        let [x, y, z] = names.map(|name| column(trace, topic, name));
+    let lengths = |[x, y, z]: [Vec<f64>; 3]| -> Vec<f64> {
         x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt()).collect()
     };
+    let norm = |trace: &Trace, topic: &str, names: [&str; 3]| -> Vec<f64> {
+        lengths(names.map(|name| column(trace, topic, name)))
+    };
     let close = |found: &[f64], exact: &[f64], objective: Objective| {
-        assert_eq!(found.len(), 2, "{objective:?}");
+        assert!(found.len() == 2 && exact.len() == 2, "{objective:?}: {found:?} {exact:?}");
         for (found, exact) in found.iter().zip(exact) {
             assert!((found / exact - 1.0).abs() < 1e-9, "{objective:?}: {found} {exact}");
         }
@@ -142,19 +144,21 @@ fn objectives_about_three_axes_are_those_of_the_log() {
         close(&found, &mean(&norm(&trace, "/pointing", errors), square), objective);
     }
     let (found, trace) = of(Objective::TorqueMean);
-    let applied =
-        norm(&trace, "/torques", ["axes[0].applied_nm", "axes[1].applied_nm", "axes[2].applied_nm"]);
+    let axis = |axis: usize| nested(&trace, "/torques", ["axes", "applied_nm"], (axis, 3));
+    let applied = lengths([axis(0), axis(1), axis(2)]);
     close(&found, &mean(&applied, false), Objective::TorqueMean);
     let (found, trace) = of(Objective::WheelPowerMean);
     let power: Vec<Vec<f64>> = (0..4)
         .map(|wheel| {
             let [speed, torque] = ["speed_rad_s", "torque_nm"]
-                .map(|name| column(&trace, "/wheels", &format!("wheels[{wheel}].{name}")));
+                .map(|name| nested(&trace, "/wheels", ["wheels", name], (wheel, 4)));
             speed.iter().zip(&torque).map(|(speed, torque)| (speed * torque).abs()).collect()
         })
         .collect();
     let all: Vec<f64> = (0..power[0].len()).map(|row| power.iter().map(|of| of[row]).sum()).collect();
-    assert!(found.iter().zip(mean(&all, false)).all(|(found, exact)| (found / exact - 1.0).abs() < 0.02));
+    let exact = mean(&all, false);
+    assert_eq!(exact.len(), 2);
+    assert!(found.iter().zip(exact).all(|(found, exact)| (found / exact - 1.0).abs() < 0.02));
 }
 
 #[test]

@@ -202,6 +202,10 @@ def field(schema: Schema, name: str, of: dict[str, Any], needed: bool) -> str:
     name = f"{name}_" if keyword.iskeyword(name) else name
     kind = "datetime" if is_date else schema.type_of(of)
     line = f"    {name}: {kind}\n" if needed else f"    {name}: {kind} | None = None\n"
+    if len(line) > 110:
+        # Ruff's form of a choice of many words.
+        line = line.replace('Literal["', 'Literal[\n        "').replace('", "', '",\n        "')
+        line = line.replace('"]', '",\n    ]')
     doc = of.get("description", "")
     given = of.get("default")
     if not needed and given not in (None, [], {}) and not isinstance(given, (dict, list)):

@@ -12,6 +12,8 @@
 # of its shape over the mass.
 
 # %%
+from collections.abc import Mapping
+
 import flexsc
 import matplotlib.pyplot as plt
 import numpy as np
@@ -140,6 +142,9 @@ _ = axes.legend()
 
 
 # %%
+Change = Mapping[str, object]
+
+
 def rms(study: flexsc.Scenario, runs: int = 5) -> float:
     """The pointing error over all runs (µrad)."""
     return float(1e6 * np.sqrt(np.mean(flexsc.campaign(study, runs=runs)["pointing_rms_rad"] ** 2)))
@@ -148,15 +153,16 @@ def rms(study: flexsc.Scenario, runs: int = 5) -> float:
 quiet_gyro = {"sensor[0].gyro.angle_random_walk": 2e-8}
 quiet_tracker = {"sensor[1].star_tracker.noise": [2e-7, 2e-7, 1e-6]}
 smooth = {"actuator.wheels.friction": {"coulomb": 0.0, "viscous": 1e-5}}
-rigid = {"appendage[0].modes": [], "appendage[1].modes": []}
+rigid: Change = {"appendage[0].modes": [], "appendage[1].modes": []}
 total = rms(scenario)
 print(f"{'all sources':>28}: {total:5.1f} µrad")
-for name, change in {
+sources: dict[str, Change] = {
     "without noise of the gyro": quiet_gyro,
     "without noise of the tracker": quiet_tracker,
     "without Coulomb friction": smooth,
     "with rigid panels": rigid,
-}.items():
+}
+for name, change in sources.items():
     print(f"{name:>28}: {rms(scenario.with_(change)):5.1f} µrad")
 
 # %% [markdown]
@@ -166,7 +172,7 @@ for name, change in {
 # %%
 integral = {"law.attitude.integral": {"time": 20.0, "limit": 0.1}}
 biased = {"actuator.wheels.speeds": [60.0, 60.0, 60.0]}
-ways = {
+ways: dict[str, Change] = {
     "drives compensate friction": {"actuator.wheels.compensation": {"coulomb": 1e-3, "viscous": 1e-5}},
     "integral in the law": integral,
     "wheels kept at 60 rad/s": biased,

@@ -102,9 +102,9 @@ model = scenario.with_("uncertain", uncertain).draw(0).to_dict()["manoeuvre"]["m
 believed = scenario.with_("manoeuvre.model", model)
 residuals, peaks = {}, {}
 for name, command in commands.items():
-    plan = believed.with_("manoeuvre.command", {"sine": command})
-    peaks[name] = plan.plan()["peak_torque_nm"]
-    flown = (plan.with_({key: k * (1 + error) for key, k in stiffness.items()}) for error in errors)
+    planned = believed.with_("manoeuvre.command", {"sine": command})
+    peaks[name] = planned.plan()["peak_torque_nm"]
+    flown = (planned.with_({key: k * (1 + error) for key, k in stiffness.items()}) for error in errors)
     residuals[name] = np.array([one.simulate(log="none").metrics["residual_energy_j"] for one in flown])
 
 # %%

@@ -12,20 +12,22 @@
 import flexsc
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
 fixed = flexsc.Scenario.example("wheel-fixed-gain")
 run = fixed.simulate(log="full")
 print("settled after", round(run.metrics["settling_time_s"], 1), "s")
 
 
-def draw_angle(axes: plt.Axes, result: flexsc.Result, label: str) -> None:
+def draw_angle(axes: Axes, result: flexsc.Result, label: str) -> None:
     """Draw the pointing error of a run."""
     axes.plot(result["attitude"]["time_s"], 1e3 * result["attitude"]["angle_rad"], linewidth=0.9, label=label)
 
 
 figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
 draw_angle(axes, run, "constant gain")
-_ = axes.set(xlabel="time [s]", ylabel="angle [mrad]")
+axes.set(xlabel="time [s]", ylabel="angle [mrad]")
+_ = axes.legend()
 
 # %% [markdown]
 # ## The region of suitable gains

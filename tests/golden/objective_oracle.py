@@ -1,10 +1,12 @@
-"""Objectives of an adaptation over its windows, computed apart from flexsc: SciPy's matrix exponential and quadrature.
+"""Objectives of an adaptation over its windows, by SciPy's matrix exponential and quadrature.
 
-A body with one mode and a PD law through a wheel; after each window the gain k_p grows by a tenth. The motion between two
-samples is linear; the integrals are by Gauss-Legendre quadrature between the zeros of what they integrate.
+A body with one mode and a PD law through a wheel; after each window the gain k_p grows by a tenth. The motion
+between two samples is linear; integrals are by Gauss-Legendre quadrature between the zeros of the integrand.
 
     python3 objective_oracle.py      # prints objective.csv: window, objective, value
 """
+
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import expm
@@ -32,7 +34,7 @@ def integral(of, h):
             edges.append(brentq(of, t0, t1, xtol=1e-15))
     edges.sort()
     total = 0.0
-    for a, b in zip(edges, edges[1:], strict=False):
+    for a, b in pairwise(edges):
         t = 0.5 * (a + b) + 0.5 * (b - a) * NODES
         total += 0.5 * (b - a) * np.dot(WEIGHTS, [abs(of(x)) for x in t])
     return total

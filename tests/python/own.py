@@ -129,6 +129,7 @@ class Mekf(flexsc.Estimator):
         assert known.axes == 3
         self.past: list[tuple[float, Array, Array | None, Array, Array, Array]] = []
         self.rate, self.since = np.zeros(3), 0.0
+        self.told: tuple[Array, Array] | None = None
         # Off the truth by draws of the covariance at the start, as the engine's.
         draws = known.draws.stream("prior")
         self.off = np.array([[sd * draws.normal() for _ in range(3)] for sd in self.initial])
@@ -151,8 +152,10 @@ class Mekf(flexsc.Estimator):
         if seen is None:
             return state
         q, bias, p = state
-        gain = p[:, :3] @ np.linalg.inv(p[:3, :3] + self.tracker)
-        error = gain @ beyond(q, seen)
+        spread, innovation = p[:3, :3] + self.tracker, beyond(q, seen)
+        self.told = (innovation, spread)
+        gain = p[:, :3] @ np.linalg.inv(spread)
+        error = gain @ innovation
         q = times(q, turn(error[:3]))
         kept = np.eye(6)
         kept[:, :3] -= gain
@@ -161,6 +164,7 @@ class Mekf(flexsc.Estimator):
 
     def take(self, taken: Taken) -> Sequence[Sequence[float]]:
         now = round(taken.time, 9)
+        self.told = None
         if not self.past:
             half = 0.5 * np.array([angle for angle, _ in taken.truth])
             origin = np.array(taken.origin_attitude)
@@ -197,11 +201,11 @@ class Mekf(flexsc.Estimator):
     def carry(self, taken: Taken) -> Sequence[Sequence[float]] | None:
         return self.believed(taken)
 
-    def attitude(self, now: Instant) -> tuple[Any, Any, Any] | None:
+    def attitude(self, now: Instant) -> tuple[Any, Any, Any, Any] | None:
         if not self.past:
             return None
         q, bias, p = self.past[-1][3:]
-        return times(q, turn((self.rate - bias) * (now.seconds - self.since))), bias, p
+        return times(q, turn((self.rate - bias) * (now.seconds - self.since))), bias, p, self.told
 
 
 class Encoder(flexsc.Sensor):

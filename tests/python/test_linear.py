@@ -140,6 +140,14 @@ LAWS: dict[str, dict[str, Any]] = {
     "difference": {"pd": {"k_p": 40.0, "k_d": 250.0, "period": 0.5, "differentiation": "difference"}},
     "raw": {"pd": {"k_p": 40.0, "k_d": 500.0, "period": 0.5, "differentiation": "raw"}},
     "attitude": {"attitude": {"bandwidth": 0.4, "damping": 0.7, "period": 0.5}},
+    "filters": {
+        "attitude": {
+            "bandwidth": 0.3,
+            "period": 0.5,
+            "integral": {"time": 8.0, "limit": 1.0},
+            "filters": [{"notch": {"frequency": 1.3, "depth": 0.1}}, {"low_pass": {"frequency": 3.0}}],
+        }
+    },
     "state_space": {
         "state_space": {
             "period": 0.5,
@@ -175,10 +183,8 @@ def test_a_closed_loop_moves_as_the_simulated_one(law: str, sensor: str) -> None
         start[0] = angle
         if sensor == "sampled":
             start[names.index("last_angle")] = angle
-        elif law in ("difference", "raw"):
-            start[names.index("law0")] = angle
-        if law in ("difference", "raw") and sensor == "sampled":
-            start[names.index("law0")] = angle
+        if law in ("difference", "raw"):
+            start[names.index("law_last_angle")] = angle
         motion = [start]
         for _ in range(60):
             motion.append(closed.a @ motion[-1])

@@ -207,7 +207,7 @@ def test_offsets_inertias_coordinate_systems_and_units(tmp_path: Path, system: s
     results = op2(
         tmp_path / "run.op2",
         frequencies=(3.0,),
-        masses=(generalised,),
+        masses=(float(generalised),),
         grids=(1, 2),
         shapes=np.array([[np.zeros(6), row]]),
     )
@@ -329,8 +329,9 @@ def test_what_the_files_do_not_tell_is_refused(tmp_path: Path) -> None:
     def refused(why: str, shapes: str = shapes, deck: str = deck, **keys: Any) -> None:
         results.write_text(shapes)
         model.write_text(deck)
+        every: dict[str, Any] = {"damping": 0.005, **keys}
         with pytest.raises(ValueError, match=why):
-            flexsc.appendage_from_nastran(results, model, **{"damping": 0.005, **keys})
+            flexsc.appendage_from_nastran(results, model, **every)
 
     # The masses of another deck.
     refused(

@@ -11,6 +11,8 @@ import subprocess
 import threading
 import time
 import traceback
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,7 @@ import flexsc
 import numpy as np
 import pytest
 from conftest import shipped
-from flexsc.parts import Event
+from flexsc.parts import Draws, Event
 from own import AlphaBeta, Descent, Encoder, Mekf, Notes, Pd, Relay, Servo, times, turn
 
 SMALL = """
@@ -82,13 +84,55 @@ def test_an_attitude_filter_in_numpy_believes_the_same() -> None:
 
 
 def test_an_attitude_filter_in_numpy_is_logged() -> None:
-    scenario = shipped("earth-observer").with_("duration", 20.0)
-    theirs = scenario.simulate(log="full")["attitude_filter"]
-    mine = scenario.with_parts(estimator=mekf()).simulate(log="full")["attitude_filter"]
+    scenario = shipped("earth-observer").with_({"duration": 20.0, "estimator.attitude.assess": [0.0, 1e9]})
+    runs = [one.simulate(log="full") for one in (scenario, scenario.with_parts(estimator=mekf()))]
+    theirs, mine = (run["attitude_filter"] for run in runs)
     np.testing.assert_array_equal(mine["time_s"], theirs["time_s"])
     for column in ("axes.angle_error_rad", "axes.angle_sd_rad", "axes.bias_rad_s", "axes.bias_sd_rad_s"):
         np.testing.assert_allclose(mine[column], theirs[column], rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(mine["nees"], theirs["nees"], rtol=1e-6)
+    np.testing.assert_allclose(mine["nis"], theirs["nis"], rtol=1e-6)
+    np.testing.assert_array_equal(mine["measured"], theirs["measured"])
+    # The metrics judge it as they judge the engine's own.
+    for metric in (
+        "nees_mean",
+        "nis_mean",
+        "nis_inside_95",
+        "attitude_estimate_error_rms_rad",
+        "bias_estimate_error_rms_rad_s",
+    ):
+        assert runs[1].metrics[metric] == pytest.approx(runs[0].metrics[metric], rel=1e-6)
+
+
+def test_an_estimator_that_tells_no_attitude_has_no_metrics_of_one() -> None:
+    three = "duration = 5.0\n[law.open]\n[body.spatial]\ninertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]\n"
+    assert "nees_mean" not in all_own(three).simulate(log="none").metrics
+
+
+def test_campaigns_of_own_parts_on_processes() -> None:
+    scenario = all_own()
+    here = flexsc.campaign(scenario, runs=6)
+    for workers in (ProcessPoolExecutor(2, get_context("spawn")), ThreadPoolExecutor(2)):
+        with workers:
+            seen: list[tuple[int, int]] = []
+            there = flexsc.campaign(
+                scenario, runs=6, executor=workers, progress=lambda *done, to=seen: to.append(done)
+            )
+        assert list(there) == list(here)
+        for name in here:
+            assert list(map(str, there[name])) == list(map(str, here[name])), name
+        assert str(there.statistics()) == str(here.statistics())
+        assert seen[-1] == (6, 6)
+
+    class Local(flexsc.Law):
+        def decide(self, event: flexsc.parts.Event) -> flexsc.Hold:
+            return flexsc.Hold(0.0)
+
+    with ProcessPoolExecutor(1) as pool, pytest.raises(ValueError, match="cannot be sent to the workers"):
+        flexsc.campaign(scenario.with_parts(law=Local()), runs=2, executor=pool)
+    compiled = flexsc.CompiledLaw(12345, period=0.25)
+    with ProcessPoolExecutor(1) as pool, pytest.raises(ValueError, match="an address of this process"):
+        flexsc.campaign(scenario.with_parts(law=compiled), runs=2, executor=pool)
 
 
 def all_own(text: str = SMALL) -> flexsc.Scenario:
@@ -130,6 +174,31 @@ def test_an_adaptation_in_python_tunes() -> None:
     # A law in Python is tuned as well.
     relay = Relay.of(shipped("relay-adaptive"))
     np.testing.assert_array_equal(scenario.with_parts(law=relay).simulate()["adaptation"]["gain"], gains)
+
+
+def test_an_adaptation_in_python_has_an_objective() -> None:
+    class Faster(flexsc.Adaptation):
+        tunes = "bandwidth"
+        objective = "pointing_error_rms"
+        window = 100.0
+
+        def start(self, value: float, draws: Draws) -> None:
+            self.value = value
+            self.measured: list[float] = []
+
+        def learn(self, time: float, measured: float) -> float:
+            self.value += 0.01
+            self.measured.append(measured)
+            return self.value
+
+    study = shipped("adaptive-bandwidth").with_("duration", 1000.0)
+    result = study.with_parts(adaptation=Faster()).simulate()
+    rows = result["objective"]
+    np.testing.assert_allclose(rows["gain"], 0.02 + 0.01 * np.arange(10))
+    assert rows["value"][-1] < 0.3 * rows["value"][0]
+    assert result.metrics["objective_final"] == rows["value"][-1]
+    with pytest.raises(ValueError, match="objective must be one of 'envelope_mean', "):
+        study.with_parts(adaptation=type("Odd", (Faster,), {"objective": "speed"})())
 
 
 class Wrong(flexsc.Law):

@@ -9,7 +9,7 @@ import flexsc
 import numpy as np
 import pytest
 from conftest import shipped
-from flexsc import Simulator, Simulators, _simulator
+from flexsc import Simulator, Simulators, _quantities
 
 UNCERTAIN = {
     "name": "uncertain",
@@ -313,8 +313,8 @@ def test_bad_arguments_are_told(uncertain: flexsc.Scenario) -> None:
 
 
 def test_the_examples_of_the_docstrings_run() -> None:
-    told = doctest.testmod(_simulator, extraglobs={"flexsc": flexsc, "numpy": np})
-    assert told.attempted > 5
+    told = doctest.testmod(_quantities, extraglobs={"flexsc": flexsc, "numpy": np})
+    assert told.attempted > 1
     assert not told.failed
 
 

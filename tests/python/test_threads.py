@@ -3,7 +3,7 @@
 import _thread
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -50,7 +50,7 @@ def test_runs_in_threads_are_the_same(sampled: Scenario) -> None:
 
 
 @contextmanager
-def interrupted() -> Iterator[None]:
+def interrupted() -> Generator[None, None, None]:
     """What is done within is interrupted soon, as by Ctrl-C, and ends at once."""
     timer = threading.Timer(0.3, _thread.interrupt_main)
     began = time.monotonic()

@@ -8,6 +8,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 USAGE = Path(__file__).with_name("usage.py")
+TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.py"))
 
 
 def run(*arguments: str | Path) -> None:
@@ -32,10 +33,15 @@ def test_the_tests_are_typed() -> None:
     )
 
 
+def test_the_tutorials_are_typed() -> None:
+    for tutorial in TUTORIALS:
+        run("mypy", "--strict", tutorial)
+
+
 def test_pyright_agrees() -> None:
-    # It brings a Node.js of its own, and is no requirement of the tests.
-    pytest.importorskip("pyright")
-    run("pyright", "--project", ROOT, "--pythonpath", sys.executable)
+    # Pyright as wheels of PyPI; what is checked is in pyproject.toml.
+    pytest.importorskip("basedpyright", reason="basedpyright has no wheel for this platform")
+    run("basedpyright", "--project", ROOT, "--pythonpath", sys.executable)
 
 
 def test_the_usage_runs() -> None:

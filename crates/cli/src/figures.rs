@@ -3,19 +3,21 @@
 use std::path::Path;
 
 use clap::ValueEnum;
-use flexsc_core::campaign::{Column, Run, Work};
+use flexsc_core::campaign::{Column, Commanded, Run, Work};
 use flexsc_core::record::{Detail, Log};
+use flexsc_core::time::Instant;
 use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Shape, colour};
 
 use crate::logged;
 use crate::plot::{self, What};
 
-/// The log of a run in memory, with its events.
+/// The log of a run under these commands, up to an instant, in memory, with its events.
 ///
 /// # Errors
 /// A run that fails.
-pub fn log_of(run: &Run) -> Result<Log, String> {
-    logged::of_run(run, Path::new(&run.scenario.name), Detail::Events).map_err(|failure| failure.to_string())
+pub fn log_of(run: &Run, commanded: &Commanded, until: Instant) -> Result<Log, String> {
+    logged::of_run(run, commanded, until, Path::new(&run.scenario.name), Detail::Events)
+        .map_err(|failure| failure.to_string())
 }
 
 /// The names of the figures that a log has.

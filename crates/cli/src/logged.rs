@@ -3,8 +3,9 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, Commanded, Run};
 use flexsc_core::record::{Detail, Log, McapLog, RunEnd};
+use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, SimulationError};
 
 use crate::failure::Failure;
@@ -14,17 +15,28 @@ use crate::stop::Stop;
 /// The log of a scenario's own run in this detail. `path` is what errors call it.
 pub fn logged(scenario: Scenario, path: &Path, detail: Detail) -> Result<Log, Failure> {
     let run = simulate::itself(&Campaign::new(scenario, &path.to_string_lossy(), None)?);
-    of_run(&run, path, detail)
+    of_run(&run, &Commanded::default(), Instant::END, path, detail)
 }
 
-/// The log of a run in this detail.
-pub fn of_run(run: &Run, path: &Path, detail: Detail) -> Result<Log, Failure> {
+/// The log of a run under these commands, up to an instant, in this detail.
+pub fn of_run(
+    run: &Run,
+    commanded: &Commanded,
+    until: Instant,
+    path: &Path,
+    detail: Detail,
+) -> Result<Log, Failure> {
     let failed = |source| Failure::Run { name: run.scenario.name.clone(), source };
-    Ok(Log::read(path, bytes(run, detail).map_err(failed)?)?)
+    Ok(Log::read(path, bytes(run, commanded, until, detail).map_err(failed)?)?)
 }
 
-fn bytes(run: &Run, detail: Detail) -> Result<Vec<u8>, SimulationError> {
-    let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(run, detail), detail)?;
-    let metrics = Campaign::simulate(run, (&mut log, Stop))?;
-    Ok(log.finish(&metrics, RunEnd::Complete)?.into_inner())
+fn bytes(
+    run: &Run,
+    commanded: &Commanded,
+    until: Instant,
+    detail: Detail,
+) -> Result<Vec<u8>, SimulationError> {
+    let mut log = McapLog::new(Cursor::new(Vec::new()), &commanded.provenance(run, detail), detail)?;
+    let metrics = commanded.simulate(run, until, (&mut log, Stop))?;
+    Ok(log.finish(&metrics, RunEnd::at(until, run.scenario.duration))?.into_inner())
 }

@@ -1,5 +1,6 @@
 //! Campaigns: many runs of one scenario.
 
+mod commanded;
 mod crew;
 mod design;
 mod directory;
@@ -27,6 +28,7 @@ use crate::record::{Attachment, Detail, OutputName, Provenance, Record};
 use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
 
+pub use commanded::Commanded;
 pub use design::{Block, Design, MOST_NUMBERS, MOST_POINTS, Span};
 pub use directory::{Directory, DirectoryError, MANIFEST};
 pub use manifest::Manifest;

@@ -1,5 +1,6 @@
 //! Campaigns for Python: their work as whole parts, on threads here or in other processes, and their directories.
 
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,6 +19,7 @@ use pyo3::types::{PyBytes, PyDict, PyList};
 use super::Scenario;
 use super::aside::aside;
 use super::error::{allowed, no_file, scenario_error};
+use super::figures::column;
 use super::parts::known_thread;
 
 /// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
@@ -68,8 +70,8 @@ impl Work {
     /// The work, if a file can describe it.
     fn on_file(&self) -> PyResult<&Whole> {
         if self.0.campaign.scenario().has_own_parts() {
-            let why = "the scenario has parts written in Python, which are in this process alone: leave out `out`, `executor` and \
-                       `progress`, and its runs are made on threads here";
+            let why = "the scenario has parts written in Python, which are in this process alone and in no file: leave out \
+                       `out` and `progress`, and its runs are made on threads here, or on an `executor`";
             return Err(PyValueError::new_err(why));
         }
         Ok(&self.0)
@@ -208,6 +210,26 @@ impl Work {
         let (name, bytes) = aside(py, move |stop| work.part(runs.0..runs.1, jobs, stop))?.map_err(failed)?;
         Ok((name, PyBytes::new(py, &bytes)))
     }
+}
+
+/// The statistics of a campaign's columns.
+#[pyfunction]
+pub fn campaign_statistics(
+    py: Python<'_>,
+    work: &Work,
+    columns: HashMap<String, Bound<'_, PyAny>>,
+    rows: usize,
+) -> PyResult<Vec<Summary>> {
+    let columns: HashMap<String, Column> =
+        columns.iter().map(|(name, given)| Ok((name.clone(), column(given)?))).collect::<PyResult<_>>()?;
+    let work = work.0.clone();
+    let told = aside(py, move |_| {
+        let of = |names: &[&str]| -> Result<_, DirectoryError> {
+            Ok(names.iter().map(|name| columns.get(*name).cloned()).collect())
+        };
+        work.statistics(rows, of)
+    })?;
+    Ok(told.map_err(failed)?.into_iter().map(summary).collect())
 }
 
 fn spans(ranges: Vec<Range<u64>>) -> Vec<Span> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 
-use flexsc_core::campaign::{Campaign, RunError};
+use flexsc_core::campaign::{Campaign, Commanded, RunError};
 use flexsc_core::record::Record;
 use flexsc_core::{Field, Simulation};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -15,7 +15,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::Scenario;
 use crate::aside::{LOOK, Stop};
 use crate::error::scenario_error;
-use crate::stepping::{FieldRow, Simulator, command_limit, command_unit, commands, fields, span};
+use crate::stepping::{FieldRow, Simulator, command_limit, command_unit, fields, span, steer};
 
 /// So many copies are given to a thread at once, at least.
 const TOGETHER: usize = 8;
@@ -25,6 +25,8 @@ const TOGETHER: usize = 8;
 struct Flight {
     number: u64,
     simulation: Option<Simulation>,
+    /// What it was commanded: nothing where it was, and that is not kept.
+    given: Option<Commanded>,
     failed: Option<String>,
 }
 
@@ -41,18 +43,25 @@ impl Flight {
             Ok(simulation)
         });
         match opened {
-            Ok(simulation) => Self { number, simulation: Some(simulation), failed: None },
-            Err(error) => Self { number, simulation: None, failed: Some(error.to_string()) },
+            Ok(simulation) => {
+                Self { number, simulation: Some(simulation), given: Some(Commanded::default()), failed: None }
+            }
+            Err(error) => Self { number, simulation: None, given: None, failed: Some(error.to_string()) },
         }
     }
 
     /// Goes on, and puts what moves into a row.
-    fn go(&mut self, row: &mut [f64], on: impl FnOnce(&mut Simulation) -> Result<(), RunError>) {
-        let Some(simulation) = self.simulation.as_mut().filter(|_| self.failed.is_none()) else {
+    fn go(
+        &mut self,
+        row: &mut [f64],
+        on: impl FnOnce(&mut Simulation, &mut Option<Commanded>) -> Result<(), RunError>,
+    ) {
+        let Self { simulation, given, failed, .. } = self;
+        let Some(simulation) = simulation.as_mut().filter(|_| failed.is_none()) else {
             return row.fill(f64::NAN);
         };
-        if let Err(error) = on(simulation).and_then(|()| Ok(simulation.look(row)?)) {
-            self.failed = Some(error.to_string());
+        if let Err(error) = on(simulation, given).and_then(|()| Ok(simulation.look(row)?)) {
+            *failed = Some(error.to_string());
             row.fill(f64::NAN);
         }
     }
@@ -65,6 +74,7 @@ pub struct Simulators {
     fields: Vec<Field>,
     width: usize,
     pool: Arc<ThreadPool>,
+    keeps: bool,
 }
 
 impl Simulators {
@@ -72,7 +82,7 @@ impl Simulators {
     fn each(
         &mut self,
         py: Python<'_>,
-        on: impl Fn(usize, &mut Flight, &mut [f64], &Stop) + Send + Sync,
+        on: impl Fn(usize, &mut Flight, &mut [f64], &mut Stop) + Send + Sync,
     ) -> PyResult<Vec<f64>> {
         let (flights, width, pool) = (&mut self.flights, self.width, &self.pool);
         let mut rows = vec![0.0; flights.len() * width];
@@ -85,7 +95,7 @@ impl Simulators {
                     let each = flights.par_iter_mut().zip(rows.par_chunks_exact_mut(width));
                     each.with_min_len(TOGETHER)
                         .enumerate()
-                        .for_each(|(index, (flight, row))| on(index, flight, row, &asked));
+                        .for_each_with(asked, |asked, (index, (flight, row))| on(index, flight, row, asked));
                     // Nobody waits any more where Python raised.
                     let _ = done.send(());
                 });
@@ -107,19 +117,26 @@ impl Simulators {
 #[pymethods]
 impl Simulators {
     #[new]
-    fn new(py: Python<'_>, scenario: &Scenario, runs: Vec<u64>, threads: usize) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        scenario: &Scenario,
+        runs: Vec<u64>,
+        threads: usize,
+        keeps: bool,
+    ) -> PyResult<Self> {
         let name = &scenario.inner.name;
         let campaign = Campaign::new(scenario.inner.clone(), name, []).map_err(scenario_error)?;
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         let fields = Simulation::new(&scenario.inner, 0).fields(&scenario.inner);
-        let flight = |number| Flight { number, simulation: None, failed: None };
+        let flight = |number| Flight { number, simulation: None, given: None, failed: None };
         let mut simulators = Self {
             campaign: Arc::new(campaign),
             flights: runs.into_iter().map(flight).collect(),
             width: fields.iter().map(Field::width).sum(),
             fields,
             pool: Arc::new(pool),
+            keeps,
         };
         simulators.reset(py, None, None)?;
         Ok(simulators)
@@ -189,9 +206,9 @@ impl Simulators {
         let rows = self.each(py, |index, flight, row, stop| {
             if mask.as_ref().is_none_or(|mask| mask[index]) {
                 let number = runs.as_ref().map_or(flight.number, |runs| runs[index]);
-                *flight = Flight::new(&campaign, number, &mut stop.clone());
+                *flight = Flight::new(&campaign, number, stop);
             }
-            flight.go(row, |_| Ok(()));
+            flight.go(row, |_, _| Ok(()));
         })?;
         rows.into_pyarray(py).reshape([self.flights.len(), self.width])
     }
@@ -204,25 +221,27 @@ impl Simulators {
         dt: f64,
         mask: Option<PyReadonlyArray1<'py, bool>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (span, axes) = (span(dt)?, self.axes());
+        let (span, axes, keeps) = (span(dt)?, self.axes(), self.keeps);
         let values: Option<Vec<f64>> = values.map(|values| values.as_array().iter().copied().collect());
         let mask: Option<Vec<bool>> = mask.map(|mask| mask.as_array().iter().copied().collect());
         let rows = self.each(py, |index, flight, row, stop| {
-            flight.go(row, |simulation| {
+            flight.go(row, |simulation, given| {
                 if mask.as_ref().is_some_and(|mask| !mask[index]) {
                     return Ok(());
                 }
                 if let Some(values) = &values {
-                    simulation.steer(commands(&values[index * axes..(index + 1) * axes]));
+                    let values = &values[index * axes..(index + 1) * axes];
+                    *given = given.take().filter(|_| keeps);
+                    steer(simulation, given.as_mut(), values);
                 }
-                Ok(simulation.run_up_to(simulation.time() + span, &mut stop.clone())?)
+                Ok(simulation.run_up_to(simulation.time() + span, stop)?)
             });
         })?;
         rows.into_pyarray(py).reshape([self.flights.len(), self.width])
     }
 
     fn look<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.each(py, |_, flight, row, _| flight.go(row, |_| Ok(())))?;
+        let rows = self.each(py, |_, flight, row, _| flight.go(row, |_, _| Ok(())))?;
         rows.into_pyarray(py).reshape([self.flights.len(), self.width])
     }
 
@@ -230,7 +249,9 @@ impl Simulators {
     fn one(&self, index: usize) -> PyResult<Simulator> {
         let flight = &self.flights[index];
         match (&flight.simulation, &flight.failed) {
-            (Some(simulation), None) => Ok(Simulator::of(simulation.clone(), self.campaign.scenario())),
+            (Some(simulation), None) => {
+                Ok(Simulator::of(simulation.clone(), self.campaign.scenario(), flight.given.clone()))
+            }
             (_, why) => {
                 let why = why.clone().unwrap_or_default();
                 Err(crate::error::SimulationError::new_err(format!(

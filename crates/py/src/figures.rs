@@ -16,6 +16,7 @@ use pyo3::types::PyDict;
 
 use super::aside::aside;
 use super::campaign::Work;
+use super::commands::Commands;
 use super::{Log, Scenario};
 
 /// A figure.
@@ -107,9 +108,9 @@ fn place(log: &Log) -> PathBuf {
 
 /// A log of a run in memory, with its events.
 #[pyfunction]
-pub fn log_of(py: Python<'_>, scenario: &Scenario, run: u64) -> PyResult<Log> {
-    let run = scenario.run(run);
-    let log = aside(py, move |_| figures::log_of(&run))?.map_err(PyValueError::new_err)?;
+pub fn log_of(py: Python<'_>, scenario: &Scenario, run: u64, stepped: Option<&Commands>) -> PyResult<Log> {
+    let (run, Commands { given, until }) = (scenario.run(run), Commands::of(stepped));
+    let log = aside(py, move |_| figures::log_of(&run, &given, until))?.map_err(PyValueError::new_err)?;
     Ok(Log(Arc::new(log)))
 }
 
@@ -128,7 +129,7 @@ pub fn log_figure(py: Python<'_>, log: &Log, name: String) -> PyResult<Figure> {
 }
 
 /// A column of a table, as the engine has it.
-fn column(given: &Bound<'_, PyAny>) -> PyResult<Column> {
+pub fn column(given: &Bound<'_, PyAny>) -> PyResult<Column> {
     if let Ok(numbers) = given.extract::<PyReadonlyArray1<'_, f64>>() {
         return Ok(Column::Numbers(numbers.as_array().to_vec()));
     }

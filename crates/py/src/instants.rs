@@ -1,13 +1,14 @@
 //! The motion of a run at instants of one's own choice.
 
+use flexsc_core::SimulationError;
 use flexsc_core::record::{Detail, Trace};
-use flexsc_core::{Simulation, SimulationError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::Scenario;
 use super::aside::aside;
 use super::columns;
+use super::commands::Commands;
 use super::error::simulation_error;
 
 /// The rows of the motion at times (s) that grow, of a run that is simulated again.
@@ -17,14 +18,12 @@ pub fn sample<'py>(
     scenario: &Scenario,
     run: u64,
     times: Vec<f64>,
+    stepped: Option<&Commands>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let inner = scenario.inner.clone();
+    let (run, Commands { given, .. }) = (scenario.run(run), Commands::of(stepped));
     let seen = aside(py, move |mut stop| -> Result<Trace, SimulationError> {
-        let (mut simulation, mut trace) = (Simulation::new(&inner, run), Trace::new(Detail::Full));
-        for time in times {
-            simulation.run_to(time, &mut stop)?;
-            simulation.tell_now(&mut trace)?;
-        }
+        let mut trace = Trace::new(Detail::Full);
+        given.sample(&run, &times, &mut stop, &mut trace)?;
         Ok(trace)
     })?;
     let seen = seen.map_err(|error| simulation_error(&scenario.inner.name, error))?;

@@ -9,6 +9,7 @@ mod arrow;
 mod aside;
 mod campaign;
 mod columns;
+mod commands;
 mod copies;
 mod damping;
 mod error;
@@ -43,6 +44,7 @@ use pyo3::types::PyDict;
 use serde_json::json;
 
 use aside::aside;
+use commands::Commands;
 use error::{allowed, log_error, no_file, scenario_error, simulation_error};
 
 #[pymodule]
@@ -50,7 +52,9 @@ mod _native {
     #[pymodule_export]
     use super::arrow::{arrow_schema, arrow_stream};
     #[pymodule_export]
-    use super::campaign::{Directory, Work};
+    use super::campaign::{Directory, Work, campaign_statistics};
+    #[pymodule_export]
+    use super::commands::Commands;
     #[pymodule_export]
     use super::copies::Simulators;
     #[pymodule_export]
@@ -66,7 +70,7 @@ mod _native {
     #[pymodule_export]
     use super::instants::sample;
     #[pymodule_export]
-    use super::linear::{exponential, linear_json};
+    use super::linear::{exponential, linear_json, loop_json};
     #[pymodule_export]
     use super::parts::{
         Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Reading, Setting, Stream, Taken,
@@ -219,12 +223,14 @@ fn simulate<'py>(
     run: u64,
     log: &str,
     yes: bool,
+    stepped: Option<&Commands>,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
+    let Commands { given, until } = Commands::of(stepped);
     let is_own = scenario.inner.has_own_parts();
     let (metrics, trace) = aside(py, move |stop| {
-        let metrics = parts::known_thread(is_own, || Campaign::simulate(&run, (&mut trace, stop)));
+        let metrics = parts::known_thread(is_own, || given.simulate(&run, until, (&mut trace, stop)));
         (metrics, trace)
     })?;
     let metrics = metrics.map_err(|error| simulation_error(scenario.name(), error))?;
@@ -236,14 +242,22 @@ fn simulate<'py>(
 }
 
 #[pyfunction]
-fn to_mcap(py: Python<'_>, scenario: &Scenario, run: u64, log: &str, path: PathBuf) -> PyResult<u64> {
+fn to_mcap(
+    py: Python<'_>,
+    scenario: &Scenario,
+    run: u64,
+    log: &str,
+    path: PathBuf,
+    stepped: Option<&Commands>,
+) -> PyResult<u64> {
     let none = || PyValueError::new_err("log must be 'events', 'full' or 'scene' for a file");
     let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
+    let Commands { given, until } = Commands::of(stepped);
     let (place, is_own) = (path.clone(), scenario.inner.has_own_parts());
     let written = aside(py, move |stop| {
-        let mut file = LogFile::create(&place, &Campaign::provenance(&run, detail), detail)?;
-        let metrics = parts::known_thread(is_own, || Campaign::simulate(&run, (&mut file, stop)))?;
-        Ok(file.finish(&metrics, RunEnd::Complete)?)
+        let mut file = LogFile::create(&place, &given.provenance(&run, detail), detail)?;
+        let metrics = parts::known_thread(is_own, || given.simulate(&run, until, (&mut file, stop)))?;
+        Ok(file.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
     })?;
     written.map_err(|error| error::unwritten(&path, scenario.name(), error))
 }

@@ -2,6 +2,7 @@
 
 use flexsc_core::ScenarioError;
 use flexsc_core::analysis::linear_model::LinearModel;
+use flexsc_core::analysis::loop_parts::LoopParts;
 use flexsc_core::numerics::exponential::exponential as of_matrix;
 use nalgebra::DMatrix;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
@@ -20,6 +21,16 @@ pub fn linear_json(scenario: &Scenario, at: f64) -> PyResult<String> {
         scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
     })?;
     Ok(json!(model).to_string())
+}
+
+/// The parts of a scenario's loop that its keys do not hold as numbers.
+#[pyfunction]
+pub fn loop_json(scenario: &Scenario) -> PyResult<String> {
+    let parts = LoopParts::of(&scenario.inner).map_err(|fault| {
+        let origin = scenario.inner.name.clone();
+        scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
+    })?;
+    Ok(json!(parts).to_string())
 }
 
 /// The exponential of a square matrix.

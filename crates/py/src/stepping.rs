@@ -2,6 +2,7 @@
 
 use std::time::Instant as WallInstant;
 
+use flexsc_core::campaign::Commanded;
 use flexsc_core::law::Command;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
@@ -12,6 +13,7 @@ use pyo3::prelude::*;
 
 use crate::Scenario;
 use crate::aside::LOOK;
+use crate::commands::Commands;
 use crate::error::simulation_error;
 
 /// A field as Python takes it: its group, its name, its unit, and how many numbers it has.
@@ -46,9 +48,18 @@ pub fn command_limit(scenario: &flexsc_core::Scenario) -> Vec<f64> {
         .collect()
 }
 
-/// Commands about each axis.
-pub fn commands(values: &[f64]) -> [Command; 3] {
-    [0, 1, 2].map(|axis| Command::Torque(values.get(axis).copied().unwrap_or(0.0)))
+/// Commands about each axis, and 0 about those that a scenario does not have.
+pub fn about_axes(values: &[f64]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| values.get(axis).copied().unwrap_or(0.0))
+}
+
+/// Gives a simulation commands, and keeps them where they are kept.
+pub fn steer(simulation: &mut Simulation, given: Option<&mut Commanded>, values: &[f64]) {
+    let values = about_axes(values);
+    if let Some(given) = given.filter(|_| !simulation.is_done()) {
+        given.push(simulation.time(), values);
+    }
+    simulation.steer(values.map(Command::Torque));
 }
 
 /// A length of time that Python gave.
@@ -90,12 +101,14 @@ pub struct Simulator {
     unit: &'static str,
     limit: Vec<f64>,
     fields: Vec<Field>,
+    /// What it was commanded, if that was kept.
+    given: Option<Commanded>,
     /// Why it cannot go on.
     failed: Option<String>,
 }
 
 impl Simulator {
-    pub fn of(simulation: Simulation, scenario: &flexsc_core::Scenario) -> Self {
+    pub fn of(simulation: Simulation, scenario: &flexsc_core::Scenario, given: Option<Commanded>) -> Self {
         Self {
             fields: simulation.fields(scenario),
             simulation,
@@ -103,6 +116,7 @@ impl Simulator {
             axes: scenario.axis_count(),
             unit: command_unit(scenario),
             limit: command_limit(scenario),
+            given,
             failed: None,
         }
     }
@@ -132,7 +146,8 @@ impl Simulator {
 impl Simulator {
     #[new]
     fn new(py: Python<'_>, scenario: &Scenario, run: u64) -> PyResult<Self> {
-        let mut simulator = Self::of(Simulation::new(&scenario.inner, run), &scenario.inner);
+        let mut simulator =
+            Self::of(Simulation::new(&scenario.inner, run), &scenario.inner, Some(Commanded::default()));
         simulator.go(py, Simulation::open)?;
         Ok(simulator)
     }
@@ -176,7 +191,13 @@ impl Simulator {
     /// Commands from now on; `values` are as many as there are axes, and finite.
     fn steer(&mut self, values: PyReadonlyArray1<'_, f64>) {
         let values: Vec<f64> = values.as_array().iter().copied().collect();
-        self.simulation.steer(commands(&values));
+        steer(&mut self.simulation, self.given.as_mut(), &values);
+    }
+
+    /// What it was commanded and how far it is; `None` if the commands were not kept.
+    fn commands(&self) -> Option<Commands> {
+        let until = if self.simulation.is_done() { Instant::END } else { self.simulation.time() };
+        Some(Commands { given: self.given.clone()?, until })
     }
 
     fn step(&mut self, py: Python<'_>, dt: f64) -> PyResult<()> {
@@ -210,6 +231,7 @@ impl Simulator {
             name: self.name.clone(),
             limit: self.limit.clone(),
             fields: self.fields.clone(),
+            given: self.given.clone(),
             failed: self.failed.clone(),
             ..*self
         }

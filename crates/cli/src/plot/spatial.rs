@@ -48,8 +48,10 @@ impl Cycles {
         let mut cycles = Self::default();
         // The end of a log that was cut off is rounded, and a cycle may lie on it.
         let end = Span::from_seconds(story.end + 1e-9).min(story.scenario.duration);
-        Simulation::new(&story.scenario, story.run)
-            .run_until(Instant::START + end, &mut cycles)
+        let mut simulation = Simulation::new(&story.scenario, story.run);
+        story
+            .commanded
+            .run_until(&mut simulation, Instant::START + end, &mut cycles)
             .map_err(|source| Failure::Run { name: story.scenario.name.clone(), source })?;
         let jets = log.tables(&["/jets"])?.pop().flatten().unwrap_or_default();
         let logged = jets.numbers("fuel_kg").unwrap_or_default();

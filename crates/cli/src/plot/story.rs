@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use flexsc_core::campaign::Commanded;
 use flexsc_core::record::{Column, Columns, Log};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
@@ -18,6 +19,8 @@ pub struct Story {
     pub run: u64,
     /// When the run ended (s).
     pub end: f64,
+    /// The commands from outside under which it was run.
+    pub commanded: Commanded,
     /// The time that figures show, if it is given.
     pub shown: Option<std::ops::Range<f64>>,
     /// Torque and gain at the start.
@@ -89,7 +92,9 @@ impl Story {
             Some("complete") => scenario.duration.seconds(),
             _ => last.chain(told).fold(0.0, f64::max),
         };
-        Ok(Self { scenario, run, end, shown: None, start, switchings, means, objective, steps })
+        let commanded = log.commands().map_or(Some(Commanded::default()), Commanded::parse);
+        let commanded = commanded.ok_or_else(|| unusable(path, "holds commands that are none".to_owned()))?;
+        Ok(Self { scenario, run, end, commanded, shown: None, start, switchings, means, objective, steps })
     }
 
     /// The motion as a full log has it, or else as the run repeated has it. The run repeated keeps the whole
@@ -107,8 +112,9 @@ impl Story {
         let mut repeat = Repeat::new(early, late);
         // The end of a log that was cut off is rounded, and a switching may lie on it.
         let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
-        Simulation::new(&self.scenario, self.run)
-            .run_until(Instant::START + end, &mut repeat)
+        let mut simulation = Simulation::new(&self.scenario, self.run);
+        self.commanded
+            .run_until(&mut simulation, Instant::START + end, &mut repeat)
             .map_err(|source| Failure::Run { name: self.scenario.name.clone(), source })?;
         let same = |(a, b): (&f64, &Switching)| (a - b.time).abs() <= 1e-6;
         if repeat.switchings.len() < self.switchings.len()

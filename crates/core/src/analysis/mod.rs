@@ -5,6 +5,7 @@ pub mod damping;
 pub mod identification;
 pub mod influence;
 pub mod linear_model;
+pub mod loop_parts;
 pub mod modal;
 pub mod parts;
 pub mod rigid_cycle;

@@ -60,6 +60,14 @@ impl Drifting {
         self.start.copy_from_slice(&self.series[..2 * self.springs.count()]);
     }
 
+    /// Puts the rigid coordinate to rest at 0, where the body was seen last: steps are as exact as the largest coordinate needs.
+    pub fn rest_hub(&mut self) {
+        self.rebase(self.seen - self.begins);
+        self.begins = self.seen;
+        let count = self.springs.count();
+        (self.series[0], self.series[count]) = (0.0, 0.0);
+    }
+
     /// What moves it.
     pub fn springs(&self) -> &Springs<f64> {
         &self.springs

@@ -55,10 +55,14 @@ pub struct Wrench {
 impl Wrench {
     /// Nothing acts any more; what was allocated stays so.
     pub fn clear(&mut self) {
-        let (mut forces, mut levers) = (std::mem::take(&mut self.forces), std::mem::take(&mut self.levers));
+        let Self { hub, torque, forces, force, levers, rotors, moment, sines, waveform } = self;
+        *hub = [0.0; 3];
+        (*torque, *force, *moment) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
         forces.clear();
         levers.clear();
-        *self = Self { forces, levers, ..Self::default() };
+        rotors.clear();
+        sines.clear();
+        *waveform = None;
     }
 
     /// Adds a push.

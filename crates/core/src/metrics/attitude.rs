@@ -1,6 +1,7 @@
 //! How well an attitude filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
 use super::{ATTITUDE_ERROR, BIAS_ERROR, Meaning, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told, Value};
+use crate::estimator::Estimator;
 use crate::record::{AttitudeEstimate, AxisEstimate, Use};
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -17,6 +18,8 @@ const INSIDE_OF_TWO: [f64; 2] = [0.075_953_423_952_869_69, 11.066_638_362_341_81
 #[derive(Clone, Debug)]
 pub struct Known {
     assess: [f64; 2],
+    /// Whether a program brought it.
+    own: bool,
     /// How many samples, and how many of them measured the attitude.
     count: (u64, u64),
     nees: f64,
@@ -27,12 +30,22 @@ pub struct Known {
 }
 
 impl Known {
-    /// An empty gathering for runs of a scenario with an attitude filter.
+    /// An empty gathering for runs of a scenario with an attitude filter, or with one that a program brought, which may tell of
+    /// an attitude.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let estimator = scenario.estimator.as_ref();
-        let filter = estimator.filter(|estimator| estimator.attitude().is_some())?;
+        let own = |of: &Estimator| matches!(of, Estimator::Own(_)) && scenario.axis_count() == 3;
+        let filter = estimator.filter(|estimator| estimator.attitude().is_some() || own(estimator))?;
         let assess = filter.assess();
-        Some(Self { assess, count: (0, 0), nees: 0.0, nis: 0.0, inside: 0, squares: [0.0; 2] })
+        Some(Self {
+            assess,
+            own: own(filter),
+            count: (0, 0),
+            nees: 0.0,
+            nis: 0.0,
+            inside: 0,
+            squares: [0.0; 2],
+        })
     }
 
     /// Takes what the filter made of a sample.
@@ -57,11 +70,14 @@ impl Known {
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(self) -> [Told; 5] {
+    pub fn finish(self) -> Vec<Told> {
         // 0/0 of no samples: no number.
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
         let [attitude, bias] = self.squares.map(|sum| Value::Number(libm::sqrt(sum / all)));
-        [
+        if self.own && self.count.0 == 0 {
+            return Vec::new();
+        }
+        vec![
             (&NEES_MEAN, Value::Number(self.nees / all / 6.0)),
             (&NIS_MEAN, Value::Number(self.nis / measured / 3.0)),
             (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),

@@ -12,10 +12,10 @@ use mcap::records::{Channel, Record};
 use mcap::sans_io::LinearReaderOptions;
 use thiserror::Error;
 
-use super::Columns;
 use super::bounds::{outer, parsed, walk};
 use super::table::{Budget, Schema, Table};
 use super::topics::TOPICS;
+use super::{COMMANDS, Columns};
 
 /// What helps where a topic is not in a log, but in others.
 fn elsewhere(topic: &str) -> &'static str {
@@ -97,6 +97,7 @@ pub struct Log {
     metadata: BTreeMap<String, String>,
     topics: Vec<String>,
     scenario: Option<String>,
+    commands: Option<String>,
 }
 
 /// The bytes of a file that begins as a log.
@@ -145,13 +146,16 @@ impl Log {
             return Err(LogError::Torn { path: path.to_owned() });
         }
         let mut metadata = BTreeMap::new();
-        let mut scenario = None;
+        let (mut scenario, mut commands) = (None, None);
         let mut topics = BTreeSet::new();
         for (opcode, body) in outer(&bytes).map_err(damaged)? {
             match parsed(opcode, body).map_err(damaged)? {
                 Some(Record::Metadata(record)) => metadata.extend(record.metadata),
                 Some(Record::Attachment { header, data, .. }) if header.name == "scenario.toml" => {
                     scenario = Some(String::from_utf8_lossy(&data).into_owned());
+                }
+                Some(Record::Attachment { header, data, .. }) if header.name == COMMANDS => {
+                    commands = Some(String::from_utf8_lossy(&data).into_owned());
                 }
                 Some(Record::Channel(channel)) => {
                     topics.insert(channel.topic);
@@ -171,7 +175,7 @@ impl Log {
         }
         let epoch_ns = metadata.get("epoch_ns").and_then(|ns| ns.parse().ok()).unwrap_or(0);
         let topics = topics.into_iter().collect();
-        Ok(Self { path: path.to_owned(), bytes, epoch_ns, metadata, topics, scenario })
+        Ok(Self { path: path.to_owned(), bytes, epoch_ns, metadata, topics, scenario, commands })
     }
 
     /// The topics that the log has.
@@ -182,6 +186,11 @@ impl Log {
     /// The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ...
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.metadata
+    }
+
+    /// The commands from outside under which it was run, as text, if there were any.
+    pub fn commands(&self) -> Option<&str> {
+        self.commands.as_deref()
     }
 
     /// The scenario that was run, as TOML.

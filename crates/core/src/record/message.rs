@@ -6,7 +6,7 @@ use super::proto::Encoder;
 use super::row::{Stamp, TopicRow};
 use super::topics::index_of;
 use super::{Detail, OutputName, Params, Record, RecordError, Sample, Summary, TakeRow};
-use crate::time::Instant;
+use crate::time::{Instant, Span};
 
 /// The provenance of a log.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +52,11 @@ pub enum RunEnd {
 }
 
 impl RunEnd {
+    /// How a run of this duration ended that was left at an instant.
+    pub fn at(left: Instant, duration: Span) -> Self {
+        if left < Instant::START + duration { Self::Interrupted } else { Self::Complete }
+    }
+
     fn verb(self) -> &'static str {
         match self {
             Self::Complete => "ends",
@@ -60,6 +65,9 @@ impl RunEnd {
         }
     }
 }
+
+/// The attachment of a log that holds the commands from outside under which it was run.
+pub const COMMANDS: &str = "commands.csv";
 
 /// A message of a log.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use super::epoch::nanoseconds_since_1970;
 use crate::actuator::{Actuator, Wheel};
 use crate::attitude::vector;
 use crate::body::craft::Limit;
-use crate::body::{Drift, Drive, Planar, Profile};
+use crate::body::{Drive, Planar};
 use crate::disturbance::{Disturbance, Pulses};
 use crate::document::Fault;
 use crate::document::key;
@@ -90,6 +90,7 @@ impl Scenario {
             .or_else(|| self.schedule_inconsistency())
             .or_else(|| self.timing_inconsistency())
             .or_else(|| self.rate_inconsistency())
+            .or_else(|| self.drift_inconsistency())
             .or_else(|| self.envelope_inconsistency())
             .or_else(|| self.filter_inconsistency(estimator?))
             .or_else(|| self.adaptation_inconsistency())
@@ -120,6 +121,7 @@ impl Scenario {
         self.law_inconsistency()
             .or_else(|| self.damping_inconsistency())
             .or_else(|| self.schedule_inconsistency())
+            .or_else(|| self.drift_inconsistency())
             .or_else(|| self.coupling_inconsistency())
             .or_else(|| self.timing_inconsistency())
             .or_else(|| self.drive_inconsistency())
@@ -184,49 +186,6 @@ impl Scenario {
 
     fn coupling_inconsistency(&self) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
-        if let Some(drift) = &self.drift {
-            let modes = self.model.modes.len();
-            let profiles: Vec<(String, &Profile)> = match drift {
-                Drift::Common(profile) => vec![("drift.common".to_owned(), profile)],
-                Drift::Each(profiles) if profiles.len() != modes => {
-                    return at(
-                        "drift.each",
-                        format!("must have a profile for each of {modes} modes, got {}", profiles.len()),
-                    );
-                }
-                Drift::Each(profiles) => {
-                    let key = |(index, profile)| (format!("drift.each[{index}]"), profile);
-                    profiles.iter().enumerate().map(key).collect()
-                }
-            };
-            for (key, profile) in profiles {
-                match profile {
-                    Profile::Sinusoid(sinusoid) if sinusoid.amplitude.get() >= 0.5 => {
-                        let why = format!(
-                            "must be below 0.5, so that no frequency vanishes, got {}",
-                            sinusoid.amplitude.get()
-                        );
-                        return at(&format!("{key}.sinusoid.amplitude"), why);
-                    }
-                    Profile::Table(points) if points.len() < 2 => {
-                        return at(
-                            &format!("{key}.table"),
-                            format!("must have two points or more, got {}", points.len()),
-                        );
-                    }
-                    Profile::Table(points) => {
-                        if let Some(index) = points.windows(2).position(|pair| pair[0].time >= pair[1].time) {
-                            let (index, time) = (index + 1, points[index + 1].time.get());
-                            return at(
-                                &format!("{key}.table[{index}].time"),
-                                format!("must be later than the one before, got {time}"),
-                            );
-                        }
-                    }
-                    _ => {}
-                }
-            }
-        }
         let wheel = matches!(self.actuator, Actuator::Wheel(_));
         let key = if wheel { "actuator.wheel" } else { "drift" };
         if !wheel && self.drift.is_none() {

@@ -5,6 +5,7 @@ mod authority;
 mod consistency;
 mod cost;
 mod coupled;
+mod drifting;
 mod drives;
 mod epoch;
 mod failing;

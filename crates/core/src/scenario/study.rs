@@ -11,7 +11,7 @@ use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
 use crate::law::{Authority, Distribution, Itinerary, Target};
-use crate::motion::turning::Bearing;
+use crate::motion::turning::{Bearing, Common};
 use crate::quantity::{Finite, Positive};
 use crate::random::Seed;
 use crate::time::{Instant, Span};
@@ -62,6 +62,8 @@ pub struct Study {
     pub adaptive: Option<Box<adaptive::ObserverDesign>>,
     /// What the sensors are to an attitude filter.
     pub attitude: Option<attitude::Setting>,
+    /// What the motions of all runs have in common.
+    pub common: Common,
     /// How near to its target the law of each axis promises to keep the body (rad), if it does.
     pub bands: Vec<Option<f64>>,
 }

@@ -59,6 +59,11 @@ impl Events {
         self.journal.tell(now, (Level::Info, "run"), "the end of the run".to_owned(), record)
     }
 
+    /// The run is left before its end.
+    pub fn left(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+        self.journal.tell(now, (Level::Info, "run"), "the run is left before its end".to_owned(), record)
+    }
+
     /// The manoeuvre ends.
     pub fn arrived(&self, now: Instant, row: &Arrival, record: &mut impl Record) -> Result<(), RecordError> {
         let line = format!(

@@ -84,6 +84,18 @@ impl Simulation {
         self.walk(until, Some(occasion), record)
     }
 
+    /// Tells a record what it lacks of the present motion where the run is left before its end.
+    ///
+    /// # Errors
+    /// A record that cannot be kept.
+    pub fn leave(&self, record: &mut impl Record) -> Result<(), SimulationError> {
+        if !self.is_done() {
+            self.plant.tell_course(self.now, &self.exerted, record)?;
+            self.telling.events.left(self.now, record)?;
+        }
+        Ok(())
+    }
+
     fn walk(
         &mut self,
         until: Instant,

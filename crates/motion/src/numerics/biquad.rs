@@ -26,6 +26,11 @@ impl Biquad {
         Self::new(b.map(|b| b / a0), [a1 / a0, a2 / a0])
     }
 
+    /// b0, b1, b2 and a1, a2.
+    pub fn coefficients(&self) -> ([f64; 3], [f64; 2]) {
+        (self.numerator, self.denominator)
+    }
+
     /// Whether what goes into it dies away.
     pub fn is_stable(&self) -> bool {
         let [a1, a2] = self.denominator;

@@ -16,6 +16,10 @@ impl Step<'_> {
 
     /// Gives the modes what they feel at a node; tells by how much their forces changed.
     pub(super) fn feel(&self, felt: &Felt, modes: &mut [Memory], beside: &mut Beside, node: usize) -> f64 {
+        let spun = outward(&felt.rate);
+        if self.is_alone() {
+            return self.feel_alone(felt, &spun, modes, node);
+        }
         for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
             memory.g[node] = of.rotation.dot(&felt.turning);
             memory.rate += memory.g[node];
@@ -31,7 +35,6 @@ impl Step<'_> {
         if !self.is_loud() {
             return 0.0;
         }
-        let spun = outward(&felt.rate);
         let more = self.around.is_some() || self.borne.is_some() || self.model.beside.is_some();
         let mut change = 0.0_f64;
         for index in 0..modes.len() {
@@ -45,6 +48,29 @@ impl Step<'_> {
             let memory = &mut modes[index];
             change = change.max((force - memory.s[node]).abs());
             memory.s[node] = force;
+        }
+        change
+    }
+
+    /// Whether no more than Gt and the centrifugal force acts on modes.
+    fn is_alone(&self) -> bool {
+        self.around.is_none() && self.borne.is_none() && self.model.beside.is_none() && self.driven.is_none()
+    }
+
+    /// The same of modes on which no more acts.
+    fn feel_alone(&self, felt: &Felt, spun: &[f64; 6], modes: &mut [Memory], node: usize) -> f64 {
+        let stretches = self.model.stretches;
+        let mut change = 0.0_f64;
+        for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
+            let g = of.rotation.dot(&felt.turning);
+            memory.g[node] = g;
+            memory.rate += g;
+            if stretches {
+                let force = of.moved(spun);
+                let by = (force - memory.s[node]).abs();
+                change = if by > change { by } else { change };
+                memory.s[node] = force;
+            }
         }
         change
     }

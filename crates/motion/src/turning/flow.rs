@@ -1,13 +1,16 @@
 //! The motion from one departure to the next.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Quaternion};
 
 mod level;
 
 use super::bearing::{Bearing, Borne, Slip, Spin};
+use super::common::{Common, Known, Regular};
 use super::driven::Driving;
 use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
-use super::pace::{Pace, Pose};
+use super::pace::{Amplitude, Pace, Pose};
 use super::response::Response;
 use super::rotation::Bend;
 use super::state::{Seen, State};
@@ -24,8 +27,10 @@ const BESIDE: usize = 16;
 /// A flexible body that turns, and what acts on it since it departed.
 #[derive(Clone, Debug)]
 pub struct Turning {
-    pub(super) model: Model,
-    pub(super) pace: Pace,
+    pub(super) model: Arc<Model>,
+    pub(super) pace: Arc<Pace>,
+    /// What it has in common with other runs, as long as it does.
+    pub(super) known: Option<Arc<Known>>,
     /// The state at the departure, at the instant of the grid that was reached last, and at the instant seen last.
     pub(super) departed: State,
     pub(super) grid: State,
@@ -46,8 +51,8 @@ pub struct Turning {
     /// Those over the last steps that were beside the grid, and the place of the next.
     pub(super) beside: Vec<Regular>,
     pub(super) next_beside: usize,
-    /// The amplitude of each mode, at most, at the start of a step (m sqrt(kg)).
-    amplitudes: Vec<f64>,
+    /// The amplitude of each mode at the start of a step.
+    amplitudes: Vec<Amplitude>,
     work: Work,
     effort: Effort,
     /// Drives that turn appendages.
@@ -76,13 +81,6 @@ pub struct Effort {
     pub steps: u64,
     /// Passes over the stages of these steps.
     pub passes: u64,
-}
-
-/// A step of the grid: its length (s) and the responses over it.
-#[derive(Clone, Debug)]
-pub(super) struct Regular {
-    h: f64,
-    responses: Vec<Response>,
 }
 
 impl Flexible {
@@ -135,7 +133,18 @@ impl Turning {
     /// A body whose mean axes have an attitude, with these rates as if it were rigid (rad/s), and q and q' of each mode
     /// (m sqrt(kg), and per second), at rest if they are left out; nothing acts.
     pub fn new(body: &Flexible, attitude: Quaternion<f64>, rigid: Vector, modes: &[[f64; 2]]) -> Self {
-        let model = Model::new(body);
+        Self::sharing(&Common::default(), body, (attitude, rigid), modes)
+    }
+
+    /// The same with what runs of this body have in common.
+    pub fn sharing(
+        common: &Common,
+        body: &Flexible,
+        (attitude, rigid): (Quaternion<f64>, Vector),
+        modes: &[[f64; 2]],
+    ) -> Self {
+        let known = common.of(body);
+        let model = known.model.clone();
         let turning = body.inertia * rigid;
         let at = |index: usize| modes.get(index).copied().unwrap_or_default();
         let (mut bent, mut rate) = (Vector::zeros(), rigid);
@@ -161,7 +170,8 @@ impl Turning {
             spins: Vec::new(),
         };
         let mut turning = Self {
-            pace: Pace::new(&model),
+            pace: known.pace.clone(),
+            known: Some(known),
             grid: state.clone(),
             here: state.clone(),
             reached: 0.0,
@@ -175,7 +185,7 @@ impl Turning {
             regular: Vec::new(),
             beside: Vec::new(),
             next_beside: 0,
-            amplitudes: vec![0.0; state.modes.len()],
+            amplitudes: vec![Amplitude::default(); state.modes.len()],
             work: Work::new(state.modes.len()),
             effort: Effort::default(),
             driving: None,
@@ -353,7 +363,7 @@ impl Turning {
     /// Makes it walk at another pace.
     #[cfg(test)]
     pub(super) fn set_pace(&mut self, pace: Pace) {
-        self.pace = pace;
+        self.pace = Arc::new(pace);
         self.regular.clear();
     }
 }

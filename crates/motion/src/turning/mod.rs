@@ -17,7 +17,9 @@ mod bearing;
 #[cfg(test)]
 mod borne_tests;
 mod bounds;
+mod common;
 mod driven;
+mod facing;
 mod feel;
 mod flow;
 mod free;
@@ -26,6 +28,7 @@ mod model;
 mod pace;
 mod response;
 mod rotation;
+mod settled;
 mod shape;
 mod slipping;
 mod state;
@@ -36,6 +39,7 @@ mod watch;
 
 pub use acceleration::Accelerations;
 pub use bearing::{Bearing, Line, Slip};
+pub use common::Common;
 pub use driven::{Angles, Driven, Driving, Panel, PanelMode};
 pub use flow::{Acting, Effort, Turning};
 pub use free::{Free, Held};

@@ -81,6 +81,10 @@ pub(super) struct Model {
     pub beside: Option<DMatrix<f64>>,
     /// Whether any mode changes the inertia.
     pub stretches: bool,
+    /// Sum of |phi|, |sum phi phi'| and the largest |J1| of a mode.
+    pub reach: f64,
+    pub bendable: f64,
+    pub stretchable: f64,
     /// The frequencies of modes that turn the hub or change the inertia (rad/s).
     pub felt: Vec<f64>,
 }
@@ -158,6 +162,9 @@ impl Model {
             }),
             stretches: body.modes.iter().any(|mode| mode.moments.norm() > 0.0),
             felt: felt.map(|mode| mode.frequency).collect(),
+            reach: body.modes.iter().map(|mode| mode.rotation.norm()).sum(),
+            bendable: bending.norm(),
+            stretchable: body.modes.iter().map(|mode| mode.moments.norm()).fold(0.0, f64::max),
         }
     }
 
@@ -174,11 +181,19 @@ fn symmetric(matrix: Matrix3<f64>) -> Matrix3<f64> {
     (matrix + matrix.transpose()) * 0.5
 }
 
-/// The solution of M x = v by Cramer's rule; not finite if there is none.
+/// The solution of M x = v of a symmetric matrix by Cramer's rule; not finite if there is none.
+#[inline]
 fn solved(m: &Matrix3<f64>, v: &Vector) -> Vector {
-    let (a, b, c): (Vector, Vector, Vector) = (m.column(0).into(), m.column(1).into(), m.column(2).into());
-    let (first, second, third) = (b.cross(&c), c.cross(&a), a.cross(&b));
-    Vector::new(first.dot(v), second.dot(v), third.dot(v)) / a.dot(&first)
+    let (xx, yy, zz, yz, zx, xy) = (m.m11, m.m22, m.m33, m.m32, m.m31, m.m21);
+    let first = Vector::new(yy * zz - yz * yz, yz * zx - xy * zz, xy * yz - yy * zx);
+    let (second, third) = (zz * xx - zx * zx, xx * yy - xy * xy);
+    let across = xy * zx - xx * yz;
+    let one = 1.0 / (xx * first.x + xy * first.y + zx * first.z);
+    Vector::new(
+        first.dot(v) * one,
+        (first.y * v.x + second * v.y + across * v.z) * one,
+        (first.z * v.x + across * v.y + third * v.z) * one,
+    )
 }
 
 /// The tensor of xx, yy, zz, yz, zx and xy.

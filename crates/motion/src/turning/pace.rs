@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use super::model::{Model, tensor};
+use super::model::{Constants, Model, tensor};
 
 /// A step turns the body by at most about this (rad).
 const TURN: f64 = 1.0 / 16.0;
@@ -39,6 +39,9 @@ const DOUBLINGS: i32 = 6;
 /// 1e4 s.
 const DRIFT: f64 = 1e-14;
 
+/// For so long (s).
+const LASTS: f64 = 1e4;
+
 /// The same where steps resolve all modes (rad/s): large amplitudes of a body that turns make steps shorter still.
 const RESOLVED_DRIFT: f64 = 1e-11;
 
@@ -54,8 +57,7 @@ pub(super) struct Pace {
     turn: f64,
     /// A step of this length resolves all modes (s).
     resolving: f64,
-    /// For each mode its frequency (rad/s), and how much a unit of its amplitude turns the body (rad/(m sqrt(kg))).
-    modes: Vec<(f64, f64)>,
+    modes: Vec<Turns>,
     unresolved: Vec<f64>,
 }
 
@@ -68,8 +70,26 @@ pub(super) struct Pose<'a> {
     pub carried: f64,
     /// Its angular acceleration, at most (rad/s²).
     pub acceleration: f64,
-    /// The amplitude of each mode, at most (m sqrt(kg)), where it is known: else steps resolve all modes.
-    pub amplitudes: Option<&'a [f64]>,
+    /// The amplitude of each mode where it is known: else steps resolve all modes.
+    pub amplitudes: Option<&'a [Amplitude]>,
+}
+
+/// The amplitude of a mode (m sqrt(kg)).
+#[derive(Copy, Clone, Debug, Default)]
+pub(super) struct Amplitude {
+    /// At most.
+    pub most: f64,
+    /// By which it swings about what holds it, and which no step longer than its period sees.
+    pub swings: f64,
+}
+
+/// The frequency of a mode (rad/s), and how much a unit of its amplitude turns the body (rad/(m sqrt(kg))): where steps resolve
+/// it, and where they do not.
+#[derive(Clone, Debug)]
+struct Turns {
+    frequency: f64,
+    turned: f64,
+    unresolved: f64,
 }
 
 impl Pace {
@@ -115,10 +135,12 @@ impl Pace {
     }
 
     /// How fast the attitude drifts at most for the sake of modes that steps of `h` seconds do not resolve (rad/s).
-    fn drift(&self, h: f64, pose: Pose<'_>, amplitudes: &[f64]) -> f64 {
-        let lost = |((w, turning), amplitude): (&(f64, f64), &f64)| {
-            let square = w * h * w * h;
-            turning * amplitude * (LOST * square * square * square).min(1.0)
+    fn drift(&self, h: f64, pose: Pose<'_>, amplitudes: &[Amplitude]) -> f64 {
+        let resolved = h <= self.resolving;
+        let lost = |(of, amplitude): (&Turns, &Amplitude)| {
+            let square = of.frequency * h * of.frequency * h;
+            let turned = if resolved { of.turned * amplitude.most } else { of.unresolved * amplitude.swings };
+            turned * (LOST * square * square * square).min(1.0)
         };
         let lost = self.modes.iter().zip(amplitudes).map(lost).sum::<f64>();
         (pose.carried + pose.acceleration * h) * lost
@@ -163,15 +185,20 @@ impl Pace {
     }
 }
 
-/// The frequency of each mode (rad/s), and how much a unit of its amplitude turns the body: by the hub's rotation, by the
-/// change of the inertia, and by what its motion does to slower modes, which the inertia's change couples.
-fn turning(model: &Model) -> Vec<(f64, f64)> {
-    let moments = |of: &[f64; 6]| tensor(*of).norm();
-    let coupled: f64 =
-        model.modes.iter().map(|mode| mode.rotation.norm() * moments(&mode.moments) / mode.frequency).sum();
+/// How much a unit of each mode's amplitude turns the body: by the hub's rotation, by the change of the inertia, and by what its
+/// motion does to slower modes, which the inertia's change couples. What an unresolved mode seems to force a slower one by may
+/// be at its resonance, where an undamped one grows all along, a damped one up to 1/(2 zeta) of the force.
+fn turning(model: &Model) -> Vec<Turns> {
+    let moments = |of: &Constants| tensor(of.moments).norm();
+    let couples = |of: &Constants| of.rotation.norm() * moments(of) / of.frequency;
+    let grows = |of: &Constants| (1.0 / (2.0 * of.damping * of.frequency * LASTS)).min(1.0);
+    let coupled: f64 = model.modes.iter().map(couples).sum();
+    let driven: f64 = model.modes.iter().map(|mode| couples(mode) * grows(mode)).sum();
     let each = model.modes.iter().map(|mode| {
-        let turned = mode.rotation.norm() * (1.0 + mode.frequency * coupled);
-        (mode.frequency, turned + moments(&mode.moments) * model.mobility)
+        let by = |coupled: f64| {
+            mode.rotation.norm() * (1.0 + mode.frequency * coupled) + moments(mode) * model.mobility
+        };
+        Turns { frequency: mode.frequency, turned: by(coupled), unresolved: by(driven) }
     });
     each.collect()
 }
@@ -206,11 +233,13 @@ mod tests {
     fn steps_resolve_slow_modes_follow_the_rotation_and_keep_off_aliases() {
         let pace = pace(&[1.1475, 50.4, 92.94]);
         let at = |rate, acceleration, amplitudes: &[f64]| {
+            let amplitudes: Vec<_> =
+                amplitudes.iter().map(|of| Amplitude { most: *of, swings: *of }).collect();
             let h = pace.length(pace.level(Pose {
                 rate,
                 carried: rate,
                 acceleration,
-                amplitudes: Some(amplitudes),
+                amplitudes: Some(&amplitudes),
             }));
             h * 92.94
         };
@@ -238,5 +267,29 @@ mod tests {
         let pace = self::pace(&[]);
         let pose = Pose { rate: 1e-3, carried: 1e-3, acceleration: 0.0, amplitudes: Some(&[]) };
         assert!(pace.length(pace.level(pose)) * 1e-3 <= TURN);
+    }
+
+    #[test]
+    fn what_damping_ends_makes_unresolved_steps_no_shorter() {
+        let turns = |damping: f64| {
+            let mode = |frequency: f64| FreeMode {
+                frequency,
+                damping,
+                rotation: Vector::new(0.04, 0.0, 0.0),
+                moments: Matrix3::from_diagonal_element(10.0),
+            };
+            let inertia = Matrix3::from_diagonal_element(300.0);
+            let body = Flexible { inertia, modes: vec![mode(1.0), mode(90.0)], damping: None };
+            turning(&Model::new(&body))
+        };
+        for (undamped, damped) in turns(0.0).iter().zip(turns(0.005)) {
+            assert_eq!((undamped.turned, undamped.turned), (undamped.unresolved, damped.turned));
+        }
+        // phi m/W of the slow mode, whose swing ends within 100 s of 1e4 s.
+        let (alone, moments) = (0.04, 10.0 * libm::sqrt(3.0));
+        let coupled = 0.04 * 90.0 * 0.04 * moments * (0.01 + 1e-2 / 90.0 / 90.0);
+        let sum = alone + coupled + moments * libm::sqrt(3.0) / 300.0;
+        let found = turns(0.005)[1].unresolved;
+        assert!((found - sum).abs() < 1e-6 * sum, "{found} {sum}");
     }
 }

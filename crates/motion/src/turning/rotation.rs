@@ -1,11 +1,40 @@
 //! Finite rotations by a small vector, and the rate that a change of the vector makes.
 
-use nalgebra::Quaternion;
-
 use crate::attitude::Vector;
 
 /// Squares of an angle below which the coefficients come from their series (rad²).
 const SMALL: f64 = 0.04;
+
+/// Squares below which three terms of them are enough (rad²).
+const TINY: f64 = 1e-5;
+
+/// The coefficients of sin t/t, (1 - cos t)/t² and (t - sin t)/t³ by powers of t².
+const FIRST: [f64; 7] = series(1);
+const SECOND: [f64; 7] = series(2);
+const THIRD: [f64; 7] = series(3);
+
+/// 1/n! for every other n from one on, with alternating signs.
+const fn series(from: usize) -> [f64; 7] {
+    let mut of = [0.0; 7];
+    let (mut factorial, mut n, mut k, mut sign) = (1.0, 1, 0, 1.0);
+    while k < 7 {
+        while n <= from + 2 * k {
+            factorial *= n as f64;
+            n += 1;
+        }
+        of[k] = sign / factorial;
+        sign = -sign;
+        k += 1;
+    }
+    of
+}
+
+/// The sum of such a series at a small x.
+#[inline]
+fn sum(of: &[f64; 7], x: f64) -> f64 {
+    let tail = if x < TINY { of[2] } else { of[2] + x * (of[3] + x * (of[4] + x * (of[5] + x * of[6]))) };
+    of[0] + x * (of[1] + x * tail)
+}
 
 /// The rotation by a vector th of length t (rad), from hub to mean axes.
 #[derive(Copy, Clone, Debug)]
@@ -24,14 +53,8 @@ impl Bend {
     pub fn new(by: Vector) -> Self {
         let x = by.norm_squared();
         if x < SMALL {
-            // 0.04^6/13! and 0.04^7/14! are below the last bit.
-            let series = |from: f64| {
-                (0..7).rev().fold(0.0, |sum, k| {
-                    let n = from + f64::from(2 * k);
-                    1.0 - sum * x / ((n + 1.0) * (n + 2.0))
-                })
-            };
-            return Self { by, first: series(1.0), second: series(2.0) / 2.0, third: series(3.0) / 6.0 };
+            // 0.04^7/15! and 1e-15/7! are below the last bit.
+            return Self { by, first: sum(&FIRST, x), second: sum(&SECOND, x), third: sum(&THIRD, x) };
         }
         let t = libm::sqrt(x);
         let (sin, cos) = libm::sincos(t);
@@ -56,16 +79,6 @@ impl Bend {
         let once = self.by.cross(v);
         once * self.second - self.by.cross(&once) * self.third
     }
-}
-
-/// A vector of the mean axes in inertial ones, by a quaternion that is of length 1 but for the error of a stage.
-pub fn inertial(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
-    (*attitude * Quaternion::from_imag(*v) * attitude.conjugate()).vector() / attitude.norm_squared()
-}
-
-/// Q' = 1/2 Q o (0, w).
-pub fn spin(attitude: &Quaternion<f64>, rate: &Vector) -> Quaternion<f64> {
-    *attitude * Quaternion::from_imag(rate * 0.5)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::model::tensor;
+use super::model::{Constants, tensor};
 use super::step::Step;
 use crate::attitude::Vector;
 
@@ -26,15 +26,18 @@ pub(super) struct Sums {
 
 impl Sums {
     #[inline]
-    pub fn add(&mut self, step: &Step<'_>, index: usize, q: f64, p: f64) {
-        let of = &step.model.modes[index];
+    pub fn add(&mut self, of: &Constants, q: f64, p: f64, stretches: bool) {
         self.bent += of.rotation * q;
         self.elastic += of.rotation * p;
+        if stretches {
+            self.changed.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
+        }
+    }
+
+    /// What the mode adds to the torque.
+    pub fn lever(&mut self, step: &Step<'_>, index: usize, q: f64) {
         if let Some(lever) = step.levers.get(index) {
             self.levered += lever * q;
-        }
-        if step.model.stretches {
-            self.changed.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
         }
     }
 

@@ -2,15 +2,18 @@
 //!
 //! With th = sum phi q, Q = Q_m o exp(th) and H = exp(-\[th\]) H_m, the rate of the mean axes is
 //! w_m = exp(\[th\]) (J^-1 Gt + (1 - Gr) phi q'), in which the elastic rate has left but for products with th. The stages are
-//! found by fixed-point passes; what modes need of a stage is Gt, three numbers, and s where there is any.
+//! found by fixed-point passes; what modes need of a stage is Gt, three numbers, and s where there is any. The attitude follows
+//! from the rates of the mean axes afterwards, and is part of the passes only where the surroundings look at it.
 
 use nalgebra::{Matrix3, Quaternion, Vector2};
 
 use super::bearing::{Borne, Spun};
 use super::driven::{Driving, Scratch};
+use super::facing::{Facing, inertial};
 use super::model::{Model, Surroundings};
 use super::response::Response;
-use super::rotation::{Bend, inertial, spin};
+use super::rotation::Bend;
+use super::settled::{Change, SETTLED};
 use super::shape::{Shape, Sums};
 use super::state::State;
 use crate::attitude::{Vector, rotation};
@@ -19,8 +22,8 @@ use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
 /// Passes after which the stages are taken as they are.
 const PASSES: u32 = 60;
 
-/// Passes end when the next would change less than this part of the state.
-const SETTLED: f64 = 1e-18;
+/// The part of the rotors' momenta below which none of the whole counts.
+const ROTORS: f64 = 1e-2;
 
 /// A step: what moves, for how long, and what acts.
 pub(super) struct Step<'a> {
@@ -74,15 +77,16 @@ pub(super) struct Memory {
 
 /// What a stage comes to.
 #[derive(Copy, Clone)]
-struct Stage {
+pub(super) struct Stage {
     /// H_m'.
-    push: Vector,
-    /// Q_m'.
-    turn: Quaternion<f64>,
-    /// J^-1 Gt.
-    rigid: Vector,
-    /// The acceleration of the centre of mass in inertial axes (m/s²).
-    pushed: Vector,
+    pub push: Vector,
+    /// w_m.
+    pub mean: Vector,
+    /// J^-1 Gt, and Gt.
+    pub rigid: Vector,
+    pub turning: Vector,
+    /// The acceleration of the centre of mass in mean axes (m/s²).
+    pub pushed: Vector,
 }
 
 /// Gt, the hub's rate and the surroundings' tide, which modes feel.
@@ -113,32 +117,44 @@ impl Step<'_> {
         let mut stages = self.guess(state, modes, beside);
         let speed =
             modes.iter().fold(0.0, |most, mode| mode.rate.abs().max(self.h * mode.s[0].abs()).max(most));
-        let size = state.momentum.norm() + self.h * self.torque.norm();
+        let size = self.size(state);
+        let mut facing = Facing::default();
+        let seeks = self.around.is_some();
+        if seeks {
+            facing.find(&state.attitude, &stages, self.h);
+        }
         let (mut before, mut passes) = (0.0, 0);
         while passes < PASSES {
             passes += 1;
-            let mut change = 0.0_f64;
+            let mut change = Change::default();
             for node in 0..3 {
-                let (found, forced) = self.stage(node, state, &stages, modes, beside);
-                change = change.max(beside.spun.take_over(node, self.h));
-                let last = &stages[node];
-                if size > 0.0 {
-                    change = change.max((found.push - last.push).norm() * self.h / size);
-                }
-                if speed > 0.0 {
-                    change = change.max(forced * self.h / speed);
-                }
-                change = change.max((found.turn - last.turn).norm() * self.h);
+                let at = if seeks { facing.at(&state.attitude, node, self.h) } else { state.attitude };
+                let found = self.stage(node, state, (&stages, &at), (modes, beside), &mut change);
+                change.spun = change.spun.max(beside.spun.take_over(node, self.h));
+                change.see(&stages[node], &found);
                 stages[node] = found;
             }
-            // What the next pass changes, at the rate of the last two.
-            if change <= SETTLED || change * change <= SETTLED * before {
+            if seeks {
+                facing.find(&state.attitude, &stages, self.h);
+            }
+            // What the next pass changes, at the rate of the last two or by what changed.
+            let most = change.most(self.h, size, speed);
+            let settled = most <= SETTLED || most * most <= SETTLED * before;
+            if settled || self.leaves(&change, size, speed) <= SETTLED {
                 break;
             }
-            before = change;
+            before = most;
         }
-        self.end(state, &stages, modes, &beside.spun);
+        if !seeks {
+            facing.find(&state.attitude, &stages, self.h);
+        }
+        self.end(state, (&stages, &facing), modes, &beside.spun);
         passes
+    }
+
+    /// What the momentum is measured by (N m s): sums of rotors' momenta are no more exact than a part of these.
+    fn size(&self, state: &State) -> f64 {
+        state.momentum.norm() + self.h * self.torque.norm() + ROTORS * self.rotors.0.norm()
     }
 
     /// Keeps q and P of a mode, where drives turn what the others make of them.
@@ -163,7 +179,8 @@ impl Step<'_> {
             }
             memory.rate = self.model.modes[index].frequency * p;
             self.keep(index, q, memory.rate, beside);
-            sums.add(self, index, q, memory.rate);
+            sums.add(&self.model.modes[index], q, memory.rate, self.model.stretches);
+            sums.lever(self, index, q);
         }
         if self.borne.is_some() {
             let Spun { at, now, .. } = &mut beside.spun;
@@ -179,28 +196,56 @@ impl Step<'_> {
         }
         self.feel(&felt, modes, beside, 0);
         // What turns the body grows as the torque and the rotors have it: most of what a first pass would find.
-        let grows = if self.driven.is_some() { Vector::zeros() } else { self.torque - self.rotors.1 };
+        let grows = if self.driven.is_some() { Vector::zeros() } else { stage.push - self.rotors.1 };
         for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
             let slope = of.rotation.dot(&grows) * self.h;
             memory.g = NODES.map(|node| memory.g[0] + slope * node);
             memory.s = [memory.s[0]; 3];
         }
         let slope = self.model.inverse * grows * self.h;
-        NODES.map(|node| Stage { rigid: stage.rigid + slope * node, ..stage })
+        NODES.map(|node| {
+            let more = slope * node;
+            Stage {
+                rigid: stage.rigid + more,
+                mean: stage.mean + more,
+                turning: stage.turning + grows * (self.h * node),
+                push: stage.push - more.cross(&state.momentum),
+                pushed: stage.pushed,
+            }
+        })
     }
 
-    /// The stage at a node, and by how much the forces on modes changed.
+    /// The stage at a node, where the mean axes face this way.
     fn stage(
         &self,
         node: usize,
         state: &State,
-        stages: &[Stage; 3],
-        modes: &mut [Memory],
-        beside: &mut Beside,
-    ) -> (Stage, f64) {
+        (stages, facing): (&[Stage; 3], &Quaternion<f64>),
+        (modes, beside): (&mut [Memory], &mut Beside),
+        change: &mut Change,
+    ) -> Stage {
+        let shape = self.shape(node, modes, beside);
+        let [a, b, c] = weights(&MATRIX[node], self.h);
+        let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
+        if self.borne.is_some() {
+            let Spun { at, rates, .. } = &mut beside.spun;
+            for ((at, rates), spin) in at.iter_mut().zip(&*rates).zip(&state.spins) {
+                *at = spin.sums + rates[0] * a + rates[1] * b + rates[2] * c;
+            }
+        }
+        let (stage, felt) = self.turning((node + 1, NODES[node] * self.h), &shape, &momentum, facing, beside);
+        change.forced = change.forced.max(self.feel(&felt, modes, beside, node));
+        change.stretched = change.stretched.max(shape.changed.norm_squared());
+        change.rate = change.rate.max(felt.rate.norm_squared());
+        stage
+    }
+
+    /// How the modes are at a node.
+    fn shape(&self, node: usize, modes: &mut [Memory], beside: &mut Beside) -> Shape {
         let mut sums = Sums::default();
-        let loud = self.is_loud();
-        for (index, (memory, response)) in modes.iter_mut().zip(self.responses).enumerate() {
+        let (loud, plain) = (self.is_loud(), self.driven.is_none() && self.levers.is_empty());
+        let all = modes.iter_mut().zip(self.responses).zip(&self.model.modes);
+        for (index, ((memory, response), of)) in all.enumerate() {
             let [mut q, mut p] = memory.known[node];
             let [of_q, of_p] = &response.of_rate[node];
             q += dot(of_q, &memory.g);
@@ -210,22 +255,14 @@ impl Step<'_> {
                 q += dot(of_q, &memory.s);
                 p += dot(of_p, &memory.s);
             }
-            memory.rate = self.model.modes[index].frequency * p;
-            self.keep(index, q, memory.rate, beside);
-            sums.add(self, index, q, memory.rate);
-        }
-        let [a, b, c] = MATRIX[node].map(|weight| weight * self.h);
-        let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
-        let facing = state.attitude + stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
-        if self.borne.is_some() {
-            let Spun { at, rates, .. } = &mut beside.spun;
-            for ((at, rates), spin) in at.iter_mut().zip(&*rates).zip(&state.spins) {
-                *at = spin.sums + rates[0] * a + rates[1] * b + rates[2] * c;
+            memory.rate = of.frequency * p;
+            sums.add(of, q, memory.rate, self.model.stretches);
+            if !plain {
+                self.keep(index, q, memory.rate, beside);
+                sums.lever(self, index, q);
             }
         }
-        let (stage, felt) =
-            self.turning((node + 1, NODES[node] * self.h), &sums.shape(), &momentum, &facing, beside);
-        (stage, self.feel(&felt, modes, beside, node))
+        sums.shape()
     }
 
     /// How the body turns `t` seconds after the start of the step.
@@ -274,32 +311,41 @@ impl Step<'_> {
         let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
         let made = Stage {
             push: bend.forward(&torque) - mean.cross(momentum),
-            turn: spin(facing, &mean),
+            mean,
             rigid,
-            pushed: self.push.map_or_else(Vector::zeros, |push| inertial(facing, &bend.forward(&push))),
+            turning,
+            pushed: self.push.map_or_else(Vector::zeros, |push| bend.forward(&push)),
         };
         (made, Felt { turning, rate, tide, t, stage })
     }
 
     /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
-    fn move_on(&self, [position, velocity]: &mut [Vector; 2], stages: &[Stage; 3]) {
+    fn move_on(&self, state: &mut State, stages: &[Stage; 3], facing: &Facing) {
+        let [position, velocity] = &mut state.moved;
         *position += *velocity * self.h;
         if self.push.is_some() {
-            for ((stage, weight), node) in stages.iter().zip(WEIGHTS).zip(NODES) {
-                *velocity += stage.pushed * (weight * self.h);
-                *position += stage.pushed * (weight * (1.0 - node) * self.h * self.h);
+            for (index, ((stage, weight), node)) in stages.iter().zip(WEIGHTS).zip(NODES).enumerate() {
+                let pushed = inertial(&facing.at(&state.attitude, index, self.h), &stage.pushed);
+                *velocity += pushed * (weight * self.h);
+                *position += pushed * (weight * (1.0 - node) * self.h * self.h);
             }
         }
     }
 
     /// The state at the end.
-    fn end(&self, state: &mut State, stages: &[Stage; 3], modes: &[Memory], spun: &Spun) {
-        let [a, b, c] = WEIGHTS.map(|weight| weight * self.h);
+    fn end(
+        &self,
+        state: &mut State,
+        (stages, facing): (&[Stage; 3], &Facing),
+        modes: &[Memory],
+        spun: &Spun,
+    ) {
+        self.move_on(state, stages, facing);
+        let [a, b, c] = weights(&WEIGHTS, self.h);
         let push = stages[0].push * a + stages[1].push * b + stages[2].push * c;
-        let turn = stages[0].turn * a + stages[1].turn * b + stages[2].turn * c;
+        let turn = facing.turns[0] * a + facing.turns[1] * b + facing.turns[2] * c;
         let rigid = stages[0].rigid * a + stages[1].rigid * b + stages[2].rigid * c;
-        let State { attitude, momentum, turned, moved, lost, modes: states, spins } = state;
-        self.move_on(moved, stages);
+        let State { attitude, momentum, turned, lost, modes: states, spins, .. } = state;
         if self.borne.is_some() {
             for (spin, rates) in spins.iter_mut().zip(&spun.rates) {
                 let change = rates[0] * a + rates[1] * b + rates[2] * c;
@@ -332,6 +378,13 @@ impl Step<'_> {
     }
 }
 
+/// The weights of the stages in a step of `h` seconds.
+#[inline]
+pub(super) fn weights(of: &[f64; 3], h: f64) -> [f64; 3] {
+    [of[0] * h, of[1] * h, of[2] * h]
+}
+
+#[inline]
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -32,8 +32,11 @@ from flexsc._damping import identify, observer_margin, observer_region, persiste
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
-from flexsc._scenario import Log, Result, Samples, Scenario
-from flexsc._simulator import Quantities, Simulator, Simulators, Snapshot
+from flexsc._quantities import Quantities
+from flexsc._result import Log, Result, Samples
+from flexsc._scenario import Scenario
+from flexsc._simulator import Simulator, Snapshot
+from flexsc._simulators import Simulators
 from flexsc._topic import Topic
 from flexsc._units import Metrics
 from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor
@@ -44,10 +47,12 @@ if TYPE_CHECKING:
     from flexsc.structure import (
         StateSpace,
         Structure,
+        appendage_from_matrices,
         appendage_from_nastran,
         from_csv,
         from_nastran,
         from_state_space,
+        read_matrices,
         write_scenario,
     )
 
@@ -81,6 +86,7 @@ __all__ = [
     "Table",
     "Topic",
     "__version__",
+    "appendage_from_matrices",
     "appendage_from_nastran",
     "campaign",
     "examples",
@@ -97,6 +103,7 @@ __all__ = [
     "plot",
     "read_campaign",
     "read_log",
+    "read_matrices",
     "relay_damping",
     "rigid_cycles",
     "robust_gains",
@@ -116,10 +123,12 @@ _LATER = {
     "Signal": "_linear",
     "StateSpace": "structure",
     "Structure": "structure",
+    "appendage_from_matrices": "structure",
     "appendage_from_nastran": "structure",
     "from_csv": "structure",
     "from_nastran": "structure",
     "from_state_space": "structure",
+    "read_matrices": "structure",
     "write_scenario": "structure",
 }
 

@@ -175,14 +175,16 @@ def campaign(
             supports, such as `s3://bucket/study`, is accepted. The same call continues a stopped campaign.
         executor: The executor of the runs, such as a `concurrent.futures.ProcessPoolExecutor`, or Dask's
             through `flexsc.dask.campaign`. Workers write their rows to `out`, which all of them must be able
-            to reach; without `out` the rows return through this process.
+            to reach; without `out` the rows return through this process. Parts written in Python travel with
+            the tasks, if they can be pickled.
         task_s: Approximate duration of a task of the executor (s).
         force: Replace another campaign in `out`.
         progress: Called after each task with the number of finished runs and the total number.
 
     Raises:
         ScenarioError: The scenario does not allow this variation. A failed run is a row with an `error`.
-        ValueError: There are more than 100 000 000 runs, `yes` is needed, or `out` contains another campaign.
+        ValueError: There are more than 100 000 000 runs, `yes` is needed, `out` contains another campaign, or
+            parts written in Python cannot be pickled.
         OSError: `out` cannot be written, or another process is using it.
 
     >>> import flexsc
@@ -210,6 +212,11 @@ def campaign(
     work = engine.Work.of(scenario._native, span, [], sample, replicas, names, part_s, yes)
     if out is None and executor is None and progress is None:
         return _made(work, jobs)
+    if executor is not None and out is None and scenario.parts:
+        from flexsc import _brought
+
+        study = (span, sample, replicas, names)
+        return _brought.run(scenario, study, work, executor, _threads(jobs), task_s, progress)
     from flexsc._executor import run
 
     return run(work, out, executor, _threads(jobs), task_s, force, progress)

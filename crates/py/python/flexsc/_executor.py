@@ -151,7 +151,7 @@ def run(
                 _write(store.name, work.hash, [part], jobs)
                 done([part])
         elif kept is None:
-            _hand_out(
+            hand_out(
                 executor,
                 missing,
                 task_s,
@@ -164,7 +164,7 @@ def run(
                 for name, data in told:
                     (kept.path / _RUNS / name).write_bytes(data)
 
-            _hand_out(
+            hand_out(
                 executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs or 1), keep
             )
     finally:
@@ -174,7 +174,7 @@ def run(
     return of_directory(kept.path, kept)
 
 
-def _hand_out(
+def hand_out(
     executor: Executor,
     missing: list[Span],
     task_s: float,

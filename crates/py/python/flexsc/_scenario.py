@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Iterator, Mapping
-from functools import cached_property
+from collections.abc import Mapping
+from math import inf
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from flexsc import _native as engine
 from flexsc._plan import Plan
-from flexsc._topic import Topic
-from flexsc._units import Metrics
+from flexsc._result import Detail, Result
 from flexsc._values import arrays, document, plain, toml
 
 if TYPE_CHECKING:
@@ -21,7 +20,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Unpack
 
-    from flexsc._linear import Break, Linear
+    from flexsc._linear import Linear
+    from flexsc._opened import Break
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor
     from flexsc.scenario import Keys
 
@@ -256,8 +256,9 @@ class Scenario:
             at: The time (s) whose natural frequencies are used if they drift.
             period: Sampling period (s), over which inputs are held; None for continuous time.
             delay: The delay of the inputs (s); None for the delay of the scenario's wheel.
-            loop: Return the open loop of a linear law (`pd`, `attitude`, `state_space`), sampled with its
-                period and opened at the `command` of the law, at the `torque` of the actuator, or at the
+            loop: Return the open loop of a linear law (`pd`, `attitude` with its integral and filters,
+                `state_space`), with a Kalman filter if the law reads one, sampled with the law's period and
+                opened at the `command` of the law, at the `torque` of the actuator, or at the
                 `measurement` of angles and rates. The signs are those of negative feedback: `closed()`
                 closes the loop again.
 
@@ -268,7 +269,7 @@ class Scenario:
             ScenarioError: The body is not a linear system, because it has driven appendages.
             ValueError: The loop is not linear, or a time is not accepted.
         """
-        from flexsc._linear import linearise
+        from flexsc._opened import linearise
 
         return linearise(self, at, period, delay, loop)
 
@@ -306,7 +307,7 @@ class Scenario:
             ScenarioError: The matrices are not accepted, or do not go with the other parts.
             ValueError: The period is missing, or there is more than one output.
         """
-        from flexsc._linear import law_of
+        from flexsc._controllers import law_of
 
         return self.with_("law", law_of(controller, period, method, command, limit, track))
 
@@ -331,7 +332,7 @@ class Scenario:
     def simulate(
         self,
         run: int = 0,
-        log: Literal["events", "full", "scene", "none"] = "events",
+        log: Detail = "events",
         yes: bool = False,
     ) -> Result:
         """Simulate the scenario. Other Python threads continue meanwhile.
@@ -347,11 +348,17 @@ class Scenario:
             SimulationError: The state is no longer finite, or the law switches without end.
             ValueError: The estimate exceeds these limits, and `yes` is not given.
         """
-        run, began = run_number(run), time.perf_counter()
-        metrics, topics = engine.simulate(self._native, run, log, yes)
+        return self._simulate(run_number(run), log, yes)
+
+    def _simulate(
+        self, run: int, log: Detail, yes: bool, stepped: engine.Commands | None = None, until: float = inf
+    ) -> Result:
+        """Simulate a run, or repeat one that was stepped."""
+        began = time.perf_counter()
+        metrics, topics = engine.simulate(self._native, run, log, yes, stepped)
         took = time.perf_counter() - began
         final = {name: arrays(columns) for name, columns in topics.items()}
-        return Result(self, run, log, metrics, final, took)
+        return Result(self, run, log, metrics, final, took, stepped, until)
 
     def __eq__(self, other: object) -> bool:
         return self._native == other._native if isinstance(other, Scenario) else NotImplemented
@@ -383,264 +390,6 @@ class Scenario:
 
 def _beside(text: str, name: str, parts: list[tuple[str, object]]) -> Scenario:
     return Scenario._of(engine.beside_parts(text, name, parts))
-
-
-class _Topics:
-    """Topics by name, each as a dictionary of columns."""
-
-    @property
-    def topics(self) -> list[str]:
-        """The names of the topics, without the slash that they have in a log file."""
-        raise NotImplementedError
-
-    def _topic(self, name: str) -> Topic:
-        raise NotImplementedError
-
-    def __contains__(self, topic: object) -> bool:
-        return isinstance(topic, str) and topic.removeprefix("/") in self.topics
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.topics)
-
-    def __getitem__(self, topic: str) -> Topic:
-        """Return the columns of a topic, such as `command`; other libraries can read them through Arrow.
-
-        Every column has shape (rows,): numbers as float64, counts as int64, labels such as `state` as str.
-        Values with several parts per row, such as modes, are columns of shape (rows, modes), such as
-        `modes.displacement_rad`; if the rows have different lengths, they are arrays of arrays.
-
-        Raises:
-            KeyError: There is no such topic.
-        """
-        if topic not in self:
-            raise KeyError(f"no topic {topic!r}; there are {', '.join(self.topics) or 'none'}")
-        return self._topic(topic.removeprefix("/"))
-
-
-class Samples(_Topics):
-    """The motion of a run at chosen times: topics as columns, with one row per time.
-
-    >>> import flexsc
-    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
-    >>> run.sample([50.0, 12.5])["attitude"]["time_s"].tolist()
-    [50.0, 12.5]
-    """
-
-    times: npt.NDArray[np.float64]
-    """The times (s), of shape (rows,)."""
-
-    def __init__(self, times: npt.NDArray[np.float64], topics: dict[str, Topic]) -> None:
-        self.times = times
-        self._topics = topics
-
-    @property
-    def topics(self) -> list[str]:
-        """The names of the topics."""
-        return list(self._topics)
-
-    def _topic(self, name: str) -> Topic:
-        return self._topics[name]
-
-    def __len__(self) -> int:
-        return len(self.times)
-
-    def __repr__(self) -> str:
-        return f"<flexsc.Samples at {len(self)} times: {', '.join(self.topics)}>"
-
-
-class Result(_Topics):
-    """The result of a run: its metrics, and its topics as columns.
-
-    >>> import flexsc
-    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate(log="full")
-    >>> run["attitude"]["angle_rad"].shape == run["attitude"]["time_s"].shape
-    True
-    >>> round(run.at(12.5)["attitude"]["angle_rad"], 9)
-    9.298e-06
-    """
-
-    scenario: Scenario
-    """The simulated scenario."""
-    run: int
-    """The number of the run."""
-    metrics: Metrics
-    """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is no value.
-    `metrics.unit(name)` returns their units."""
-
-    def __init__(
-        self,
-        scenario: Scenario,
-        run: int,
-        log: str,
-        metrics: dict[str, Any],
-        topics: dict[str, dict[str, npt.NDArray[Any]]],
-        took: float = 0.0,
-    ) -> None:
-        self.scenario = scenario
-        self.run = run
-        self.metrics = Metrics(metrics, scenario)
-        self._log = log
-        self._topics = self._named(topics)
-        self._took = took
-        self._drawn: engine.Log | None = None
-
-    def _named(self, topics: dict[str, dict[str, npt.NDArray[Any]]]) -> dict[str, Topic]:
-        about = {"scenario": self.scenario.name, "seed": str(self.scenario.seed), "run": str(self.run)}
-        return {name: Topic(name, columns, self.scenario, about) for name, columns in topics.items()}
-
-    @property
-    def topics(self) -> list[str]:
-        """The names of the topics."""
-        return list(self._topics)
-
-    def _topic(self, name: str) -> Topic:
-        return self._topics[name]
-
-    def sample(self, times: npt.ArrayLike) -> Samples:
-        """Return the exact motion at chosen times (s), whatever the detail of the run's log.
-
-        The run is simulated again, up to the last time, and its exact motion is read at each time: nothing is
-        interpolated. At the time of a row of a full log, such as a switching, the values are bit-identical to
-        those of the row.
-
-        Args:
-            times: Of shape (times,), in any order, from 0 to the duration.
-
-        Returns:
-            The topics of the motion, such as `attitude` and `law` for a single-axis body and `pointing` for a
-            three-axis one, each with one row per time, in the order of `times`.
-
-        Raises:
-            ValueError: A time is not within the run.
-        """
-        import numpy as np
-
-        asked = np.asarray(times, dtype=np.float64)
-        if asked.ndim != 1:
-            raise ValueError(f"times must be of shape (times,), got {asked.shape}")
-        duration = self.scenario.duration
-        within = (asked >= 0.0) & (asked <= duration)
-        if not within.all():
-            wrong = asked[~within][0].item()
-            raise ValueError(f"times must be from 0 to the duration, {duration:g} s, got {wrong:g}")
-        order = np.argsort(asked, kind="stable")
-        back = np.empty_like(order)
-        back[order] = np.arange(len(order))
-        topics = engine.sample(self.scenario._native, self.run, asked[order].tolist())
-        seen = {
-            name: {column: values[back] for column, values in arrays(columns).items()}
-            for name, columns in topics.items()
-        }
-        for columns in seen.values():
-            columns["time_s"] = asked.copy()
-        return Samples(asked.copy(), self._named(seen))
-
-    def at(self, time: float) -> dict[str, dict[str, Any]]:
-        """Return the exact motion at a time (s): the row of each topic of `sample`, as plain numbers.
-
-        Values with several parts, such as modes, are arrays of shape (parts,). Use `sample` for many times.
-
-        Raises:
-            ValueError: The time is not within the run.
-        """
-        seen = self.sample([time])
-
-        def plain_cell(values: npt.NDArray[Any]) -> Any:
-            return values[0].item() if values.ndim == 1 and values.dtype != object else values[0]
-
-        return {name: {c: plain_cell(v) for c, v in seen[name].items()} for name in seen}
-
-    def _native_log(self) -> engine.Log:
-        """The log of the run with its events, the source of figures."""
-        if self._drawn is None:
-            self._drawn = engine.log_of(self.scenario._native, self.run)
-        return self._drawn
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_drawn": None}
-
-    def to_mcap(
-        self, path: str | os.PathLike[str], log: Literal["events", "full", "scene"] | None = None
-    ) -> int:
-        """Write the run's log, with the same bytes as the command writes, and return the number of bytes.
-
-        The run is simulated again. `log` is the detail of the log; if omitted, that of the result, and at
-        least `events`.
-
-        Raises:
-            LogError: The file cannot be written.
-        """
-        detail = log or ("events" if self._log == "none" else self._log)
-        return engine.to_mcap(self.scenario._native, self.run, detail, path)
-
-    def __repr__(self) -> str:
-        topics = ", ".join(self.topics) or "metrics only"
-        return f"<flexsc.Result of {self.scenario.name}, run {self.run}: {topics}>"
-
-    def _repr_html_(self) -> str:
-        from flexsc import _html
-
-        about = f"run {self.run}, {self.scenario.duration:g} s, seed {self.scenario.seed}"
-        rows = [(name, value, self.metrics.unit(name)) for name, value in self.metrics.items()]
-        metrics = _html.folded(f"{len(rows)} metrics", _html.table(("metric", "value", "unit"), rows))
-        topics = [(name, self[name].rows, ", ".join(self[name])) for name in self]
-        held = _html.folded(f"{len(topics)} topics", _html.table(("topic", "rows", "columns"), topics))
-        figure = _html.of_log(self._native_log()) if self._took < _html.SOON_S else ""
-        return _html.heading(self.scenario.name, about) + figure + metrics + held
-
-
-class Log(_Topics):
-    """A log file in memory.
-
-    >>> import flexsc, pathlib, tempfile
-    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
-    >>> with tempfile.TemporaryDirectory() as out:
-    ...     size = run.to_mcap(pathlib.Path(out) / "run.mcap")
-    ...     log = flexsc.read_log(pathlib.Path(out) / "run.mcap")
-    >>> log.metadata["end"], log["command"].rows == run["command"].rows
-    ('complete', True)
-    """
-
-    def __init__(self, native: engine.Log) -> None:
-        self._native = native
-        self._names = {name.removeprefix("/"): name for name in native.topics}
-        self._read: dict[str, Topic] = {}
-
-    @property
-    def topics(self) -> list[str]:
-        """The names of the topics, without their slash."""
-        return list(self._names)
-
-    @property
-    def metadata(self) -> dict[str, str]:
-        """The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ..."""
-        return self._native.metadata
-
-    @cached_property
-    def scenario(self) -> Scenario | None:
-        """The simulated scenario, if the log contains it.
-
-        Raises:
-            ScenarioError: This version does not accept it.
-        """
-        text = self._native.scenario
-        return None if text is None else Scenario.parse(text, self.metadata.get("scenario", "scenario"))
-
-    def _topic(self, name: str) -> Topic:
-        if name not in self._read:
-            columns = arrays(self._native.columns(self._names[name]))
-            about = {key: text for key in ("scenario", "seed", "run") if (text := self.metadata.get(key))}
-            self._read[name] = Topic(name, columns, self._known(), about)
-        return self._read[name]
-
-    def _known(self) -> Scenario | None:
-        try:
-            return self.scenario
-        except engine.ScenarioError:
-            return None
-
-    def __repr__(self) -> str:
-        return f"<flexsc.Log: {', '.join(self.topics)}>"
 
 
 def run_number(number: int) -> int:

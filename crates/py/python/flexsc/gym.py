@@ -24,8 +24,9 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from flexsc._quantities import Quantities
 from flexsc._scenario import Scenario
-from flexsc._simulator import Quantities, Simulators
+from flexsc._simulators import Simulators
 
 __all__ = ["Beyond", "Quadratic", "SpacecraftEnv", "SpacecraftVectorEnv"]
 

@@ -25,7 +25,7 @@ import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 from flexsc._native import (
     Authority,
@@ -214,14 +214,14 @@ class Estimator(_Part):
         """
         return None
 
-    def attitude(
-        self, now: Instant
-    ) -> tuple[Sequence[float], Sequence[float], Sequence[Sequence[float]]] | None:
-        """Return the attitude estimate after a sample, for the log `attitude_filter` with errors and NEES.
+    def attitude(self, now: Instant) -> tuple[Any, ...] | None:
+        """Return the attitude estimate after a sample, for the log `attitude_filter` and the metrics.
 
         Returns:
             The attitude now (w, x, y, z), the bias of the gyro (rad/s) of shape (3,), and the covariance of
-            their errors, of shape (6, 6), in rad² and rad²/s²; arrays are accepted. None for an estimator
+            their errors, of shape (6, 6), in rad² and rad²/s²; arrays are accepted. After a sample that
+            measured the attitude a fourth value may follow, for the NIS: the innovation, 3 angles (rad) or 2
+            numbers of a direction, and its covariance; None after other samples. None for an estimator
             without them.
         """
         return None
@@ -291,11 +291,11 @@ class Adaptation(_Part):
     """
 
     tunes: str
-    """The parameter of the law: a key of the law's table, or for your own law one of its `tunable`."""
+    """The parameter, by its key within the law's table; of a law of your own, one of its `tunable`."""
     objective: str = "envelope_mean"
     """What is measured over each window, as `objective` of `[adaptation.random_search]`."""
     window: float | None = None
-    """Length of the windows (s); None for `envelope_mean`, which uses the windows of `[estimator.envelope]`."""
+    """Length of the windows (s); None for `envelope_mean`, which has those of the `[estimator.envelope]`."""
 
     def start(self, value: float, draws: Draws) -> None:
         """Start a run with the initial value of the parameter."""

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flexsc import _native as engine
 from flexsc._campaign import Table
-from flexsc._scenario import Log, Result
+from flexsc._result import Log, Result
 
 if find_spec("matplotlib") is None:
     raise ImportError("flexsc.plot needs Matplotlib: pip install 'flexsc[plot]'")
@@ -267,7 +267,7 @@ def _area(ax: Axes, layer: dict[str, Any], order: int) -> Any:
     points = layer["points"].T
     gaps = np.flatnonzero(~np.isfinite(points).all(axis=1))
     parts = [part[np.isfinite(part).all(axis=1)] for part in np.split(points, gaps)]
-    look = {"facecolor": layer["colour"], "alpha": layer["size"], "linewidth": 0.0}
+    look: dict[str, Any] = {"facecolor": layer["colour"], "alpha": layer["size"], "linewidth": 0.0}
     ax.add_collection(PolyCollection([p for p in parts if len(p) > 2], zorder=order, **look), autolim=False)
     return Patch(**look)
 

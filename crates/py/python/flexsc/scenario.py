@@ -1642,7 +1642,7 @@ class Ramp(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class RandomSearch(Part):
-    """Random search with learning, based on the window means of the envelope."""
+    """Random search with learning, based on an objective over consecutive windows."""
 
     _tag: ClassVar[str | None] = "random_search"
 
@@ -1651,13 +1651,30 @@ class RandomSearch(Part):
     bounds: Vector
     """Smallest and largest gain."""
     tunes: str | None = None
-    """Tuned parameter of the law: `k_t` of a relay, `k_p` or `k_d` of a PD law."""
+    """Tuned parameter of the law, by its key within the law's table: `k_t` of a relay, `k_p` of a PD law,
+    `bandwidth` of an attitude law, `yaw.pd.k_d` of a law `per_axis`.
+    """
+    objective: Literal[
+        "envelope_mean",
+        "pointing_error_mean",
+        "pointing_error_rms",
+        "pointing_error_peak",
+        "rate_error_rms",
+        "elastic_rms",
+        "torque_mean",
+        "switchings",
+        "firings",
+        "wheel_power_mean",
+    ] | None = None
+    """What is measured over each window and made smaller."""
+    window: float | None = None
+    """Length of the windows (s); for `envelope_mean`, they are those of the `[estimator.envelope]`."""
     tolerance: float | None = None
-    """A relative change of the mean below this counts as settled, `delta_0`. Default: 0.05."""
+    """A relative change of the objective below this counts as settled, `delta_0`. Default: 0.05."""
     settled: int | None = None
     """Consecutive settled windows after which the gain is frozen (the paper's six). Default: 6."""
     memory: int | None = None
-    """Consecutive falls of the mean after which one rise is ignored (the paper's four); 0 for never.
+    """Consecutive falls of the objective after which one rise is ignored (the paper's four); 0 for never.
     Default: 4.
     """
     earliest_freeze: float | None = None
@@ -2111,6 +2128,8 @@ class StateSpace(Part):
     """Whether the matrices are in discrete or continuous time. Default: "samples"."""
     command: Literal["torque", "acceleration"] | None = None
     """Quantity that it commands. Default: "torque"."""
+    gain: float | None = None
+    """Factor on the output."""
     limit: float | None = None
     """Largest command, in its unit; no limit by default."""
     track: bool | None = None

@@ -4,33 +4,75 @@ use flexsc_core::attitude::Vector;
 use flexsc_core::estimator::attitude::Filter;
 use flexsc_core::record::{AttitudeEstimate, AxisEstimate};
 use flexsc_core::sensor::Orientation;
-use nalgebra::{Matrix6, Quaternion};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Quaternion};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::object::{exactly, numbers};
 
-/// The filter that a part tells of: attitude, bias and covariance; nothing before it knows any.
-pub fn told(of: &Bound<'_, PyAny>) -> PyResult<Option<Filter>> {
+/// What a part tells: its filter, and what its last sample told that filter, if it measured the attitude.
+type Told = (Filter, Option<Innovation>);
+
+/// What a sample told.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Innovation {
+    /// Measured less expected; 0 where there is no third number.
+    innovation: [f64; 3],
+    /// Its normalised square, of two numbers times 3/2.
+    nis: f64,
+    /// How many numbers it has.
+    numbers: u64,
+}
+
+/// An innovation and its covariance: three angles, or the two numbers of a direction.
+fn innovation(of: &Bound<'_, PyAny>) -> PyResult<Innovation> {
+    let (values, covariance): (Bound<'_, PyAny>, Bound<'_, PyAny>) = of.extract()?;
+    let values = numbers(&values)?;
+    let rows = covariance.try_iter()?.map(|row| numbers(&row?)).collect::<PyResult<Vec<_>>>()?;
+    let count = values.len();
+    if !(2..=3).contains(&count) || rows.len() != count || rows.iter().any(|row| row.len() != count) {
+        let why = "an innovation must have 2 or 3 numbers, and a covariance of as many rows and columns";
+        return Err(PyValueError::new_err(why));
+    }
+    let off = DVector::from_column_slice(&values);
+    let factor = Cholesky::new(DMatrix::from_fn(count, count, |row, column| rows[row][column]));
+    let nis = factor.map_or(f64::NAN, |factor| 3.0 / count as f64 * off.dot(&factor.solve(&off)));
+    let innovation = [0, 1, 2].map(|axis| values.get(axis).copied().unwrap_or(0.0));
+    Ok(Innovation { innovation, nis, numbers: count as u64 })
+}
+
+/// The filter that a part tells of: attitude, bias and covariance, and the innovation of a sample that measured the attitude;
+/// nothing before it knows any.
+pub fn told(of: &Bound<'_, PyAny>) -> PyResult<Option<Told>> {
     if of.is_none() {
         return Ok(None);
     }
-    let (q, bias, covariance): (Bound<'_, PyAny>, Bound<'_, PyAny>, Bound<'_, PyAny>) = of.extract()?;
-    let [w, x, y, z] = exactly::<4>(&q, "an attitude")?;
+    let of = of.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+    let (q, bias, covariance, learnt) = match &of[..] {
+        [q, bias, covariance] => (q, bias, covariance, None),
+        [q, bias, covariance, learnt] => (q, bias, covariance, Some(learnt)),
+        _ => {
+            let why = "attitude returns an attitude, a bias and a covariance, and an innovation with its covariance";
+            return Err(PyValueError::new_err(why));
+        }
+    };
+    let [w, x, y, z] = exactly::<4>(q, "an attitude")?;
     let q = Quaternion::new(w, x, y, z);
-    let bias = Vector::from(exactly::<3>(&bias, "a bias")?);
+    let bias = Vector::from(exactly::<3>(bias, "a bias")?);
     let rows = covariance.try_iter()?.map(|row| numbers(&row?)).collect::<PyResult<Vec<_>>>()?;
     if rows.len() != 6 || rows.iter().any(|row| row.len() != 6) {
         return Err(PyValueError::new_err("the covariance of attitude and bias must be of shape (6, 6)"));
     }
     let covariance = Matrix6::from_fn(|row, column| rows[row][column]);
-    Ok(Some(Filter { attitude: q / q.norm(), bias, covariance, swinging: None }))
+    let learnt = learnt.filter(|learnt| !learnt.is_none()).map(innovation).transpose()?;
+    Ok(Some((Filter { attitude: q / q.norm(), bias, covariance, swinging: None }, learnt)))
 }
 
 /// Its row of the log, where these are the true orientation and the true bias of the gyro (rad/s).
-pub fn row(filter: &Filter, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+pub fn row((filter, learnt): &Told, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
     let Orientation::Attitude(truth) = truth else { return None };
     let bias = Vector::from(bias);
+    let told = learnt.unwrap_or_default();
     let [angle_sd, bias_sd] = filter.deviations();
     let [angle_error, bias_error] = filter.error(truth, &bias);
     let axis = |axis: usize| AxisEstimate {
@@ -39,7 +81,7 @@ pub fn row(filter: &Filter, truth: &Orientation, bias: [f64; 3]) -> Option<Attit
         bias_rad_s: filter.bias[axis],
         bias_error_rad_s: -bias_error[axis],
         bias_sd_rad_s: bias_sd[axis],
-        innovation_rad: 0.0,
+        innovation_rad: told.innovation[axis],
     };
     Some(AttitudeEstimate {
         q_w: filter.attitude.w,
@@ -48,8 +90,8 @@ pub fn row(filter: &Filter, truth: &Orientation, bias: [f64; 3]) -> Option<Attit
         q_z: filter.attitude.k,
         axes: [0, 1, 2].map(axis).into(),
         nees: filter.nees(truth, &bias),
-        nis: 0.0,
-        numbers: 0,
-        measured: false.into(),
+        nis: told.nis,
+        numbers: told.numbers,
+        measured: learnt.is_some().into(),
     })
 }

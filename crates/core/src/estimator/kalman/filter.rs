@@ -121,6 +121,16 @@ impl Filter {
         filter
     }
 
+    /// Its numbers.
+    pub(super) fn tuning(&self) -> &Tuning {
+        &self.tuning
+    }
+
+    /// What noise adds to the covariance in a period.
+    pub(super) fn noise(&self) -> &DMatrix<f64> {
+        &self.noise
+    }
+
     /// Mean of the state.
     pub fn mean(&self) -> &DVector<f64> {
         &self.mean

@@ -7,6 +7,7 @@ mod filter;
 mod lock;
 mod model;
 mod sigma;
+mod steady;
 #[cfg(test)]
 mod tests;
 
@@ -21,6 +22,7 @@ use crate::random::Stream;
 
 pub use filter::{Filter, Filters, Innovation, Prediction, Tuning};
 pub use model::Model;
+pub use steady::Steady;
 
 /// A linear Kalman filter: natural frequencies are known and constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

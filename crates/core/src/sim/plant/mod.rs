@@ -37,7 +37,8 @@ impl Plant {
         match scenario.body.spatial() {
             None => Self::Planar(Box::new(PlanarPlant::new(scenario))),
             Some(body) => {
-                Self::Spatial(Box::new(SpatialPlant::new(body, scenario.body.flexible(), &scenario.study)))
+                let plant = SpatialPlant::new(body, scenario.body.flexible(), &scenario.study);
+                Self::Spatial(Box::new(plant.drifting(body, scenario.drift.as_ref())))
             }
         }
     }

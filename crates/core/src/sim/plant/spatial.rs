@@ -5,11 +5,11 @@ use nalgebra::Quaternion;
 use super::two_way::{Mount, TwoWay};
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
-use crate::body::spatial::{Elastic, Periodic, Rigid, SpatialState};
+use crate::body::spatial::{DriftingModes, Elastic, Periodic, Rigid, SpatialState};
 use crate::environment::{Around, Seen};
 use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
 use crate::motion::{Phase, State};
-use crate::record::{Energy, Pointing, Position, Record, RecordError, Vibration, Vibrations};
+use crate::record::{Energy, Pointing, Position, Record, RecordError};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
@@ -31,6 +31,8 @@ pub struct SpatialPlant {
     around: Option<Around>,
     disturbance: Option<Periodic>,
     elastic: Elastic,
+    /// The modes, where their frequencies drift.
+    drifting: Option<DriftingModes>,
     /// Rotations of the modes at the first sensor, and where torques act.
     sensed: Vec<Vector>,
     hub: Vec<Vector>,
@@ -75,8 +77,14 @@ impl SpatialPlant {
         let around = study.around.clone();
         let two_way = flexible.map(|of| {
             let shapes = [&sensed[..], &hub];
-            let two_way =
-                TwoWay::new(body, of, around.clone(), study.moving.clone(), shapes, &study.bearings);
+            let two_way = TwoWay::new(
+                body,
+                of,
+                around.clone(),
+                study.moving.clone(),
+                shapes,
+                (&study.bearings, &study.common),
+            );
             Box::new(two_way.driven(study.drives.as_ref()))
         });
         let most = sensed.iter().map(Vector::norm).fold(0.0, f64::max);
@@ -85,6 +93,7 @@ impl SpatialPlant {
             around,
             disturbance: body.disturbance.clone(),
             elastic: Elastic::new(body, study.tick.seconds()),
+            drifting: None,
             visible: sensed.iter().map(|rotation| rotation.norm() >= VISIBLE * most).collect(),
             sensed,
             hub,
@@ -118,6 +127,7 @@ impl SpatialPlant {
             self.go(self.departed + longest, record)?;
             self.origin.clone_from(&self.state);
             self.departed = self.seen;
+            self.drift_on();
         }
         self.go(now, record)
     }
@@ -143,8 +153,12 @@ impl SpatialPlant {
                 turn.clone_from(&self.origin.turn);
                 let around = self.around.as_ref().map(|around| around as &dyn Surroundings);
                 self.rigid.advance(turn, &self.torque, rotors, around, (began, h), || record.poll())?;
-                self.state.modes.clone_from(&self.origin.modes);
-                self.elastic.advance(&mut self.state.modes, &self.forces, h);
+                if let Some(drifting) = &mut self.drifting {
+                    drifting.go(h, &mut self.state.modes);
+                } else {
+                    self.state.modes.clone_from(&self.origin.modes);
+                    self.elastic.advance(&mut self.state.modes, &self.forces, h);
+                }
             }
             self.seen = met.unwrap_or(now);
             self.truth = None;
@@ -218,7 +232,6 @@ impl SpatialPlant {
 
     /// Begins a new motion at the instant seen last, under what acts from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
-        self.origin.clone_from(&self.state);
         self.departed = self.seen;
         if let Some(around) = &mut self.around {
             around.hold(wrench.moment);
@@ -228,6 +241,7 @@ impl SpatialPlant {
             two_way.show(&self.rigid, &mut self.state);
             return;
         }
+        self.origin.clone_from(&self.state);
         let sum = |of: fn(&Rotor) -> f64| -> Vector {
             wrench.rotors.iter().fold(Vector::zeros(), |sum, rotor| sum + rotor.axis * of(rotor))
         };
@@ -242,6 +256,7 @@ impl SpatialPlant {
             self.forces.resize(self.hub.len(), 0.0);
             self.forces.iter_mut().zip(&self.hub).for_each(|(force, shape)| *force += shape.dot(&hub));
         }
+        self.drift_on();
     }
 
     /// Momentum of the rotors of a body whose modes do not act back (N m s), and its rate (N m).
@@ -334,7 +349,10 @@ impl SpatialPlant {
     fn energies(&self) -> Vec<f64> {
         match self.two_way.as_deref() {
             Some(two_way) if two_way.modes().is_some() => two_way.modal_energies().collect(),
-            _ => self.elastic.energies(&self.state.modes).collect(),
+            _ => match &self.drifting {
+                Some(drifting) => drifting.energies(self.seen.seconds(), &self.state.modes),
+                None => self.elastic.energies(&self.state.modes).collect(),
+            },
         }
     }
 
@@ -354,18 +372,6 @@ impl SpatialPlant {
     pub fn position(&self) -> Option<Position> {
         let [at, speed] = self.two_way.as_deref()?.place()?;
         Some(Position { x_m: at.x, y_m: at.y, z_m: at.z, x_m_s: speed.x, y_m_s: speed.y, z_m_s: speed.z })
-    }
-
-    /// The modes, as logged.
-    pub fn vibrations(&self) -> Vibrations {
-        let modes = &self.state.modes;
-        let rates = self.elastic.rates(modes).zip(self.energies());
-        let of = |(phase, (rate, energy_j)): (&Phase, (f64, f64))| Vibration {
-            displacement: phase.displacement,
-            rate,
-            energy_j,
-        };
-        Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
     }
 
     /// The attitude, as logged, with the angles by which it is beyond its target (rad).

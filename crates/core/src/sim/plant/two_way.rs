@@ -11,7 +11,7 @@ use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
 use crate::environment::{Around, Seen};
 use crate::motion::Phase;
 use crate::motion::turning::{
-    Acting, Angles, Bearing, Driving, Flexible, Heated, Slip, Surroundings, Turned, Turning,
+    Acting, Angles, Bearing, Common, Driving, Flexible, Heated, Slip, Surroundings, Turned, Turning,
 };
 use crate::scenario::{Courses, Drives};
 use crate::sensor::{Orientation, Truth};
@@ -114,14 +114,14 @@ impl Surroundings for Outside {
 
 impl TwoWay {
     /// The body at the start, which nothing pushes but what is around it, with the rotations of each mode at the sensor and
-    /// where torques act, and the bearings of its rotors, if they have any.
+    /// where torques act, the bearings of its rotors, if they have any, and what it has in common with other runs.
     pub fn new(
         body: &Spatial,
         flexible: &Flexible,
         around: Option<Around>,
         moving: Option<Moving>,
         [sensed, acts]: [&[Vector]; 2],
-        bearings: &[Bearing],
+        (bearings, common): (&[Bearing], &Common),
     ) -> Self {
         let frequencies: Vec<f64> = flexible.modes.iter().map(|mode| mode.frequency).collect();
         let start = Elastic::start(body);
@@ -129,15 +129,16 @@ impl TwoWay {
         let modes: Vec<_> = modes.map(|(phase, w)| [phase.displacement, w * phase.quadrature]).collect();
         let hub: Vec<Vector> = flexible.modes.iter().map(|mode| mode.rotation).collect();
         let beyond = |at: &[Vector]| at.iter().zip(&hub).map(|(at, hub)| at - hub).collect();
-        let turning = Turning::new(flexible, body.attitude.get(), vector(&body.rate), &modes);
+        let start = (body.attitude.get(), vector(&body.rate));
+        let mut turning = Turning::sharing(common, flexible, start, &modes);
         let placed = |moving: Moving| {
             let [began, _] = moving.place(turning.seen());
             (moving, began)
         };
-        let mut turning = Turning::new(flexible, body.attitude.get(), vector(&body.rate), &modes);
+        let moving = moving.map(placed);
         turning.bear(bearings.to_vec());
         Self {
-            moving: moving.map(placed),
+            moving,
             turning,
             sensed: beyond(sensed),
             acts: beyond(acts),

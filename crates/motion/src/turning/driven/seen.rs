@@ -1,5 +1,7 @@
 //! A driven body as it looks at an instant, and its state in the modes of another angle.
 
+use std::sync::Arc;
+
 use nalgebra::Quaternion;
 
 use super::{Driving, Posed};
@@ -133,8 +135,9 @@ impl Turning {
     fn remodel(&mut self) {
         let Some(driving) = &self.driving else { return };
         let model = Model::new(&driving.flexible());
-        self.pace = Pace::new(&model);
-        self.model = model;
+        self.pace = Arc::new(Pace::new(&model));
+        self.model = Arc::new(model);
+        self.known = None;
         self.regular.clear();
         self.beside.clear();
         self.next_beside = 0;

@@ -1,10 +1,10 @@
 //! The level of the next step, and the responses of the modes over it.
 
-use super::{BESIDE, Regular, Turning};
+use super::{BESIDE, Turning};
 use crate::attitude::Vector;
 use crate::turning::Surroundings;
-use crate::turning::pace::Pose;
-use crate::turning::response::Response;
+use crate::turning::common::Regular;
+use crate::turning::pace::{Amplitude, Pose};
 
 impl Turning {
     /// The level of the next step.
@@ -26,18 +26,23 @@ impl Turning {
         // Gt but for how much the body is bent now.
         let turning = grid.momentum - rotors;
         let size = grid.momentum.norm();
-        let net = acting.torque - change;
+        let rigid = model.inverse * turning;
+        // What holds the displacements that each mode swings about, and loses nothing of.
+        let pushed = acting.torque - change;
+        let net = pushed - rigid.cross(&grid.momentum);
         for (index, (amplitude, of)) in amplitudes.iter_mut().zip(&model.modes).enumerate() {
             let [q, p, ..] = grid.modes[index];
             let (w, forced) = (of.frequency, acting.forces.get(index).copied().unwrap_or(0.0));
+            let held = (of.rotation.dot(&net) + forced) / (w * w);
+            let speed = (p + of.rotation.dot(&turning) / w).abs();
+            let most = (of.rotation.dot(&pushed) + forced).abs() / (w * w);
             // At least the displacement, the rate, and what the torque bends, each.
-            *amplitude = q.abs()
-                + (p + of.rotation.dot(&turning) / w).abs()
-                + (of.rotation.dot(&net) + forced).abs() / (w * w);
+            let most = q.abs() + speed + most;
+            *amplitude = Amplitude { most, swings: most.min((q - held).abs() + speed) };
         }
         let pose = Pose {
             rate: model.mobility * (size + rotors.norm()) + slow,
-            carried: (model.inverse * turning).norm() + model.mobility * size + slow,
+            carried: rigid.norm() + model.mobility * size + slow,
             acceleration: model.mobility * push,
             amplitudes: known.then_some(&*amplitudes),
         };
@@ -53,9 +58,7 @@ impl Turning {
         if let Some(place) = self.beside.iter().position(|known| known.h.to_bits() == h.to_bits()) {
             return place;
         }
-        let modes = self.model.modes.iter();
-        let known =
-            Regular { h, responses: modes.map(|of| Response::new(of.frequency, of.damping, h)).collect() };
+        let known = self.responses(h);
         if self.beside.len() < BESIDE {
             self.beside.push(known);
             return self.beside.len() - 1;
@@ -73,9 +76,12 @@ impl Turning {
         }
         if self.regular[level].is_none() {
             let h = self.pace.length(level);
-            let modes = self.model.modes.iter();
-            let responses = modes.map(|of| Response::new(of.frequency, of.damping, h)).collect();
-            self.regular[level] = Some(Regular { h, responses });
+            self.regular[level] = Some(self.responses(h));
         }
+    }
+
+    /// The responses of the modes over a step of `h` seconds.
+    fn responses(&self, h: f64) -> Regular {
+        self.known.as_ref().map_or_else(|| Regular::new(&self.model, h), |known| known.over(h))
     }
 }

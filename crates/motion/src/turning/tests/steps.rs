@@ -1,6 +1,7 @@
 //! How much steps lose: by the rule of their lengths, and by halving them.
 
 use super::*;
+use crate::turning::Common;
 
 /// The step of the rule errs by less than 1e-10 rad in 1e4 s: against steps a quarter as long, over 200 s.
 #[test]
@@ -92,4 +93,52 @@ fn halving_the_step_divides_the_error_by_64() {
         let most = if index < 3 { 90.0 } else { f64::INFINITY };
         assert!(coarse / fine > 45.0 && coarse / fine < most, "{index}: {coarse:e} {fine:e}");
     }
+}
+
+/// Without first moments, wheels turn a body from rest as they were told: one pass finds the stages, which steps of a sixteenth
+/// of the length confirm.
+#[test]
+fn one_pass_is_enough_where_nothing_acts_back() {
+    let craft = craft().stiff().undamped();
+    let (mut turning, mut finer) = (craft.turning(Vector::zeros()), craft.turning(Vector::zeros()));
+    finer.set_pace(Pace::fixed(1.0 / 256.0));
+    let mut wheels = rotors([0.0; 4], [0.0; 4]);
+    for command in 0..80 {
+        for (index, wheel) in wheels.iter_mut().enumerate() {
+            wheel.momentum += wheel.torque * 0.25;
+            wheel.torque = 0.02 * (1.0 + libm::sin(f64::from(command * (index as i32 + 1))));
+        }
+        for turning in [&mut turning, &mut finer] {
+            turning.depart(&Acting { rotors: wheels.clone(), ..Acting::default() });
+            go(turning, 0.25);
+        }
+    }
+    let (seen, finer) = (turning.seen(), finer.seen());
+    let off = apart(&seen.attitude, &finer.attitude);
+    assert!(seen.rate.norm() > 1e-4 && off < 1e-12, "{off:e} {}", seen.rate);
+    assert!((seen.rate - finer.rate).norm() < 1e-14);
+    let effort = turning.effort();
+    assert_eq!(effort.passes, effort.steps);
+}
+
+/// Runs that share responses move as one that computes its own, and another body has its own.
+#[test]
+fn what_runs_have_in_common_changes_nothing() {
+    let (craft, other) = (craft().undamped(), self::craft().undamped().stiff());
+    let common = Common::default();
+    let run = |craft: &Craft, common: &Common, ends: &[f64]| {
+        let start = (Quaternion::identity(), TUMBLE);
+        let mut turning = Turning::sharing(common, &craft.body, start, &[[0.0; 2]; 8]);
+        turning.depart(&Acting { rotors: rotors(SPUN, [0.1; 4]), ..Acting::default() });
+        ends.iter().for_each(|end| go(&mut turning, *end));
+        turning.seen().clone()
+    };
+    // More lengths of steps than are kept.
+    let many: Vec<f64> = (1..100).map(|step| f64::from(step) * 0.011).collect();
+    for craft in [&craft, &other] {
+        for _ in 0..2 {
+            assert_eq!(run(craft, &common, &many), run(craft, &Common::default(), &[1.089]));
+        }
+    }
+    assert_ne!(run(&craft, &common, &[1.0]), run(&other, &common, &[1.0]));
 }

@@ -1,9 +1,10 @@
-//! Drives and orbit of a body with three axes, as logged.
+//! Drives, modes and orbit of a body with three axes, as logged.
 
 use super::SpatialPlant;
 use crate::attitude::Vector;
 use crate::environment::into;
-use crate::record::{DriveMotion, DrivenMode, DrivesMotion, Orbit, OrbitAxis};
+use crate::motion::Phase;
+use crate::record::{DriveMotion, DrivenMode, DrivesMotion, Orbit, OrbitAxis, Vibration, Vibrations};
 
 impl SpatialPlant {
     /// The drives of appendages and the frequencies of the modes, which change with them, as logged; none without drives.
@@ -34,5 +35,17 @@ impl SpatialPlant {
             sun: sun[axis],
         };
         Some(Orbit { axes: [0, 1, 2].map(axis).into(), light: sky.is_lit(t).into() })
+    }
+
+    /// The modes, as logged.
+    pub fn vibrations(&self) -> Vibrations {
+        let modes = &self.state.modes;
+        let rates = self.elastic.rates(modes).zip(self.energies());
+        let of = |(phase, (rate, energy_j)): (&Phase, (f64, f64))| Vibration {
+            displacement: phase.displacement,
+            rate,
+            energy_j,
+        };
+        Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
     }
 }

@@ -1,11 +1,26 @@
-//! The free modes of a body with three axes, as the monitor of the envelope takes them.
+//! The free modes of a body with three axes: those that drift, and all as the monitor of the envelope takes them.
 
 use super::SpatialPlant;
 use crate::attitude::Vector;
-use crate::body::Wrench;
+use crate::body::spatial::{DriftingModes, Spatial};
+use crate::body::{Drift, Wrench};
 use crate::motion::{Phase, State};
 
 impl SpatialPlant {
+    /// The same with modes whose frequencies drift.
+    #[must_use]
+    pub fn drifting(mut self, body: &Spatial, drift: Option<&Drift>) -> Self {
+        self.drifting = drift.map(|drift| DriftingModes::new(body, drift));
+        self
+    }
+
+    /// Begins the motion of modes that drift at the departure, under the forces that act from then on.
+    pub(super) fn drift_on(&mut self) {
+        if let Some(drifting) = &mut self.drifting {
+            drifting.depart(self.departed.seconds(), &self.forces);
+        }
+    }
+
     /// The free modes at the instant seen last by the size of the rotations that they give the first sensor (rad).
     pub fn swings(&self) -> State {
         let phase = |(phase, shape): (&Phase, &Vector)| {

@@ -1,0 +1,100 @@
+//! The linear parts of a loop that are not read off a scenario's keys: filters of laws at their samples, and estimators in the end.
+
+use serde::Serialize;
+
+use crate::belief::Reads;
+use crate::document::Fault;
+use crate::estimator::kalman::{Kalman, Setting, Steady};
+use crate::estimator::{Estimator, Feeds};
+use crate::law::Law;
+use crate::random::Seed;
+use crate::scenario::Scenario;
+
+/// The parts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoopParts {
+    /// b0, b1, b2 and a1, a2 of each filter of the law about each axis, in the order in which they act.
+    pub filters: Vec<Vec<([f64; 3], [f64; 2])>>,
+    /// The estimator of each axis; none where the law reads what is measured.
+    pub estimators: Option<Vec<Observer>>,
+}
+
+/// An estimator of one axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Observer {
+    /// The filter.
+    #[serde(flatten)]
+    pub steady: Steady,
+    /// The moment of inertia by which a torque becomes its reduced moment.
+    pub inertia: f64,
+    /// Whether the law reads the rigid motion, and not that of the hub.
+    pub rigid: bool,
+    /// Whether the rate is measured too.
+    pub rate: bool,
+}
+
+impl LoopParts {
+    /// The parts of a scenario whose laws are linear.
+    ///
+    /// # Errors
+    /// An estimator that is not linear, or does not settle: its key, and why.
+    pub fn of(scenario: &Scenario) -> Result<Self, Fault> {
+        let axes = scenario.study.axes.len();
+        let filters = (0..axes).map(|axis| filters(scenario.law.about(axis))).collect();
+        let reads = |axis: usize| scenario.law.about(axis).reads() == Reads::DominantMode;
+        let estimators = match &scenario.estimator {
+            None | Some(Estimator::Envelope(_)) => None,
+            Some(estimator) if estimator.watches_only() => None,
+            Some(Estimator::Kalman(_) | Estimator::Truth(_))
+                if (0..axes).all(|axis| feeds(scenario, reads(axis)) == Feeds::Modes) =>
+            {
+                None
+            }
+            Some(Estimator::Kalman(kalman)) => {
+                Some((0..axes).map(|axis| observer(scenario, kalman, axis)).collect::<Result<_, _>>()?)
+            }
+            Some(estimator) => {
+                let why = "is no linear system with constant gains: a loop has `kalman`, or an estimator with `watch_only`";
+                return Err(Fault::new(format!("estimator.{}", estimator.kind()), why));
+            }
+        };
+        Ok(Self { filters, estimators })
+    }
+}
+
+/// What the estimator of a scenario writes into beliefs.
+fn feeds(scenario: &Scenario, dominant: bool) -> Feeds {
+    scenario.estimator.as_ref().map_or(Feeds::Modes, |estimator| estimator.feeds(dominant))
+}
+
+/// The filters of a law.
+fn filters(law: &Law) -> Vec<([f64; 3], [f64; 2])> {
+    let Law::Attitude(law) = law else { return Vec::new() };
+    let period = law.period.seconds();
+    law.filters.iter().filter_map(|filter| Some(filter.sampled(period).ok()?.coefficients())).collect()
+}
+
+/// The filter about an axis in the end.
+fn observer(scenario: &Scenario, kalman: &Kalman, axis: usize) -> Result<Observer, Fault> {
+    let fault = |why: &str| Fault::new("estimator.kalman", why);
+    let known = scenario.known();
+    let Some(period) = known.sampling else { return Err(fault("has no samples")) };
+    let body = &known.axes[axis];
+    let setting = Setting {
+        body,
+        back_emf: (known.back_emf.0 / body.inertia.get(), known.back_emf.1),
+        period: period.seconds(),
+        angle_noise: known.angle_noise,
+        rate_noise: known.rate_noise[axis],
+    };
+    let draws = &mut Seed { scenario: scenario.seed, run: 0 }.stream("prior");
+    let Some(steady) = kalman.filter(&setting, draws).steady() else {
+        return Err(fault("has gains that do not settle: give it `moment_noise`"));
+    };
+    Ok(Observer {
+        steady,
+        inertia: body.commanded_inertia(),
+        rigid: feeds(scenario, false) == Feeds::Rigid,
+        rate: setting.rate_noise.is_some(),
+    })
+}

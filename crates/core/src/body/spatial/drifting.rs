@@ -1,0 +1,70 @@
+//! The elastic modes of a spatial body whose frequencies drift: each by the Taylor series of its own equation, exact to rounding.
+
+use super::Spatial;
+use crate::body::drift::Drift;
+use crate::body::drifting::Drifting;
+use crate::body::{Mode, Planar};
+use crate::motion::Phase;
+use crate::quantity::Finite;
+
+/// The modes on their way, under modal forces that are constant for a while.
+#[derive(Clone, Debug)]
+pub struct DriftingModes {
+    /// Each is the only mode of a body with one angle, whose moment is the modal force.
+    modes: Vec<Drifting>,
+    drift: Drift,
+    /// Frequencies at the start (rad/s).
+    frequencies: Vec<f64>,
+}
+
+impl DriftingModes {
+    /// The modes at the start, under no force.
+    pub fn new(body: &Spatial, drift: &Drift) -> Self {
+        let gain = Finite::new(1.0).unwrap_or_default();
+        let alone = |(index, mode): (usize, &super::SpatialMode)| {
+            let own = match drift {
+                Drift::Common(profile) => Drift::Common(profile.clone()),
+                Drift::Each(profiles) => Drift::Each(profiles.get(index).cloned().into_iter().collect()),
+            };
+            let start = Mode {
+                displacement: mode.displacement,
+                rate: mode.rate,
+                ..Mode::at_rest(mode.frequency, gain, mode.damping)
+            };
+            Drifting::new(&Planar { modes: vec![start], ..Planar::default() }, &own, 0.0, false)
+        };
+        Self {
+            modes: body.modes.iter().enumerate().map(alone).collect(),
+            drift: drift.clone(),
+            frequencies: body.modes.iter().map(|mode| mode.frequency.get()).collect(),
+        }
+    }
+
+    /// Begins a motion under constant modal forces (N/sqrt(kg)), from where the modes were seen last, at a time (s).
+    pub fn depart(&mut self, now: f64, forces: &[f64]) {
+        let forces = forces.iter().copied().chain(std::iter::repeat(0.0));
+        for (mode, force) in self.modes.iter_mut().zip(forces) {
+            mode.rest_hub();
+            mode.depart(now, force);
+        }
+    }
+
+    /// Brings the modes to `h` seconds after departure, not before a time gone to earlier. A phase holds q'/w, w at the start.
+    pub fn go(&mut self, h: f64, phases: &mut [Phase]) {
+        for ((mode, w), phase) in self.modes.iter_mut().zip(&self.frequencies).zip(phases) {
+            mode.go(h);
+            if let Some([displacement, rate, _]) = mode.motion().nth(1) {
+                *phase = Phase { displacement, quadrature: rate / w };
+            }
+        }
+    }
+
+    /// Energy of motion and deformation of each mode at a time (s) (J): (q'² + w² q²)/2.
+    pub fn energies(&self, t: f64, phases: &[Phase]) -> Vec<f64> {
+        let energy = |(index, (phase, w)): (usize, (&Phase, &f64))| {
+            let (rate, stretch) = (w * phase.quadrature, self.drift.ratio(index, t) * w * phase.displacement);
+            0.5 * (rate * rate + stretch * stretch)
+        };
+        phases.iter().zip(&self.frequencies).enumerate().map(energy).collect()
+    }
+}

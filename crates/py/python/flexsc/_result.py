@@ -1,0 +1,290 @@
+"""Results of runs, samples of their motion, and logs: topics as mappings of columns."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import cached_property
+from math import inf
+from typing import TYPE_CHECKING, Any, Literal
+
+from flexsc import _native as engine
+from flexsc._topic import Topic
+from flexsc._units import Metrics
+from flexsc._values import arrays
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from flexsc._scenario import Scenario
+
+Logged = Literal["events", "full", "scene"]
+"""What a log file holds of a run."""
+Detail = Literal["events", "full", "scene", "none"]
+"""What is recorded of a run: see `Scenario.simulate`."""
+
+
+class _Topics:
+    """Topics by name, each as a dictionary of columns."""
+
+    @property
+    def topics(self) -> list[str]:
+        """The names of the topics, without the slash that they have in a log file."""
+        raise NotImplementedError
+
+    def _topic(self, name: str) -> Topic:
+        raise NotImplementedError
+
+    def __contains__(self, topic: object) -> bool:
+        return isinstance(topic, str) and topic.removeprefix("/") in self.topics
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.topics)
+
+    def __getitem__(self, topic: str) -> Topic:
+        """Return the columns of a topic, such as `command`; other libraries can read them through Arrow.
+
+        Every column has shape (rows,): numbers as float64, counts as int64, labels such as `state` as str.
+        Values with several parts per row, such as modes, are columns of shape (rows, modes), such as
+        `modes.displacement_rad`; if the rows have different lengths, they are arrays of arrays.
+
+        Raises:
+            KeyError: There is no such topic.
+        """
+        if topic not in self:
+            raise KeyError(f"no topic {topic!r}; there are {', '.join(self.topics) or 'none'}")
+        return self._topic(topic.removeprefix("/"))
+
+
+class Samples(_Topics):
+    """The motion of a run at chosen times: topics as columns, with one row per time.
+
+    >>> import flexsc
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
+    >>> run.sample([50.0, 12.5])["attitude"]["time_s"].tolist()
+    [50.0, 12.5]
+    """
+
+    times: npt.NDArray[np.float64]
+    """The times (s), of shape (rows,)."""
+
+    def __init__(self, times: npt.NDArray[np.float64], topics: dict[str, Topic]) -> None:
+        self.times = times
+        self._topics = topics
+
+    @property
+    def topics(self) -> list[str]:
+        """The names of the topics."""
+        return list(self._topics)
+
+    def _topic(self, name: str) -> Topic:
+        return self._topics[name]
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __repr__(self) -> str:
+        return f"<flexsc.Samples at {len(self)} times: {', '.join(self.topics)}>"
+
+
+class Result(_Topics):
+    """The result of a run: its metrics, and its topics as columns.
+
+    >>> import flexsc
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate(log="full")
+    >>> run["attitude"]["angle_rad"].shape == run["attitude"]["time_s"].shape
+    True
+    >>> round(run.at(12.5)["attitude"]["angle_rad"], 9)
+    9.298e-06
+    """
+
+    scenario: Scenario
+    """The simulated scenario."""
+    run: int
+    """The number of the run."""
+    metrics: Metrics
+    """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is no value.
+    `metrics.unit(name)` returns their units."""
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        run: int,
+        log: str,
+        metrics: dict[str, Any],
+        topics: dict[str, dict[str, npt.NDArray[Any]]],
+        took: float = 0.0,
+        stepped: engine.Commands | None = None,
+        until: float = inf,
+    ) -> None:
+        self.scenario = scenario
+        self.run = run
+        self.metrics = Metrics(metrics, scenario)
+        self._log = log
+        self._topics = self._named(topics)
+        self._took = took
+        self._stepped = stepped
+        self._until = min(until, scenario.duration)
+        self._drawn: engine.Log | None = None
+
+    def _named(self, topics: dict[str, dict[str, npt.NDArray[Any]]]) -> dict[str, Topic]:
+        about = {"scenario": self.scenario.name, "seed": str(self.scenario.seed), "run": str(self.run)}
+        return {name: Topic(name, columns, self.scenario, about) for name, columns in topics.items()}
+
+    @property
+    def topics(self) -> list[str]:
+        """The names of the topics."""
+        return list(self._topics)
+
+    def _topic(self, name: str) -> Topic:
+        return self._topics[name]
+
+    def sample(self, times: npt.ArrayLike) -> Samples:
+        """Return the exact motion at chosen times (s), whatever the detail of the run's log.
+
+        The run is simulated again, up to the last time, and its exact motion is read at each time: nothing is
+        interpolated. At the time of a row of a full log, such as a switching, the values are bit-identical to
+        those of the row.
+
+        Args:
+            times: Of shape (times,), in any order, from 0 to the duration.
+
+        Returns:
+            The topics of the motion, such as `attitude` and `law` for a single-axis body and `pointing` for a
+            three-axis one, each with one row per time, in the order of `times`.
+
+        Raises:
+            ValueError: A time is not within the run.
+        """
+        import numpy as np
+
+        asked = np.asarray(times, dtype=np.float64)
+        if asked.ndim != 1:
+            raise ValueError(f"times must be of shape (times,), got {asked.shape}")
+        end = self._until
+        within = (asked >= 0.0) & (asked <= end)
+        if not within.all():
+            wrong = asked[~within][0].item()
+            what = "duration" if end == self.scenario.duration else "time of the run"
+            raise ValueError(f"times must be from 0 to the {what}, {end:g} s, got {wrong:g}")
+        order = np.argsort(asked, kind="stable")
+        back = np.empty_like(order)
+        back[order] = np.arange(len(order))
+        topics = engine.sample(self.scenario._native, self.run, asked[order].tolist(), self._stepped)
+        seen = {
+            name: {column: values[back] for column, values in arrays(columns).items()}
+            for name, columns in topics.items()
+        }
+        for columns in seen.values():
+            columns["time_s"] = asked.copy()
+        return Samples(asked.copy(), self._named(seen))
+
+    def at(self, time: float) -> dict[str, dict[str, Any]]:
+        """Return the exact motion at a time (s): the row of each topic of `sample`, as plain numbers.
+
+        Values with several parts, such as modes, are arrays of shape (parts,). Use `sample` for many times.
+
+        Raises:
+            ValueError: The time is not within the run.
+        """
+        seen = self.sample([time])
+
+        def plain_cell(values: npt.NDArray[Any]) -> Any:
+            return values[0].item() if values.ndim == 1 and values.dtype != object else values[0]
+
+        return {name: {c: plain_cell(v) for c, v in seen[name].items()} for name in seen}
+
+    def _native_log(self) -> engine.Log:
+        """The log of the run with its events, the source of figures."""
+        if self._drawn is None:
+            self._drawn = engine.log_of(self.scenario._native, self.run, self._stepped)
+        return self._drawn
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_drawn": None}
+
+    def to_mcap(self, path: str | os.PathLike[str], log: Logged | None = None) -> int:
+        """Write the run's log, with the same bytes as the command writes, and return the number of bytes.
+
+        The run is simulated again. The log of a run that was stepped under commands from outside holds them
+        as `commands.csv`. `log` is the detail of the log; if omitted, that of the result, and at
+        least `events`.
+
+        Raises:
+            LogError: The file cannot be written.
+        """
+        detail = log or ("events" if self._log == "none" else self._log)
+        return engine.to_mcap(self.scenario._native, self.run, detail, path, self._stepped)
+
+    def __repr__(self) -> str:
+        topics = ", ".join(self.topics) or "metrics only"
+        until = f", to {self._until:g} s" if self._until < self.scenario.duration else ""
+        return f"<flexsc.Result of {self.scenario.name}, run {self.run}{until}: {topics}>"
+
+    def _repr_html_(self) -> str:
+        from flexsc import _html
+
+        about = f"run {self.run}, {self._until:g} s, seed {self.scenario.seed}"
+        rows = [(name, value, self.metrics.unit(name)) for name, value in self.metrics.items()]
+        metrics = _html.folded(f"{len(rows)} metrics", _html.table(("metric", "value", "unit"), rows))
+        topics = [(name, self[name].rows, ", ".join(self[name])) for name in self]
+        held = _html.folded(f"{len(topics)} topics", _html.table(("topic", "rows", "columns"), topics))
+        figure = _html.of_log(self._native_log()) if self._took < _html.SOON_S else ""
+        return _html.heading(self.scenario.name, about) + figure + metrics + held
+
+
+class Log(_Topics):
+    """A log file in memory.
+
+    >>> import flexsc, pathlib, tempfile
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     size = run.to_mcap(pathlib.Path(out) / "run.mcap")
+    ...     log = flexsc.read_log(pathlib.Path(out) / "run.mcap")
+    >>> log.metadata["end"], log["command"].rows == run["command"].rows
+    ('complete', True)
+    """
+
+    def __init__(self, native: engine.Log) -> None:
+        self._native = native
+        self._names = {name.removeprefix("/"): name for name in native.topics}
+        self._read: dict[str, Topic] = {}
+
+    @property
+    def topics(self) -> list[str]:
+        """The names of the topics, without their slash."""
+        return list(self._names)
+
+    @property
+    def metadata(self) -> dict[str, str]:
+        """The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ..."""
+        return self._native.metadata
+
+    @cached_property
+    def scenario(self) -> Scenario | None:
+        """The simulated scenario, if the log contains it.
+
+        Raises:
+            ScenarioError: This version does not accept it.
+        """
+        from flexsc._scenario import Scenario
+
+        text = self._native.scenario
+        return None if text is None else Scenario.parse(text, self.metadata.get("scenario", "scenario"))
+
+    def _topic(self, name: str) -> Topic:
+        if name not in self._read:
+            columns = arrays(self._native.columns(self._names[name]))
+            about = {key: text for key in ("scenario", "seed", "run") if (text := self.metadata.get(key))}
+            self._read[name] = Topic(name, columns, self._known(), about)
+        return self._read[name]
+
+    def _known(self) -> Scenario | None:
+        try:
+            return self.scenario
+        except engine.ScenarioError:
+            return None
+
+    def __repr__(self) -> str:
+        return f"<flexsc.Log: {', '.join(self.topics)}>"

@@ -1,0 +1,230 @@
+"""Runs of a scenario advanced together in steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+from flexsc._quantities import Fields, Quantities, commands_of
+from flexsc._scenario import Scenario, run_number
+from flexsc._simulator import Simulator
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+# More copies than this are a mistake: each takes some kilobytes.
+_MOST = 10_000_000
+
+
+class Simulators:
+    """Many runs of a scenario advanced together in steps, on all cores.
+
+    Copy i is run `runs[i]`, with its keys of `[uncertain]` drawn. It is bit-identical to
+    `Simulator(scenario.draw(run), run)` for any number of threads, and independent of the other copies.
+
+    Args:
+        scenario: The scenario from which the runs are drawn.
+        runs: The number of runs, or the run number of each.
+        jobs: Number of threads; if omitted, one per core.
+        seed: Seed that replaces the scenario's.
+        keep_commands: Whether copies keep their commands, 40 bytes each, so that `sims[i].metrics`,
+            `sims[i].result()` and `sims[i].to_mcap(path)` can repeat their runs.
+
+    Raises:
+        SimulationError: The keys drawn for a run do not make a valid scenario.
+
+    >>> sims = flexsc.Simulators(flexsc.Scenario.example("four-clamped-modes"), 100)
+    >>> state = sims.step(numpy.zeros((100, 3)), 0.1)
+    >>> state["attitude"].shape
+    (100, 4)
+    """
+
+    __slots__ = ("_fields", "_native", "_rows", "scenario")
+
+    scenario: Scenario
+    """The scenario from which the runs are drawn."""
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        runs: int | Sequence[int] | npt.NDArray[np.integer[Any]] = 1000,
+        jobs: int | None = None,
+        seed: int | None = None,
+        *,
+        keep_commands: bool = False,
+    ) -> None:
+        count = runs if isinstance(runs, int) else len(runs)
+        if count > _MOST:
+            raise ValueError(f"runs must be at most {_MOST}, got {count}")
+        numbers = range(run_number(runs)) if isinstance(runs, int) else [run_number(run) for run in runs]
+        if jobs is not None and not 1 <= jobs <= 1024:
+            raise ValueError(f"jobs must be from 1 to 1024, got {jobs}")
+        self.scenario = scenario if seed is None else scenario.with_("seed", seed)
+        if not len(numbers):
+            raise ValueError("runs must be one or more, got none")
+        self._native = engine.Simulators(self.scenario._native, list(numbers), jobs or 0, keep_commands)
+        self._fields = Fields(self._native.fields)
+        self._rows: npt.NDArray[np.float64] | None = None
+        self._raise()
+
+    def __len__(self) -> int:
+        """The number of copies."""
+        return len(self._native)
+
+    def __getitem__(self, index: int) -> Simulator:
+        """Return a clone of one copy."""
+        index = range(len(self))[index]
+        run = int(self.runs[index])
+        scenario = self.scenario.draw(run)
+        return Simulator._of(self._native.one(index), scenario, run)
+
+    @property
+    def runs(self) -> npt.NDArray[np.uint64]:
+        """The run number of each copy, of shape (n,)."""
+        return self._native.runs
+
+    @property
+    def time(self) -> npt.NDArray[np.float64]:
+        """The time of each copy (s), of shape (n,)."""
+        return self._native.time
+
+    @property
+    def done(self) -> npt.NDArray[np.bool_]:
+        """Whether each copy has reached its end, of shape (n,). It stays there until it is reset."""
+        return self._native.done
+
+    @property
+    def failed(self) -> npt.NDArray[np.bool_]:
+        """Which copies have failed, of shape (n,). Their values are NaN until they are reset."""
+        import numpy as np
+
+        failed = np.zeros(len(self), dtype=np.bool_)
+        failed[[index for index, _, _ in self._native.failed]] = True
+        return failed
+
+    @property
+    def axes(self) -> int:
+        """The number of values in a command: 1, or 3 about x, y and z."""
+        return self._native.axes
+
+    @property
+    def command_unit(self) -> str:
+        """The unit of commands: see `Simulator.command_unit`."""
+        return self._native.command_unit
+
+    @property
+    def command_limit(self) -> npt.NDArray[np.float64]:
+        """The largest command about each axis for the nominal scenario: see `Simulator.command_limit`."""
+        import numpy as np
+
+        return np.array(self._native.command_limit, dtype=np.float64)
+
+    @property
+    def state(self) -> Quantities:
+        """The true states at the present time: those of `Simulator.state`, of shape (n,) or (n, k)."""
+        return self._fields.of("state", self._look())
+
+    @property
+    def measured(self) -> Quantities:
+        """The latest measurements of the sensors: see `Simulator.measured`."""
+        return self._fields.of("measured", self._look())
+
+    @property
+    def believed(self) -> Quantities:
+        """The input of the laws: see `Simulator.believed`."""
+        return self._fields.of("believed", self._look())
+
+    def _look(self) -> npt.NDArray[np.float64]:
+        if self._rows is None:
+            self._keep(self._native.look())
+        assert self._rows is not None
+        return self._rows
+
+    def _keep(self, rows: npt.NDArray[np.float64]) -> None:
+        rows.flags.writeable = False
+        self._rows = rows
+
+    def _raise(self) -> None:
+        failed = self._native.failed
+        if failed:
+            each = [f"copy {index}, run {run}: {why}" for index, run, why in failed[:5]]
+            more = [f"and {len(failed) - 5} more"] if len(failed) > 5 else []
+            count = f"{len(failed)} of {len(self)} copies cannot go on"
+            raise engine.SimulationError("\n".join([f"{self.scenario.name}: {count}", *each, *more]))
+
+    def step(
+        self,
+        commands: npt.ArrayLike | None,
+        dt: float,
+        mask: npt.NDArray[np.bool_] | None = None,
+    ) -> Quantities:
+        """Advance all copies by a time. Other Python threads continue meanwhile.
+
+        Args:
+            commands: A command for each copy, of shape (n, axes), or (n,) for one axis, as in
+                `Simulator.step`; None leaves the present source of commands in force.
+            dt: The length of the step (s).
+            mask: The copies to advance, of shape (n,); if omitted, all.
+
+        Returns:
+            The states at the end of the step.
+
+        Raises:
+            ValueError: The commands have another shape or are not finite, or `dt` is not a positive time.
+            SimulationError: Copies have failed; the text names them. The others have completed the step:
+                `reset(sims.failed)` restarts the failed ones.
+        """
+        native, n = self._native, len(self)
+        if commands is not None:
+            commands = commands_of(commands, (n, native.axes), native.command_unit)
+        self._keep(native.step(commands, dt, _mask(mask, n)))
+        self._raise()
+        return self.state
+
+    def reset(
+        self,
+        mask: npt.NDArray[np.bool_] | None = None,
+        runs: npt.ArrayLike | None = None,
+    ) -> Quantities:
+        """Restart copies.
+
+        Args:
+            mask: The copies to restart, of shape (n,); if omitted, all.
+            runs: The new run number of each copy, of shape (n,), of which only those in the mask are used; if
+                omitted, each copy restarts its own run. Another number draws new `[uncertain]` keys and
+                noise.
+
+        Returns:
+            The states of all copies.
+
+        Raises:
+            ValueError: The mask or the run numbers have another shape.
+            SimulationError: The keys drawn for a run do not make a valid scenario.
+        """
+        import numpy as np
+
+        numbers = None
+        if runs is not None:
+            numbers = np.asarray(runs)
+            if numbers.shape != (len(self),) or numbers.dtype.kind not in "iu" or (numbers < 0).any():
+                raise ValueError(f"runs must be {len(self)} whole numbers from 0, got {runs!r}")
+            numbers = numbers.astype(np.uint64)
+        self._keep(self._native.reset(_mask(mask, len(self)), numbers))
+        self._raise()
+        return self.state
+
+    def __repr__(self) -> str:
+        return f"<flexsc.Simulators of {self.scenario.name}: {len(self)} copies>"
+
+
+def _mask(mask: npt.NDArray[np.bool_] | None, count: int) -> npt.NDArray[np.bool_] | None:
+    import numpy as np
+
+    if mask is None:
+        return None
+    mask = np.asarray(mask)
+    if mask.shape != (count,) or mask.dtype != np.bool_:
+        raise ValueError(f"a mask must be {count} of bool, got shape {mask.shape} of {mask.dtype}")
+    return np.ascontiguousarray(mask)

@@ -1,0 +1,42 @@
+//! What a stepped run was commanded, and how far it got: enough to repeat it.
+
+use flexsc_core::campaign::Commanded;
+use flexsc_core::time::Instant;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The commands of a run, and until when it has run.
+#[pyclass(frozen, module = "flexsc._native")]
+#[derive(Clone)]
+pub struct Commands {
+    pub given: Commanded,
+    pub until: Instant,
+}
+
+impl Commands {
+    /// Of a run as it is in its scenario, unless it was stepped.
+    pub fn of(stepped: Option<&Self>) -> Self {
+        stepped.cloned().unwrap_or_else(|| Self { given: Commanded::default(), until: Instant::END })
+    }
+}
+
+#[pymethods]
+impl Commands {
+    /// From whole seconds and femtoseconds past them, and the commands as text.
+    #[new]
+    fn new(until: (u64, u64), text: &str) -> PyResult<Self> {
+        let given =
+            Commanded::parse(text).ok_or_else(|| PyValueError::new_err("not the text of commands"))?;
+        Ok(Self { given, until: Instant::of_parts(until.0, until.1) })
+    }
+
+    fn __getnewargs__(&self) -> ((u64, u64), String) {
+        (self.until.parts(), self.given.to_csv())
+    }
+
+    /// Whether none was given.
+    #[getter]
+    fn none(&self) -> bool {
+        self.given.is_empty()
+    }
+}
