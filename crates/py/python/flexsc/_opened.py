@@ -38,7 +38,7 @@ def linearise(
     late = own if delay is None else delay
     if loop is not None:
         if period is not None:
-            raise ValueError("period must be left out where a loop is cut open: it is the law's")
+            raise ValueError("period must be left out where a loop is cut open: it is the law's own")
         return _loop(scenario, keys, body, late, loop)
     if period is None:
         if delay is not None:
@@ -154,7 +154,7 @@ def _differs(name: str, keys: Mapping[str, Any], period: float) -> bool:
     if kind in ("continuous", "gyro"):
         return False
     if kind != "sampled":
-        why = f"the sensor `{kind}` is no part of linear loops: take `continuous`, `sampled` or `gyro`"
+        why = f"the sensor `{kind}` is not supported in linear loops: use `continuous`, `sampled` or `gyro`"
         raise refused(name, why)
     if float(own["period"]) != period:
         raise refused(name, "the sensor and the law have different periods: a linear loop has one")
