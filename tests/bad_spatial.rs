@@ -31,7 +31,7 @@ const CASES: &[Case] = &[
     ("switch_off = 1.0", "switch_off = 1.0\nbraking = 1.0", 18, &["`law.phase_plane.braking`", "must be a number between 0 and 1, got 1"]),
     ("switch_off = 1.0", "switch_off = 1.0\ntargets = [{ from = 5 }, { from = 5 }]", 18, &["`law.phase_plane.targets[1].from` must be later than the one before, got 5"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[estimator.rigid_rate]\ncorrection = 1.0", 19, &["`estimator.rigid_rate.correction`", "must be a number between 0 and 1, got 1"]),
-    ("switch_off = 1.0", "switch_off = 1.0\n[estimator.envelope]\nwindow = 1.0\nmodes = [{ frequency = 1.0, gain = 0.1 }]", 20, &["`estimator.envelope.modes` are those of one angle"]),
+    ("switch_off = 1.0", "switch_off = 1.0\n[estimator.envelope]\nwindow = 1.0\nmodes = [{ frequency = 1.0, gain = 0.1 }]", 20, &["`estimator.envelope.modes` apply only to one angle"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[[target]]\nfrom = 9\n[[target]]\nfrom = 5", 21, &["`target[1].from` must be later than the one before, got 5"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[manoeuvre]\nangle = 1.0\ntime = 10.0\ncommand = { bang_bang = {} }", 18, &["`manoeuvre` is for bodies with one angle", "use `[[target]]` for three axes"]),
     ("switch_off = 1.0", "switch_off = 1.0\n[[disturbance]]\ntorque = 1.0", 18, &["`disturbance[0].about` must be given for a torque on a body with three axes: `roll`, `pitch` or `yaw`"]),

@@ -135,5 +135,5 @@ fn what_no_envelope_has_is_refused_with_its_reason() {
     assert!(text.contains("an appendage that turns changes them"), "{text}");
     let text =
         refused(BODY, "estimator.envelope = { window = 7.0, modes = [{ frequency = 1.0, gain = 0.1 }] }");
-    assert!(text.contains("are those of one angle"), "{text}");
+    assert!(text.contains("apply only to one angle"), "{text}");
 }

@@ -107,7 +107,7 @@ def test_a_topic_is_a_mapping_and_no_array(run: Result) -> None:
     assert repr(command).startswith(f"<flexsc.Topic command: {command.rows} rows of time_s, time_whole_s, ")
     with pytest.raises(KeyError, match="topic 'command' has no column 'speed'; there are time_s"):
         command["speed"]
-    with pytest.raises(TypeError, match="a topic is no array"):
+    with pytest.raises(TypeError, match="a topic is not an array"):
         np.asarray(command)
     # On a body without a moment of inertia a torque is an acceleration.
     assert command.unit("torque_nm") == "rad/s²"
@@ -131,7 +131,7 @@ def test_pandas_reads_them(run: Result, table: Table) -> None:
     assert pandas.DataFrame(table.columns)["duty"].tolist() == table["duty"].tolist()
     if hasattr(pandas.DataFrame, "from_arrow"):
         assert pandas.DataFrame.from_arrow(table)["duty"].tolist() == table["duty"].tolist()
-    with pytest.raises(TypeError, match="a topic is no array"):
+    with pytest.raises(TypeError, match="a topic is not an array"):
         pandas.DataFrame(run["command"])
 
 

@@ -293,7 +293,7 @@ def test_what_is_not_linear_is_refused() -> None:
         relay.linearise(loop="command")
     with pytest.raises(ValueError, match="the law's own"):
         relay.linearise(period=0.5, loop="command")
-    with pytest.raises(ValueError, match="delay goes with a period"):
+    with pytest.raises(ValueError, match="delay needs a period"):
         relay.linearise(delay=0.5)
     with pytest.raises(ValueError, match="period must be positive"):
         relay.linearise(period=0.0)

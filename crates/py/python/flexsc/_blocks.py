@@ -89,7 +89,7 @@ def law_about(
     if kind not in ("pd", "attitude", "state_space"):
         raise refused(name, f"the law `{kind}` is not linear: a loop has `pd`, `attitude` or `state_space`")
     if own.get("extra"):
-        raise refused(name, "law.pd.extra is no part of linear loops: leave it out")
+        raise refused(name, "law.pd.extra is not supported in linear loops: leave it out")
     period = float(own["period"])
     if kind == "attitude":
         return LinearLaw(period, _attitude(own, period, filters, prefix), True, own.get("inertia"))

@@ -197,9 +197,7 @@ def campaign(
     """
     numbers = runs if isinstance(runs, range) else range(index(runs))
     if numbers.step != 1 or not numbers:
-        raise ValueError(
-            f"runs must be a number of runs, or a range of step 1 with a run in it, got {runs!r}"
-        )
+        raise ValueError(f"runs must be a number of runs, or a non-empty range of step 1, got {runs!r}")
     if not task_s > 0.0:
         raise ValueError(f"task_s must be a positive number, got {task_s}")
     if index(replicas) < 1:
@@ -267,7 +265,7 @@ def sweep(
     for name, of_key in {key: values}.items() if isinstance(key, str) else key.items():
         numbers = np.asarray(of_key, dtype=np.float64)
         if numbers.ndim != 1 or len(numbers) == 0:
-            raise ValueError(f"values must be of shape (runs,) with a value in it, got {numbers.shape}")
+            raise ValueError(f"values must be of shape (runs,) and not empty, got {numbers.shape}")
         grids.append((name, numbers.tolist()))
     if not grids:
         raise ValueError("a sweep needs a key")

@@ -22,7 +22,7 @@ def law_of(
     if isinstance(controller, Mapping):
         if set(controller) != set(_AXES):
             found = ", ".join(map(str, controller))
-            raise ValueError(f"controllers of the axes are those of {', '.join(_AXES)}, got {found}")
+            raise ValueError(f"controllers must be given for {', '.join(_AXES)}, got {found}")
         each = {axis: law_of(controller[axis], period, method, command, limit, track) for axis in _AXES}
         return {"per_axis": each}
     a, b, c, d, step = _matrices(controller)

@@ -177,7 +177,7 @@ class Linear:
         import numpy as np
 
         if self.b.shape[1] != self.c.shape[0] or self.d.any():
-            raise ValueError("the loop of a model is closed whose outputs are its inputs, with d = 0")
+            raise ValueError("only a model with as many outputs as inputs and d = 0 can be closed as a loop")
         d = np.zeros_like(self.d)
         a = self.a - self.b @ self.c
         return Linear(a, self.b, self.c, d, self.states, self.inputs, self.outputs, self.period)

@@ -38,11 +38,11 @@ def linearise(
     late = own if delay is None else delay
     if loop is not None:
         if period is not None:
-            raise ValueError("period is the law's own where a loop is cut open")
+            raise ValueError("period must be left out where a loop is cut open: it is the law's own")
         return _loop(scenario, keys, body, late, loop)
     if period is None:
         if delay is not None:
-            raise ValueError("delay goes with a period")
+            raise ValueError("delay needs a period")
         return body
     return body.sampled(period, late)
 
@@ -65,7 +65,7 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
     laws = [law_about(name, keys, told["filters"][k], k, prefix) for k, prefix in enumerate(prefixes)]
     period = laws[0].period
     if any(law.period != period for law in laws):
-        raise refused(name, "the laws of the axes have periods that differ: a linear loop has one")
+        raise refused(name, "the laws of the axes have different periods: a linear loop has one")
     if any(law.is_acceleration != laws[0].is_acceleration for law in laws):
         raise refused(
             name, "the laws of the axes command torques and accelerations: a linear loop has one kind"
@@ -148,14 +148,14 @@ def _differs(name: str, keys: Mapping[str, Any], period: float) -> bool:
     sensor = keys["sensor"]
     if isinstance(sensor, list):
         if len(sensor) > 1:
-            raise refused(name, "several sensors are no part of linear loops: take one")
+            raise refused(name, "several sensors are not supported in linear loops: use one")
         sensor = sensor[0]
     kind, own = kind_of(sensor)
     if kind in ("continuous", "gyro"):
         return False
     if kind != "sampled":
-        why = f"the sensor `{kind}` is no part of linear loops: take `continuous`, `sampled` or `gyro`"
+        why = f"the sensor `{kind}` is not supported in linear loops: use `continuous`, `sampled` or `gyro`"
         raise refused(name, why)
     if float(own["period"]) != period:
-        raise refused(name, "the sensor and the law have periods that differ: a linear loop has one")
+        raise refused(name, "the sensor and the law have different periods: a linear loop has one")
     return own.get("rate_noise") is None

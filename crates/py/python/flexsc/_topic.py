@@ -86,7 +86,7 @@ class Topic(Mapping[str, "npt.NDArray[Any]"]):
     def __array__(self, *_: object, **__: object) -> NoReturn:
         # pandas would else take the names for the values.
         raise TypeError(
-            "a topic is no array: polars.DataFrame(topic) and pandas.DataFrame(dict(topic)) are frames of it"
+            "a topic is not an array: use polars.DataFrame(topic) or pandas.DataFrame(dict(topic))"
         )
 
     def __repr__(self) -> str:

@@ -333,7 +333,7 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
             raise gymnasium.error.ResetNeeded("Cannot call env.step() before calling env.reset()")
         begins = self._ended
         if self._mode is AutoresetMode.DISABLED and begins.any():
-            raise ValueError(f"{int(begins.sum())} episodes have ended: begin them anew by `reset_mask`")
+            raise ValueError(f"{int(begins.sum())} episodes have ended: reset them with `reset_mask`")
         reward, terminated, truncated = self._task.step(actions, ~begins if begins.any() else None)
         info: dict[str, Any] = {}
         if begins.any():

@@ -179,7 +179,7 @@ class CompiledLaw(Law):
         return self
 
     def __reduce__(self) -> tuple[object, ...]:
-        raise TypeError("a compiled law is a place in this process: it cannot be pickled")
+        raise TypeError("a compiled law is an address in this process and cannot be pickled")
 
 
 class Estimator(_Part):

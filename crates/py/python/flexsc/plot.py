@@ -177,13 +177,13 @@ def _figure(source: Source, name: str) -> engine.Figure:
             # A name that no figure has.
             if "invalid variant" not in str(error):
                 raise
-        raise ValueError(f"there is no figure {name!r} of it; it has {', '.join(engine.log_figures(log))}")
+        raise ValueError(f"there is no figure {name!r} for it; it has {', '.join(engine.log_figures(log))}")
     there = _of_campaign(source, None, ())
     if name not in there and isinstance(source, Table):
         kind, _, metric = name.partition("-")
         there = _of_campaign(source, kind, [metric] if metric else [])
     if name not in there:
-        raise ValueError(f"there is no figure {name!r} of it; it has {', '.join(there)}")
+        raise ValueError(f"there is no figure {name!r} for it; it has {', '.join(there)}")
     return there[name]
 
 
