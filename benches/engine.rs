@@ -14,7 +14,7 @@ use flexsc_core::batch::{Job, simulate_on};
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::estimator::kalman::{FrequencyTracking, Prediction, Setting};
 use flexsc_core::lanes::Processor;
-use flexsc_core::metrics::Metrics;
+use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::random::Seed;
 use flexsc_core::record::{Detail, McapLog, Record, RunEnd, Trace};
 use flexsc_core::structure::{Hub, Structure};
@@ -115,7 +115,8 @@ fn lanes(c: &mut Criterion) {
     group.bench_function("one by one", |b| {
         b.iter(|| runs.iter().map(|run| Campaign::simulate(run, ()).expect("a run")).collect::<Vec<_>>());
     });
-    let jobs: Vec<Job<'_>> = scenarios.iter().map(|scenario| Job { number: 0, scenario }).collect();
+    let jobs: Vec<Job<'_>> =
+        scenarios.iter().map(|scenario| Job { number: 0, scenario, selection: &Selection::ALL }).collect();
     for processor in Processor::all() {
         group.bench_function(processor.name(), |b| b.iter(|| simulate_on(processor, black_box(&jobs))));
     }

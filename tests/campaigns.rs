@@ -188,7 +188,7 @@ fn a_sweep_of_other_values_is_another_one() {
         "simulate relay-fixed.toml --set duration=100 --runs 9 --table csv -o out".to_owned(),
     ] {
         let ran = dir.run(&other).exits(2);
-        ran.says(&["out/scenario.toml", "another campaign (law.relay.k_t = 0.3 to 0.4, 5 values there"]);
+        ran.says(&["out/scenario.toml", "another campaign (law.relay.k_t = 0.3 to 0.4, 5 values before"]);
     }
     assert_eq!(table(&dir, "out/runs.csv").len(), 5);
     dir.run(&format!("{vary}=0.3:0.39:7 --force")).exits(0);

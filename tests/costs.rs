@@ -52,7 +52,7 @@ fn no_key_asks_for_what_cannot_be_done() {
         (
             "k_d = 0.4\nperiod = 0.3",
             "k_d = 0.4\nperiod = 1e-12",
-            &["`law.pd.period` makes 2.0e15 steps in the run's 2000 s", "at most 1.0e12 are done"],
+            &["`law.pd.period` makes 2.0e15 steps in the run's 2000 s", "at most 1.0e12 are allowed"],
         ),
         (
             "[sensor.sampled]\nperiod = 0.3",
@@ -323,8 +323,8 @@ fn archives_have_bounds() {
         ),
         (sparse(array("|S4000000000", "()", b"csr"), &[0, 2, 4]), "array `format` must be one short text"),
         (sparse(array("|S3", "(4000000000,)", b"csr"), &[0, 2, 4]), "array `format` must be one short text"),
-        (sparse(csr(), &again), "array `indptr` must hold 3 increasing places"),
-        (sparse(csr(), &[4, 0, 4]), "array `indptr` must hold 3 increasing places"),
+        (sparse(csr(), &again), "array `indptr` must hold 3 increasing indices"),
+        (sparse(csr(), &[4, 0, 4]), "array `indptr` must hold 3 increasing indices"),
     ];
     for (archive, why) in cases {
         dir.write("a.npz", archive);

@@ -43,7 +43,7 @@ fn runs_repeat_to_the_last_bit() {
     let runs = [
         ("relay-adaptive", "", "/command", 0x4886_7bcb_5000_12ea),
         ("relay-adaptive", "", "/adaptation", 0xb22e_04cb_1fc7_5d23),
-        ("adaptive-bandwidth", "", "/objective", 0xeb61_fb4a_dc4d_ee0d),
+        ("adaptive-bandwidth", "", "/objective", 0x6fe1_1a45_522d_63c4),
         ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
@@ -52,7 +52,7 @@ fn runs_repeat_to_the_last_bit() {
         ("wheel-friction", " --runs 5:6", "/wheel_events", 0xcea0_ab4c_a7ca_0645),
         ("wheel-friction", " --runs 5:6", "/metrics", 0xf87b_f387_9e1f_b874),
         ("flexible-boom", " --runs 5:6", "/metrics", 0x43cf_c127_d43c_9db6),
-        ("sun-tracking", " --runs 5:6", "/metrics", 0xec81_1e08_f3cb_9013),
+        ("sun-tracking", " --runs 5:6", "/metrics", 0x852d_a352_7be9_7855),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
     ];

@@ -10,7 +10,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 /// The row of the document, the folder of the role, how code names a kind of it, and in how many files elsewhere it may.
 const KINDS: [(&str, &str, &str, usize); 9] = [
-    ("| a law |", "law", "Law::Attitude", 2),
+    ("| a law |", "law", "Law::Attitude", 3),
     ("| a sensor |", "sensor", "Sensor::StarTracker", 2),
     ("| a sensor |", "sensor", "Sensor::Gyro", 2),
     ("| a law |", "law", "Law::BDot", 2),

@@ -241,7 +241,7 @@ fn what_does_not_fit_is_refused() {
         ),
         (
             one("[actuator.ideal]\nfaults = [{ dead = { from = 3.0, about = \"roll\" } }]"),
-            "faults[0].dead.about` names an axis",
+            "faults[0].dead.about` must be left out",
         ),
         (
             one("[actuator.ideal]\nfaults = [{ dead = { from = 3.0, wheel = 1 } }]"),

@@ -91,7 +91,7 @@ fn what_does_not_fit_changes_nothing() {
             "simulate u.toml --runs 20 --replicas 2 -o out",
             "another campaign (nothing before, 2 runs of each point now)",
         ),
-        ("sweep u.toml --vary duration=1,2,3 -o out", "duration = [1.0, 2.0, 3.0] here"),
+        ("sweep u.toml --vary duration=1,2,3 -o out", "duration = [1.0, 2.0, 3.0] now"),
         ("simulate u.toml --runs 10 -o out", "holds 20 runs of this campaign, and 10 would replace them"),
         ("simulate u.toml --runs 20 --table csv -o out", "holds a campaign as Parquet files"),
     ] {

@@ -243,8 +243,9 @@ fn panels_visibly_bend() {
     let names =
         shipped.filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned));
     for name in names {
-        // A rigid body has nothing to bend, and drives turn the wings by far more than they bend.
-        if ["detumble-and-point", "sun-tracking"].contains(&name.as_str()) {
+        // A rigid body has nothing to bend, drives turn the wings by far more than they bend, and disturbances of 1e-4 N m
+        // bend nothing beside what its wheels could.
+        if ["detumble-and-point", "sun-tracking", "adaptive-bandwidth"].contains(&name.as_str()) {
             continue;
         }
         let dir = Dir::with(&[&name]);

@@ -204,11 +204,7 @@ impl Work for Rounds<'_> {
             // Those that depart do so from where they are.
             fresh = departs.iter().any(|departs| *departs);
             if fresh {
-                let mut flags = [0.0; 16];
-                for (lane, departs) in departs.iter().enumerate() {
-                    flags[lane] = f64::from(u8::from(*departs));
-                }
-                let departs = zero.lt(kind.load(&flags));
+                let departs = zero.lt(kind.load(&departs.map(|departs| f64::from(u8::from(departs)))));
                 for index in 0..2 * count {
                     motions.series[index] = R::select(departs, here[index], motions.series[index]);
                 }

@@ -53,7 +53,7 @@ impl AttitudeTable {
     /// Rows that make no table: the key, and why.
     pub fn fault(rows: &[AttitudeAt]) -> Option<Fault> {
         if rows.len() < 2 {
-            return Some(Fault::new("table", format!("must have two rows or more, got {}", rows.len())));
+            return Some(Fault::new("table", format!("must have at least two rows, got {}", rows.len())));
         }
         let first = rows[0].time.get();
         if first != 0.0 {

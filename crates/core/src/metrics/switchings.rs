@@ -39,8 +39,7 @@ pub struct Switchings {
     goal: Goal,
     verdict: Verdict,
     /// Whether the cycle and the verdict are wanted.
-    wants_cycle: bool,
-    wants_verdict: bool,
+    wants: (bool, bool),
 }
 
 /// What the limit cycle comes to.
@@ -78,8 +77,7 @@ impl Switchings {
             reduced: scenario.model.commands_acceleration(),
             goal: scenario.goal(),
             verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
-            wants_cycle: selection.wants_any(OF_CYCLE),
-            wants_verdict: selection.wants_any(goal::TOLD),
+            wants: (selection.wants_any(OF_CYCLE), selection.wants_any(goal::TOLD)),
         }
     }
 
@@ -160,7 +158,7 @@ fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<Told> {
 
 impl Record for Switchings {
     fn course(&self) -> Course {
-        if !self.wants_verdict {
+        if !self.wants.1 {
             return Course::None;
         }
         // About a goal that is 0 from the start on, bounds of the angle show most motions to be inside.
@@ -185,7 +183,7 @@ impl Record for Switchings {
             Sample::Switching(command, _) => {
                 self.count += 1;
                 self.enter(now, command.state, command.torque_nm);
-                if self.wants_cycle {
+                if self.wants.0 {
                     self.cycle.record(now, sample)?;
                 }
             }

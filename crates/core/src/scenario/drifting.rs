@@ -34,7 +34,7 @@ impl Scenario {
                 Profile::Table(points) if points.len() < 2 => {
                     return at(
                         &format!("{key}.table"),
-                        format!("must have two points or more, got {}", points.len()),
+                        format!("must have at least two points, got {}", points.len()),
                     );
                 }
                 Profile::Table(points) => {

@@ -109,6 +109,7 @@ impl<R: Real> Circle<R> {
 
     /// The same integral on a smaller circle. One that is not `WIDE` has a modulus below 0.4.
     #[inline(always)]
+    #[must_use]
     pub fn landen<const WIDE: bool>(&self) -> Self {
         let k = self.modulus;
         let (one, two, half) = (k.of(1.0), k.of(2.0), k.of(0.5));

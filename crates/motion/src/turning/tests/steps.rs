@@ -130,7 +130,9 @@ fn what_runs_have_in_common_changes_nothing() {
         let start = (Quaternion::identity(), TUMBLE);
         let mut turning = Turning::sharing(common, &craft.body, start, &[[0.0; 2]; 8]);
         turning.depart(&Acting { rotors: rotors(SPUN, [0.1; 4]), ..Acting::default() });
-        ends.iter().for_each(|end| go(&mut turning, *end));
+        for end in ends {
+            go(&mut turning, *end);
+        }
         turning.seen().clone()
     };
     // More lengths of steps than are kept.
