@@ -50,7 +50,7 @@ fn runs_repeat_to_the_last_bit() {
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
         ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xe18f_c212_5f78_e08b),
         ("wheel-friction", " --runs 5:6", "/wheel_events", 0xcea0_ab4c_a7ca_0645),
-        ("wheel-friction", " --runs 5:6", "/metrics", 0x27fe_82d2_694e_4e9c),
+        ("wheel-friction", " --runs 5:6", "/metrics", 0xf87b_f387_9e1f_b874),
         ("flexible-boom", " --runs 5:6", "/metrics", 0x43cf_c127_d43c_9db6),
         ("sun-tracking", " --runs 5:6", "/metrics", 0xec81_1e08_f3cb_9013),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),

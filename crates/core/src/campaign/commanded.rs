@@ -169,9 +169,7 @@ mod tests {
     fn what_is_written_is_read_back() {
         assert_eq!(Commanded::parse(&given().to_csv()), Some(given()));
         assert_eq!(Commanded::parse(&Commanded::default().to_csv()), Some(Commanded::default()));
-        for wrong in
-            ["", "1,2,3,4,5", "1,0,0,0", "1,0,0,0,inf", "2,0,0,0,0\n1,0,0,0,0", "0,1000000000000000,0,0,0"]
-        {
+        for wrong in ["", "1,0,0,0", "1,0,0,0,inf", "2,0,0,0,0\n1,0,0,0,0", "0,1000000000000000,0,0,0"] {
             assert_eq!(Commanded::parse(&format!("{HEADER}\n{wrong}x")), None, "{wrong}");
             assert_eq!(
                 Commanded::parse(&format!("{HEADER}\n{wrong}")).is_none(),

@@ -172,7 +172,7 @@ pub fn adaptation(scenario: &Scenario) -> Vec<Panel> {
         Panel::plot("objective", &title, vec![line("/objective.value", "in each window")]),
         Panel::plot(
             "tuned",
-            &format!("Tuned number: {tunes}"),
+            format!("Tuned number: {tunes}"),
             vec![line("/objective.gain", "in each window")],
         ),
         search,

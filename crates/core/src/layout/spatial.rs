@@ -100,18 +100,15 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         elastic.push(Panel::states("latched", "Active damping: the threshold", channels("latched")));
         elastic.push(Panel::states("resting", "Active damping: the watchdog", channels("resting")));
     }
-    if scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) {
-        let lines = vec![
-            line("/envelope_mean.mean_rad", "window mean").thick(),
-            line("/envelope.envelope_rad", "envelope"),
-        ];
-        elastic.push(Panel::plot("envelope", "Envelope of the elastic modes (rad)", lines));
-    }
+    elastic.extend(envelope(scenario));
     if scenario.study.adaptive.is_some() {
         elastic.push(Panel::states("trusted", "Observers", channels("trusted")));
     }
-    let mut log = vec![Panel::log()];
-    log.extend(metrics(scenario));
+    together(scenario, motion, elastic)
+}
+
+/// The tabs, with the panels of the motion and of the modes.
+fn together(scenario: &Scenario, motion: Vec<Panel>, elastic: Vec<Panel>) -> Vec<Tab> {
     let mut tabs = vec![Tab { title: "Motion", panels: motion }];
     if scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some()) {
         tabs.push(Tab { title: "Attitude filter", panels: filter() });
@@ -120,8 +117,25 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     if scenario.adaptation.is_some() {
         tabs.push(Tab { title: "Adaptation", panels: adaptation(scenario) });
     }
-    tabs.push(Tab { title: "Log", panels: log });
+    tabs.push(Tab { title: "Log", panels: log(scenario) });
     tabs
+}
+
+/// The journal, and the metrics.
+fn log(scenario: &Scenario) -> Vec<Panel> {
+    let mut log = vec![Panel::log()];
+    log.extend(metrics(scenario));
+    log
+}
+
+/// The envelope with its window means, if there is a monitor.
+fn envelope(scenario: &Scenario) -> Option<Panel> {
+    scenario.estimator.as_ref()?.envelope()?;
+    let lines = vec![
+        line("/envelope_mean.mean_rad", "window mean").thick(),
+        line("/envelope.envelope_rad", "envelope"),
+    ];
+    Some(Panel::plot("envelope", "Envelope of the elastic modes (rad)", lines))
 }
 
 /// Errors of an attitude filter beside its own standard deviations, and whether they fit.

@@ -107,8 +107,11 @@ impl Scenario {
                 "names one of three axes, and the body has one angle",
             );
         }
+        if self.manoeuvre.is_some() {
+            return refused("manoeuvre", "is for bodies with one angle: use `[[target]]` for three axes");
+        }
         if self.drift.is_some() && self.body.craft().is_some() {
-            let why = "is of modes that are given: those of a `[spacecraft]` follow from its appendages, which a `drive` may turn";
+            let why = "is for modes that are given: those of a `[spacecraft]` follow from its appendages, which a `drive` can turn";
             return refused("drift", why);
         }
         for (index, disturbance) in self.disturbance.iter().enumerate() {

@@ -17,7 +17,7 @@ type Told = (Filter, Option<Innovation>);
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Innovation {
     /// Measured less expected; 0 where there is no third number.
-    innovation: [f64; 3],
+    off: [f64; 3],
     /// Its normalised square, of two numbers times 3/2.
     nis: f64,
     /// How many numbers it has.
@@ -37,8 +37,8 @@ fn innovation(of: &Bound<'_, PyAny>) -> PyResult<Innovation> {
     let off = DVector::from_column_slice(&values);
     let factor = Cholesky::new(DMatrix::from_fn(count, count, |row, column| rows[row][column]));
     let nis = factor.map_or(f64::NAN, |factor| 3.0 / count as f64 * off.dot(&factor.solve(&off)));
-    let innovation = [0, 1, 2].map(|axis| values.get(axis).copied().unwrap_or(0.0));
-    Ok(Innovation { innovation, nis, numbers: count as u64 })
+    let angles = [0, 1, 2].map(|axis| values.get(axis).copied().unwrap_or(0.0));
+    Ok(Innovation { off: angles, nis, numbers: count as u64 })
 }
 
 /// The filter that a part tells of: attitude, bias and covariance, and the innovation of a sample that measured the attitude;
@@ -81,7 +81,7 @@ pub fn row((filter, learnt): &Told, truth: &Orientation, bias: [f64; 3]) -> Opti
         bias_rad_s: filter.bias[axis],
         bias_error_rad_s: -bias_error[axis],
         bias_sd_rad_s: bias_sd[axis],
-        innovation_rad: told.innovation[axis],
+        innovation_rad: told.off[axis],
     };
     Some(AttitudeEstimate {
         q_w: filter.attitude.w,
