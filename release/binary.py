@@ -55,7 +55,9 @@ def materials(target: str) -> dict[str, Any]:
 
 
 def main() -> None:
-    (target,) = sys.argv[1:] or sys.exit(__doc__)
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    target = sys.argv[1]
     cargo("build", "--release", "--locked", "-p", "flexsc", "--features", "full", "--target", target)
     suffix = ".exe" if "windows" in target else ""
     version = json.loads(cargo("metadata", "--no-deps", "--format-version", "1"))["packages"][0]["version"]

@@ -18,7 +18,9 @@ MAX_BYTES = 10 * 2**20
 
 
 def main() -> None:
-    (target,) = sys.argv[1:] or sys.exit(__doc__)
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    target = sys.argv[1]
     if not ENVIRONMENT.exists():
         venv.create(ENVIRONMENT, with_pip=True)
     scripts = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")

@@ -118,7 +118,7 @@ pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) ->
         }
         let why = match found.value.parse() {
             // A count is printed as it is.
-            Ok(number) if found.value.contains('.') => short(number),
+            Ok(number) if found.value.contains(['.', 'e']) => short(number),
             _ => found.value.lines().next().unwrap_or_default().to_owned(),
         };
         let _ = writeln!(text, "    run {:<8}{why}", found.run);
