@@ -74,7 +74,7 @@ fn no_key_asks_for_what_cannot_be_done() {
         (
             "k_d = 0.4\nperiod = 0.3\n\n[actuator.wheel]\ngain = 1.0\ndelay = 0.0",
             "k_d = 0.4\nperiod = 1e-6\n[actuator.wheel]\ngain = 1.0\ndelay = 1e5",
-            &["`actuator.wheel.delay` keeps 2.0e9 commands waiting", "at most 1.0e6 are kept"],
+            &["`actuator.wheel.delay` keeps 2.0e9 commands waiting", "at most 1.0e6 are supported"],
         ),
         (modes, &hundreds, &["`body.planar` gives 300 modes", "at most 200 that a wheel or a drift couples"]),
         (modes, &thousands, &["`body.planar` gives 3000 modes", "at most 2000 of a body"]),

@@ -245,7 +245,7 @@ fn what_does_not_fit_is_refused() {
         ),
         (
             one("[actuator.ideal]\nfaults = [{ dead = { from = 3.0, wheel = 1 } }]"),
-            "dead.wheel` is of `[actuator.wheels]`",
+            "dead.wheel` applies only to `[actuator.wheels]`",
         ),
         (one("[actuator.ideal]\nfaults = [{ bent = { from = 3.0 } }]"), "`dead`"),
         (refused("duration = 1.0\nactuator = \"best\""), "`ideal`"),
@@ -253,7 +253,7 @@ fn what_does_not_fit_is_refused() {
             one(
                 "[actuator.wheel]\ngain = 1.0\nfaults = [{ added = { from = 0.0, sines = [{ amplitude = 1.0, frequency = 1.0 }] } }]",
             ),
-            "added.sines` leave no closed form with a wheel",
+            "added.sines` have no closed form with a wheel",
         ),
         (
             three(&format!("{wheels}faults = [{{ dead = {{ from = 3.0, wheel = 5 }} }}]")),
@@ -263,11 +263,11 @@ fn what_does_not_fit_is_refused() {
             three(&format!(
                 "{wheels}faults = [{{ added = {{ from = 0.0, sines = [{{ amplitude = 1.0, frequency = 1.0 }}] }} }}]"
             )),
-            "added.sines` are of a torque on the body",
+            "added.sines` apply only to a torque on the body",
         ),
         (
             three("[actuator.ideal]\nfaults = [{ dead = { from = 3.0, thruster = \"a\" } }]"),
-            "dead.thruster` is of `[actuator.jets]`",
+            "dead.thruster` applies only to `[actuator.jets]`",
         ),
         (
             one("[[disturbance]]\nsines = [{ amplitude = 1.0, frequency = 1.0 }]"),
