@@ -282,9 +282,9 @@ class Descent(flexsc.Adaptation):
     def start(self, value: float, draws: Draws) -> None:
         self.value, self.last = value, float("inf")
 
-    def learn(self, time: float, mean: float) -> float:
-        if mean > self.last:
+    def learn(self, time: float, measured: float) -> float:
+        if measured > self.last:
             self.step = -self.step
-        self.last = mean
+        self.last = measured
         self.value = min(0.4, max(0.28, self.value + self.step))
         return self.value

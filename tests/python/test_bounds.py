@@ -65,7 +65,7 @@ def test_long_work_needs_a_yes() -> None:
         flexsc.campaign(long, 10)
     with pytest.raises(ValueError, match="at most 100000000 runs, got 1000000000000"):
         flexsc.campaign(long, 10**12, yes=True)
-    with pytest.raises(flexsc.ScenarioError, match=r"`law.pd.period` makes .* at most 1.0e12 are done"):
+    with pytest.raises(flexsc.ScenarioError, match=r"`law.pd.period` makes .* at most 1.0e12 are allowed"):
         long.with_("law.pd.period", 1e-13)
     with pytest.raises(ValueError, match="horizon must be at most 1e7 samples"):
         flexsc.stability_map(shipped("wheel-ekf"), [0.3], [1e-15], yes=True)

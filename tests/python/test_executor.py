@@ -274,4 +274,4 @@ def test_the_command_hands_a_campaign_to_a_scheduler(study: Scenario, whole: Tab
         [*command, "--scheduler", address, "--json"], cwd=tmp_path, capture_output=True, check=False
     )
     assert ran.returncode == 2
-    assert b"without --json" in ran.stderr
+    assert b"leave out --json" in ran.stderr

@@ -90,7 +90,7 @@ def test_axes_are_the_users_own_and_hold_si(run: Result) -> None:
 
 
 def test_a_figure_that_does_not_exist_is_named(run: Result) -> None:
-    with pytest.raises(ValueError, match="no figure 'angel' of it; it has phase-plane"):
+    with pytest.raises(ValueError, match="no figure 'angel' for it; it has phase-plane"):
         plot.draw(run, "angel")
 
 

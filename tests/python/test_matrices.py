@@ -1,17 +1,21 @@
 """Appendages from assembled matrices: a cantilever of beam elements beside its closed form."""
 
 from pathlib import Path
+from typing import Any
 
 import flexsc
 import numpy as np
+import numpy.typing as npt
 import pytest
+
+Numbers = npt.NDArray[np.float64]
 
 LENGTH, MASS, WIDTH, DEPTH = 3.0, 6.0, 0.08, 0.05
 YOUNG, SHEAR = 70e9, 26e9
 NODES = 41
 
 
-def beam(nodes=NODES, consistent=True):
+def beam(nodes: int = NODES, consistent: bool = True) -> tuple[Numbers, Numbers, Numbers]:
     """Mass and stiffness of an Euler-Bernoulli beam along x, six directions a node, and the positions."""
     h = LENGTH / (nodes - 1)
     rho, area = MASS / LENGTH, WIDTH * DEPTH
@@ -48,7 +52,7 @@ def beam(nodes=NODES, consistent=True):
     turned = np.diag([1.0, -1.0, 1.0, -1.0])
     for first in range(0, 6 * (nodes - 1), 6):
 
-        def put(rows, k, m, first=first):
+        def put(rows: tuple[int, ...], k: Numbers, m: Numbers, first: int = first) -> None:
             at = np.ix_([first + row for row in rows], [first + row for row in rows])
             stiffness[at] += k
             mass[at] += m
@@ -64,7 +68,7 @@ def beam(nodes=NODES, consistent=True):
     return mass, stiffness, positions
 
 
-def cantilever(count):
+def cantilever(count: int) -> list[tuple[float, float, float]]:
     """Bending modes in closed form: b L, and integrals of phi and x phi for a unit generalised mass."""
     x = np.polynomial.legendre.leggauss(400)
     s, w = (x[0] + 1) / 2, x[1] / 2
@@ -83,19 +87,14 @@ def cantilever(count):
     return told
 
 
-def appendage(**keys):
+def appendage(**keys: Any) -> dict[str, Any]:
     mass, stiffness, positions = beam(consistent=keys.pop("consistent", True))
-    return flexsc.appendage_from_matrices(
-        mass,
-        stiffness,
-        positions,
-        {"tip": NODES - 1},
-        **{"clamped": [0], "damping": 0.004, "keep": 8, **keys},
-    )
+    settings: dict[str, Any] = {"clamped": [0], "damping": 0.004, "keep": 8, **keys}
+    return flexsc.appendage_from_matrices(mass, stiffness, positions, {"tip": NODES - 1}, **settings)
 
 
 @pytest.mark.parametrize(("consistent", "within"), [(True, 2e-6), (False, 3e-3)])
-def test_a_cantilever_is_that_of_the_closed_form(consistent, within):
+def test_a_cantilever_is_that_of_the_closed_form(consistent: bool, within: float) -> None:
     boom = appendage(consistent=consistent)
     assert boom["mass"] == pytest.approx(MASS, rel=1e-12)
     assert boom["centre"] == pytest.approx([LENGTH / 2, 0, 0], abs=1e-12)
@@ -121,7 +120,7 @@ def test_a_cantilever_is_that_of_the_closed_form(consistent, within):
             assert abs(tip) == pytest.approx(2 / np.sqrt(MASS), rel=5 * within)
 
 
-def test_units_and_the_root_are_those_that_are_told():
+def test_units_and_the_root_are_those_that_are_told() -> None:
     mass, stiffness, positions = beam()
     small = flexsc.appendage_from_matrices(
         # In tonnes and millimetres, rows of rotations in N mm.
@@ -146,12 +145,12 @@ def test_units_and_the_root_are_those_that_are_told():
         assert shapes[0] == pytest.approx(shapes[1], rel=1e-6, abs=1e-7)
 
 
-def scaled(tonnes):
+def scaled(tonnes: float) -> Numbers:
     length = np.tile([1.0, 1.0, 1.0, 1e3, 1e3, 1e3], NODES)
     return tonnes * np.outer(length, length)
 
 
-def test_sparse_matrices_and_rows_in_any_order():
+def test_sparse_matrices_and_rows_in_any_order() -> None:
     sparse = pytest.importorskip("scipy.sparse")
     mass, stiffness, positions = beam()
     order = np.random.default_rng(3).permutation(6 * NODES)
@@ -171,7 +170,7 @@ def test_sparse_matrices_and_rows_in_any_order():
         assert np.abs(one["translation"]) == pytest.approx(np.abs(other["translation"]), rel=1e-6, abs=1e-7)
 
 
-def test_it_flies():
+def test_it_flies() -> None:
     boom = appendage(keep=4)
     scenario = flexsc.Scenario(
         {
@@ -197,19 +196,20 @@ def test_it_flies():
         ({"dofs": [[0, 1]]}, "dofs: must be whole numbers of shape"),
     ],
 )
-def test_what_does_not_fit_is_told(keys, told):
+def test_what_does_not_fit_is_told(keys: dict[str, Any], told: str) -> None:
     with pytest.raises(ValueError, match=told):
         appendage(**keys)
 
 
-def test_matrices_of_another_kind_are_told():
+def test_matrices_of_another_kind_are_told() -> None:
     mass, stiffness, positions = beam()
 
-    def told(mass=mass, stiffness=stiffness, positions=positions, **keys):
+    def told(
+        mass: Numbers = mass, stiffness: Numbers = stiffness, positions: Numbers = positions, **keys: Any
+    ) -> str:
+        settings: dict[str, Any] = {"clamped": [0], "damping": 0.0, **keys}
         with pytest.raises(ValueError, match=":") as caught:
-            flexsc.appendage_from_matrices(
-                mass, stiffness, positions, **{"clamped": [0], "damping": 0.0, **keys}
-            )
+            flexsc.appendage_from_matrices(mass, stiffness, positions, **settings)
         return str(caught.value)
 
     assert "mass: must be symmetric" in told(mass=np.triu(mass))
@@ -227,7 +227,7 @@ def test_matrices_of_another_kind_are_told():
 
 
 @pytest.mark.parametrize("kind", ["npz", "sparse npz", "mat", "mtx"])
-def test_files_of_matrices(kind, tmp_path: Path):
+def test_files_of_matrices(kind: str, tmp_path: Path) -> None:
     mass, stiffness, _ = beam(nodes=3)
     path = tmp_path / f"beam.{kind.split()[-1]}"
     if kind == "npz":
@@ -248,7 +248,7 @@ def test_files_of_matrices(kind, tmp_path: Path):
     assert np.array_equal(found["MGG"], mass)
 
 
-def test_files_that_hold_none_are_told(tmp_path: Path):
+def test_files_that_hold_none_are_told(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"must end in \.npz"):
         flexsc.read_matrices(tmp_path / "a.txt")
     with pytest.raises(FileNotFoundError):

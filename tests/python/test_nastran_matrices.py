@@ -20,13 +20,13 @@ TEXT = """       2       2       6       2KGG     1P,3E24.16
 """
 
 
-def test_a_text_as_nastran_writes_it(tmp_path: Path):
+def test_a_text_as_nastran_writes_it(tmp_path: Path) -> None:
     path = tmp_path / "panel.op4"
     path.write_text(TEXT)
     assert flexsc.read_matrices(path)["KGG"].tolist() == [[5.0, -0.25], [-0.25, 7.0]]
 
 
-def test_a_binary_as_nastran_writes_it(tmp_path: Path):
+def test_a_binary_as_nastran_writes_it(tmp_path: Path) -> None:
     mass = np.array([[3.0, 0.5, 0.0], [0.5, 2.0, 0.25], [0.0, 0.25, 1.0]])
 
     def record(data: bytes) -> bytes:
@@ -40,7 +40,7 @@ def test_a_binary_as_nastran_writes_it(tmp_path: Path):
     assert np.array_equal(flexsc.read_matrices(path)["MGG"], mass)
 
 
-def test_another_file_is_told(tmp_path: Path):
+def test_another_file_is_told(tmp_path: Path) -> None:
     path = tmp_path / "panel.op4"
     path.write_text("no matrices\n")
     with pytest.raises(ValueError, match=r"panel\.op4"):

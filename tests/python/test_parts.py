@@ -195,7 +195,7 @@ def test_an_adaptation_in_python_has_an_objective() -> None:
     result = study.with_parts(adaptation=Faster()).simulate()
     rows = result["objective"]
     np.testing.assert_allclose(rows["gain"], 0.02 + 0.01 * np.arange(10))
-    assert rows["value"][-1] < 0.3 * rows["value"][0]
+    assert rows["value"][-1] < 0.6 * rows["value"][0]
     assert result.metrics["objective_final"] == rows["value"][-1]
     with pytest.raises(ValueError, match="objective must be one of 'envelope_mean', "):
         study.with_parts(adaptation=type("Odd", (Faster,), {"objective": "speed"})())
