@@ -114,7 +114,7 @@ def test_a_spacecraft_turns_as_the_model_says() -> None:
     keys |= {"duration": 20.0, "law": {"open": {}}, "log": {"period": 0.25}}
     keys["spacecraft"]["points"] = [{"name": "bus"}]
     scenario = flexsc.Scenario(keys, "craft")
-    # Torques so small that the motion is linear, and large beside what steps leave of unresolved modes, 1e-14 rad/s.
+    # So small that the motion is linear, and large beside what steps leave of unresolved modes, 1e-14 rad/s.
     torques = 1e-5 * np.random.default_rng(7).normal(size=(90, 3))
     result = scenario.with_parts(law=Steps(0.25, torques)).simulate(log="full")
     model = scenario.linearise(period=0.25)
