@@ -4,6 +4,7 @@ use super::{BESIDE, Turning};
 use crate::attitude::Vector;
 use crate::turning::Surroundings;
 use crate::turning::common::Regular;
+use crate::turning::model::outward;
 use crate::turning::pace::{Amplitude, Pose};
 
 impl Turning {
@@ -29,14 +30,14 @@ impl Turning {
         let rigid = model.inverse * turning;
         // What holds the displacements that each mode swings about, and loses nothing of.
         let pushed = acting.torque - change;
-        let net = pushed - rigid.cross(&grid.momentum);
+        let (net, spun) = (pushed - rigid.cross(&grid.momentum), outward(&rigid));
         for (index, (amplitude, of)) in amplitudes.iter_mut().zip(&model.modes).enumerate() {
             let [q, p, ..] = grid.modes[index];
             let (w, forced) = (of.frequency, acting.forces.get(index).copied().unwrap_or(0.0));
-            let held = (of.rotation.dot(&net) + forced) / (w * w);
+            let held = (of.rotation.dot(&net) + of.moved(&spun) + forced) / (w * w);
             let speed = (p + of.rotation.dot(&turning) / w).abs();
-            let most = (of.rotation.dot(&pushed) + forced).abs() / (w * w);
-            // At least the displacement, the rate, and what the torque bends, each.
+            let most = ((of.rotation.dot(&pushed) + forced).abs() / (w * w)).max(held.abs());
+            // At least the displacement, the rate, and what the torque or the rotation bends, each.
             let most = q.abs() + speed + most;
             *amplitude = Amplitude { most, swings: most.min((q - held).abs() + speed) };
         }

@@ -21,6 +21,28 @@ fn the_rule_of_steps_meets_its_bound() {
     assert!(worst < 2e-12, "{worst:e}");
 }
 
+/// A body that begins to tumble with its modes at rest: the rotation makes them swing. Against steps an eighth as long.
+#[test]
+fn what_the_rotation_bends_counts_from_the_first_step_on() {
+    let craft = craft().stiff().undamped();
+    for (rate, bound) in [(0.014, 1e-15), (0.07, 1e-12), (0.21, 2e-11)] {
+        let start = || {
+            let rate = TUMBLE * (rate / TUMBLE.norm());
+            let mut turning = Turning::new(&craft.body, Quaternion::identity(), rate, &[]);
+            turning.depart(&Acting { rotors: rotors(SPUN, [0.0; 4]), ..Acting::default() });
+            turning
+        };
+        let (mut turning, mut finer) = (start(), start());
+        finer.set_pace(Pace::fixed(1.0 / 512.0));
+        for t in [0.5, 2.0, 20.0] {
+            go(&mut turning, t);
+            go(&mut finer, t);
+            let off = apart(&turning.seen().attitude, &finer.seen().attitude);
+            assert!(off < bound, "{rate} rad/s, {t} s: {off:e}");
+        }
+    }
+}
+
 /// Of a body that is turned by its wheels, four commands a second, with first moments: against steps that resolve all modes.
 #[test]
 fn steps_are_longer_where_modes_hardly_move() {
