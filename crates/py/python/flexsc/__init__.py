@@ -43,7 +43,7 @@ from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, H
 
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
-    from flexsc._linear import Linear, Signal
+    from flexsc._linear import Linear, Margins, Signal
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -67,6 +67,7 @@ __all__ = [
     "Linear",
     "Log",
     "LogError",
+    "Margins",
     "Metrics",
     "Plan",
     "Quantities",
@@ -120,6 +121,7 @@ __all__ = [
 _MODULES = ("parts", "plot", "scenario", "structure")
 _LATER = {
     "Linear": "_linear",
+    "Margins": "_linear",
     "Signal": "_linear",
     "StateSpace": "structure",
     "Structure": "structure",
