@@ -259,8 +259,8 @@ class Scenario:
             loop: Return the open loop of a linear law (`pd`, `attitude` with its integral and filters,
                 `state_space`), with the Kalman filter or attitude filter that the law reads, sampled with the
                 law's period (or the shortest with which all parts repeat) and opened at the `command` of the
-                law, at the `torque` of the actuator, or at the `measurement` of angles and rates. The signs are those of negative feedback: `closed()`
-                closes the loop again.
+                law, at the `torque` of the actuator, or at the `measurement` of angles and rates. The signs
+                are those of negative feedback: `closed()` closes the loop again.
 
         >>> flexsc.Scenario.example("relay-fixed").linearise(period=0.5).a.shape
         (6, 6)
