@@ -9,6 +9,7 @@ from math import floor
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._values import counted
 
 if TYPE_CHECKING:
     import numpy as np
@@ -232,7 +233,8 @@ class Linear:
 
     def __repr__(self) -> str:
         time = "continuous" if self.period is None else f"every {self.period:g} s"
-        shape = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        parts = {"state": self.states, "input": self.inputs, "output": self.outputs}
+        shape = ", ".join(counted(len(signals), part) for part, signals in parts.items())
         return f"<flexsc.Linear {time}: {shape}>"
 
 
