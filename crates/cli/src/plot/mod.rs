@@ -100,7 +100,9 @@ impl Args {
     /// The figures of a log over the time that is asked for.
     fn own(&self, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
         let log = Log::open(path)?;
-        outdated::warn(&log, path);
+        if !self.json {
+            outdated::warn(&log, path);
+        }
         drawn_over(&log, path, asked, (self.from, self.to))
     }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::attitude_parts;
+use super::attitude_parts::AttitudeParts;
 use crate::belief::Reads;
 use crate::document::Fault;
 use crate::estimator::kalman::{Kalman, Setting, Steady};
@@ -19,7 +19,7 @@ pub struct LoopParts {
     /// The estimator of each axis; none where the law reads what is measured.
     pub estimators: Option<Vec<Observer>>,
     /// The attitude filter, if the law reads one.
-    pub attitude: Option<attitude_parts::AttitudeParts>,
+    pub attitude: Option<AttitudeParts>,
 }
 
 /// An estimator of one axis.
@@ -45,7 +45,6 @@ impl LoopParts {
         let axes = scenario.study.axes.len();
         let filters = (0..axes).map(|axis| filters(scenario.law.about(axis))).collect();
         let reads = |axis: usize| scenario.law.about(axis).reads() == Reads::DominantMode;
-        let mut attitude = None;
         let estimators = match &scenario.estimator {
             None | Some(Estimator::Envelope(_)) => None,
             Some(estimator) if estimator.watches_only() => None,
@@ -57,18 +56,18 @@ impl LoopParts {
             Some(Estimator::Kalman(kalman)) => {
                 Some((0..axes).map(|axis| observer(scenario, kalman, axis)).collect::<Result<_, _>>()?)
             }
-            Some(Estimator::Attitude(filter)) => {
-                let parts = attitude_parts::AttitudeParts::of(scenario, filter);
-                attitude = Some(parts.map_err(|fault| fault.within("estimator.attitude"))?);
-                None
-            }
             Some(estimator) => {
+                if let Some(filter) = estimator.attitude() {
+                    let parts = AttitudeParts::of(scenario, filter);
+                    let attitude = Some(parts.map_err(|fault| fault.within("estimator.attitude"))?);
+                    return Ok(Self { filters, estimators: None, attitude });
+                }
                 let why = "is no linear system with constant gains: a loop has `kalman`, `attitude`, or an estimator \
                            with `watch_only`";
                 return Err(Fault::new(format!("estimator.{}", estimator.kind()), why));
             }
         };
-        Ok(Self { filters, estimators, attitude })
+        Ok(Self { filters, estimators, attitude: None })
     }
 }
 
