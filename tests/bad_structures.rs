@@ -71,7 +71,7 @@ const BAD: &[Case] = &[
     ("no name of an array", &[(2, "mass = \"dense.npz\"")], "\"dense.npz\"", &["dense.npz: must be followed by a colon and the name of an array, one of `K`, `M`"]),
     ("no such array", &[(2, "mass = \"dense.npz:m\"")], "\"dense.npz:m\"", &["dense.npz: has no array `m`, only `K`, `M`"]),
     ("envelopes of what has none", &[(5, "damping = 1\n[estimator.envelope]\nwindow = 1")], "1", &["`body.matrices.damping` must be below 1 for a mode to have an envelope"]),
-    ("a table with few weights", &[(1, "[body.planar]\nmodes = [{ frequency = 1, gain = 0.1 }]"), (2, ""), (3, ""), (4, "outputs = [{ name = \"tip\", modes = [] }]")], "[]", &["`body.planar.outputs[0].modes` must have one number for each of 1 modes, got 0"]),
+    ("a table with few weights", &[(1, "[body.planar]\nmodes = [{ frequency = 1, gain = 0.1 }]"), (2, ""), (3, ""), (4, "outputs = [{ name = \"tip\", modes = [] }]")], "[]", &["`body.planar.outputs[0].modes` must have one number for each of 1 mode, got 0"]),
     ("no sections", &[(1, "[body.panels]\nhub_inertia = 1\nroot = 1\nsections = []"), (2, ""), (3, ""), (4, "")], "[]", &["`body.panels.sections` must be 1 to 99, got 0"]),
     ("no panels", &[(1, "[body.panels]\nhub_inertia = 1\nroot = 1\ncount = 0\nsections = [{ length = 1, mass_per_length = 1, hinge_stiffness = 1 }]"), (2, ""), (3, ""), (4, "")], "0", &["`body.panels.count` must be 1 or more, got 0"]),
     ("a section without length", &[(1, "[body.panels]\nhub_inertia = 1\nroot = 1\nsections = [{ length = 0, mass_per_length = 1, hinge_stiffness = 1 }]"), (2, ""), (3, ""), (4, "")], "0", &["`body.panels.sections[0].length`", "must be a positive number, got 0"]),

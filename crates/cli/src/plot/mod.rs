@@ -20,6 +20,7 @@ mod magnetorquers;
 mod modes;
 mod motion;
 mod orbit;
+mod outdated;
 mod outputs;
 mod overlay;
 mod phase_plane;
@@ -99,7 +100,9 @@ impl Args {
 impl Args {
     /// The figures of a log over the time that is asked for.
     fn own(&self, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
-        drawn_over(&Log::open(path)?, path, asked, (self.from, self.to))
+        let log = Log::open(path)?;
+        outdated::warn(&log, path);
+        drawn_over(&log, path, asked, (self.from, self.to))
     }
 
     /// The figures that all logs have, those of a kind one over the other.

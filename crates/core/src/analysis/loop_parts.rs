@@ -1,7 +1,8 @@
-//! The linear parts of a loop that are not read off a scenario's keys: filters of laws at their samples, and estimators in the end.
+//! The linear parts of a loop that are not read off a scenario's keys: filters of laws at their samples, and settled estimators.
 
 use serde::Serialize;
 
+use super::attitude_parts;
 use crate::belief::Reads;
 use crate::document::Fault;
 use crate::estimator::kalman::{Kalman, Setting, Steady};
@@ -17,6 +18,8 @@ pub struct LoopParts {
     pub filters: Vec<Vec<([f64; 3], [f64; 2])>>,
     /// The estimator of each axis; none where the law reads what is measured.
     pub estimators: Option<Vec<Observer>>,
+    /// The attitude filter, if the law reads one.
+    pub attitude: Option<attitude_parts::AttitudeParts>,
 }
 
 /// An estimator of one axis.
@@ -42,6 +45,7 @@ impl LoopParts {
         let axes = scenario.study.axes.len();
         let filters = (0..axes).map(|axis| filters(scenario.law.about(axis))).collect();
         let reads = |axis: usize| scenario.law.about(axis).reads() == Reads::DominantMode;
+        let mut attitude = None;
         let estimators = match &scenario.estimator {
             None | Some(Estimator::Envelope(_)) => None,
             Some(estimator) if estimator.watches_only() => None,
@@ -53,12 +57,18 @@ impl LoopParts {
             Some(Estimator::Kalman(kalman)) => {
                 Some((0..axes).map(|axis| observer(scenario, kalman, axis)).collect::<Result<_, _>>()?)
             }
+            Some(Estimator::Attitude(filter)) => {
+                let parts = attitude_parts::AttitudeParts::of(scenario, filter);
+                attitude = Some(parts.map_err(|fault| fault.within("estimator.attitude"))?);
+                None
+            }
             Some(estimator) => {
-                let why = "is no linear system with constant gains: a loop has `kalman`, or an estimator with `watch_only`";
+                let why = "is no linear system with constant gains: a loop has `kalman`, `attitude`, or an estimator \
+                           with `watch_only`";
                 return Err(Fault::new(format!("estimator.{}", estimator.kind()), why));
             }
         };
-        Ok(Self { filters, estimators })
+        Ok(Self { filters, estimators, attitude })
     }
 }
 

@@ -44,7 +44,7 @@ from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, H
 
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
-    from flexsc._linear import Linear, Signal
+    from flexsc._linear import Linear, Margins, Signal
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -68,6 +68,7 @@ __all__ = [
     "Linear",
     "Log",
     "LogError",
+    "Margins",
     "Metrics",
     "Plan",
     "Quantities",
@@ -121,6 +122,7 @@ __all__ = [
 _MODULES = ("parts", "plot", "scenario", "structure")
 _LATER = {
     "Linear": "_linear",
+    "Margins": "_linear",
     "Signal": "_linear",
     "StateSpace": "structure",
     "Structure": "structure",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from flexsc import _arrow, _units
 from flexsc import _native as engine
 from flexsc._scenario import Scenario
-from flexsc._values import objects
+from flexsc._values import counted, objects
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -127,10 +127,10 @@ class Table:
         drawn = self._figures(None, ()) if len(self) > 1 else []
         figure = _html.picture(drawn[0][1]) if drawn else ""
         statistics = _html.folded(f"{len(rows)} metrics", _html.table(head, rows))
-        return _html.heading(self.scenario.name, f"{len(self)} runs") + figure + statistics
+        return _html.heading(self.scenario.name, counted(len(self), "run")) + figure + statistics
 
     def __repr__(self) -> str:
-        return f"<flexsc.Table of {self.scenario.name}: {len(self)} runs>"
+        return f"<flexsc.Table of {self.scenario.name}: {counted(len(self), 'run')}>"
 
 
 def of_directory(path: str | os.PathLike[str], kept: object = None) -> Table:
