@@ -4,6 +4,7 @@ mod accelerations;
 mod angle;
 mod attitude_filter;
 mod campaign;
+mod columns;
 mod consistency;
 mod dead_zone;
 mod drive;

@@ -6,25 +6,14 @@
 //! form of Joseph. So does a vector y that is r in inertial axes: with b = Q^* r it is b + b x theta, of a direction the part across
 //! b alone. Errors stay on the right of Q^: nothing has to be reset but Q^ itself.
 
-use nalgebra::{
-    Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
-};
+use nalgebra::{Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, ToTypenum};
 
-use super::history::Measured;
+use super::measurement::{GyroNoise, Measured, across};
 use super::swinging::{Swinging, Told};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::environment::into;
 use crate::numerics::stumpff::stumpff;
 use crate::sensor::Sight;
-
-/// Noise of a gyro as the filter knows it, the same about each axis.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct GyroNoise {
-    /// Angle random walk (rad/sqrt(s)).
-    pub angle_random_walk: f64,
-    /// Rate random walk (rad/s^1.5).
-    pub rate_random_walk: f64,
-}
 
 /// The filter: what it knows at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -237,13 +226,6 @@ fn interval(turn: &Vector, seconds: f64, [white, walk]: [f64; 2]) -> (Matrix6<f6
         one * (walk * seconds),
     ]);
     (transition, added)
-}
-
-/// Two unit vectors across a vector and each other, as rows.
-pub(super) fn across(v: &Vector) -> SMatrix<f64, 2, 3> {
-    let first = v.cross(&Vector::ith(v.iamin(), 1.0)).normalize();
-    let second = v.cross(&first).normalize();
-    SMatrix::from_rows(&[first.transpose(), second.transpose()])
 }
 
 fn unit(q: Quaternion<f64>) -> Quaternion<f64> {
