@@ -6,7 +6,9 @@
 //! form of Joseph. So does a vector y that is r in inertial axes: with b = Q^* r it is b + b x theta, of a direction the part across
 //! b alone. Errors stay on the right of Q^: nothing has to be reset but Q^ itself.
 
-use nalgebra::{Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, ToTypenum};
+use nalgebra::{
+    Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
+};
 
 use super::measurement::{GyroNoise, Measured, across};
 use super::swinging::{Swinging, Told};
