@@ -70,6 +70,13 @@ impl Spin {
     }
 }
 
+impl Wheels {
+    /// The wheels before their first command, on a body of these settings.
+    pub fn start(&self, allocation: &Allocation, settings: &[Setting]) -> Spinning {
+        Spinning::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
+    }
+}
+
 impl Spinning {
     /// The wheels before their first command, at these speeds (rad/s).
     pub fn new(wheels: &Wheels, allocation: Allocation, speeds: &[f64], settings: &[Setting]) -> Self {

@@ -6,9 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::allocation::{Allocation, Choice};
 use super::failure::{Failing, Lasting};
 use super::per_wheel::PerWheel;
-use super::spinning::Spinning;
 use super::unloading::Unloading;
-use super::{Failure, Friction, Imbalance, Setting};
+use super::{Failure, Friction, Imbalance};
 use crate::attitude::Vector;
 use crate::body::Spatial;
 use crate::body::craft::Rotor;
@@ -105,11 +104,6 @@ pub struct SpeedBias {
 const EQUAL_CANT: f64 = 0.615_479_708_670_387_3;
 
 impl Wheels {
-    /// The wheels before their first command, on a body of these settings.
-    pub fn start(&self, allocation: &Allocation, settings: &[Setting]) -> Spinning {
-        Spinning::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
-    }
-
     /// How many there are.
     pub fn count(&self) -> usize {
         match self.arrangement {
@@ -125,7 +119,7 @@ impl Wheels {
         Failing::new(&self.faults, own)
     }
 
-    fn speeds(&self, count: usize) -> Vec<f64> {
+    pub(super) fn speeds(&self, count: usize) -> Vec<f64> {
         (0..count).map(|wheel| self.speeds.get(wheel).map_or(0.0, |speed| speed.get())).collect()
     }
 
