@@ -15,6 +15,7 @@ mod instants;
 mod journal;
 mod metering;
 mod own;
+mod plain;
 mod plant;
 mod reference;
 mod sensing;
@@ -88,6 +89,8 @@ pub struct Simulation {
     steered: bool,
     /// Whether parts of it are a program's own.
     own: bool,
+    /// Whether the loop of plain runs suits it.
+    plain: bool,
 }
 
 impl Simulation {
@@ -120,6 +123,7 @@ impl Simulation {
             unanswered: None,
             steered: false,
             own: scenario.has_own_parts(),
+            plain: plain::is_plain(scenario),
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -140,6 +144,7 @@ impl Simulation {
         let until = until.min(self.end);
         self.open(record)?;
         self.resume(None, record)?;
+        self.run_plainly(until, record)?;
         while self.arrive(until, record)? {
             self.serve(record)?;
         }
@@ -350,7 +355,8 @@ impl Simulation {
         self.feel(&truth);
         self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
         self.depart(record)?;
-        self.tell_switching(before, cause, &truth, record)
+        let torque = self.drive.actuator.asked(0);
+        self.tell_switching(before, cause, [truth.seen()[0], truth.rate[0]], torque, record)
     }
 
     /// Begins a motion under what acts from now on, and finds the next trip.
