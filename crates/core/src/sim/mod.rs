@@ -11,6 +11,7 @@ mod drive;
 mod error;
 mod events;
 mod failing;
+mod flying;
 mod instants;
 mod journal;
 mod metering;
@@ -41,6 +42,7 @@ pub(crate) use plant::Exerted;
 pub use sight::{Field, Group};
 pub use stepping::Occasion;
 
+use plain::Quick;
 use plant::Plant;
 use reference::Reference;
 use sensing::Sensing;
@@ -89,8 +91,8 @@ pub struct Simulation {
     steered: bool,
     /// Whether parts of it are a program's own.
     own: bool,
-    /// Whether the loop of plain runs suits it.
-    plain: bool,
+    /// Which quicker loops suit it.
+    quick: Quick,
 }
 
 impl Simulation {
@@ -123,7 +125,7 @@ impl Simulation {
             unanswered: None,
             steered: false,
             own: scenario.has_own_parts(),
-            plain: plain::is_plain(scenario),
+            quick: Quick::new(scenario),
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -144,7 +146,7 @@ impl Simulation {
         let until = until.min(self.end);
         self.open(record)?;
         self.resume(None, record)?;
-        self.run_plainly(until, record)?;
+        self.run_quickly(until, record)?;
         while self.arrive(until, record)? {
             self.serve(record)?;
         }

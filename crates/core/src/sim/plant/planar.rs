@@ -323,6 +323,15 @@ impl PlanarPlant {
         self.begin(&Input { constant, waveform: None });
     }
 
+    /// Puts the body into a state at an instant.
+    pub fn put(&mut self, now: Instant, change: impl FnOnce(&mut State)) {
+        change(&mut self.state);
+        let rate = self.mode_rates().fold(self.state.rigid_rate, |sum, rate| sum + rate);
+        (self.seen, self.sight) = (now, Sensed { angle: self.state.angle(), rate, acceleration: 0.0 });
+        // What was found ahead was found on another motion.
+        self.ahead.2 = Instant::START;
+    }
+
     fn begin(&mut self, input: &Input) {
         match &mut self.motion {
             Motion::Planar(arc) => arc.depart(&self.state, input),
