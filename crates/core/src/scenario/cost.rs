@@ -35,6 +35,9 @@ const MUCH_DISK: f64 = 2e10;
 
 /// Time of a step (s), and what each mode adds. A rough figure, of an ordinary core.
 const STEP_S: (f64, f64) = (3e-7, 4e-8);
+/// Steps of a relay law for each radian of the fastest mode: between those of runs in lanes, and of damped modes one by one, which
+/// take half and twice as long.
+const RELAY_STRIDES: f64 = 0.1;
 /// A step of a rotation about three axes, with its passes over the stages, takes as long as so many others.
 const PASSES: f64 = 20.0;
 /// What the steps of a rotation are told by.
@@ -244,10 +247,10 @@ impl Scenario {
                 each(format!("disturbance[{index}].period"), until - disturbance.from.get(), period);
             }
         }
-        // Crossings are searched, and exact panels integrated, by strides within a vibration.
+        // Crossings are guessed or searched, and exact panels integrated, by strides within a vibration.
         let strides = match &self.law {
             _ if self.chain.is_some() => 20.0,
-            Law::Relay(_) if self.study.sampling.is_none() => 1.0,
+            Law::Relay(_) if self.study.sampling.is_none() => RELAY_STRIDES,
             _ => 0.0,
         };
         let fastest = self.model.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);

@@ -167,12 +167,13 @@ impl Simulation {
         Ok(self.telling.events.arrived(now, &row, record)?)
     }
 
-    /// A switching of the law of one angle: its state was another before.
+    /// A switching of the law of one angle, whose state was another before: what the sensor sees, and what is commanded.
     pub(super) fn tell_switching(
         &self,
         before: Phase,
         cause: Option<Cause>,
-        truth: &Truth,
+        [angle_rad, rate_rad_s]: [f64; 2],
+        torque_nm: f64,
         record: &mut impl Record,
     ) -> Result<(), SimulationError> {
         let (now, state) = (self.now, self.laws.about(0).state());
@@ -187,9 +188,9 @@ impl Simulation {
             time_fs,
             state,
             cause: if cause == Some(Cause::Timeout) { Trigger::Timeout } else { Trigger::Guard },
-            torque_nm: self.drive.actuator.asked(0),
-            angle_rad: truth.seen()[0],
-            rate_rad_s: truth.rate[0],
+            torque_nm,
+            angle_rad,
+            rate_rad_s,
             gain: self.laws.about(0).tuned(),
         };
         record.record(now, Sample::Switching(&command, plant.state()))?;
