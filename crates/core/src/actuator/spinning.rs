@@ -70,6 +70,13 @@ impl Spin {
     }
 }
 
+impl Wheels {
+    /// The wheels before their first command, on a body of these settings.
+    pub fn start(&self, allocation: &Allocation, settings: &[Setting]) -> Spinning {
+        Spinning::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
+    }
+}
+
 impl Spinning {
     /// The wheels before their first command, at these speeds (rad/s).
     pub fn new(wheels: &Wheels, allocation: Allocation, speeds: &[f64], settings: &[Setting]) -> Self {
@@ -108,11 +115,6 @@ impl Spinning {
         let rate = Vector::from_fn(|axis, _| self.settings.get(axis).map_or(0.0, |setting| setting.rate));
         self.tachometer = tachometer.map(|(tachometer, seed)| tachometer.start(self.speeds(&rate), seed));
         self
-    }
-
-    /// Makes them hold against a torque on the body (N m) from the next command on.
-    pub fn hold_against(&mut self, torque: Vector) {
-        self.against = torque;
     }
 
     fn elapsed(&self, now: Instant) -> f64 {
@@ -254,6 +256,10 @@ impl Actuate for Spinning {
             };
         }
         self.drive_all(now, &rigid.into());
+    }
+
+    fn hold_against(&mut self, torque: Vector) {
+        self.against = torque;
     }
 
     fn due(&self) -> Option<Instant> {

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 use super::allocation::{Allocation, Choice};
 use super::failure::{Failing, Lasting};
 use super::per_wheel::PerWheel;
-use super::spinning::Spinning;
 use super::unloading::Unloading;
-use super::{Failure, Friction, Imbalance, Setting};
+use super::{Failure, Friction, Imbalance};
 use crate::attitude::Vector;
 use crate::body::Spatial;
 use crate::body::craft::Rotor;
+use crate::count::counted;
 use crate::document::Fault;
 use crate::motion::turning::{Bearing, Flexible};
 use crate::quantity::{Finite, NonNegative, Positive};
@@ -104,11 +104,6 @@ pub struct SpeedBias {
 const EQUAL_CANT: f64 = 0.615_479_708_670_387_3;
 
 impl Wheels {
-    /// The wheels before their first command, on a body of these settings.
-    pub fn start(&self, allocation: &Allocation, settings: &[Setting]) -> Spinning {
-        Spinning::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
-    }
-
     /// How many there are.
     pub fn count(&self) -> usize {
         match self.arrangement {
@@ -124,7 +119,7 @@ impl Wheels {
         Failing::new(&self.faults, own)
     }
 
-    fn speeds(&self, count: usize) -> Vec<f64> {
+    pub(super) fn speeds(&self, count: usize) -> Vec<f64> {
         (0..count).map(|wheel| self.speeds.get(wheel).map_or(0.0, |speed| speed.get())).collect()
     }
 
@@ -143,7 +138,8 @@ impl Wheels {
         let allocation = Allocation::new(&axes, self.allocation)
             .ok_or_else(|| Fault::new(if self.axes.is_empty() { "cant" } else { "axes" }, why))?;
         if !self.speeds.is_empty() && self.speeds.len() != count {
-            let why = format!("must be one for each of {count} wheels, got {}", self.speeds.len());
+            let why =
+                format!("must be one for each of {}, got {}", counted(count, "wheel"), self.speeds.len());
             return Err(Fault::new("speeds", why));
         }
         if let Some((wheel, speed)) = self.beyond_limits(&self.speeds(count)) {
@@ -154,9 +150,6 @@ impl Wheels {
             let why =
                 format!("needs four wheels, whose torques can cancel each other in one way, got {count}");
             return Err(Fault::new("speed_bias", why));
-        }
-        if let Some(fault) = self.unloading.as_deref().and_then(Unloading::inconsistency) {
-            return Err(fault.within("unloading"));
         }
         if let Some(friction) = &self.friction {
             friction.check(count).map_err(|fault| fault.within("friction"))?;

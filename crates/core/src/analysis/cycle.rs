@@ -5,13 +5,11 @@
 //! that of its time. A guard's time moves so that the angle stays on its level; a brake lasts k_t times the push
 //! before it, so its duration moves k_t times as much.
 
-use std::collections::VecDeque;
-
 use nalgebra::{DMatrix, RowDVector, Schur};
 
 use crate::body::{Input, Planar, Segment};
 use crate::law::Phase;
-use crate::motion::State;
+use crate::motion::{self, State};
 use crate::record::{Command, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
 
@@ -72,16 +70,25 @@ pub struct CycleWatch {
     segment: Segment,
     excitations: usize,
     smooth: bool,
-    switchings: VecDeque<Switching>,
+    /// The last switchings, and their states one after the other; the oldest is overwritten next.
+    kept: Vec<Kept>,
+    states: Vec<f64>,
+    next: usize,
 }
 
-#[derive(Clone, Debug)]
-struct Switching {
+/// A switching without its state.
+#[derive(Copy, Clone, Debug)]
+struct Kept {
     at: Instant,
     phase: Phase,
     trigger: Trigger,
     torque: f64,
     gain: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Switching {
+    of: Kept,
     state: State,
 }
 
@@ -93,29 +100,67 @@ impl CycleWatch {
             segment: Segment::new(body),
             excitations,
             smooth,
-            switchings: VecDeque::with_capacity(KEPT + 1),
+            kept: Vec::with_capacity(KEPT),
+            states: Vec::with_capacity(KEPT * (2 + 2 * excitations)),
+            next: 0,
+        }
+    }
+
+    /// Keeps a switching in the place of the oldest one: a watch of a long run allocates nothing.
+    fn keep(&mut self, switching: Kept, state: &State) {
+        let modes = state.modes.iter().flat_map(|mode| [mode.displacement, mode.quadrature]);
+        let numbers = [state.rigid_angle, state.rigid_rate].into_iter().chain(modes);
+        if self.kept.len() < KEPT {
+            self.kept.push(switching);
+            self.states.extend(numbers);
+            return;
+        }
+        let size = self.states.len() / KEPT;
+        self.kept[self.next] = switching;
+        let place = &mut self.states[size * self.next..][..size];
+        place.iter_mut().zip(numbers).for_each(|(old, new)| *old = new);
+        self.next = (self.next + 1) % KEPT;
+    }
+
+    /// Where a switching is kept, counted from the oldest one.
+    fn place(&self, index: usize) -> usize {
+        (self.next + index) % self.kept.len()
+    }
+
+    /// A switching with its state, counted from the oldest one.
+    fn switching(&self, index: usize) -> Switching {
+        let (place, size) = (self.place(index), self.states.len() / self.kept.len());
+        let numbers = &self.states[size * place..][..size];
+        let mode = |pair: &[f64]| motion::Phase { displacement: pair[0], quadrature: pair[1] };
+        Switching {
+            of: self.kept[place],
+            state: State {
+                rigid_angle: numbers[0],
+                rigid_rate: numbers[1],
+                modes: numbers[2..].chunks_exact(2).map(mode).collect(),
+            },
         }
     }
 
     /// The cycle that the run ended in, if it did.
     pub fn cycle(mut self) -> Option<Cycle> {
-        self.switchings.make_contiguous();
-        let switchings = self.switchings.as_slices().0;
         let sections_of = |phase: Phase| -> Vec<usize> {
-            (0..switchings.len()).filter(|&i| switchings[i].phase == phase).collect()
+            (0..self.kept.len()).filter(|&index| self.kept[self.place(index)].phase == phase).collect()
         };
         let right = sections_of(Phase::RightPush);
         let sections = if right.len() > 1 { right } else { sections_of(Phase::LeftPush) };
         let last = *sections.last()?;
+        let end = self.switching(last).state;
         let order = (1..=LONGEST.min(sections.len() - 1)).find(|order| {
             let first = sections[sections.len() - 1 - order];
-            same(&switchings[first].state, &switchings[last].state)
+            same(&self.switching(first).state, &end)
         })?;
         let first = sections[sections.len() - 1 - order];
-        let one = &switchings[first..=last];
-        let span = |pair: &[Switching]| pair[1].at.since(pair[0].at).seconds();
-        let period = one[one.len() - 1].at.since(one[0].at).seconds();
-        let count = |phase| one[1..].iter().filter(|s| s.phase == phase).count();
+        let one: Vec<Switching> = (first..=last).map(|index| self.switching(index)).collect();
+        let one = &one[..];
+        let span = |pair: &[Switching]| pair[1].of.at.since(pair[0].of.at).seconds();
+        let period = one[one.len() - 1].of.at.since(one[0].of.at).seconds();
+        let count = |phase| one[1..].iter().filter(|s| s.of.phase == phase).count();
         let kind = match (count(Phase::RightPush), count(Phase::LeftPush)) {
             (0, _) | (_, 0) => Kind::OneSided,
             (right, left) if right == left => Kind::TwoSided,
@@ -127,8 +172,8 @@ impl CycleWatch {
             period,
             order,
             symmetric: symmetric(one),
-            duty: pairs().filter(|pair| pair[0].phase.is_strong()).map(span).sum::<f64>() / period,
-            impulse: pairs().map(|pair| pair[0].torque.abs() * span(pair)).sum(),
+            duty: pairs().filter(|pair| pair[0].of.phase.is_strong()).map(span).sum::<f64>() / period,
+            impulse: pairs().map(|pair| pair[0].of.torque.abs() * span(pair)).sum(),
             multipliers: if self.smooth && self.excitations <= MOST_MODES {
                 multipliers(&mut self.segment, one)
             } else {
@@ -142,21 +187,7 @@ impl Record for CycleWatch {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         if let Sample::Switching(command, state) = sample {
             let Command { state: phase, cause: trigger, torque_nm: torque, gain, .. } = *command;
-            // The oldest one's state is used again: a watch of a long run allocates nothing.
-            let mut switching =
-                if self.switchings.len() == KEPT { self.switchings.pop_front() } else { None }
-                    .unwrap_or_else(|| Switching {
-                        at: now,
-                        phase,
-                        trigger,
-                        torque,
-                        gain,
-                        state: State::default(),
-                    });
-            switching.state.clone_from(state);
-            (switching.at, switching.phase, switching.trigger) = (now, phase, trigger);
-            (switching.torque, switching.gain) = (torque, gain);
-            self.switchings.push_back(switching);
+            self.keep(Kept { at: now, phase, trigger, torque, gain }, state);
         }
         Ok(())
     }
@@ -177,7 +208,7 @@ fn same(a: &State, b: &State) -> bool {
 fn symmetric(one: &[Switching]) -> bool {
     let middle = (one.len() - 1) / 2;
     let (first, half) = (&one[0], &one[middle]);
-    if first.torque != -half.torque {
+    if first.of.torque != -half.of.torque {
         return false;
     }
     let mirrored = State {
@@ -187,7 +218,7 @@ fn symmetric(one: &[Switching]) -> bool {
             .state
             .modes
             .iter()
-            .map(|m| crate::motion::Phase { displacement: -m.displacement, quadrature: -m.quadrature })
+            .map(|m| motion::Phase { displacement: -m.displacement, quadrature: -m.quadrature })
             .collect(),
     };
     same(&mirrored, &first.state)
@@ -202,14 +233,14 @@ fn multipliers(segment: &mut Segment, one: &[Switching]) -> Vec<(f64, f64)> {
     let mut end = one[0].state.clone();
     for pair in one.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
-        let h = to.at.since(from.at).seconds();
-        segment.depart(&from.state, &Input::constant(from.torque));
+        let h = to.of.at.since(from.of.at).seconds();
+        segment.depart(&from.state, &Input::constant(from.of.torque));
         let sensed = segment.at(h, &mut end);
         for mut column in fundamental.column_iter_mut() {
             segment.carry(h, column.as_mut_slice());
         }
-        let duration = match to.trigger {
-            Trigger::Timeout => &push * from.gain,
+        let duration = match to.of.trigger {
+            Trigger::Timeout => &push * from.of.gain,
             // The angle is the sum of the rigid angle and all displacements: every second component.
             Trigger::Guard => {
                 let mut angle = RowDVector::<f64>::zeros(size);

@@ -168,6 +168,20 @@ impl EnvelopeMonitor {
         }
     }
 
+    /// Takes over what was followed elsewhere until an instant: the integral since the window began (rad s), and of each mode the
+    /// phasor in the turning frame, that frame's axis, the equilibrium, which is real, and the deviation from it.
+    pub fn take_over(&mut self, now: Instant, integral: f64, tracks: &[[f64; 7]]) {
+        (self.now, self.integral) = (now, integral);
+        for (track, [re, im, cos, sin, equilibrium, x, y]) in
+            self.tracks.iter_mut().zip(tracks.iter().copied())
+        {
+            track.frame = Complex { re, im };
+            track.axis = Complex { re: cos, im: sin };
+            track.equilibrium = Complex { re: equilibrium, im: 0.0 };
+            track.deviation = Complex { re: x, im: y };
+        }
+    }
+
     /// Integral of the total envelope since the last call (rad s), and a new window.
     pub fn close_window(&mut self) -> f64 {
         std::mem::take(&mut self.integral)

@@ -72,6 +72,11 @@ impl Monitor {
         }
     }
 
+    /// Takes over what was followed elsewhere until an instant: see [`EnvelopeMonitor::take_over`].
+    pub fn take_over(&mut self, now: Instant, integral: f64, tracks: &[[f64; 7]]) {
+        self.observer.take_over(now, integral, tracks);
+    }
+
     /// Closes the window that ends now, while the law had this tunable number, and lets the adaptation learn.
     pub fn close(&mut self, now: Instant, state: &State, gain: f64) -> Closed {
         self.observer.advance(now, state);

@@ -1,6 +1,6 @@
 //! The laws of a run at work, one about each axis, with what each holds.
 
-use super::{Authority, Cause, Command, Control, Damped, Goal, Hold, Law};
+use super::{Authority, Cause, Command, Control, Damped, Goal, Hold, Law, Phase};
 use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::own::Halt;
@@ -89,6 +89,15 @@ impl Controls {
         }
         self.until = self.axes.iter().filter_map(|held| held.hold.until).min();
         first
+    }
+
+    /// Puts the one relay law into a state that begins at an instant, after a push that began at another.
+    pub fn begin(&mut self, phase: Phase, now: Instant, pushed: Instant) {
+        let [held] = &mut self.axes[..] else { return };
+        if let Some(relay) = held.law.relay() {
+            held.hold = relay.begin(phase, now, pushed);
+            self.until = held.hold.until;
+        }
     }
 
     /// Whether a law is concerned by a sample, or by the time that has come.

@@ -144,6 +144,11 @@ pub trait Control: fmt::Debug + Send + Sync {
     /// Takes a number of [`Rule::tunable`] over.
     fn tune(&mut self, _key: &str, _value: f64) {}
 
+    /// The relay law that it is, if it is one.
+    fn relay(&mut self) -> Option<&mut Relay> {
+        None
+    }
+
     /// Whether it follows a manoeuvre while it lasts, and not only from its end on.
     fn tracks(&self) -> bool {
         false

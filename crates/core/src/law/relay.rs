@@ -96,6 +96,10 @@ impl Control for Relay {
         Box::new(self.clone())
     }
 
+    fn relay(&mut self) -> Option<&mut Relay> {
+        Some(self)
+    }
+
     /// Always k_t, by which limit cycles are judged.
     fn tuned(&self) -> f64 {
         self.tuned.of("k_t", self.k_t.get())
@@ -107,6 +111,12 @@ impl Control for Relay {
 }
 
 impl Relay {
+    /// Begins a state at an instant, after a push that began at another.
+    pub fn begin(&mut self, phase: Phase, now: Instant, pushed: Instant) -> Hold {
+        (self.phase, self.pushed_at) = (Some(phase), pushed);
+        self.hold(phase, now)
+    }
+
     /// The state that an event leads to.
     fn next(&self, cause: Cause, belief: &Belief) -> Phase {
         match (self.state(), cause) {

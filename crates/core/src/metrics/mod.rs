@@ -281,6 +281,13 @@ impl Record for Gather {
         self.filter.is_some() || self.known.is_some()
     }
 
+    fn switchings(&self) -> bool {
+        match &self.kind {
+            Kind::Switchings(switchings) => switchings.switchings(),
+            Kind::Rotation(_) | Kind::Spatial(_) => true,
+        }
+    }
+
     fn course(&self) -> record::Course {
         match &self.kind {
             Kind::Switchings(switchings) => switchings.course(),

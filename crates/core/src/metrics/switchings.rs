@@ -38,8 +38,9 @@ pub struct Switchings {
     reduced: bool,
     goal: Goal,
     verdict: Verdict,
-    /// Whether the cycle and the verdict are wanted.
+    /// Whether the cycle and the verdict are wanted, and what switchings come to otherwise.
     wants: (bool, bool),
+    counts: bool,
 }
 
 /// What the limit cycle comes to.
@@ -54,6 +55,9 @@ const OF_CYCLE: &[Meaning] = &[
     CYCLE_MULTIPLIER_ARGUMENTS,
     CYCLE_MULTIPLIER_MAX,
 ];
+
+/// What switchings come to beside the cycle.
+const COUNTED: &[Meaning] = &[SWITCHINGS, PUSHES_RIGHT, PUSHES_LEFT, DUTY, IMPULSE];
 
 impl Switchings {
     /// An empty gathering for runs of a scenario.
@@ -78,6 +82,7 @@ impl Switchings {
             goal: scenario.goal(),
             verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
             wants: (selection.wants_any(OF_CYCLE), selection.wants_any(goal::TOLD)),
+            counts: selection.wants_any(COUNTED),
         }
     }
 
@@ -157,6 +162,10 @@ fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<Told> {
 }
 
 impl Record for Switchings {
+    fn switchings(&self) -> bool {
+        self.counts || self.wants.0
+    }
+
     fn course(&self) -> Course {
         if !self.wants.1 {
             return Course::None;

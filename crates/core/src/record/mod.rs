@@ -1,6 +1,7 @@
 //! The record: the only way out of a simulation.
 
 mod bounds;
+mod budget;
 mod columns;
 pub mod description;
 mod descriptor;
@@ -167,6 +168,11 @@ pub trait Record {
         self.dense()
     }
 
+    /// Whether the record takes switchings.
+    fn switchings(&self) -> bool {
+        true
+    }
+
     /// Which motions of a body with one angle the record wants whole: each from one change of its input to the next, when
     /// it has ended, whatever instants other records look at.
     fn course(&self) -> Course {
@@ -208,6 +214,10 @@ pub enum RecordError {
 
 /// Records nothing, at no cost.
 impl Record for () {
+    fn switchings(&self) -> bool {
+        false
+    }
+
     fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
         Ok(())
     }
@@ -224,6 +234,10 @@ impl<R: Record + ?Sized> Record for &mut R {
 
     fn estimates(&self) -> bool {
         (**self).estimates()
+    }
+
+    fn switchings(&self) -> bool {
+        (**self).switchings()
     }
 
     fn course(&self) -> Course {
@@ -257,6 +271,10 @@ impl<R: Record> Record for Option<R> {
         self.as_ref().is_some_and(Record::estimates)
     }
 
+    fn switchings(&self) -> bool {
+        self.as_ref().is_some_and(Record::switchings)
+    }
+
     fn course(&self) -> Course {
         self.as_ref().map_or(Course::None, Record::course)
     }
@@ -286,6 +304,10 @@ impl<A: Record, B: Record> Record for (A, B) {
 
     fn estimates(&self) -> bool {
         self.0.estimates() || self.1.estimates()
+    }
+
+    fn switchings(&self) -> bool {
+        self.0.switchings() || self.1.switchings()
     }
 
     fn course(&self) -> Course {

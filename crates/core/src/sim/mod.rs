@@ -11,10 +11,12 @@ mod drive;
 mod error;
 mod events;
 mod failing;
+mod flying;
 mod instants;
 mod journal;
 mod metering;
 mod own;
+mod plain;
 mod plant;
 mod reference;
 mod sensing;
@@ -40,6 +42,7 @@ pub(crate) use plant::Exerted;
 pub use sight::{Field, Group};
 pub use stepping::Occasion;
 
+use plain::Quick;
 use plant::Plant;
 use reference::Reference;
 use sensing::Sensing;
@@ -88,6 +91,8 @@ pub struct Simulation {
     steered: bool,
     /// Whether parts of it are a program's own.
     own: bool,
+    /// Which quicker loops suit it.
+    quick: Quick,
 }
 
 impl Simulation {
@@ -120,6 +125,7 @@ impl Simulation {
             unanswered: None,
             steered: false,
             own: scenario.has_own_parts(),
+            quick: Quick::new(scenario),
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -140,6 +146,7 @@ impl Simulation {
         let until = until.min(self.end);
         self.open(record)?;
         self.resume(None, record)?;
+        self.run_quickly(until, record)?;
         while self.arrive(until, record)? {
             self.serve(record)?;
         }
@@ -350,7 +357,8 @@ impl Simulation {
         self.feel(&truth);
         self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
         self.depart(record)?;
-        self.tell_switching(before, cause, &truth, record)
+        let torque = self.drive.actuator.asked(0);
+        self.tell_switching(before, cause, [truth.seen()[0], truth.rate[0]], torque, record)
     }
 
     /// Begins a motion under what acts from now on, and finds the next trip.

@@ -46,6 +46,8 @@ pub struct Telling {
     pub failures: Failures,
     /// Whether the torque has more to it than switchings.
     tells_torque: bool,
+    /// Whether jets are the only actuator.
+    jets_alone: bool,
     stage: Stage,
 }
 
@@ -75,6 +77,7 @@ impl Telling {
             accelerometers: Accelerometers::new(scenario, run),
             failures: Failures::new(scenario),
             tells_torque: scenario.tells_torque(),
+            jets_alone: scenario.study.jets_alone,
             stage: Stage::Before,
         }
     }
@@ -164,12 +167,13 @@ impl Simulation {
         Ok(self.telling.events.arrived(now, &row, record)?)
     }
 
-    /// A switching of the law of one angle: its state was another before.
+    /// A switching of the law of one angle, whose state was another before: what the sensor sees, and what is commanded.
     pub(super) fn tell_switching(
         &self,
         before: Phase,
         cause: Option<Cause>,
-        truth: &Truth,
+        [angle_rad, rate_rad_s]: [f64; 2],
+        torque_nm: f64,
         record: &mut impl Record,
     ) -> Result<(), SimulationError> {
         let (now, state) = (self.now, self.laws.about(0).state());
@@ -184,9 +188,9 @@ impl Simulation {
             time_fs,
             state,
             cause: if cause == Some(Cause::Timeout) { Trigger::Timeout } else { Trigger::Guard },
-            torque_nm: self.drive.actuator.asked(0),
-            angle_rad: truth.seen()[0],
-            rate_rad_s: truth.rate[0],
+            torque_nm,
+            angle_rad,
+            rate_rad_s,
             gain: self.laws.about(0).tuned(),
         };
         record.record(now, Sample::Switching(&command, plant.state()))?;
@@ -365,7 +369,7 @@ impl Simulation {
         };
         let wheels = actuator.wheels(self.now, (rigid + elastic).into());
         // Of jets on which nothing else acts their pulses tell.
-        let alone = actuator.cycle().is_some() && wheels.is_empty() && !plant.is_surrounded();
+        let alone = self.telling.jets_alone && !plant.is_surrounded();
         let torques = (!alone).then(|| Torques { axes: [0, 1, 2].map(torque).into() });
         SpatialMotion {
             pointing: plant.pointing(truth.orientation.beyond(&self.reference.origin(self.now))),

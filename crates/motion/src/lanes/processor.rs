@@ -7,7 +7,7 @@ use pulp::aarch64::Neon;
 use pulp::x86::{V3, V4};
 
 use super::real::Work;
-use super::register::Vectorized;
+use super::register::{Alone, Vectorized};
 
 /// Instructions for lanes that this processor has.
 #[derive(Copy, Clone, Debug)]
@@ -63,6 +63,16 @@ impl Processor {
                 #[cfg(target_arch = "aarch64")]
                 Instructions::Neon(_) => Neon::F64_LANES,
             }
+    }
+
+    /// Does some work over numbers, one at a time, with the instructions of the best processor that this one can be.
+    pub fn run_alone<W: Work>(work: W) -> W::Output {
+        // Those of AVX-512 add nothing to one number.
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = V3::try_new() {
+            return Simd::vectorize(simd, Alone(work));
+        }
+        work.run(f64::NAN)
     }
 
     /// Does some work over lanes of N registers.

@@ -227,6 +227,18 @@ impl<W: Work, const N: usize> WithSimd for Vectorized<W, N> {
     }
 }
 
+/// Work over single numbers.
+pub(super) struct Alone<W>(pub W);
+
+impl<W: Work> WithSimd for Alone<W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> W::Output {
+        self.0.run(f64::NAN)
+    }
+}
+
 impl<S: Simd, const N: usize> Debug for Lanes<S, N> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         self.registers.fmt(f)

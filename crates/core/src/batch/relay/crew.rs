@@ -1,5 +1,8 @@
 //! What a flight of runs asks of who has them, and what it tells: plain numbers of one lane.
 
+use crate::guard::Guard;
+use crate::law::Guards;
+
 /// One run at its start, as plain numbers. A mode: frequency, excitability, displacement and quadrature.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
@@ -12,6 +15,8 @@ pub struct Setup {
     /// Half the width of the dead zone, and where the brake begins.
     pub edge: f64,
     pub back: f64,
+    /// Strong and weak torque (N m).
+    pub torques: [f64; 2],
     /// Strong and weak moment (rad/s²), and braking gain.
     pub strong: f64,
     pub weak: f64,
@@ -19,6 +24,28 @@ pub struct Setup {
     /// The end, and the length of a window: whole seconds and femtoseconds.
     pub end: (u64, u64),
     pub window: Option<(u64, u64)>,
+}
+
+impl Setup {
+    /// The torque at a place of the cycle (N m).
+    pub fn torque(&self, place: Place, side: f64) -> f64 {
+        let [strong, weak] = self.torques;
+        match place {
+            Place::Coast => side * weak,
+            Place::Push => -side * strong,
+            Place::Brake => side * strong,
+        }
+    }
+
+    /// The guards of a place of the cycle.
+    pub fn guards(&self, place: Place, side: f64) -> Guards {
+        match place {
+            Place::Coast => Guards::two(Guard::at_least(self.edge), Guard::at_most(-self.edge)),
+            Place::Push if side > 0.0 => Guards::one(Guard::at_most(self.back)),
+            Place::Push => Guards::one(Guard::at_least(-self.back)),
+            Place::Brake => Guards::NONE,
+        }
+    }
 }
 
 /// A place of the cycle.
@@ -47,6 +74,22 @@ pub struct Sight {
     pub gain: f64,
 }
 
+/// A run at a departure, as plain numbers, out of the mirror.
+#[derive(Clone, Debug, Default)]
+pub struct Rest {
+    /// The motion that begins.
+    pub place: Option<Place>,
+    /// The body.
+    pub from: Sight,
+    /// When the last push began, and until when the envelope was followed.
+    pub pushed: (u64, u64),
+    pub seen: (u64, u64),
+    /// The integral of the envelope since the last window closed.
+    pub integral: f64,
+    /// The phasors of the envelope: in the turning frame, that frame's axis, equilibrium, deviation.
+    pub tracks: Vec<[f64; 7]>,
+}
+
 /// A trip that was searched.
 #[derive(Clone, Debug, Default)]
 pub struct Searched {
@@ -60,9 +103,13 @@ pub struct Searched {
 
 /// Who has the runs.
 pub trait Crew {
-    /// Whether it wants switchings, and to know where bounds do not keep the angle within the band.
-    const LISTENS: bool;
+    /// Whether it takes runs back where they end, to go on with them elsewhere.
+    const TAKES_BACK: bool = false;
 
+    /// Whether it wants switchings.
+    fn listens(&self) -> bool;
+    /// Whether it wants to know where bounds do not keep the angle within the band.
+    fn looks(&self) -> bool;
     /// The next run for a lane, whose last run has ended.
     fn next(&mut self, lane: usize) -> Option<Setup>;
     /// Looks for the first trip of a lane that departs here at this place; nothing within the run.
@@ -77,4 +124,10 @@ pub trait Crew {
     fn strays(&mut self, lane: usize, place: Place, from: &Sight, until: (u64, u64));
     /// Half the width of the band about the goal (rad).
     fn band(&self, lane: usize) -> f64;
+    /// Whether its run must not go on.
+    fn stops(&self) -> bool {
+        false
+    }
+    /// Takes a run back at the last departure before its end.
+    fn take_back(&mut self, _rest: Rest) {}
 }

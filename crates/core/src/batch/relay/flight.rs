@@ -25,8 +25,6 @@ const NEVER: f64 = 1e17;
 const SHORT: f64 = 9_000.0;
 /// What is written of a lane beside its modes.
 const ROWS: usize = 6;
-/// An angle (rad) that no motion of a run in lanes reaches.
-const FAR: f64 = 1e9;
 
 /// Runs side by side.
 pub struct Flight<R: Real> {
@@ -73,9 +71,9 @@ impl<R: Real> Flight<R> {
         // One place at a time, whose code is here once.
         loop {
             place = match place {
-                Place::Coast => Place::Push,
-                Place::Push => Place::Brake,
-                Place::Brake => {
+                Place::Coast if !C::TAKES_BACK || flight.active[0] => Place::Push,
+                Place::Push if !C::TAKES_BACK || flight.active[0] => Place::Brake,
+                _ => {
                     if !flight.fill(crew) {
                         return;
                     }
@@ -96,19 +94,21 @@ impl<R: Real> Flight<R> {
             Place::Brake => (self.strong, one, self.edge),
         };
         self.depart(moment);
-        self.moved.copy_from_slice(&self.modes);
         if place == Place::Push {
             self.pushed = self.now;
         }
         let (span, right) = if place == Place::Brake {
             (self.brake(crew), one.le(one))
+        } else if place == Place::Push {
+            self.guarded(crew, place, moment, &[Level { angle: level, towards }])
         } else {
-            // No push leads to the level that is far away.
-            let far = if place == Place::Coast { -self.edge } else { one.of(FAR) };
-            let levels = [Level { angle: level, towards }, Level { angle: far, towards: -towards }];
-            self.guarded(crew, place, moment, &levels)
+            let other = Level { angle: -self.edge, towards: -towards };
+            self.guarded(crew, place, moment, &[Level { angle: level, towards }, other])
         };
         self.arrive(crew, place, moment, span);
+        if C::TAKES_BACK && !self.active[0] {
+            return;
+        }
         if place == Place::Coast {
             self.mirror(R::select(right, one, -one));
         }
@@ -165,13 +165,14 @@ impl<R: Real> Flight<R> {
         (Clock::of_ticks(ticks), after)
     }
 
-    /// The modes turn about equilibria of this moment from now on.
+    /// The modes turn about equilibria of this moment from now on; none has moved yet.
     #[inline(always)]
     fn depart(&mut self, moment: R) {
         for index in 0..self.modes.len() {
             let mode = &mut self.modes[index];
             mode.equilibrium = self.excitabilities[index] * moment;
             mode.displacement = self.totals[index] - mode.equilibrium;
+            self.moved[index] = *mode;
         }
         for track in &mut self.tracks {
             track.command(moment);
@@ -180,16 +181,25 @@ impl<R: Real> Flight<R> {
 
     /// Finds the first trip: after how long, and of which level.
     #[inline(always)]
-    fn guarded<C: Crew>(
+    fn guarded<C: Crew, const LEVELS: usize>(
         &mut self,
         crew: &mut C,
         place: Place,
         moment: R,
-        levels: &[Level<R>; 2],
+        levels: &[Level<R>; LEVELS],
     ) -> ((Clock<R>, R), R::Mask) {
         let (zero, one) = (moment.of(0.0), moment.of(1.0));
         let from = Departure { angle: self.angle, rate: self.rate, moment, fastest: self.fastest };
-        let found: Found<R> = locate(&from, levels, &mut self.moved);
+        let found: Found<R> = match &mut self.moved[..] {
+            // So many modes, which is usual, stay in registers.
+            [first, second] => {
+                let mut two = [*first, *second];
+                let found = locate(&from, levels, &mut two);
+                [*first, *second] = two;
+                found
+            }
+            modes => locate(&from, levels, modes),
+        };
         let certain = found.certain;
         if certain.all() {
             return ((Clock::of_ticks(found.ticks), found.after), found.first);
@@ -243,7 +253,11 @@ impl<R: Real> Flight<R> {
         let until = self.now.plus(span);
         let ends = !until.not_after(self.end);
         let until = Clock::select(ends, self.end, until);
-        if C::LISTENS {
+        if C::TAKES_BACK && (ends.any() || crew.stops()) {
+            self.hand_back(crew, place);
+            return;
+        }
+        if crew.looks() {
             let span = until.since(self.now).seconds();
             self.stray(crew, place, moment, span, until);
         }
@@ -284,7 +298,10 @@ impl<R: Real> Flight<R> {
                 let mut advanced = self.tracks[index];
                 let integral = advanced.advance(time, span);
                 self.integral = self.integral + R::select(goes_on, integral, zero);
-                self.tracks[index] = Track::select(goes_on, &advanced, &self.tracks[index]);
+                // As a rule all go on.
+                let is_whole = goes_on.all();
+                let before = &mut self.tracks[index];
+                *before = if is_whole { advanced } else { Track::select(goes_on, &advanced, before) };
             }
             self.seen = Clock::select(goes_on, at, self.seen);
             if !due.any() {

@@ -2,8 +2,8 @@
 //! one.
 
 mod clock;
-mod crew;
-mod flight;
+pub mod crew;
+pub mod flight;
 mod track;
 
 #[cfg(test)]
@@ -43,7 +43,7 @@ impl Batch for Side {
     }
 
     fn takes(&self, scenario: &Scenario) -> bool {
-        law(scenario).is_some_and(|law| suits(scenario, law))
+        scenario.duration.seconds() <= LONGEST && law(scenario).is_some_and(|law| suits(scenario, law))
     }
 
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
@@ -90,8 +90,7 @@ fn suits(scenario: &Scenario, law: &Relay) -> bool {
         modes.clone().all(|mode| mode.damping.get() == 0.0 && mode.frequency.get() * duration < FARTHEST);
     let begins = model.start().angle().abs() < law.dead_zone.get();
     let has_band = scenario.promise().band(f64::NAN) > 0.0;
-    let is_short = duration <= LONGEST;
-    is_simple && is_short && observes && learns && are_exact && begins && has_band && law.sides == Sides::Two
+    is_simple && observes && learns && are_exact && begins && has_band && law.sides == Sides::Two
 }
 
 /// Some runs, and what is known of those in the lanes.
@@ -100,6 +99,9 @@ struct Runs<'a> {
     next: usize,
     lanes: Vec<Option<Lane<'a>>>,
     found: Vec<Option<Metrics>>,
+    /// Whether any of them wants switchings, and to know where the angle leaves the band.
+    listens: bool,
+    looks: bool,
 }
 
 /// A run in a lane.
@@ -107,7 +109,7 @@ struct Lane<'a> {
     /// The place of its job.
     index: usize,
     scenario: &'a Scenario,
-    law: &'a Relay,
+    setup: Setup,
     gather: Gather,
     monitor: Option<Monitor>,
     segment: Segment,
@@ -119,7 +121,8 @@ struct Lane<'a> {
 impl<'a> Runs<'a> {
     fn new(jobs: &'a [Job<'a>]) -> Self {
         let lanes = (0..flight::MOST).map(|_| None).collect();
-        Self { jobs, next: 0, lanes, found: vec![None; jobs.len()] }
+        let found = vec![None; jobs.len()];
+        Self { jobs, next: 0, lanes, found, listens: false, looks: false }
     }
 
     /// How many modes bodies and envelopes have.
@@ -140,26 +143,29 @@ impl Work for &mut Runs<'_> {
     }
 }
 
-impl Lane<'_> {
-    /// The torque at a place of the cycle (N m).
-    fn torque(&self, place: Place, side: f64) -> f64 {
-        match place {
-            Place::Coast => side * self.law.weak.get(),
-            Place::Push => -side * self.law.strong.get(),
-            Place::Brake => side * self.law.strong.get(),
-        }
+/// The state of the law at a place of the cycle.
+pub fn phase(place: Place, side: f64) -> Phase {
+    match (place, side > 0.0) {
+        (Place::Coast, true) => Phase::WeakRight,
+        (Place::Coast, false) => Phase::WeakLeft,
+        (Place::Push, true) => Phase::RightPush,
+        (Place::Push, false) => Phase::LeftPush,
+        (Place::Brake, true) => Phase::RightBrake,
+        (Place::Brake, false) => Phase::LeftBrake,
     }
+}
 
+impl Lane<'_> {
     /// Departs from what was seen, on the motion of a place.
     fn depart(&mut self, place: Place, from: &Sight) {
         see(&mut self.state, from);
-        let constant = self.torque(place, from.side);
+        let constant = self.setup.torque(place, from.side);
         self.segment.depart(&self.state, &Input { constant, waveform: None });
     }
 }
 
 /// Takes a sight over.
-fn see(state: &mut State, sight: &Sight) {
+pub fn see(state: &mut State, sight: &Sight) {
     (state.rigid_angle, state.rigid_rate) = (sight.angle, sight.rate);
     for (phase, [displacement, quadrature]) in state.modes.iter_mut().zip(&sight.modes) {
         *phase = motion::Phase { displacement: *displacement, quadrature: *quadrature };
@@ -171,7 +177,13 @@ fn instant((whole, part): (u64, u64)) -> Instant {
 }
 
 impl Crew for Runs<'_> {
-    const LISTENS: bool = true;
+    fn listens(&self) -> bool {
+        self.listens
+    }
+
+    fn looks(&self) -> bool {
+        self.looks
+    }
 
     fn next(&mut self, lane: usize) -> Option<Setup> {
         if let Some(ended) = self.lanes[lane].take() {
@@ -186,21 +198,24 @@ impl Crew for Runs<'_> {
             }
             let mut gather = Gather::of(job.scenario, job.selection);
             let row = record::Law { state: Phase::Start, torque_nm: law.weak.get(), gain: law.k_t.get() };
+            self.listens |= gather.switchings();
+            self.looks |= gather.course() != Course::None;
             if gather.record(Instant::START, Sample::Begin(&row)).is_err() {
                 continue;
             }
             let model = &job.scenario.model;
+            let setup = setup(job.scenario, model, law);
             self.lanes[lane] = Some(Lane {
                 index: self.next - 1,
                 scenario: job.scenario,
-                law,
+                setup: setup.clone(),
                 gather,
                 monitor: job.scenario.monitor(Seed { scenario: job.scenario.seed, run: job.number }),
                 segment: Segment::new(model),
                 state: model.start(),
                 is_alone: false,
             });
-            return Some(setup(job.scenario, model, law));
+            return Some(setup);
         }
         None
     }
@@ -208,13 +223,9 @@ impl Crew for Runs<'_> {
     fn search(&mut self, lane: usize, place: Place, from: &Sight) -> Option<Searched> {
         let lane = self.lanes[lane].as_mut()?;
         lane.depart(place, from);
-        let edge = lane.law.dead_zone.get();
-        let back = edge - lane.law.hysteresis.get();
-        let both = [Guard::at_least(edge), Guard::at_most(-edge)];
-        let one = [if from.side > 0.0 { Guard::at_most(back) } else { Guard::at_least(-back) }];
-        let guards = if place == Place::Coast { &both[..] } else { &one };
+        let guards = lane.setup.guards(place, from.side);
         let horizon = (Instant::START + lane.scenario.duration).since(instant(from.at));
-        let trip = locate(&lane.segment, guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
+        let trip = locate(&lane.segment, &guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
         lane.is_alone |= !lane.state.is_finite();
         let trip = trip.ok().flatten()?;
         let modes = lane.state.modes.iter().map(|phase| [phase.displacement, phase.quadrature]);
@@ -233,14 +244,7 @@ impl Crew for Runs<'_> {
 
     fn switched(&mut self, lane: usize, to: Place, now: &Sight) {
         let Some(lane) = &mut self.lanes[lane] else { return };
-        let state = match (to, now.side > 0.0) {
-            (Place::Coast, true) => Phase::WeakRight,
-            (Place::Coast, false) => Phase::WeakLeft,
-            (Place::Push, true) => Phase::RightPush,
-            (Place::Push, false) => Phase::LeftPush,
-            (Place::Brake, true) => Phase::RightBrake,
-            (Place::Brake, false) => Phase::LeftBrake,
-        };
+        let state = phase(to, now.side);
         see(&mut lane.state, now);
         let at = instant(now.at);
         let (time_s, time_whole_s, time_fs) = Command::times(at);
@@ -250,7 +254,7 @@ impl Crew for Runs<'_> {
             time_fs,
             state,
             cause: if to == Place::Coast { Trigger::Timeout } else { Trigger::Guard },
-            torque_nm: lane.torque(to, now.side),
+            torque_nm: lane.setup.torque(to, now.side),
             angle_rad: lane.state.angle(),
             rate_rad_s: now.rate,
             gain: now.gain,
@@ -290,6 +294,14 @@ impl Crew for Runs<'_> {
     }
 }
 
+/// A run at its start, for a flight of its own; none of a run that has to be simulated otherwise.
+pub fn alone(scenario: &Scenario) -> Option<Setup> {
+    let law = law(scenario).filter(|law| suits(scenario, law))?;
+    // A mode that nothing excites may come out of the mirror with zeros of another sign.
+    let mut modes = scenario.model.modes.iter().chain(watched(scenario));
+    modes.all(|mode| mode.gain.get() != 0.0).then(|| setup(scenario, &scenario.model, law))
+}
+
 /// A run at its start.
 fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
     let mobility = 1.0 / model.commanded_inertia();
@@ -305,6 +317,7 @@ fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
         tracks: watched(scenario).iter().map(of).collect(),
         edge: law.dead_zone.get(),
         back: law.dead_zone.get() - law.hysteresis.get(),
+        torques: [law.strong.get(), law.weak.get()],
         strong: law.strong.get() * mobility,
         weak: law.weak.get() * mobility,
         k_t: law.k_t.get(),

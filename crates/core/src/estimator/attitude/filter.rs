@@ -10,21 +10,12 @@ use nalgebra::{
     Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
 };
 
-use super::history::Measured;
+use super::measurement::{GyroNoise, Measured, across};
 use super::swinging::{Swinging, Told};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::environment::into;
 use crate::numerics::stumpff::stumpff;
 use crate::sensor::Sight;
-
-/// Noise of a gyro as the filter knows it, the same about each axis.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct GyroNoise {
-    /// Angle random walk (rad/sqrt(s)).
-    pub angle_random_walk: f64,
-    /// Rate random walk (rad/s^1.5).
-    pub rate_random_walk: f64,
-}
 
 /// The filter: what it knows at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -253,13 +244,6 @@ fn blocks(first: &Matrix3<f64>, across: &Matrix3<f64>, second: &Matrix3<f64>) ->
     all.fixed_view_mut::<3, 3>(3, 0).copy_from(&across.transpose());
     all.fixed_view_mut::<3, 3>(3, 3).copy_from(second);
     all
-}
-
-/// Two unit vectors across a vector and each other, as rows.
-pub(super) fn across(v: &Vector) -> SMatrix<f64, 2, 3> {
-    let first = v.cross(&Vector::ith(v.iamin(), 1.0)).normalize();
-    let second = v.cross(&first).normalize();
-    SMatrix::from_rows(&[first.transpose(), second.transpose()])
 }
 
 fn unit(q: Quaternion<f64>) -> Quaternion<f64> {

@@ -13,7 +13,7 @@ use crate::environment::Seen;
 use crate::guard::Guard;
 use crate::motion::turning::Turned;
 use crate::motion::{Sensed, State};
-use crate::record::{Course, Record, RecordError};
+use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
@@ -118,11 +118,7 @@ impl Plant {
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
         let Self::Planar(plant) = self else { return Ok(()) };
-        match record.course() {
-            Course::None => Ok(()),
-            Course::Beyond(band) if plant.stays_within(band, now, record)? => Ok(()),
-            _ => plant.walk(now, exerted, |stretch| record.stretch(now, stretch)),
-        }
+        plant.tell_course(now, exerted, record)
     }
 
     /// The modes as the monitor of the envelope takes them: those of one angle, or the rotations that those of three axes give the

@@ -6,7 +6,7 @@ use crate::guard::Guard;
 use crate::motion::crossing::locate;
 use crate::motion::{Expansion, Sensed, State, Stretch};
 use crate::numerics::polynomial::{Polynomial, Series, TERMS};
-use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
+use crate::record::{Attitude, Course, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
@@ -128,6 +128,20 @@ impl PlanarPlant {
             }
         }
         self.sight
+    }
+
+    /// Tells the motion that ends now, stretch by stretch, where the record wants it.
+    pub fn tell_course(
+        &self,
+        now: Instant,
+        exerted: &Exerted,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
+        match record.course() {
+            Course::None => Ok(()),
+            Course::Beyond(band) if self.stays_within(band, now, record)? => Ok(()),
+            _ => self.walk(now, exerted, |stretch| record.stretch(now, stretch)),
+        }
     }
 
     /// Whether the angle is certain to stay within so much of 0 on this motion until an instant: as bounds tell, which cost
@@ -301,9 +315,27 @@ impl PlanarPlant {
     /// Begins a new motion at the instant seen last.
     pub fn depart(&mut self, wrench: &Wrench) {
         let input = Input { constant: wrench.hub[0], waveform: wrench.waveform.clone() };
+        self.begin(&input);
+    }
+
+    /// The same under a constant torque alone (N m).
+    pub fn depart_under(&mut self, constant: f64) {
+        self.begin(&Input { constant, waveform: None });
+    }
+
+    /// Puts the body into a state at an instant.
+    pub fn put(&mut self, now: Instant, change: impl FnOnce(&mut State)) {
+        change(&mut self.state);
+        let rate = self.mode_rates().fold(self.state.rigid_rate, |sum, rate| sum + rate);
+        (self.seen, self.sight) = (now, Sensed { angle: self.state.angle(), rate, acceleration: 0.0 });
+        // What was found ahead was found on another motion.
+        self.ahead.2 = Instant::START;
+    }
+
+    fn begin(&mut self, input: &Input) {
         match &mut self.motion {
-            Motion::Planar(arc) => arc.depart(&self.state, &input),
-            Motion::Chain(flight) => flight.depart(&input),
+            Motion::Planar(arc) => arc.depart(&self.state, input),
+            Motion::Chain(flight) => flight.depart(input),
             Motion::Coupled(coupling) => coupling.depart(self.seen.seconds(), input.constant),
             Motion::Lent(lent) => lent.depart(self.seen, input.constant),
         }

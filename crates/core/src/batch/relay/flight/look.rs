@@ -5,7 +5,7 @@
 
 use super::Flight;
 use crate::batch::relay::clock::Clock;
-use crate::batch::relay::crew::{Crew, Place};
+use crate::batch::relay::crew::{Crew, Place, Rest};
 use crate::lanes::{Mask, Real};
 
 impl<R: Real> Flight<R> {
@@ -42,7 +42,7 @@ impl<R: Real> Flight<R> {
     /// Tells a switching of each lane.
     #[inline(always)]
     pub(super) fn tell<C: Crew>(&mut self, crew: &mut C, to: Place) {
-        if !C::LISTENS {
+        if !crew.listens() {
             return;
         }
         self.write();
@@ -52,6 +52,29 @@ impl<R: Real> Flight<R> {
                 crew.switched(lane, to, &self.sight);
             }
         }
+    }
+
+    /// Hands the run of the first lane back at its departure to this place.
+    pub(super) fn hand_back<C: Crew>(&mut self, crew: &mut C, place: Place) {
+        self.active[0] = false;
+        self.write();
+        self.look(0);
+        let side = self.side.lane(0);
+        let mut tracks = Vec::with_capacity(self.tracks.len());
+        for track in &self.tracks {
+            let ([re, im], [x, y]) = (track.frame, track.deviation);
+            let mirrored = [re, im, track.equilibrium, x, y].map(|part| side * part.lane(0));
+            let [re, im, equilibrium, x, y] = mirrored;
+            tracks.push([re, im, track.axis[0].lane(0), track.axis[1].lane(0), equilibrium, x, y]);
+        }
+        crew.take_back(Rest {
+            place: Some(place),
+            from: self.sight.clone(),
+            pushed: self.pushed.lane(0),
+            seen: self.seen.lane(0),
+            integral: self.integral.lane(0),
+            tracks,
+        });
     }
 
     /// Writes down what there is to look at.

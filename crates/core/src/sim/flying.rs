@@ -1,0 +1,207 @@
+//! Runs that a flight makes from their start on: the kernel of runs in lanes, with one number in the place of lanes.
+//!
+//! What it comes to, and what it tells, is to the bit what the loop of plain runs comes to, which takes the run over at the last
+//! departure before its end.
+
+use super::plant::{Exerted, Plant};
+use super::{Simulation, SimulationError};
+use crate::batch::relay::crew::{Crew, Place, Rest, Searched, Setup, Sight};
+use crate::batch::relay::flight::Flight;
+use crate::batch::relay::{phase, see};
+use crate::lanes::{Processor, Real, Work};
+use crate::law::Command;
+use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
+use crate::time::Instant;
+
+/// Who has the one run.
+struct Alone<'a, R> {
+    run: &'a mut Simulation,
+    record: &'a mut R,
+    setup: Setup,
+    /// Whether the flight has not begun.
+    waits: bool,
+    listens: bool,
+    band: f64,
+    /// Whether it goes on elsewhere, and why it does not go on at all.
+    stopped: bool,
+    failed: Option<SimulationError>,
+    rest: Rest,
+}
+
+fn instant((whole, part): (u64, u64)) -> Instant {
+    Instant::of_parts(whole, part)
+}
+
+impl Simulation {
+    /// Flies from the start as far as an instant, or the last departure before it, if this run can.
+    pub(super) fn fly(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+        let band = match record.course() {
+            Course::None => f64::INFINITY,
+            Course::Beyond(band) if band > 0.0 => band,
+            Course::Beyond(_) | Course::All => return Ok(()),
+        };
+        if self.now != Instant::START || self.decisions > 0 || !self.goes_plainly() {
+            return Ok(());
+        }
+        let Some(setup) = self.quick.flight.take() else { return Ok(()) };
+        let setup = Setup { end: until.parts(), ..*setup };
+        let listens = record.switchings();
+        let (failed, rest) = (None, Rest::default());
+        let mut crew =
+            Alone { run: self, record, setup, waits: true, listens, band, stopped: false, failed, rest };
+        Processor::run_alone(&mut crew);
+        let Alone { failed, rest, .. } = crew;
+        self.land(&rest, record)?;
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// Takes the run over at a departure.
+    fn land(&mut self, rest: &Rest, record: &mut impl Record) -> Result<(), SimulationError> {
+        let (Some(place), now) = (rest.place, instant(rest.from.at)) else { return Ok(()) };
+        if now == Instant::START {
+            return Ok(());
+        }
+        (self.now, self.decisions) = (now, 1);
+        self.laws.begin(phase(place, rest.from.side), now, instant(rest.pushed));
+        let Command::Torque(torque) = self.laws.commands()[0] else { return Ok(()) };
+        self.set_off(&rest.from, torque);
+        let Plant::Planar(plant) = &mut self.plant else { return Ok(()) };
+        let (sensed, rigid) = (plant.view(now), plant.state().rigid_rate);
+        for belief in &mut self.beliefs {
+            (belief.angle, belief.rate) = (sensed.angle, sensed.rate);
+        }
+        self.drive.command(now, self.laws.commands(), &self.beliefs, [rigid, 0.0, 0.0]);
+        if let Some(monitor) = &mut self.monitor {
+            monitor.take_over(instant(rest.seen), rest.integral, &rest.tracks);
+        }
+        self.seek(record)
+    }
+
+    /// Begins a motion at what was seen, under a torque (N m).
+    fn set_off(&mut self, from: &Sight, torque: f64) {
+        self.exerted = Exerted { constant: torque, feedback: torque, back_emf: (0.0, false) };
+        if let Plant::Planar(plant) = &mut self.plant {
+            plant.put(instant(from.at), |state| see(state, from));
+            plant.depart_under(0.0 + torque);
+        }
+    }
+}
+
+impl<R: Record> Alone<'_, R> {
+    /// Keeps why the run cannot go on.
+    fn keep<E: Into<SimulationError>>(&mut self, result: Result<(), E>) {
+        if let Err(error) = result {
+            self.failed.get_or_insert(error.into());
+        }
+    }
+
+    fn tell(&mut self, to: Place, now: &Sight) -> Result<(), RecordError> {
+        self.record.poll()?;
+        let at = instant(now.at);
+        let Plant::Planar(plant) = &mut self.run.plant else { return Ok(()) };
+        plant.put(at, |state| see(state, now));
+        let sensed = plant.view(at);
+        let (time_s, time_whole_s, time_fs) = record::Command::times(at);
+        let command = record::Command {
+            time_s,
+            time_whole_s,
+            time_fs,
+            state: phase(to, now.side),
+            cause: if to == Place::Coast { Trigger::Timeout } else { Trigger::Guard },
+            torque_nm: self.setup.torque(to, now.side),
+            angle_rad: sensed.angle,
+            rate_rad_s: sensed.rate,
+            gain: now.gain,
+        };
+        self.record.record(at, Sample::Switching(&command, plant.state()))
+    }
+}
+
+impl<R: Record> Work for &mut Alone<'_, R> {
+    type Output = ();
+
+    #[allow(clippy::inline_always, reason = "a function of its own would lack the processor's instructions")]
+    #[inline(always)]
+    fn run<K: Real>(self, kind: K) {
+        Flight::fly(kind, self.setup.modes.len(), self.setup.tracks.len(), self);
+    }
+}
+
+impl<R: Record> Crew for Alone<'_, R> {
+    const TAKES_BACK: bool = true;
+
+    fn listens(&self) -> bool {
+        self.listens
+    }
+
+    fn looks(&self) -> bool {
+        self.band.is_finite()
+    }
+
+    fn next(&mut self, lane: usize) -> Option<Setup> {
+        (lane == 0 && std::mem::take(&mut self.waits)).then(|| self.setup.clone())
+    }
+
+    fn search(&mut self, _: usize, place: Place, from: &Sight) -> Option<Searched> {
+        self.run.set_off(from, self.setup.torque(place, from.side));
+        let horizon = instant(self.setup.end).since(instant(from.at));
+        let guards = self.setup.guards(place, from.side);
+        let Plant::Planar(plant) = &mut self.run.plant else { return None };
+        let trip = plant.trip(&guards, horizon, self.record);
+        let (at, guard) = match trip {
+            Ok(trip) => trip?,
+            Err(error) => {
+                self.keep(Err(error));
+                return None;
+            }
+        };
+        plant.view(at);
+        let after = at.since(instant(from.at));
+        Some(Searched {
+            after: ((Instant::START + after).parts(), after.seconds()),
+            right: guard == 0,
+            modes: plant.state().modes.iter().map(|phase| [phase.displacement, phase.quadrature]).collect(),
+        })
+    }
+
+    fn give_up(&mut self, _: usize) {
+        self.stopped = true;
+    }
+
+    fn switched(&mut self, _: usize, to: Place, now: &Sight) {
+        let told = self.tell(to, now);
+        self.keep(told);
+    }
+
+    fn closed(&mut self, _: usize, at: (u64, u64), integral: f64, gain: f64) -> f64 {
+        let (now, run) = (instant(at), &mut *self.run);
+        let Some(monitor) = &mut run.monitor else { return gain };
+        let closed = monitor.conclude(now, integral, gain);
+        let learned = closed.step.as_ref().map(|(row, _)| row.gain);
+        if let (Some(learned), Some(search)) = (learned, monitor.search()) {
+            run.laws.tune(search.tunes().0, learned);
+        }
+        let told = run.telling.window(now, &closed, self.record);
+        self.keep(told);
+        learned.unwrap_or(gain)
+    }
+
+    fn strays(&mut self, _: usize, place: Place, from: &Sight, until: (u64, u64)) {
+        self.run.set_off(from, self.setup.torque(place, from.side));
+        let Plant::Planar(plant) = &self.run.plant else { return };
+        let told = plant.tell_course(instant(until), &self.run.exerted, self.record);
+        self.keep(told);
+    }
+
+    fn band(&self, _: usize) -> f64 {
+        self.band
+    }
+
+    fn stops(&self) -> bool {
+        self.stopped || self.failed.is_some()
+    }
+
+    fn take_back(&mut self, rest: Rest) {
+        self.rest = rest;
+    }
+}
