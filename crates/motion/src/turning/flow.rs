@@ -9,13 +9,13 @@ mod level;
 use super::bearing::{Bearing, Borne, Slip, Spin};
 use super::common::{Common, Known, Regular};
 use super::driven::Driving;
+use super::method::Work;
 use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
 use super::pace::{Amplitude, Pace, Pose};
 use super::response::Response;
 use super::rotation::Bend;
-use super::state::{Seen, State};
-use super::step::{Step, Work};
-use super::watch::Ahead;
+use super::state::{Ahead, Seen, State};
+use super::step::Step;
 use crate::attitude::Vector;
 
 /// Steps after which the motion asks whether it may go on.

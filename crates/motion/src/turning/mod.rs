@@ -8,7 +8,7 @@
 //! q' = P + phi' Gt,   P' = -W² q - D q' + 1/2 [w' J1_i w] + f.
 //! ```
 //!
-//! `step.rs` has the method: Gauss-Legendre of order 6 in mean axes, which keeps |H| and |Q|, with the modes as exact
+//! `method.rs` has the method: Gauss-Legendre of order 6 in mean axes, which keeps |H| and |Q|, with the modes as exact
 //! oscillators (\[HairerLubichWanner06\], \[Likins70\]). Steps lie on a grid that depends on the departure alone, and what is
 //! seen between is one shorter step beside it, so that looking changes nothing.
 
@@ -24,6 +24,7 @@ mod feel;
 mod flow;
 mod free;
 mod heated;
+mod method;
 mod model;
 mod nodes;
 mod pace;

@@ -121,3 +121,14 @@ impl Seen {
         }
     }
 }
+
+/// The step that follows, and what happens on it.
+#[derive(Clone, Debug)]
+pub(super) struct Ahead {
+    /// Seconds from the departure to the start of the step.
+    pub from: f64,
+    /// The state at its end.
+    pub to: State,
+    /// The first instant since the departure (s) at which a rotor comes to rest or lets go, and which one.
+    pub meets: Option<(f64, usize)>,
+}

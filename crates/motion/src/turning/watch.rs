@@ -8,24 +8,13 @@
 use super::bearing::Slip;
 use super::flow::Turning;
 use super::model::Surroundings;
-use super::state::State;
+use super::state::Ahead;
 
 /// A rotor that lets go begins at a margin of 0, which this keeps apart from rounding (rad/s).
 const SPARE: f64 = 1e-12;
 
 /// No part of a step is shorter (s): an instant has so many.
 const TICK: f64 = 1e-15;
-
-/// The step that follows, and what happens on it.
-#[derive(Clone, Debug)]
-pub(super) struct Ahead {
-    /// Seconds from the departure to the start of the step.
-    pub from: f64,
-    /// The state at its end.
-    pub to: State,
-    /// The first instant since the departure (s) at which a rotor comes to rest or lets go, and which one.
-    pub meets: Option<(f64, usize)>,
-}
 
 /// What must stay positive.
 #[derive(Copy, Clone, Debug)]
