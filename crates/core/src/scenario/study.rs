@@ -54,11 +54,11 @@ pub struct Study {
     pub groups: Option<[[Group; 2]; 3]>,
     /// What each thruster of jets does, whether laws act by them or they unload wheels.
     pub nozzles: Vec<Nozzle>,
-    /// About which axes these jets are the only actuator.
+    /// About which axes jets are the only actuator.
     pub fired: [bool; 3],
     /// Whether jets are the only actuator of all.
     pub jets_alone: bool,
-    /// The same of groups of jets that unload wheels.
+    /// What each group of jets that unload wheels does.
     pub unloading: Option<[[Group; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
