@@ -30,7 +30,8 @@ def main() -> None:
     environment = {**os.environ, "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
     command = [scripts / "maturin", "sdist", "--out", "dist"]
     if target != "sdist":
-        command = [scripts / "maturin", "build", "--release", "--strip", "--out", "dist", "--target", target]
+        command = [scripts / "maturin", "build", "--profile", "dist", "--out", "dist", "--target", target]
+        command += ["--compression-level", "9"]
         if "linux" in target:
             command += ["--zig", "--compatibility", "musllinux_1_2" if "musl" in target else "manylinux_2_17"]
     subprocess.run([str(word) for word in command], cwd=ROOT, env=environment, check=True)

@@ -273,7 +273,7 @@ fn an_appendage_snaps_as_its_closed_form_does() {
     assert!(error.contains("`appendage[0].thermal`") && error.contains("environment.sun"), "{error}");
     let error =
         Scenario::parse("two.toml", &text.replace("[0.05]", "[0.05, 1]")).expect_err("two").to_string();
-    assert!(error.contains("appendage[0].thermal.deflection") && error.contains("1 modes, got 2"), "{error}");
+    assert!(error.contains("appendage[0].thermal.deflection") && error.contains("1 mode, got 2"), "{error}");
 }
 
 /// A table in the axes of an orbit that is no circle: what is left of rate and acceleration fed forward is the hold of a sample,

@@ -216,3 +216,20 @@ fn spatial_figures_have_units_that_people_use() {
         assert!(words.iter().all(|word| texts.contains(word)), "{figure}: {texts:?}");
     }
 }
+
+#[test]
+fn a_log_of_other_settings_than_the_file_beside_it_is_drawn_with_a_note() {
+    let dir = Dir::with(&["relay-fixed"]);
+    dir.run("simulate relay-fixed.toml --set duration=100").exits(0);
+    let note = "relay-fixed.mcap holds a run with other settings than relay-fixed.toml has now (`duration`: ";
+    dir.run("plot relay-fixed.mcap --what torque -o x.svg").exits(0).says(&["note: ", note]);
+    dir.run("simulate relay-fixed.toml --set duration=100 -o out").exits(0);
+    // Nothing stands beside it.
+    let quiet = dir.run("plot out/relay-fixed.mcap --what torque -o x.svg").exits(0);
+    assert!(!quiet.err.contains("note"), "{}", quiet.err);
+    // A run that was refused leaves the log of the one before.
+    dir.write("relay-fixed.toml", "duration = -1");
+    dir.run("simulate relay-fixed.toml").exits(2);
+    let note = "note: relay-fixed.toml is not accepted now: relay-fixed.mcap holds an earlier run";
+    dir.run("plot relay-fixed.mcap --what torque -o x.svg").exits(0).says(&[note]);
+}

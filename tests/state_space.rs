@@ -111,7 +111,7 @@ fn matrices_that_do_not_fit_are_refused() {
         ("d = [[1.0, 2.0, 3.0]]", "law.state_space.d[0]", "angle and rate, got 3"),
         ("d = [[1.0], [2.0]]", "law.state_space.d", "must be one row, got 2"),
         ("a = [[1.0, 2.0]]\nb = [[1.0]]\nc = [[1.0]]", "law.state_space.a[0]", "must have 1 column, got 2"),
-        ("a = [[0.5]]\nb = [[1.0], [1.0]]\nc = [[1.0]]", "law.state_space.b", "each of the 1 states, got 2"),
+        ("a = [[0.5]]\nb = [[1.0], [1.0]]\nc = [[1.0]]", "law.state_space.b", "each of 1 state, got 2"),
         ("a = [[0.5]]\nb = [[1.0]]", "law.state_space.c", "states have no effect"),
         (
             "a = [[4.0]]\nb = [[1.0]]\nc = [[1.0]]\nof = \"tustin\"",

@@ -151,7 +151,7 @@ fn what_no_filter_with_modes_can_be_is_refused() {
         (("feeds = \"hub\"", "feeds = \"modes\""), "must be `rigid` or `hub`"),
         (
             ("modes = [0], noise", "modes = [0], frequencies = [1, 2], noise"),
-            "must be one for each of 1 modes, got 2",
+            "must be one for each of 1 mode, got 2",
         ),
         (
             ("[estimator.attitude]\n", "[estimator.attitude]\nform = \"steady\"\n"),

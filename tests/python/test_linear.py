@@ -63,7 +63,7 @@ def test_the_body_is_that_of_the_equations() -> None:
     np.testing.assert_allclose(model.eigenfrequencies(), [0.0, 0.0, 1.3, 4.0], rtol=1e-12)
     assert [(s.name, s.unit) for s in model.inputs] == [("torque", "N m")]
     assert model.states[3] == flexsc.Signal("mode0_rate", "rad/s")
-    assert repr(model) == "<flexsc.Linear continuous: 6 states, 1 inputs, 8 outputs>"
+    assert repr(model) == "<flexsc.Linear continuous: 6 states, 1 input, 8 outputs>"
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.2, 0.5, 1.3])

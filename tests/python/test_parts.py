@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import doctest
+import os
 import pickle
 import threading
 import time
@@ -130,6 +131,31 @@ def test_campaigns_of_own_parts_on_processes() -> None:
     compiled = flexsc.CompiledLaw(12345, period=0.25)
     with ProcessPoolExecutor(1) as pool, pytest.raises(ValueError, match="an address of this process"):
         flexsc.campaign(scenario.with_parts(law=compiled), runs=2, executor=pool)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_campaigns_of_own_parts_on_dask() -> None:
+    distributed = pytest.importorskip("distributed")
+    from flexsc.dask import campaign
+
+    scenario = all_own()
+    here = flexsc.campaign(scenario, runs=12)
+    seen: list[tuple[int, int]] = []
+    # Workers are processes: the objects travel to them.
+    cluster = distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, protocol="tcp://"
+    )
+    with cluster, distributed.Client(cluster) as client:
+        assert os.getpid() not in client.run(os.getpid).values()
+        there = campaign(client, scenario, 12, task_s=1e-3, progress=lambda *done: seen.append(done))
+        with pytest.raises(ValueError, match="an address of this process"):
+            campaign(client, scenario.with_parts(law=flexsc.CompiledLaw(12345, period=0.25)), 2)
+    assert list(there) == list(here)
+    assert len(there) == 12
+    for name in here:
+        assert list(map(str, there[name])) == list(map(str, here[name])), name
+    assert str(there.statistics()) == str(here.statistics())
+    assert seen[-1] == (12, 12)
 
 
 def all_own(text: str = SMALL) -> flexsc.Scenario:

@@ -47,5 +47,5 @@ def test_a_design_becomes_a_law() -> None:
 
 def test_matrices_that_do_not_fit() -> None:
     law = {"period": PERIOD, "a": np.eye(2), "b": np.ones((1, 1)), "c": np.ones((1, 2))}
-    with pytest.raises(ScenarioError, match=r"law\.state_space\.b.*each of the 2 states"):
+    with pytest.raises(ScenarioError, match=r"law\.state_space\.b.*each of 2 states"):
         Scenario({**study().to_dict(), "law": {"state_space": law}})

@@ -122,6 +122,18 @@ def test_the_log_of_a_commanded_run_repeats_it(tmp_path: Path) -> None:
         assert drawn[0][-1] != pytest.approx(alone[-1], rel=1e-3)
 
 
+def test_a_log_of_commands_is_another_run(tmp_path: Path, command: Command) -> None:
+    scenario = shipped("relay-fixed").with_("duration", 20.0)
+    (tmp_path / "relay-fixed.toml").write_text(scenario.to_toml())
+    commanded(scenario).to_mcap(tmp_path / "relay-fixed.mcap")
+    before = (tmp_path / "relay-fixed.mcap").read_bytes()
+    refused = command("simulate", "relay-fixed.toml", exits=2)
+    assert b"holds a run that was stepped under commands" in refused.stderr
+    assert (tmp_path / "relay-fixed.mcap").read_bytes() == before
+    command("simulate", "relay-fixed.toml", "--force")
+    command("simulate", "relay-fixed.toml")
+
+
 def test_results_of_steps_are_pickled_and_go_with_snapshots() -> None:
     sim = commanded(shipped("four-clamped-modes"))
     before, metrics = sim.snapshot(), sim.metrics

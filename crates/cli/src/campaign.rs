@@ -15,6 +15,7 @@ use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, Directory, Outcome, Run, RunError, Sampling};
+use flexsc_core::count::counted;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
 use flexsc_core::statistics::{Gathered, QUANTILES, Statistics};
@@ -129,7 +130,7 @@ pub fn run(
         if let Some(only) = &told.only {
             summary::tell(study.scenario(), only, took);
         } else {
-            say!("{name}   {runs} runs, {took:.2} s");
+            say!("{name}   {}, {took:.2} s", counted(runs, "run"));
             tell_statistics(&told.statistics, &study.design().keys(), told.runs);
         }
         if let Some(path) = &told.table {
@@ -346,6 +347,6 @@ pub fn tell_statistics(statistics: &[Statistics], swept: &[&str], runs: usize) {
         say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
     }
     for s in statistics.iter().filter(|s| s.infinite > 0) {
-        say!("  {}: too large for a number in {} of {runs} runs, left out", s.name, s.infinite);
+        say!("  {}: too large for a number in {} of {}, left out", s.name, s.infinite, counted(runs, "run"));
     }
 }

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::count::counted;
 use flexsc_core::{Scenario, ScenarioError};
 use serde_json::json;
 
@@ -48,7 +49,7 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), Failure>
         });
         return print(format!("{object}\n").as_bytes());
     }
-    say!("{}: accepted: {duration} s, {modes} modes", path.display());
+    say!("{}: accepted: {duration} s, {}", path.display(), counted(modes, "mode"));
     if let Some(why) = costly {
         say!("  {why}");
     }

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anstyle::{AnsiColor, Style};
+use flexsc_core::count::counted;
 use flexsc_core::record::LogError;
 use flexsc_core::whole::is_busy;
 use flexsc_core::{ScenarioError, SimulationError};
@@ -29,7 +30,7 @@ pub enum Failure {
     #[error("{name}: {source}")]
     Run { name: String, source: SimulationError },
     /// Some runs of a campaign failed.
-    #[error("{failed} of {runs} runs failed; the first: run {number}: {why}")]
+    #[error("{failed} of {} failed; the first: run {number}: {why}", counted(runs, "run"))]
     Runs { failed: u64, runs: u64, number: u64, why: String },
     /// A run of a campaign failed that was to stop there.
     #[error("run {number} failed, and --fail-fast stops there: {why}")]

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Subcommand;
+use flexsc_core::count::counted;
 use flexsc_core::record::{Log, recover};
 use serde_json::json;
 
@@ -51,7 +52,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 let object = json!({"file": whole.display().to_string(), "messages": saved});
                 return print(format!("{object}\n").as_bytes());
             }
-            say!("{saved} messages saved in {}", whole.display());
+            say!("{} saved in {}", counted(saved, "message"), whole.display());
             Ok(())
         }
         Verb::Scenario { log } => print(Log::open(log)?.own_scenario()?.as_bytes()),

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::campaign::{Directory, DirectoryError, MANIFEST};
+use flexsc_core::count::counted;
 
 use crate::campaign::{self, parts};
 use crate::failure::Failure;
@@ -37,11 +38,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let into = Directory::create(&args.out, manifest, false).map_err(parts::failure)?;
     for other in &all {
         let new = into.take(other).map_err(parts::failure)?;
-        say!("{}: {new} runs", other.path().display());
+        say!("{}: {}", other.path().display(), counted(new, "run"));
     }
     let left: u64 = into.missing().map_err(parts::failure)?.iter().map(|runs| runs.end - runs.start).sum();
     let told = parts::told(&into)?;
-    say!("{}: {} runs, {left} are missing", args.out.display(), told.runs);
+    say!("{}: {}, {left} missing", args.out.display(), counted(told.runs, "run"));
     campaign::tell_statistics(&told.statistics, &into.work().campaign.design().keys(), told.runs);
     Ok(())
 }

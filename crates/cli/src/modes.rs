@@ -10,9 +10,11 @@ use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::parts::Parts;
 use flexsc_core::attitude::AXES;
 use flexsc_core::body::Drive;
+use flexsc_core::count::counted;
 use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
+use crate::number::unsigned_zero;
 use crate::results::{Results, of_scenario, show};
 use crate::say;
 use crate::scenario::Args;
@@ -79,9 +81,9 @@ fn tell_influences(modes: &Influences, jets: [bool; 3]) {
         AXES[2]
     );
     for index in 0..modes.dampings.len() {
-        let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| modes.influences[axis][index]);
+        let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| unsigned_zero(modes.influences[axis][index], 5));
         say!(
-            "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{roll:>12.5}{pitch:>12.5}{yaw:>12.5}",
+            "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{roll:>12}{pitch:>12}{yaw:>12}",
             modes.frequencies_rad_s[index],
             modes.periods_s[index],
             modes.dampings[index],
@@ -96,7 +98,7 @@ impl Results for Spatial {
 
     fn tell(&self) -> Result<(), Failure> {
         let Self { name, modes, jets } = self;
-        say!("{name}   {} modes", modes.dampings.len());
+        say!("{name}   {}", counted(modes.dampings.len(), "mode"));
         tell_influences(modes, *jets);
         Ok(())
     }
@@ -113,7 +115,7 @@ impl Results for Planar {
             Drive::Torque => "free",
             Drive::Motion => "held",
         };
-        say!("{}   {} modes, hub {hub}", name, modal.gains.len());
+        say!("{name}   {}, hub {hub}", counted(modal.gains.len(), "mode"));
         let strongest = modal.excitabilities_s2.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
         let other = match modal.drive {
             Drive::Torque => ("hub held", &modal.clamped_frequencies_rad_s),
@@ -147,19 +149,19 @@ impl Results for Planar {
             let frequency =
                 other.1.as_ref().map_or_else(|| "none".to_owned(), |w| format!("{:.6}", w[index]));
             say!(
-                "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{:>12.5}{:>18.6e}{:>10.3}{:>14.6}{frequency:>12}",
+                "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{:>12}{:>18.6e}{:>10.3}{:>14}{frequency:>12}",
                 modal.frequencies_rad_s[index],
                 modal.periods_s[index],
                 modal.dampings[index],
-                modal.gains[index],
+                unsigned_zero(modal.gains[index], 5),
                 modal.excitabilities_s2[index],
                 modal.excitabilities_s2[index].abs() / strongest,
-                modal.effective_inertias_kg_m2[index],
+                unsigned_zero(modal.effective_inertias_kg_m2[index], 6),
             );
         }
         for output in &modal.outputs {
             let shown: Vec<_> =
-                output.weights.iter().take(WEIGHTS).map(|weight| format!("{weight:.5}")).collect();
+                output.weights.iter().take(WEIGHTS).map(|weight| unsigned_zero(*weight, 5)).collect();
             let more = if output.weights.len() > WEIGHTS { " ..." } else { "" };
             let (name, unit, rigid) = (&output.name, &output.unit, output.rigid);
             say!(

@@ -10,6 +10,15 @@ pub fn fixed(value: Option<f64>, decimals: usize) -> String {
     or_none(value, |value| format!("{value:.decimals$}"))
 }
 
+/// A number with so many decimals, and no sign of one that is rounded to 0.
+pub fn unsigned_zero(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if !rest.contains(|digit: char| ('1'..='9').contains(&digit)) => rest.to_owned(),
+        _ => text,
+    }
+}
+
 /// A number in at most ten characters.
 pub fn short(number: f64) -> String {
     if number.is_nan() {

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use flexsc_core::Scenario;
+use flexsc_core::count::counted;
 use flexsc_core::estimator::Estimator;
 use flexsc_core::metrics::{Metrics, Value};
 
@@ -11,14 +12,14 @@ use crate::say;
 /// Prints the result of a run, which took so many seconds of real time.
 pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     let (duration, modes) = (scenario.duration.seconds(), scenario.mode_count());
-    let head = format!("{}   {duration} s, {modes} modes", scenario.name);
+    let head = format!("{}   {duration} s, {}", scenario.name, counted(modes, "mode"));
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     if scenario.axis_count() == 3 {
         say!("{head}, {:.1} ms", took * 1e3);
         spatial(metrics, modes > 0);
         adaptation(scenario, metrics);
     } else if scenario.law.switches() {
-        say!("{head}, {} switchings, {:.1} ms", number("switchings"), took * 1e3);
+        say!("{head}, {}, {:.1} ms", counted(number("switchings"), "switching"), took * 1e3);
         switchings(scenario, metrics);
         goal(metrics, outside);
     } else {
@@ -34,17 +35,17 @@ fn spatial(metrics: &Metrics, bends: bool) {
     // Other actuators use none.
     if number("fuel_kg").is_finite() {
         say!(
-            "  jets           {:.3} kg of propellant, {} pulses in {} cycles",
+            "  jets           {:.3} kg of propellant, {} in {}",
             number("fuel_kg"),
-            number("firings"),
-            number("firing_cycles"),
+            counted(number("firings"), "pulse"),
+            counted(number("firing_cycles"), "cycle"),
         );
     }
     if number("friction_heat_j").is_finite() {
         say!(
-            "  wheels         {} zero crossings, {} stops, {:.1} J of friction heat",
-            number("wheel_zero_crossings"),
-            number("wheel_stops"),
+            "  wheels         {}, {}, {:.1} J of friction heat",
+            counted(number("wheel_zero_crossings"), "zero crossing"),
+            counted(number("wheel_stops"), "stop"),
             number("friction_heat_j"),
         );
     }
@@ -84,10 +85,10 @@ fn spatial(metrics: &Metrics, bends: bool) {
     if let Some(Value::Numbers(frequencies)) = metrics.get("frequency_estimates_hz") {
         let found: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.4}")).collect();
         say!(
-            "  modes          {} Hz as estimated; damped in {} cycles, paused {} times",
+            "  modes          {} Hz as estimated; damped in {}, paused {}",
             found.join(", "),
-            number("damping_cycles"),
-            number("damping_pauses"),
+            counted(number("damping_cycles"), "cycle"),
+            counted(number("damping_pauses"), "time"),
         );
     }
 }

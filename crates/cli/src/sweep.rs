@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Block, Campaign, Design, Span};
+use flexsc_core::count::counted;
 use flexsc_core::record::Detail;
 
 use crate::campaign::Options;
@@ -147,7 +148,7 @@ impl Args {
         let (design, all) = self.design(!scenario.uncertain.is_empty())?;
         let range = self.runs.as_ref().map_or(0..all, |runs| runs.range.clone());
         if range.end > all {
-            return Err(Failure::Arguments(format!("--runs: the sweep has {all} runs")));
+            return Err(Failure::Arguments(format!("--runs: the sweep has {}", counted(all, "run"))));
         }
         let study = Campaign::of(scenario, origin, design)?;
         let runs = range.end - range.start;

@@ -9,6 +9,7 @@ use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
 use flexsc_core::campaign::{Directory, ERROR, Kind, SECONDS};
+use flexsc_core::count::counted;
 use flexsc_core::metrics::goal;
 use indicatif::{HumanDuration, MultiProgress, ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -152,7 +153,7 @@ impl Seen {
     fn text(&self, directory: &Directory) -> String {
         let (done, all) = (self.done(), wanted(directory));
         let name = &directory.work().campaign.scenario().name;
-        let mut text = format!("{name}   {done} of {all} runs, {} failed", self.failed);
+        let mut text = format!("{name}   {done} of {}, {} failed", counted(all, "run"), self.failed);
         if let Some((rate, last)) = self.rate() {
             if done < all {
                 if rate > 0.0 {

@@ -5,6 +5,7 @@ mod crew;
 mod design;
 mod directory;
 mod draws;
+mod error;
 mod manifest;
 mod merge;
 #[cfg_attr(not(feature = "parquet"), path = "campaign/left_out.rs")]
@@ -30,7 +31,8 @@ use crate::sim::{Simulation, SimulationError};
 
 pub use commanded::Commanded;
 pub use design::{Block, Design, MOST_NUMBERS, MOST_POINTS, Span};
-pub use directory::{Directory, DirectoryError, MANIFEST};
+pub use directory::{Directory, MANIFEST};
+pub use error::DirectoryError;
 pub use manifest::Manifest;
 pub use parquet::parquet_is_built_in;
 pub use rows::{Column, ERROR, Field, Kind, RUN, Rows, SECONDS, SEED};

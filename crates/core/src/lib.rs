@@ -67,7 +67,7 @@ pub mod statistics;
 pub mod uncertain;
 pub mod whole;
 
-pub use flexsc_formats::{document, structure};
+pub use flexsc_formats::{count, document, structure};
 pub use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};
 
 pub use document::{Document, LONGEST, Mistake, ScenarioError, nearest};

@@ -19,8 +19,8 @@ use pyo3::types::{PyBytes, PyDict, PyList};
 use super::Scenario;
 use super::aside::aside;
 use super::error::{allowed, no_file, scenario_error};
-use super::figures::column;
 use super::parts::known_thread;
+use super::table::column;
 
 /// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
 type Summary = (&'static str, &'static str, usize, f64, f64, Vec<(f64, f64)>);

@@ -9,7 +9,7 @@ use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::campaign::Column;
 use flexsc_figure::{Axis, Layer, Named, Panel, RGBColor, Scale, Shape};
-use numpy::{PyArray2, PyReadonlyArray1};
+use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -17,6 +17,7 @@ use pyo3::types::PyDict;
 use super::aside::aside;
 use super::campaign::Work;
 use super::commands::Commands;
+use super::table::column;
 use super::{Log, Scenario};
 
 /// A figure.
@@ -126,17 +127,6 @@ pub fn log_figure(py: Python<'_>, log: &Log, name: String) -> PyResult<Figure> {
     let (path, log) = (place(log), log.0.clone());
     let figure = aside(py, move |_| figures::of_log(&log, &path, &name))?.map_err(PyValueError::new_err)?;
     Ok(Figure(Arc::new(figure)))
-}
-
-/// A column of a table, as the engine has it.
-pub fn column(given: &Bound<'_, PyAny>) -> PyResult<Column> {
-    if let Ok(numbers) = given.extract::<PyReadonlyArray1<'_, f64>>() {
-        return Ok(Column::Numbers(numbers.as_array().to_vec()));
-    }
-    if let Ok(integers) = given.extract::<PyReadonlyArray1<'_, i64>>() {
-        return Ok(Column::Integers(integers.as_array().iter().copied().map(Some).collect()));
-    }
-    Ok(Column::Words(given.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
 }
 
 /// The figures of a campaign's columns: of a kind, or the natural ones.

@@ -19,6 +19,7 @@ mod linear;
 mod parts;
 mod sampled;
 mod stepping;
+mod table;
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;

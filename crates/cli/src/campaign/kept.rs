@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::campaign::Campaign;
+use flexsc_core::count::counted;
 use flexsc_core::record::difference;
 use flexsc_core::whole::Partial;
 
@@ -79,7 +80,10 @@ impl<'a> Kept<'a> {
             let (whole, runs) = (self.path("runs.csv"), self.job.range.end - self.job.range.start);
             let before = rows(&whole);
             if before > runs {
-                let why = format!("holds {before} runs of this campaign, and {runs} would replace them");
+                let why = format!(
+                    "holds {} of this campaign, and {runs} would replace them",
+                    counted(before, "run")
+                );
                 return refused(&whole, &why, HINT);
             }
             return Ok(true);

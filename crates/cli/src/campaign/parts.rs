@@ -8,6 +8,7 @@ use std::sync::Arc;
 use flexsc_core::campaign::{
     Campaign, Directory, DirectoryError, MANIFEST, Manifest, Outcome, Rows, Run, RunError, Summary,
 };
+use flexsc_core::count::counted;
 use flexsc_core::metrics::Metrics;
 
 use super::live::Live;
@@ -38,7 +39,8 @@ pub fn create(path: &Path, manifest: Manifest, job: &Job<'_>) -> Result<Director
     if !job.part && there != runs {
         if !job.force {
             let (before, now) = (there.end - there.start, runs.end - runs.start);
-            let why = format!("holds {before} runs of this campaign, and {now} would replace them");
+            let why =
+                format!("holds {} of this campaign, and {now} would replace them", counted(before, "run"));
             return Err(Failure::Arguments(format!("{}: {why}\n\n{HINT}", path.join(MANIFEST).display())));
         }
         directory.shrink(runs).map_err(failure)?;
@@ -63,7 +65,7 @@ pub fn run(
     let count = |ranges: &[Range<u64>]| ranges.iter().map(|runs| runs.end - runs.start).sum::<u64>();
     let (all, left) = (job.range.end - job.range.start, count(&missing));
     if left < all && !job.json {
-        say!("{}: {} of {all} runs are there", path.display(), all - left);
+        say!("{}: {} of {} are there", path.display(), all - left, counted(all, "run"));
     }
     if let Some(address) = job.scheduler {
         // The lock is of who hands out the runs.
@@ -93,8 +95,9 @@ pub fn run(
             drop(making);
             return Err(match failure {
                 Failure::Interrupted(at) => Failure::Interrupted(format!(
-                    "{at}; {} holds {made} of {all} runs, and the same command continues",
-                    path.display()
+                    "{at}; {} holds {made} of {}, and the same command continues",
+                    path.display(),
+                    counted(all, "run")
                 )),
                 failure => failure,
             });

@@ -7,6 +7,7 @@ use std::io::Write;
 use std::str::FromStr;
 
 use flexsc_core::analysis::identification::{CYCLE, Row, Trial};
+use flexsc_core::count::counted;
 use flexsc_core::quantity::NonNegative;
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
@@ -163,7 +164,8 @@ impl Results for Identified {
     fn tell(&self) -> Result<(), Failure> {
         let Self { sets, runs, whole, influence_off } = self;
         say!(
-            "identification   {runs} runs of {whole:.0} s a row; influences off by {} %; found is within 2 %",
+            "identification   {} of {whole:.0} s a row; influences off by {} %; found is within 2 %",
+            counted(runs, "run"),
             100.0 * influence_off
         );
         say!(

@@ -12,8 +12,8 @@ use tungstenite::{Error, WebSocket};
 
 use super::gate::Gate;
 use super::hub::{Hub, MOST_CLIENTS, Seat};
+use super::outbox::Frame;
 use super::protocol::SUBPROTOCOLS;
-use super::state::Frame;
 use super::wire::{Wire, is_silence};
 
 const SUBPROTOCOL: &str = "sec-websocket-protocol";

@@ -9,8 +9,9 @@ use flexsc_core::record::{Message, Messages, RecordError};
 use flexsc_core::time::Instant;
 
 use super::clock::{Clock, LOOK};
+use super::outbox::Frame;
 use super::protocol::{self, Level, Request};
-use super::state::{Frame, State};
+use super::state::State;
 use crate::stop;
 
 /// There are at most so many clients, and so many connections that are being greeted.

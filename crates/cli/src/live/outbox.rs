@@ -2,8 +2,6 @@
 
 use std::collections::VecDeque;
 
-use super::state::Frame;
-
 /// The run waits for a client that has so much yet to take (bytes).
 const FULL: usize = 4 << 20;
 /// What is no message of the run does not wait: a client with so much (bytes) is sent away.
@@ -12,6 +10,9 @@ const OVERFULL: usize = 2 * FULL;
 const BATCH: usize = 256 << 10;
 /// What a frame costs beside its content (bytes).
 const FRAME: usize = 64;
+
+/// A frame of the protocol.
+pub type Frame = tungstenite::Message;
 
 /// Frames in their order.
 #[derive(Default)]

@@ -7,16 +7,13 @@ use flexsc_core::record::{Message, TOPICS};
 use serde_json::Value as Json;
 
 use super::clock::{Clock, Speed};
-use super::outbox::Outbox;
+use super::outbox::{Frame, Outbox};
 use super::protocol::{self, Level, PARAMETERS, Request};
 
 /// Of the latest instant of a topic, so many messages are kept.
 const MOST_LATEST: usize = 64;
 /// What is asked for after the end.
 const ENDED: &str = "the run has ended";
-
-/// A frame of the protocol.
-pub type Frame = tungstenite::Message;
 
 /// What of a live run changes.
 pub struct State {

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{Cell, map};
+use flexsc_core::count::counted;
 use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
 
@@ -94,7 +95,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     files::write(path, csv(&mapped.cells).as_bytes())?;
     let Mapped { name, cells, .. } = &mapped;
     let stable = cells.iter().filter(|cell| cell.spectral_radius < 1.0).count();
-    say!("{name}   {} cells, {stable} of them stable, in {}", cells.len(), path.display());
+    say!("{name}   {}, {stable} stable, in {}", counted(cells.len(), "cell"), path.display());
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use serde_json::{Value as Json, json};
 
 use super::tell_influences;
 use crate::failure::Failure;
+use crate::number::unsigned_zero;
 use crate::results::{Results, of_scenario};
 use crate::say;
 
@@ -26,10 +27,11 @@ impl Results for Spacecraft {
 
     fn tell(&self) -> Result<(), Failure> {
         let Self { name, parts, jets } = self;
-        let [x, y, z] = parts.centre_m;
-        say!("{name}   {} kg, centre of mass at {x:.5} {y:.5} {z:.5} m", parts.mass_kg);
-        for (row, [x, y, z]) in parts.inertia_kg_m2.iter().enumerate() {
-            say!("  {:>22}{x:>12.4}{y:>12.4}{z:>12.4}", if row == 0 { "inertia, kg m²" } else { "" });
+        let [x, y, z] = parts.centre_m.map(|of| unsigned_zero(of, 5));
+        say!("{name}   {} kg, centre of mass at {x} {y} {z} m", parts.mass_kg);
+        for (row, of) in parts.inertia_kg_m2.iter().enumerate() {
+            let [x, y, z] = of.map(|of| unsigned_zero(of, 4));
+            say!("  {:>22}{x:>12}{y:>12}{z:>12}", if row == 0 { "inertia, kg m²" } else { "" });
         }
         say!(
             "  modes of the appendages, clamped, with effective masses and inertias in their own axes about the root"
@@ -69,8 +71,9 @@ impl Results for Spacecraft {
         for point in hub.into_iter().chain(ends) {
             let place = point.appendage.as_ref().map_or("hub", |_| &point.point);
             for index in 0..parts.clamped.len() {
-                let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| point.influences[axis][index]);
-                say!("  {index:>5}{roll:>14.5}{pitch:>12.5}{yaw:>12.5}  {place}");
+                let [roll, pitch, yaw] =
+                    [0, 1, 2].map(|axis: usize| unsigned_zero(point.influences[axis][index], 5));
+                say!("  {index:>5}{roll:>14}{pitch:>12}{yaw:>12}  {place}");
             }
         }
         if !parts.turned.is_empty() {

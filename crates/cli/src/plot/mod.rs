@@ -4,6 +4,7 @@ mod accelerations;
 mod angle;
 mod attitude_filter;
 mod campaign;
+mod columns;
 mod consistency;
 mod dead_zone;
 mod drive;
@@ -19,6 +20,7 @@ mod magnetorquers;
 mod modes;
 mod motion;
 mod orbit;
+mod outdated;
 mod outputs;
 mod overlay;
 mod phase_plane;
@@ -98,7 +100,11 @@ impl Args {
 impl Args {
     /// The figures of a log over the time that is asked for.
     fn own(&self, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
-        drawn_over(&Log::open(path)?, path, asked, (self.from, self.to))
+        let log = Log::open(path)?;
+        if !self.json {
+            outdated::warn(&log, path);
+        }
+        drawn_over(&log, path, asked, (self.from, self.to))
     }
 
     /// The figures that all logs have, those of a kind one over the other.

@@ -3,7 +3,7 @@
 use flexsc_core::record::{self, Column, Columns, Log, Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 
-use super::story::{labels, rows, topics};
+use super::columns::{labels, rows, topics};
 use crate::failure::Failure;
 
 /// The motion of a run. All but the envelope and the estimates may be left out where no figure shows it.

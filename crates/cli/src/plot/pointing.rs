@@ -1,7 +1,7 @@
 //! Figure `pointing` of three axes: how far the body is from its target about each axis, with its goal and its dead zone.
 
 use flexsc_core::law::Law;
-use flexsc_figure::{Axis, Figure, Layer, Shape, band, colour};
+use flexsc_figure::{Axis, Figure, Layer, Panel, Shape, band, colour};
 
 use super::spatial::{Cycles, panels};
 use super::story::Story;
@@ -9,6 +9,8 @@ use super::title;
 
 /// A band that is so many times as wide as the errors does not set the height of a panel.
 const WIDE: f64 = 3.0;
+/// Errors of less than this part of those about another axis are rounding, and are shown at the scale of those.
+const ROUNDING: f64 = 1e-9;
 
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let line = |axis: usize| {
@@ -17,9 +19,14 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         vec![Layer::new(name, colour::BLUE, Shape::Line(1.2), points)]
     };
     let mut panels = panels(story, "rad", line);
+    let of = |panel: &Panel| panel.layers[0].points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    let largest_of_all = panels.iter().map(of).fold(0.0, f64::max);
     for (axis, panel) in panels.iter_mut().enumerate() {
         let [goal, zone] = bands(story, axis);
-        let largest = panel.layers[0].points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+        let largest = of(panel);
+        if largest < ROUNDING * largest_of_all {
+            panel.y = Axis::around(&panel.y.name, "rad", [-largest_of_all, largest_of_all]);
+        }
         let shown =
             [goal, zone].into_iter().flatten().filter(|half| *half <= WIDE * largest).fold(0.0, f64::max);
         let values: Vec<f64> = panel.layers[0].points.iter().map(|point| point.1).collect();

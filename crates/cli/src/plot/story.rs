@@ -4,10 +4,11 @@
 use std::path::Path;
 
 use flexsc_core::campaign::Commanded;
-use flexsc_core::record::{Column, Columns, Log};
+use flexsc_core::record::{Columns, Log};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
+use super::columns::{labels, rows, topics};
 use super::motion::{Motion, Repeat};
 use crate::failure::Failure;
 
@@ -177,28 +178,6 @@ impl Story {
 
 pub fn unusable(path: &Path, why: String) -> Failure {
     Failure::Draw { path: path.to_owned(), why }
-}
-
-/// The rows of some topics; none of one that the log does not have.
-pub fn topics<const N: usize>(log: &Log, names: [&str; N]) -> Result<[Columns; N], Failure> {
-    let mut tables = log.tables(&names)?.into_iter();
-    Ok(names.map(|_| tables.next().flatten().unwrap_or_default()))
-}
-
-/// The doubles of some columns, row by row.
-pub fn rows<'a, const N: usize>(
-    columns: &'a Columns,
-    names: [&str; N],
-) -> impl Iterator<Item = [f64; N]> + 'a {
-    let columns = names.map(|name| columns.numbers(name).unwrap_or_default());
-    let shortest = columns.iter().map(|column| column.len()).min().unwrap_or(0);
-    (0..shortest).map(move |row| columns.map(|column| column[row]))
-}
-
-/// The labels of a column, row by row.
-pub fn labels(columns: &Columns, name: &str) -> Vec<String> {
-    let Some(Column::Labels(values, labels)) = columns.get(name) else { return Vec::new() };
-    values.iter().map(|value| labels.get(usize::from(*value)).cloned().unwrap_or_default()).collect()
 }
 
 fn switchings(columns: &Columns) -> Vec<Switching> {

@@ -7,6 +7,7 @@ use super::per_wheel::PerWheel;
 use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
 use crate::body::craft::Rotor;
+use crate::count::counted;
 use crate::document::Fault;
 use crate::motion::turning::{Flexible, Line};
 use crate::quantity::{Finite, NonNegative, Positive};
@@ -68,7 +69,8 @@ impl Imbalance {
         self.dynamic.check("dynamic", wheels)?;
         self.phase.check("phase", wheels)?;
         if !self.positions.is_empty() && self.positions.len() != wheels {
-            let why = format!("must be one for each of {wheels} wheels, got {}", self.positions.len());
+            let why =
+                format!("must be one for each of {}, got {}", counted(wheels, "wheel"), self.positions.len());
             return Err(Fault::new("positions", why));
         }
         Ok(())

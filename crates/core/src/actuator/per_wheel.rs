@@ -6,6 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::count::counted;
 use crate::document::{Fault, read_value};
 
 /// One value for all wheels, or one for each.
@@ -33,8 +34,11 @@ impl<T: Copy + Default> PerWheel<T> {
     pub fn check(&self, key: &str, wheels: usize) -> Result<(), Fault> {
         match self {
             Self::Each(values) if values.len() != wheels => {
-                let why =
-                    format!("must be one number, or one for each of {wheels} wheels, got {}", values.len());
+                let why = format!(
+                    "must be one number, or one for each of {}, got {}",
+                    counted(wheels, "wheel"),
+                    values.len()
+                );
                 Err(Fault::new(key, why))
             }
             _ => Ok(()),

@@ -12,6 +12,7 @@ use super::{Failure, Friction, Imbalance, Setting};
 use crate::attitude::Vector;
 use crate::body::Spatial;
 use crate::body::craft::Rotor;
+use crate::count::counted;
 use crate::document::Fault;
 use crate::motion::turning::{Bearing, Flexible};
 use crate::quantity::{Finite, NonNegative, Positive};
@@ -143,7 +144,8 @@ impl Wheels {
         let allocation = Allocation::new(&axes, self.allocation)
             .ok_or_else(|| Fault::new(if self.axes.is_empty() { "cant" } else { "axes" }, why))?;
         if !self.speeds.is_empty() && self.speeds.len() != count {
-            let why = format!("must be one for each of {count} wheels, got {}", self.speeds.len());
+            let why =
+                format!("must be one for each of {}, got {}", counted(count, "wheel"), self.speeds.len());
             return Err(Fault::new("speeds", why));
         }
         if let Some((wheel, speed)) = self.beyond_limits(&self.speeds(count)) {

@@ -1,7 +1,8 @@
-//! The linear parts of a loop that are not read off a scenario's keys: filters of laws at their samples, and estimators in the end.
+//! The linear parts of a loop that are not read off a scenario's keys: filters of laws at their samples, and settled estimators.
 
 use serde::Serialize;
 
+use super::attitude_parts::AttitudeParts;
 use crate::belief::Reads;
 use crate::document::Fault;
 use crate::estimator::kalman::{Kalman, Setting, Steady};
@@ -17,6 +18,8 @@ pub struct LoopParts {
     pub filters: Vec<Vec<([f64; 3], [f64; 2])>>,
     /// The estimator of each axis; none where the law reads what is measured.
     pub estimators: Option<Vec<Observer>>,
+    /// The attitude filter, if the law reads one.
+    pub attitude: Option<AttitudeParts>,
 }
 
 /// An estimator of one axis.
@@ -54,11 +57,17 @@ impl LoopParts {
                 Some((0..axes).map(|axis| observer(scenario, kalman, axis)).collect::<Result<_, _>>()?)
             }
             Some(estimator) => {
-                let why = "is no linear system with constant gains: a loop has `kalman`, or an estimator with `watch_only`";
+                if let Some(filter) = estimator.attitude() {
+                    let parts = AttitudeParts::of(scenario, filter);
+                    let attitude = Some(parts.map_err(|fault| fault.within("estimator.attitude"))?);
+                    return Ok(Self { filters, estimators: None, attitude });
+                }
+                let why = "is no linear system with constant gains: a loop has `kalman`, `attitude`, or an estimator \
+                           with `watch_only`";
                 return Err(Fault::new(format!("estimator.{}", estimator.kind()), why));
             }
         };
-        Ok(Self { filters, estimators })
+        Ok(Self { filters, estimators, attitude: None })
     }
 }
 

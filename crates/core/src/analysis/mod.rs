@@ -1,5 +1,6 @@
 //! What a scenario or a run means: integrals, limit cycles, stability.
 
+pub mod attitude_parts;
 pub mod cycle;
 pub mod damping;
 pub mod identification;

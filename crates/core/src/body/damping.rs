@@ -8,6 +8,7 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::count::counted;
 use crate::quantity::NonNegative;
 
 /// Damping ratios of modes.
@@ -31,9 +32,11 @@ impl Damping {
         match self {
             Self::All(ratio) => Ok(vec![*ratio; modes]),
             Self::Each(ratios) if ratios.len() == modes => Ok(ratios.clone()),
-            Self::Each(ratios) => {
-                Err(format!("must be one number, or one for each of the {modes} modes, got {}", ratios.len()))
-            }
+            Self::Each(ratios) => Err(format!(
+                "must be one number, or one for each of {}, got {}",
+                counted(modes, "mode"),
+                ratios.len()
+            )),
         }
     }
 }

@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Mode, Output};
+use crate::count::counted;
 use crate::document::Fault;
 use crate::motion::State;
 use crate::quantity::{Finite, Positive};
@@ -84,7 +85,7 @@ impl Planar {
                     let found = output.modes.len();
                     return at(
                         "modes",
-                        format!("must have one number for each of {modes} modes, got {found}"),
+                        format!("must have one number for each of {}, got {found}", counted(modes, "mode")),
                     );
                 }
                 let before = self.outputs[..index].iter();
@@ -109,11 +110,12 @@ impl Planar {
             return Some(Fault::new("damping_matrix", HUB_FREE));
         }
         if rows.len() != modes {
-            let why = format!("must have one row for each of {modes} modes, got {}", rows.len());
+            let why = format!("must have one row for each of {}, got {}", counted(modes, "mode"), rows.len());
             return Some(Fault::new("damping_matrix", why));
         }
         let index = rows.iter().position(|row| row.len() != modes)?;
-        let why = format!("must have one number for each of {modes} modes, got {}", rows[index].len());
+        let why =
+            format!("must have one number for each of {}, got {}", counted(modes, "mode"), rows[index].len());
         Some(Fault::new(format!("damping_matrix[{index}]"), why))
     }
 

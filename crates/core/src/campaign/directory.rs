@@ -24,14 +24,12 @@ use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use thiserror::Error;
-
+use super::error::{DirectoryError, io_of, unread, wrong};
 use super::manifest::{LARGEST, Manifest};
 use super::parquet::{Reading, parquet_is_built_in};
 use super::part;
 use super::rows::{Column, Rows};
 use super::work::{NOTE, Work};
-use crate::document::ScenarioError;
 use crate::record::Record;
 use crate::whole::{self, Partial};
 
@@ -41,63 +39,6 @@ pub const MANIFEST: &str = "manifest.toml";
 pub const RUNS: &str = "runs";
 /// The file whose lock the command at work holds.
 const LOCK: &str = ".lock";
-/// Why a directory cannot be used.
-#[derive(Debug, Error)]
-pub enum DirectoryError {
-    /// It is no campaign, or has a file that is none of it.
-    #[error("{}: {why}", path.display())]
-    Wrong {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        why: String,
-    },
-    /// It is of another campaign.
-    #[error("{}: contains another campaign ({difference})", path.display())]
-    Other {
-        /// The manifest there.
-        path: PathBuf,
-        /// In what they differ.
-        difference: String,
-    },
-    /// Another process is at work there.
-    #[error("{}: another process is working in it", path.display())]
-    Busy {
-        /// The directory.
-        path: PathBuf,
-    },
-    /// A file cannot be written.
-    #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
-    /// Its scenario is not accepted.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// The work was stopped.
-    #[error("interrupted")]
-    Interrupted,
-}
-
-pub(super) fn wrong(path: &Path, why: impl Into<String>) -> DirectoryError {
-    DirectoryError::Wrong { path: path.to_owned(), why: why.into() }
-}
-
-/// A file that cannot be read.
-pub(super) fn unread(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
-    |source| wrong(path, source.to_string())
-}
-
-/// A file that cannot be written.
-pub(super) fn io_of(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
-    |source| match source.kind() {
-        io::ErrorKind::InvalidData | io::ErrorKind::Unsupported => wrong(path, source.to_string()),
-        _ => DirectoryError::Io { path: path.to_owned(), source },
-    }
-}
 
 /// The directory of a campaign.
 #[derive(Debug)]

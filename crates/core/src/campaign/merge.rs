@@ -3,7 +3,8 @@
 use std::fs;
 use std::ops::Range;
 
-use super::directory::{Directory, DirectoryError, MANIFEST, io_of, unread, wrong};
+use super::directory::{Directory, MANIFEST};
+use super::error::{DirectoryError, io_of, unread, wrong};
 use super::rows::SECONDS;
 use crate::whole;
 

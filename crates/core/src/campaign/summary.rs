@@ -1,6 +1,7 @@
 //! What the rows of a campaign come to: failures, and the statistics of every metric that is a number.
 
-use super::directory::{Directory, DirectoryError};
+use super::directory::Directory;
+use super::error::DirectoryError;
 use super::rows::{Column, ERROR, Kind, RUN};
 use super::work::Work;
 use crate::metrics::{self, goal};

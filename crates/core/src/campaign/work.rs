@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::directory::{DirectoryError, io_of, wrong};
+use super::error::{DirectoryError, io_of, wrong};
 use super::manifest::Manifest;
 use super::parquet::encode;
 use super::rows::{Field, Rows};

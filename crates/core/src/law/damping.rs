@@ -7,7 +7,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Authority;
-use super::phase_plane::is_beyond;
 use crate::actuator::PulseTiming;
 use crate::belief::{Belief, Damped, ElasticRate};
 use crate::numerics::delay_margin::delay_margin;
@@ -167,4 +166,9 @@ impl DampingRelay {
             self.rest = REST;
         }
     }
+}
+
+/// Whether a rate is further from where it should be than is allowed above and below (rad/s).
+pub(super) fn is_beyond(excess: f64, [above, below]: [f64; 2]) -> bool {
+    excess > above || -excess > below
 }

@@ -8,7 +8,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::damping::{ActiveDamping, DampingRelay};
+use super::damping::{ActiveDamping, DampingRelay, is_beyond};
 use super::{
     Authority, Cause, Command, Control, Frame, Goal, Guards, Hold, Phase, Reads, Rule, SwitchingLines,
     Tunable,
@@ -283,9 +283,4 @@ impl InPhasePlane {
             self.authority.width.on_time(excess.abs() / acceleration, self.spec.period.seconds()) > 0.0;
         if self.firing { -excess } else { 0.0 }
     }
-}
-
-/// Whether a rate is further from where it should be than is allowed above and below (rad/s).
-pub(super) fn is_beyond(excess: f64, [above, below]: [f64; 2]) -> bool {
-    excess > above || -excess > below
 }

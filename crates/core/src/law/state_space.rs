@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule, Tunable};
 use crate::belief::Belief;
+use crate::count::counted;
 use crate::document::Fault;
 use crate::numerics::exponential::exponential;
 use crate::quantity::{Finite, Positive};
@@ -130,7 +131,10 @@ impl StateSpace {
         }
         let (a, b) = (matrix("a", &self.a, order)?, matrix("b", &self.b, inputs)?);
         if b.nrows() != order {
-            return wrong("b", format!("must have a row for each of the {order} states, got {}", b.nrows()));
+            return wrong(
+                "b",
+                format!("must have a row for each of {}, got {}", counted(order, "state"), b.nrows()),
+            );
         }
         let row = |key: &str, rows: &[Vec<Finite>], columns: usize| match rows.len() {
             0 => Ok(DMatrix::zeros(1, columns)),

@@ -1,5 +1,10 @@
 //! The largest absolute value of a function that is smooth between breaks.
 
+/// A twenty-fourth of the period of a frequency: no peak falls between such samples.
+pub fn sampling(frequency: f64) -> f64 {
+    std::f64::consts::TAU / (24.0 * frequency.max(1e-9))
+}
+
 /// A largest absolute value, and when it is reached.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Peak {

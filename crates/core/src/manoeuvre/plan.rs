@@ -35,7 +35,7 @@ impl Plan {
     /// The largest absolute value of the command, and when.
     pub fn peak(&self) -> Peak {
         let command = &self.waveform;
-        let step = sampling(command.fastest());
+        let step = extremum::sampling(command.fastest());
         extremum::largest(&command.breaks(), step, |middle, t| command.on_piece(middle, t))
     }
 
@@ -46,7 +46,7 @@ impl Plan {
             Drive::Torque => self.peak(),
             Drive::Motion => {
                 let history = History::new(body, &self.waveform, 1.0);
-                let step = sampling(fastest(body, &self.waveform)).max(self.time / 2e4);
+                let step = extremum::sampling(fastest(body, &self.waveform)).max(self.time / 2e4);
                 extremum::largest(&self.waveform.breaks(), step, |middle, t| {
                     torque(body, &history, middle, t)
                 })
@@ -79,9 +79,4 @@ impl Plan {
 /// The fastest frequency of a command and a body (rad/s).
 pub fn fastest(body: &Planar, command: &Waveform) -> f64 {
     body.modes.iter().map(|mode| mode.frequency.get()).fold(command.fastest(), f64::max)
-}
-
-/// A twenty-fourth of the period of a frequency: no peak falls between such samples.
-pub fn sampling(frequency: f64) -> f64 {
-    std::f64::consts::TAU / (24.0 * frequency.max(1e-9))
 }

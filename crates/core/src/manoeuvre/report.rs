@@ -6,7 +6,7 @@ use super::Plan;
 use super::effort::Effort;
 use super::extremum::{self, Peak};
 use super::history::History;
-use super::plan::{fastest, sampling};
+use super::plan::fastest;
 use super::residual::{Residual, coordinates, residuals};
 use super::timing::{Single, tuned};
 use crate::body::{Drive, Planar};
@@ -67,7 +67,7 @@ impl Report {
             let (w, gain) = (mode.frequency.get(), mode.gain.get().abs());
             if gain == 0.0 { 0.0 } else { 0.5 * body.inertia.get() / gain * (rate * rate + w * w * x * x) }
         });
-        let step = sampling(fastest(body, command)).max(plan.time / 1e4);
+        let step = extremum::sampling(fastest(body, command)).max(plan.time / 1e4);
         let deflection = |weights: &[f64]| {
             extremum::largest(&command.breaks(), step, |middle, t| {
                 weights.iter().zip(history.at(middle, t)).map(|(weight, [x, _, _])| weight * x).sum()

@@ -1,7 +1,6 @@
 //! What the modes still do after a manoeuvre, as planned and with other frequencies.
 
 use super::history::History;
-use super::plan::sampling;
 use super::{Plan, extremum};
 use crate::body::{Drive, Planar};
 
@@ -61,7 +60,7 @@ pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<Residual> {
     let coordinates = coordinates(body);
     let sums = |factor: f64| left(plan, body, &coordinates, factor);
     let fastest = body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
-    let step = sampling(fastest * plan.time);
+    let step = extremum::sampling(fastest * plan.time);
     let worst = |band: f64| -> Vec<f64> {
         let ends = [1.0 - band, 1.0 + band];
         let each = extremum::largest_of(coordinates.len(), &ends, step, |_, factor| sums(factor));

@@ -13,7 +13,9 @@ use mcap::sans_io::LinearReaderOptions;
 use thiserror::Error;
 
 use super::bounds::{outer, parsed, walk};
-use super::table::{Budget, Schema, Table};
+use super::budget::Budget;
+use super::shape::Schema;
+use super::table::Table;
 use super::topics::TOPICS;
 use super::{COMMANDS, Columns};
 

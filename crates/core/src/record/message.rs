@@ -29,6 +29,14 @@ pub struct Provenance {
     pub attachments: Vec<Attachment>,
 }
 
+impl Provenance {
+    /// The commands from outside under which it was run, if there were any.
+    pub fn commands(&self) -> Option<&[u8]> {
+        let commands = self.attachments.iter().find(|attachment| attachment.name == COMMANDS)?;
+        Some(&commands.data)
+    }
+}
+
 /// A file within a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attachment {

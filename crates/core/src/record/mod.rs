@@ -1,6 +1,7 @@
 //! The record: the only way out of a simulation.
 
 mod bounds;
+mod budget;
 mod columns;
 pub mod description;
 mod descriptor;

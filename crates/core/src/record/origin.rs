@@ -8,15 +8,15 @@ use mcap::records::Record as McapRecord;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use toml::{Table, Value};
 
-use super::Provenance;
 use super::bounds::LARGEST;
+use super::{COMMANDS, Provenance};
 
 /// What there is in the place of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum There {
     /// Nothing.
     Nothing,
-    /// A log of the same run: of the same scenario, seed, number and version.
+    /// A log of the same run: of the same scenario, seed, number, commands and version.
     Same,
     /// Something else: what it is.
     Other(String),
@@ -31,7 +31,8 @@ pub fn there(path: &Path, run: &Provenance) -> There {
         return There::Other("is not a log of flexsc".to_owned());
     };
     let own = (env!("CARGO_PKG_VERSION"), run.seed.to_string(), run.run.to_string());
-    let Origin { toml, version, seed, run: number } = origin;
+    let Origin { toml, version, seed, run: number, commands } = origin;
+    let commands = commands.as_deref();
     if version != own.0 {
         There::Other(format!("holds a run of flexsc {version}, and this is {}", own.0))
     } else if number != own.2 {
@@ -40,6 +41,12 @@ pub fn there(path: &Path, run: &Provenance) -> There {
         There::Other(format!("holds a run with other settings{}", difference(&toml, &run.toml)))
     } else if seed != own.1 {
         There::Other(format!("holds a run with the seed {seed}, not {}", own.1))
+    } else if commands != run.commands() {
+        There::Other(match (commands, run.commands()) {
+            (_, None) => "holds a run that was stepped under commands".to_owned(),
+            (None, _) => "holds a run without commands".to_owned(),
+            _ => "holds a run under other commands".to_owned(),
+        })
     } else {
         There::Same
     }
@@ -78,6 +85,8 @@ struct Origin {
     version: String,
     seed: String,
     run: String,
+    /// Commands from outside, if it was stepped under any.
+    commands: Option<Vec<u8>>,
 }
 
 impl Origin {
@@ -85,7 +94,7 @@ impl Origin {
     fn read(mut file: impl Read) -> Option<Self> {
         let options = LinearReaderOptions::default().with_record_length_limit(LARGEST);
         let mut reader = LinearReader::new_with_options(options);
-        let mut toml = String::new();
+        let (mut toml, mut commands) = (String::new(), None);
         loop {
             match reader.next_event()?.ok()? {
                 LinearReadEvent::ReadRequest(wanted) => {
@@ -96,10 +105,13 @@ impl Origin {
                     McapRecord::Attachment { header, data, .. } if header.name == "scenario.toml" => {
                         toml = String::from_utf8(data.into_owned()).ok()?;
                     }
+                    McapRecord::Attachment { header, data, .. } if header.name == COMMANDS => {
+                        commands = Some(data.into_owned());
+                    }
                     McapRecord::Metadata(mut about) if about.name == "flexsc.run" => {
                         let mut said = |key: &str| about.metadata.remove(key).unwrap_or_default();
                         let (version, seed, run) = (said("version"), said("seed"), said("run"));
-                        return Some(Self { toml, version, seed, run });
+                        return Some(Self { toml, version, seed, run, commands });
                     }
                     McapRecord::Message { .. } | McapRecord::Chunk { .. } | McapRecord::DataEnd(_) => {
                         return None;

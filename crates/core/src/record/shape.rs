@@ -6,11 +6,22 @@
 use prost_types::field_descriptor_proto::Type;
 use prost_types::{DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto};
 
+use super::budget::Budget;
 use super::descriptor::{Content, Pool, is_group, is_list};
-use super::table::{Budget, Schema};
 use super::topics::label_of;
 use super::wire::{Raw, Wire};
 use super::{Column, Columns};
+
+/// How the messages of a log are encoded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schema {
+    /// Full name of the message.
+    pub name: String,
+    /// What the schema is written in.
+    pub encoding: String,
+    /// A `FileDescriptorSet`, where that is `protobuf`.
+    pub data: Vec<u8>,
+}
 
 /// No schema is longer (bytes); that of a scene has 10 kB.
 const LONGEST_SCHEMA: usize = 1 << 20;

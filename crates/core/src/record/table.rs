@@ -2,42 +2,9 @@
 
 use std::sync::Arc;
 
-use super::shape::{Shape, begin};
+use super::budget::Budget;
+use super::shape::{Schema, Shape, begin};
 use super::{Column, Columns};
-
-/// How the messages of a log are encoded.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Schema {
-    /// Full name of the message.
-    pub name: String,
-    /// What the schema is written in.
-    pub encoding: String,
-    /// A `FileDescriptorSet`, where that is `protobuf`.
-    pub data: Vec<u8>,
-}
-
-/// The memory that tables of a log may take.
-pub struct Budget(usize);
-
-/// Tables may take this much (bytes), however small the log is ...
-const LEAST: usize = 256 << 20;
-/// ... and so many times its size. Those of a run take up to about ten times.
-const TIMES: usize = 64;
-
-impl Budget {
-    /// The budget of a log of so many bytes.
-    pub fn of_file(bytes: usize) -> Self {
-        Self(bytes.saturating_mul(TIMES).saturating_add(LEAST))
-    }
-
-    /// Takes some of it.
-    pub fn spend(&mut self, bytes: usize) -> Result<(), String> {
-        self.0 = self.0.checked_sub(bytes).ok_or_else(|| {
-            format!("its rows take more than {TIMES} times the size of the file and {} MiB", LEAST >> 20)
-        })?;
-        Ok(())
-    }
-}
 
 /// The rows of one topic as they are read.
 pub struct Table {

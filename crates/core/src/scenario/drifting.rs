@@ -2,6 +2,7 @@
 
 use super::Scenario;
 use crate::body::{Drift, Profile};
+use crate::count::counted;
 use crate::document::Fault;
 
 impl Scenario {
@@ -14,7 +15,11 @@ impl Scenario {
             Drift::Each(profiles) if profiles.len() != modes => {
                 return at(
                     "drift.each",
-                    format!("must have a profile for each of {modes} modes, got {}", profiles.len()),
+                    format!(
+                        "must have a profile for each of {}, got {}",
+                        counted(modes, "mode"),
+                        profiles.len()
+                    ),
                 );
             }
             Drift::Each(profiles) => {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use toml::Table;
 
-use super::words::shortened;
+use super::mistake::shortened;
 
 /// Levels that a path of a key has at most; the parser has a limit of its own, of 80.
 pub const DEEPEST: usize = 60;

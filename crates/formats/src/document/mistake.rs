@@ -84,3 +84,11 @@ impl fmt::Display for Mistake {
         }
     }
 }
+
+/// A text that fits a message.
+pub fn shortened(text: &str) -> String {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}

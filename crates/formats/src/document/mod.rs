@@ -28,7 +28,8 @@ pub use reader::{DATE, read_value};
 pub use wrong::Wrong;
 
 use key::{bare_or_quoted, span_of};
-use words::{mistaken, shortened, told, unfit, unparsed};
+use mistake::shortened;
+use words::{mistaken, told, unfit, unparsed};
 
 /// No scenario is longer (bytes).
 pub const LONGEST: u64 = 4 << 20;

@@ -3,7 +3,7 @@
 use toml::de::DeTable;
 
 use super::key::{bare_or_quoted, path_of, span_of, span_of_key};
-use super::mistake::{Mistake, SHOWN};
+use super::mistake::{Mistake, shortened};
 use super::{Wrong, deep};
 
 /// The parser's error, pointed at the place that it is about.
@@ -97,13 +97,5 @@ fn bracketed(key: &str, place: &str, why: &str) -> Option<String> {
             Some(format!("there can be several: expected `[[{key}]]`, found `[{key}]`"))
         }
         _ => None,
-    }
-}
-
-/// A text that fits a message.
-pub fn shortened(text: &str) -> String {
-    match text.char_indices().nth(SHOWN) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
     }
 }

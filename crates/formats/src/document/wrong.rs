@@ -6,8 +6,8 @@ use serde::de::{Error, Expected, Unexpected};
 use toml::{Table, Value};
 
 use super::key::bare_or_quoted;
+use super::mistake::shortened;
 use super::nearest::{hint, meant};
-use super::words::shortened;
 
 /// Something that does not fit.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,6 +10,7 @@ use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use super::large::large;
 #[cfg(not(feature = "matrices"))]
 use super::left_out::large;
+use super::reduced::{Reduced, Unsolved, is_definite};
 
 /// Up to this order nalgebra solves it, whose result is the same on every machine. Above, faer is many times faster;
 /// its kernels, and so the last digits, depend on the processor.
@@ -21,20 +22,6 @@ pub struct Modes {
     pub frequencies: Vec<f64>,
     /// One row for each mode: c' x for each functional c, with x' M x = 1.
     pub values: DMatrix<f64>,
-}
-
-/// Why there are no modes.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Unsolved {
-    /// The stiffness matrix is not positive definite.
-    Stiffness,
-    /// The mass matrix is not positive definite.
-    Mass,
-    /// The numbers leave the range of double precision.
-    Range,
-    /// The order is above [`SMALL`], and this build is without the feature `matrices`.
-    #[cfg(not(feature = "matrices"))]
-    LeftOut,
 }
 
 /// The modes of a stiffness and a mass matrix, and the values of functionals, the columns of `functionals`.
@@ -71,12 +58,6 @@ pub fn values(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
     Some(values)
 }
 
-/// The eigenvalues w⁻² of B B' in any order, and y' L⁻¹ c for each eigenvector and functional.
-pub struct Reduced {
-    pub squares: Vec<f64>,
-    pub values: DMatrix<f64>,
-}
-
 fn small(
     stiffness: DMatrix<f64>,
     mass: DMatrix<f64>,
@@ -102,11 +83,4 @@ fn small(
         squares: eigen.eigenvalues.as_slice().to_vec(),
         values: eigen.eigenvectors.tr_mul(&functionals),
     })
-}
-
-/// Whether the pivots of a Cholesky factor, each with the diagonal element that it comes from, are more than what
-/// rounding leaves of zero.
-pub fn is_definite(pivots: impl ExactSizeIterator<Item = (f64, f64)>) -> bool {
-    let rounding = pivots.len() as f64 * f64::EPSILON;
-    pivots.into_iter().all(|(pivot, diagonal)| pivot * pivot > rounding * diagonal)
 }

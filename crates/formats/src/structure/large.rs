@@ -4,7 +4,7 @@ use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Mat, Side};
 use nalgebra::DMatrix;
 
-use super::eigen::{Reduced, Unsolved, is_definite};
+use super::reduced::{Reduced, Unsolved, is_definite};
 
 /// The reduced problem of matrices of any order.
 pub fn large(

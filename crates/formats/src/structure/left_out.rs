@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::eigen::{Reduced, Unsolved};
+use super::reduced::{Reduced, Unsolved};
 
 /// Why, and what helps.
 pub const LEFT_OUT: &str =

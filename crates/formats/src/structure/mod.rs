@@ -19,14 +19,15 @@ mod matrix;
 pub mod mode_table;
 #[cfg(feature = "matrices")]
 mod npz;
+mod reduced;
 mod shape;
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::document::Fault;
-use eigen::Unsolved;
 pub use eigen::values as eigenvalues;
 pub use matrix::Matrix;
+use reduced::Unsolved;
 pub use shape::Shape;
 
 /// The largest order.

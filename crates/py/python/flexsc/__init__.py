@@ -27,7 +27,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
-from flexsc._campaign import Table, campaign, read_campaign, sweep
+from flexsc._campaign import campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
 from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
@@ -37,13 +37,14 @@ from flexsc._result import Log, Result, Samples
 from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator, Snapshot
 from flexsc._simulators import Simulators
+from flexsc._table import Table
 from flexsc._topic import Topic
 from flexsc._units import Metrics
 from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor
 
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
-    from flexsc._linear import Linear, Signal
+    from flexsc._linear import Linear, Margins, Signal
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -67,6 +68,7 @@ __all__ = [
     "Linear",
     "Log",
     "LogError",
+    "Margins",
     "Metrics",
     "Plan",
     "Quantities",
@@ -120,6 +122,7 @@ __all__ = [
 _MODULES = ("parts", "plot", "scenario", "structure")
 _LATER = {
     "Linear": "_linear",
+    "Margins": "_linear",
     "Signal": "_linear",
     "StateSpace": "structure",
     "Structure": "structure",

@@ -9,9 +9,9 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from typing import Any
 
 from flexsc import _native as engine
-from flexsc._campaign import Table
 from flexsc._executor import Span, hand_out
 from flexsc._scenario import Scenario
+from flexsc._table import Table
 from flexsc.parts import CompiledLaw
 
 # How the runs of a campaign are drawn: their range, the method, the replicas and the metrics.

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from flexsc import _native as engine
-from flexsc._campaign import Table, of_directory
+from flexsc._table import Table, of_directory
 
 Span = tuple[int, int]
 """The first run of a part and the run after its last."""

@@ -9,6 +9,7 @@ from math import floor
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._values import counted
 
 if TYPE_CHECKING:
     import numpy as np
@@ -176,11 +177,45 @@ class Linear:
         """
         import numpy as np
 
-        if self.b.shape[1] != self.c.shape[0] or self.d.any():
-            raise ValueError("only a model with as many outputs as inputs and d = 0 can be closed as a loop")
-        d = np.zeros_like(self.d)
-        a = self.a - self.b @ self.c
-        return Linear(a, self.b, self.c, d, self.states, self.inputs, self.outputs, self.period)
+        if self.b.shape[1] != self.c.shape[0]:
+            raise ValueError("only a model with as many outputs as inputs can be closed as a loop")
+        # What the outputs of one sample pass on to later ones of the same model: 1 + d has an inverse.
+        back = np.linalg.inv(np.eye(len(self.d)) + self.d)
+        a = self.a - self.b @ back @ self.c
+        return Linear(
+            a,
+            self.b @ back,
+            back @ self.c,
+            self.d @ back,
+            self.states,
+            self.inputs,
+            self.outputs,
+            self.period,
+        )
+
+    def margins(self, inputs: Sequence[str] | None = None) -> Margins:
+        """Return the margins of a loop that `linearise(loop=...)` opened: how far its commands may be off.
+
+        The commands are multiplied together by a real factor, or by a complex number of magnitude 1. For a
+        loop of one command these are the gain and phase margins of Nyquist's criterion.
+
+        Args:
+            inputs: The commands that are off; None for all. The others are as they should be, so their loops
+                stay closed. A name without its number, such as `command_roll`, means all samples of that
+                command.
+
+        >>> opened = flexsc.Scenario.example("earth-observer").linearise(loop="command")
+        >>> margins = opened.margins(["command_roll"])
+        >>> margins.gain_below < 1.0 < margins.gain_above
+        True
+
+        Raises:
+            KeyError: There is no command of this name.
+            ValueError: The model is no opened loop, or the closed loop is not stable.
+        """
+        from flexsc._margins import margins
+
+        return margins(self, inputs)
 
     def control(self) -> Any:
         """Return the model as a `control.StateSpace` of python-control, which must be installed.
@@ -198,8 +233,25 @@ class Linear:
 
     def __repr__(self) -> str:
         time = "continuous" if self.period is None else f"every {self.period:g} s"
-        shape = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        parts = {"state": self.states, "input": self.inputs, "output": self.outputs}
+        shape = ", ".join(counted(len(signals), part) for part, signals in parts.items())
         return f"<flexsc.Linear {time}: {shape}>"
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Margins of a loop: how far the commands may be off before the closed loop is unstable.
+
+    >>> flexsc.Scenario.example("rotation-robust").linearise(loop="command").margins().gain_below
+    0.0
+    """
+
+    gain_below: float
+    """Largest factor below 1 at which the loop is unstable; 0 if there is none."""
+    gain_above: float
+    """Smallest factor above 1 at which it is unstable; infinite if there is none up to 10 000."""
+    phase: float
+    """Smallest phase (rad), of either sign, at which it is unstable; pi if there is none."""
 
 
 def whole_and_part(period: float, delay: float) -> tuple[int, float]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
+from flexsc._attitude_loop import attitude_loop
 from flexsc._blocks import AXES, Block, estimator, kind_of, law_about, refused
 from flexsc._linear import Linear, Signal, whole_and_part
 
@@ -77,6 +78,11 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
             # Accelerations become torques J a + w x (J w + h), and J times this block is the cross of h.
             own_inertia = np.linalg.inv(body.b[3:6])
             law.d[:, 1::2] -= own_inertia @ body.a[3:6, 3:6]
+    if told["attitude"]:
+        if loop == "measurement":
+            why = "an attitude filter reads gyro and attitude sensor: open its loop at `command` or `torque`"
+            raise refused(name, why)
+        return attitude_loop(name, body, law, (period, delay), told["attitude"], loop)
     names = ["angle", "rate"] if count == 1 else [f"{axis}{what}" for axis in AXES for what in ("", "_rate")]
     plant = body.select(outputs=names).sampled(period, delay)
     seen = Block.gain(np.eye(2 * count))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from flexsc import _native as engine
 from flexsc._plan import Plan
 from flexsc._result import Detail, Result
-from flexsc._values import arrays, document, plain, toml
+from flexsc._values import arrays, counted, document, plain, toml
 
 if TYPE_CHECKING:
     import numpy as np
@@ -43,7 +43,7 @@ class Scenario:
     >>> from flexsc.scenario import Mode, Open, Planar
     >>> body = Planar(modes=[Mode(frequency=0.44, gain=0.02, displacement=1e-5)])
     >>> flexsc.Scenario(name="ringing", duration=100.0, body=body, law=Open())
-    <flexsc.Scenario ringing: 100 s, 1 modes, seed 0>
+    <flexsc.Scenario ringing: 100 s, 1 mode, seed 0>
     """
 
     __slots__ = ("_native",)
@@ -259,10 +259,10 @@ class Scenario:
             period: Sampling period (s), over which inputs are held; None for continuous time.
             delay: The delay of the inputs (s); None for the delay of the scenario's wheel.
             loop: Return the open loop of a linear law (`pd`, `attitude` with its integral and filters,
-                `state_space`), with a Kalman filter if the law reads one, sampled with the law's period and
-                opened at the `command` of the law, at the `torque` of the actuator, or at the
-                `measurement` of angles and rates. The signs are those of negative feedback: `closed()`
-                closes the loop again.
+                `state_space`), with the Kalman filter or attitude filter that the law reads, sampled with the
+                law's period (or the shortest with which all parts repeat) and opened at the `command` of the
+                law, at the `torque` of the actuator, or at the `measurement` of angles and rates. The signs
+                are those of negative feedback: `closed()` closes the loop again.
 
         >>> flexsc.Scenario.example("relay-fixed").linearise(period=0.5).a.shape
         (6, 6)
@@ -370,14 +370,14 @@ class Scenario:
         return hash(self.to_toml().replace("-0.0", "0.0"))
 
     def __repr__(self) -> str:
-        modes = self._native.mode_count
-        return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes} modes, seed {self.seed}>"
+        modes = counted(self._native.mode_count, "mode")
+        return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes}, seed {self.seed}>"
 
     def _repr_html_(self) -> str:
         from flexsc import _html
 
         values = self.to_dict()
-        about = f"{self.duration:g} s, {self._native.mode_count} modes, seed {self.seed}"
+        about = f"{self.duration:g} s, {counted(self._native.mode_count, 'mode')}, seed {self.seed}"
         figure = engine.modes_figure(self._native)
         text = _html.folded("all keys", _html.pre(self.to_toml()))
         shown = _html.picture(figure) if figure else ""

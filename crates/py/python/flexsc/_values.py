@@ -21,6 +21,11 @@ _DEEPEST = 16
 _DATE = "$__toml_private_datetime"
 
 
+def counted(count: int, thing: str) -> str:
+    """Return a count and what is counted: `1 mode`, `2 modes`."""
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
 def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
     """Write a value as TOML; what TOML cannot express is an error at its key."""
 

@@ -14,10 +14,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
-from flexsc._campaign import Table
 from flexsc._campaign import campaign as _campaign
 from flexsc._executor import Local, run
 from flexsc._scenario import Scenario
+from flexsc._table import Table
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -27,8 +27,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flexsc import _native as engine
-from flexsc._campaign import Table
 from flexsc._result import Log, Result
+from flexsc._table import Table
 
 if find_spec("matplotlib") is None:
     raise ImportError("flexsc.plot needs Matplotlib: pip install 'flexsc[plot]'")

@@ -1,5 +1,6 @@
 //! Figure `curve`: metrics of a sweep over its key.
 
+use flexsc_core::count::counted;
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 use super::table::{Key, Metric, Runs};
@@ -24,6 +25,6 @@ pub fn figure(runs: &Runs, metrics: &[&Metric], key: &Key) -> Figure {
         Panel::new(x, Axis::around(&name, unit, metric.values.iter().copied()), layers)
     };
     let panels = metrics.iter().enumerate().map(panel).collect();
-    let title = format!("{}: metrics over {} ({} runs)", runs.name, key.name, runs.numbers.len());
+    let title = format!("{}: metrics over {} ({})", runs.name, key.name, counted(runs.numbers.len(), "run"));
     Figure { title, panels, panel_height: 180 }
 }

@@ -1,6 +1,7 @@
 //! Figure `distribution`: a metric over the runs of a campaign, as histogram and as empirical distribution, with the median
 //! and the 5 and 95 %.
 
+use flexsc_core::count::counted;
 use flexsc_core::statistics::quantile;
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_nice};
 
@@ -56,7 +57,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
 fn title(runs: &Runs, name: &str, count: usize) -> String {
     let without = runs.numbers.len() - count;
     let without = if without > 0 { format!(", {without} without") } else { String::new() };
-    format!("{}: {name} ({count} runs{without})", runs.name)
+    format!("{}: {name} ({}{without})", runs.name, counted(count, "run"))
 }
 
 /// The bars of a histogram over sorted values: their ends, and how many values are in each. Their width is 2 IQR/n^(1/3)

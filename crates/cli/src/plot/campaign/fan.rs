@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::count::counted;
 use flexsc_core::record::Log;
 use flexsc_core::statistics::quantile;
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
@@ -101,7 +102,11 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, Failure> {
         Panel::new(if signal + 1 == count { x } else { x.unnamed() }, y, layers)
     };
     let panels = (0..count).map(panel).collect();
-    Ok(Figure { title: format!("{name}: {} runs over time", paths.len()), panels, panel_height: 180 })
+    Ok(Figure {
+        title: format!("{name}: {} over time", counted(paths.len(), "run")),
+        panels,
+        panel_height: 180,
+    })
 }
 
 /// What is shown of a run.

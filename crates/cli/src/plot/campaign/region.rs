@@ -1,5 +1,6 @@
 //! Figure `region`: a metric of a sweep over two keys, as a map.
 
+use flexsc_core::count::counted;
 use flexsc_figure::palette::viridis;
 use flexsc_figure::{Axis, Bar, Figure, Layer, Panel, Point, RGBColor, Shape, colour};
 
@@ -58,7 +59,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
     );
     let bar = Bar { name: classes.axis.label(), colours: viridis(SHADES), edges: classes.texts() };
     let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
-    let title = format!("{}: {name} ({} runs)", runs.name, runs.numbers.len());
+    let title = format!("{}: {name} ({})", runs.name, counted(runs.numbers.len(), "run"));
     Some(Figure { title, panels: vec![panel], panel_height: 420 })
 }
 

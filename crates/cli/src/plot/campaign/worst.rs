@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::count::counted;
 use flexsc_core::metrics::goal;
 use serde_json::json;
 
@@ -109,7 +110,7 @@ pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) ->
     if worst.is_empty() {
         return String::new();
     }
-    let mut text = format!("{}: the worst of {} runs\n", runs.name, runs.numbers.len());
+    let mut text = format!("{}: the worst of {}\n", runs.name, counted(runs.numbers.len(), "run"));
     let mut before = "";
     for found in &worst {
         if found.what != before {

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Appendage;
+use crate::count::counted;
 use crate::document::Fault;
 use crate::quantity::{Finite, Positive};
 
@@ -32,7 +33,10 @@ impl Thermal {
     pub(super) fn fault(&self, modes: usize) -> Option<Fault> {
         let given = self.deflection.len();
         (given != modes).then(|| {
-            Fault::new("thermal.deflection", format!("must be one for each of {modes} modes, got {given}"))
+            Fault::new(
+                "thermal.deflection",
+                format!("must be one for each of {}, got {given}", counted(modes, "mode")),
+            )
         })
     }
 }

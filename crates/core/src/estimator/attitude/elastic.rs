@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
 use crate::body::Spatial;
+use crate::count::counted;
 use crate::document::Fault;
 use crate::estimator::Feeds;
 use crate::quantity::Positive;
@@ -88,7 +89,7 @@ impl ElasticStates {
         }
         for (index, mode) in self.modes.iter().enumerate() {
             if *mode >= body.modes.len() {
-                let why = format!("must be below the body's {} modes, got {mode}", body.modes.len());
+                let why = format!("must be below {}, the number of modes, got {mode}", body.modes.len());
                 return Err(Fault::new(format!("modes[{index}]"), why));
             }
             if self.modes[..index].contains(mode) {
@@ -97,7 +98,7 @@ impl ElasticStates {
         }
         let given = self.frequencies.as_ref().map_or(self.modes.len(), Vec::len);
         if given != self.modes.len() {
-            let why = format!("must be one for each of {} modes, got {given}", self.modes.len());
+            let why = format!("must be one for each of {}, got {given}", counted(self.modes.len(), "mode"));
             return Err(Fault::new("frequencies", why));
         }
         if self.feeds == Some(Feeds::Modes) {

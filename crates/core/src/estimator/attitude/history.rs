@@ -6,11 +6,11 @@
 
 use std::collections::VecDeque;
 
-use nalgebra::{Matrix3, Matrix6x3, Quaternion};
+use nalgebra::{Matrix3, Matrix6x3};
 
-use super::filter::{Correction, Filter, GyroNoise};
+use super::filter::{Correction, Filter};
+use super::measurement::{GyroNoise, Measured};
 use crate::attitude::Vector;
-use crate::sensor::Sight;
 use crate::time::{Instant, Span};
 
 /// A measurement that corrects.
@@ -26,22 +26,6 @@ pub struct Fix {
     pub gain: Option<Matrix6x3<f64>>,
     /// Which of the sensors measured it.
     pub sensor: usize,
-}
-
-/// What corrects an attitude.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Measured {
-    /// An attitude.
-    Attitude(Quaternion<f64>),
-    /// A vector.
-    Vector(Sight),
-}
-
-impl Measured {
-    /// How many numbers it has: a direction has two.
-    pub fn numbers(&self) -> u64 {
-        if matches!(self, Self::Vector(Sight { is_direction: true, .. })) { 2 } else { 3 }
-    }
 }
 
 impl Fix {

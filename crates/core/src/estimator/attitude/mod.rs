@@ -7,6 +7,7 @@ mod gains;
 mod history;
 #[cfg(test)]
 mod loop_tests;
+mod measurement;
 mod spec;
 mod swinging;
 #[cfg(test)]
@@ -14,8 +15,9 @@ mod tests;
 
 pub use at_work::Tracking;
 pub use elastic::{ElasticStates, KnownMode, KnownModes};
-pub use filter::{Correction, Filter, GyroNoise};
+pub use filter::{Correction, Filter};
 pub use gains::{Complementary, Form};
-pub use history::{Fix, History, Measured};
+pub use history::{Fix, History};
+pub use measurement::{GyroNoise, Measured};
 pub use spec::{AttitudeFilter, Initial, Role, Setting};
 pub use swinging::Swinging;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Quaternion};
 
 use super::elastic::KnownModes;
-use super::filter::GyroNoise;
+use super::measurement::{GyroNoise, across};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::environment::into;
 use crate::numerics::exponential::exponential;
@@ -154,8 +154,8 @@ impl Swinging {
         let moved = expected.cross_matrix();
         let whole = |of: &nalgebra::Matrix3<f64>| DMatrix::from_fn(3, 3, |row, column| of[(row, column)]);
         let told = if sight.is_direction {
-            let across = super::filter::across(&expected);
-            let rows = DMatrix::from_fn(2, 3, |row, column| across[(row, column)]);
+            let rows = across(&expected);
+            let rows = DMatrix::from_fn(2, 3, |row, column| rows[(row, column)]);
             let off = &rows * DVector::from_column_slice(off.as_slice());
             let told =
                 self.take(&(&rows * whole(&moved)), &off, &(&rows * noise * rows.transpose()), sensor)?;

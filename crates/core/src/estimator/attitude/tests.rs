@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::filter::{Correction, Filter, GyroNoise};
-use super::history::{Fix, History, Measured};
+use super::filter::{Correction, Filter};
+use super::history::{Fix, History};
+use super::measurement::{GyroNoise, Measured};
 use crate::attitude::Vector;
 use crate::sensor::Sight;
 use crate::time::{Instant, Span};

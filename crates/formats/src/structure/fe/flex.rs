@@ -8,8 +8,9 @@ use nalgebra::DMatrix;
 
 use super::text::{Line, Lines};
 use super::{Mode, Results, kept};
-use crate::structure::eigen::{self, Unsolved};
+use crate::structure::eigen;
 use crate::structure::mode_table::MOST_MODES;
+use crate::structure::reduced::Unsolved;
 
 /// Angular integrals and linear ones agree to this part.
 const AGREEMENT: f64 = 1e-4;

@@ -96,7 +96,7 @@ fn keys_that_do_not_fit_results_are_refused() {
         ("modes = \"bars.F06\"", "`appendage[0].damping` must say the damping ratio"),
         (
             "modes = \"bars.F06\"\ndamping = [0.1, 0.2]",
-            "must be one number, or one for each of the 10 modes, got 2",
+            "must be one number, or one for each of 10 modes, got 2",
         ),
         ("modes = \"bars.F06\"\ndamping = -0.1", "number of 0 or more, got -0.1"),
         ("modes = \"bars.F06\"\ndamping = \"low\"", "a damping ratio, or an array of them"),

@@ -1,0 +1,75 @@
+"""Margins of opened loops, by the poles of loops that are off."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import pi
+from typing import TYPE_CHECKING
+
+from flexsc._linear import Linear, Margins
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+# Beyond this distance from the region of stability, poles are unstable and not rounded.
+_ROUNDING = 1e-8
+_LARGEST = 1e4
+
+
+def margins(opened: Linear, inputs: Sequence[str] | None) -> Margins:
+    """Return the margins of an opened loop."""
+    import numpy as np
+
+    if opened.b.shape[1] != opened.c.shape[0]:
+        raise ValueError("only an opened loop, with as many outputs as inputs, has margins")
+    off = _chosen(opened, inputs)
+
+    def unstable(factor: complex) -> bool:
+        back = np.linalg.inv(np.eye(len(off)) + opened.d * np.where(off, factor, 1.0))
+        poles = np.linalg.eigvals(opened.a - opened.b * np.where(off, factor, 1.0) @ back @ opened.c)
+        worst = poles.real.max() if opened.period is None else np.abs(poles).max() - 1.0
+        return bool(worst > _ROUNDING)
+
+    if unstable(1.0):
+        raise ValueError("the closed loop is not stable: it has no margins")
+    down = _first(lambda power: unstable(10.0**-power), 4.0)
+    up = _first(lambda power: unstable(10.0**power), np.log10(_LARGEST))
+    turns = [_first(lambda phase, way=way: unstable(np.exp(1j * way * phase)), pi) for way in (1, -1)]  # type: ignore[misc]
+    return Margins(
+        0.0 if down is None else float(10.0**-down),
+        float("inf") if up is None else float(10.0**up),
+        min((float(turn) for turn in turns if turn is not None), default=pi),
+    )
+
+
+def _chosen(opened: Linear, inputs: Sequence[str] | None) -> npt.NDArray[np.bool_]:
+    """Which of the commands are off."""
+    import numpy as np
+
+    names = [signal.name for signal in opened.inputs]
+    if inputs is None:
+        return np.ones(len(names), dtype=np.bool_)
+    numbered = [name.rstrip("0123456789").removesuffix("_") for name in names]
+    for name in inputs:
+        if name not in names and name not in numbered:
+            raise KeyError(f"no command {name!r}; there are {', '.join(dict.fromkeys(numbered))}")
+    return np.array(
+        [name in inputs or number in inputs for name, number in zip(names, numbered, strict=True)]
+    )
+
+
+def _first(unstable: Callable[[float], bool], largest: float) -> float | None:
+    """The first value from 0 on that is unstable, to rounding; none if there is none."""
+    import numpy as np
+
+    stable = 0.0
+    for value in np.linspace(0.0, largest, 401)[1:]:
+        if unstable(value):
+            beyond = float(value)
+            while beyond - stable > 1e-12 * largest:
+                middle = 0.5 * (stable + beyond)
+                stable, beyond = (stable, middle) if unstable(middle) else (middle, beyond)
+            return beyond
+        stable = float(value)
+    return None
