@@ -53,8 +53,8 @@ fn runs_repeat_to_the_last_bit() {
         ("wheel-friction", " --runs 5:6", "/metrics", 0xc1c6_7781_2ea6_1747),
         ("flexible-boom", " --runs 5:6", "/metrics", 0x43cf_c127_d43c_9db6),
         ("sun-tracking", " --runs 5:6", "/metrics", 0x26d3_5f4e_3fb9_1268),
-        ("wheels-and-jets", "", "/jets", 0xe93f_c40a_cfec_0f8e),
-        ("wheels-and-jets", "", "/metrics", 0xc2b5_ca99_aac0_ae9f),
+        ("wheels-and-jets", "", "/jets", 0x44af_58b7_3bc3_4816),
+        ("wheels-and-jets", "", "/metrics", 0x1ff1_043a_0a79_0e76),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
     ];

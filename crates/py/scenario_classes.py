@@ -229,9 +229,14 @@ def table(schema: Schema, name: str, of: dict[str, Any], doc: str, tag: str | No
     body += f'\n    _tag: ClassVar[str | None] = "{tag}"\n' if tag else ""
     bare = [key for key, value in of.get("properties", {}).items() if ref(value) in schema.of_kind]
     if bare:
-        body += (
-            f"\n    _bare: ClassVar[tuple[str, ...]] = ({''.join(f'{json.dumps(key)}, ' for key in bare)})\n"
-        )
+        line = f"    _bare: ClassVar[tuple[str, ...]] = ({''.join(f'{json.dumps(key)}, ' for key in bare)})\n"
+        if len(line) > WIDTH:
+            line = (
+                line.replace('("', '(\n        "')
+                .replace('", "', '",\n        "')
+                .replace('", )', '",\n    )')
+            )
+        body += f"\n{line}"
     needed = of.get("required", [])
     properties = of.get("properties", {})
     order = sorted(properties, key=lambda key: key not in needed)

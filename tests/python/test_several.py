@@ -6,7 +6,7 @@ import flexsc
 import numpy as np
 import numpy.typing as npt
 import pytest
-from flexsc.scenario import Assigned, Attitude, Ideal, Planar, Spatial, Wheels
+from flexsc.scenario import Assigned, AttitudeLaw, Ideal, NamedPoint, Planar, Spatial, Wheels
 from flexsc.scenario import Wheel as Flywheel
 from own import Servo
 
@@ -38,7 +38,7 @@ def test_typed_parts_make_a_list() -> None:
     scenario = flexsc.Scenario(
         duration=10.0,
         body=Planar(inertia=100.0, angle=1e-3),
-        law=Attitude(period=0.25, bandwidth=0.3),
+        law=AttitudeLaw(period=0.25, bandwidth=0.3),
         actuator=[Assigned(ideal=Ideal(), share=0.25), Assigned(wheel=Flywheel(gain=1.0), share=0.75)],
     )
     assert scenario.to_dict()["actuator"][1]["share"] == 0.75
@@ -49,8 +49,10 @@ def test_typed_parts_make_a_list() -> None:
         scenario.with_("actuator[0].share", 0.75)
     spatial = flexsc.Scenario(
         duration=10.0,
-        body=Spatial(inertia=np.diag([30.0, 40.0, 35.0]), points=[{"name": "hub"}], rate=[1e-3, 0.0, 2e-3]),
-        law=Attitude(period=0.25, bandwidth=0.3),
+        body=Spatial(
+            inertia=np.diag([30.0, 40.0, 35.0]), points=[NamedPoint(name="hub")], rate=[1e-3, 0.0, 2e-3]
+        ),
+        law=AttitudeLaw(period=0.25, bandwidth=0.3),
         actuator=[
             Assigned(wheels=Wheels(arrangement="orthogonal", inertia=0.02), axes=["roll", "pitch"]),
             Assigned(ideal=Ideal(), axes=["yaw"]),

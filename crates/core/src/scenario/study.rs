@@ -54,11 +54,11 @@ pub struct Study {
     pub groups: Option<[[Group; 2]; 3]>,
     /// What each thruster of jets does, whether laws act by them or they unload wheels.
     pub nozzles: Vec<Nozzle>,
-    /// About which axes these jets are the only actuator.
+    /// About which axes jets are the only actuator.
     pub fired: [bool; 3],
     /// Whether jets are the only actuator of all.
     pub jets_alone: bool,
-    /// The same of groups of jets that unload wheels.
+    /// What each group of jets that unload wheels does.
     pub unloading: Option<[[Group; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
@@ -273,13 +273,13 @@ impl Study {
         };
         let settings: Vec<Setting> = self.axes.iter().enumerate().map(setting).collect();
         if let Some(kind) = scenario.actuator.alone() {
-            return self.start(scenario, kind, settings, &self.groups, seed);
+            return self.start(scenario, kind, settings, self.groups.as_ref(), seed);
         }
         let members = scenario.actuator.members();
         let start = |member: &Member<'_>| {
             let (share, groups) = match &member.task {
-                Task::Executes(shares) => (*shares, &self.groups),
-                Task::Unloads(_) => ([1.0; 3], &self.unloading),
+                Task::Executes(shares) => (*shares, self.groups.as_ref()),
+                Task::Unloads(_) => ([1.0; 3], self.unloading.as_ref()),
             };
             let own = settings.iter().map(|of| Setting { share: share[of.axis], ..of.clone() }).collect();
             self.start(scenario, &member.kind, own, groups, seed)
@@ -294,7 +294,7 @@ impl Study {
         scenario: &Scenario,
         kind: &Actuator,
         settings: Vec<Setting>,
-        groups: &Option<[[Group; 2]; 3]>,
+        groups: Option<&[[Group; 2]; 3]>,
         seed: Seed,
     ) -> Box<dyn Actuate> {
         match (kind, groups, &self.wheels) {

@@ -39,6 +39,7 @@ __all__ = [
     "Added",
     "Appendage",
     "AppendageDrive",
+    "Assigned",
     "AttitudeAt",
     "AttitudeEstimator",
     "AttitudeFilterInitial",
@@ -173,6 +174,7 @@ __all__ = [
     "Turn",
     "Uniform",
     "Unloading",
+    "Unloads",
     "UnscentedKalman",
     "Vector",
     "Wheel",
@@ -356,6 +358,47 @@ class AppendageDrive(Part):
     normal: Vector | None = None
     """Direction that is turned to the Sun, in the axes of the appendage, perpendicular to the drive's axis;
     default: z.
+    """
+
+
+@dataclass(frozen=True, kw_only=True)
+class Assigned(Part):
+    """An actuator of a list: exactly one of the kinds, and which part of the demand it executes."""
+
+    _bare: ClassVar[tuple[str, ...]] = (
+        "ideal",
+        "hold",
+        "thrusters",
+        "wheel",
+        "wheels",
+        "jets",
+        "magnetorquers",
+    )
+
+    ideal: Ideal | None = None
+    """The command itself, at every instant."""
+    hold: Hold | None = None
+    """A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its
+    start.
+    """
+    thrusters: Thrusters | None = None
+    """One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold."""
+    wheel: Wheel | None = None
+    """A flywheel on a motor with back-EMF."""
+    wheels: Wheels | None = None
+    """Reaction wheels about axes of their own."""
+    jets: Jets | None = None
+    """Thrusters at points of a spatial body."""
+    magnetorquers: Magnetorquers | None = None
+    """Magnetorquers of a spatial body in the field of its planet."""
+    axes: Sequence[Literal["roll", "pitch", "yaw"]] | None = None
+    """Axes about which it executes the demand, on a body with three; default: all."""
+    share: float | None = None
+    """Its share of the demand about these axes; default: 1. The shares of all actuators about an axis must
+    sum to 1.
+    """
+    unloads: Unloads | None = None
+    """For `jets` or `magnetorquers`: how they unload the `wheels` of the list. They then execute no demand.
     """
 
 
@@ -947,12 +990,12 @@ class Groups(Part):
     """The groups: for each axis, names of the thrusters that turn the body about it one way and the other.
     """
 
-    roll: Pair
-    """About x."""
-    pitch: Pair
-    """About y."""
-    yaw: Pair
-    """About z."""
+    roll: Pair | None = None
+    """About x; needed if the jets act about it."""
+    pitch: Pair | None = None
+    """About y; needed if the jets act about it."""
+    yaw: Pair | None = None
+    """About z; needed if the jets act about it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1017,6 +1060,8 @@ class Hold(Part):
 
     period: float
     """Period (s)."""
+    phase: float | None = None
+    """Time of the first period (s); default: 0."""
     faults: Sequence[Failure] | None = None
     """Intervals in which it fails."""
 
@@ -1104,6 +1149,8 @@ class Jets(Part):
     """Quantum of a pulse's length (s); 0 for none. Default: 0.0."""
     period: float | None = None
     """Period of the pulses (s); default: that of the law."""
+    phase: float | None = None
+    """Time of the first cycle of pulses, for jets with a `period` (s); default: 0."""
     delay: int | None = None
     """Delay from a command to its pulses in whole cycles: 0, or 1 if computing it takes a cycle. Default:
     0.
@@ -2296,6 +2343,8 @@ class Thrusters(Part):
     """Torque of a pulse (N m): one number for all axes, or a list of three."""
     period: float
     """Period of the pulses (s)."""
+    phase: float | None = None
+    """Time of the first period (s); default: 0."""
     minimum_on: float | None = None
     """Shortest pulse (s). Default: 0.0."""
     quantum: float | None = None
@@ -2353,7 +2402,7 @@ class Uniform(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Unloading(Part):
-    """Unloading of the wheels by jets or by magnetorquers."""
+    """Unloading of the wheels by jets or by magnetorquers, within the wheels."""
 
     _bare: ClassVar[tuple[str, ...]] = ("jets", "magnetorquers", )
 
@@ -2373,6 +2422,26 @@ class Unloading(Part):
     """
     period: float | None = None
     """For magnetorquers: the period of their commands (s)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unloads(Part):
+    """How an actuator of a list unloads the wheels of the list."""
+
+    above: float
+    """Total momentum of the wheels above which unloading begins (N m s)."""
+    below: float
+    """Total momentum below which it ends (N m s)."""
+    torque: float | None = None
+    """For jets: the largest mean torque about each axis over a cycle (N m), which the wheels counteract."""
+    gain: float | None = None
+    """For magnetorquers: the fraction of the momentum perpendicular to the field that they remove per
+    second (1/s).
+    """
+    period: float | None = None
+    """For magnetorquers: the period of their commands (s)."""
+    phase: float | None = None
+    """For magnetorquers: time of their first command (s); default: 0."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2613,8 +2682,8 @@ class Keys(TypedDict, total=False):
     law: Law
     """The control law. Only a scenario with a manoeuvre can omit it."""
 
-    actuator: Actuator | Literal["ideal"]
-    """The actuator, which executes the commanded torque."""
+    actuator: Actuator | Assigned | Literal["ideal"] | Sequence[Actuator | Assigned | Literal["ideal"]]
+    """The actuator, which executes the commanded torque, or an array of several."""
 
     disturbance: Sequence[Disturbance]
     """Disturbance torques and forces."""
