@@ -265,6 +265,21 @@ fn station(c: &mut Criterion) {
     group.finish();
 }
 
+/// The Earth observer of four wheels, gyro, star tracker and attitude filter: fine pointing, and its slew.
+fn observer(c: &mut Criterion) {
+    let mut group = c.benchmark_group("spacecraft, 600 s");
+    group.sample_size(20);
+    let slew = scenario(include_str!("../scenarios/earth-observer.toml"));
+    let mut table = slew.to_table();
+    table.insert("duration".to_owned(), 600.0.into());
+    let slew = scenario(&toml::to_string(&table).expect("TOML"));
+    table.remove("target").expect("targets");
+    let pointing = scenario(&toml::to_string(&table).expect("TOML"));
+    group.bench_function("slew", |b| b.iter(|| simulate(black_box(&slew), &mut ())));
+    group.bench_function("fine pointing", |b| b.iter(|| simulate(black_box(&pointing), &mut ())));
+    group.finish();
+}
+
 fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
 }
@@ -272,6 +287,6 @@ fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    targets = run, lanes, modes, filters, log, structure, sampled_loop, station
+    targets = run, lanes, modes, filters, log, structure, sampled_loop, station, observer
 }
 criterion_main!(benches);

@@ -69,7 +69,7 @@ const ESTIMATORS: [Kind; 10] = [
     ("adaptive", "A", "adaptive = {}"),
 ];
 
-const ACTUATORS: [Kind; 8] = [
+const ACTUATORS: [Kind; 13] = [
     ("ideal", "", "\"ideal\""),
     ("hold", "", "{ hold = { period = 0.2 } }"),
     ("thrusters", "", "{ thrusters = { torque = 0.05, period = 0.2 } }"),
@@ -99,6 +99,44 @@ const ACTUATORS: [Kind; 8] = [
     { name = \"e\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], thrust = 0.05 },
     { name = \"f\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, -1.0, 0.0], thrust = 0.05 },
 ] } }",
+    ),
+    (
+        "ideal and wheel, by shares",
+        "",
+        "[{ ideal = {}, share = 0.4 }, { wheel = { gain = 1.0, limit = 0.05 }, share = 0.6 }]",
+    ),
+    (
+        "wheel and thrusters, by shares",
+        "",
+        "[{ wheel = { gain = 1.0, limit = 0.05 }, share = 0.7 }, { thrusters = { torque = 0.05, period = 0.2 }, share = 0.3 }]",
+    ),
+    (
+        "wheels and jets, by axes",
+        "",
+        "[{ wheels = { arrangement = \"pyramid\", inertia = 0.01, torque = 0.05 }, axes = [\"roll\", \"pitch\"] },
+{ jets = { period = 0.2, specific_impulse = 270.0, thrusters = [
+    { name = \"e\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], thrust = 0.05 },
+    { name = \"f\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, -1.0, 0.0], thrust = 0.05 },
+], groups = { yaw = { plus = [\"e\"], minus = [\"f\"] } } }, axes = [\"yaw\"] }]",
+    ),
+    (
+        "wheels, jets unload",
+        "",
+        "[{ wheels = { arrangement = \"pyramid\", inertia = 0.01, torque = 0.05, speeds = [9.0, 5.0, 5.0, 5.0] } },
+{ jets = { period = 1.0, specific_impulse = 270.0, allocation = \"least_propellant\", thrusters = [
+    { name = \"a\", point = \"hub\", offset = [0.0, 1.0, 0.0], direction = [0.0, 0.0, 1.0], thrust = 0.05 },
+    { name = \"b\", point = \"hub\", offset = [0.0, 1.0, 0.0], direction = [0.0, 0.0, -1.0], thrust = 0.05 },
+    { name = \"c\", point = \"hub\", offset = [0.0, 0.0, 1.0], direction = [1.0, 0.0, 0.0], thrust = 0.05 },
+    { name = \"d\", point = \"hub\", offset = [0.0, 0.0, 1.0], direction = [-1.0, 0.0, 0.0], thrust = 0.05 },
+    { name = \"e\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], thrust = 0.05 },
+    { name = \"f\", point = \"hub\", offset = [1.0, 0.0, 0.0], direction = [0.0, -1.0, 0.0], thrust = 0.05 },
+] }, unloads = { above = 0.1, below = 0.01, torque = 0.02 } }]",
+    ),
+    (
+        "wheels, magnetorquers unload",
+        "",
+        "[{ wheels = { arrangement = \"pyramid\", inertia = 0.01, torque = 0.05, speeds = [9.0, 5.0, 5.0, 5.0] } },
+{ magnetorquers = { moment = 10.0 }, unloads = { above = 0.1, below = 0.01, gain = 1e-3, period = 1.0 } }]",
     ),
 ];
 

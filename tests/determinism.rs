@@ -39,20 +39,22 @@ fn metrics(dir: &Dir, log: &str) -> String {
 #[test]
 fn runs_repeat_to_the_last_bit() {
     // (scenario, topic, fingerprint): undamped with adaptation; coupled modes; damped with noise, quadrature and drawn numbers;
-    // wheels with friction, tachometers and an attitude filter; a filter with modes; panels that turn; three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
+    // wheels with friction, tachometers and an attitude filter; a filter with modes; panels that turn; actuators of several kinds; three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
     let runs = [
         ("relay-adaptive", "", "/command", 0x4886_7bcb_5000_12ea),
         ("relay-adaptive", "", "/adaptation", 0xb22e_04cb_1fc7_5d23),
-        ("adaptive-bandwidth", "", "/objective", 0x6fe1_1a45_522d_63c4),
+        ("adaptive-bandwidth", "", "/objective", 0x2fcd_8de4_2f12_62c6),
         ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0xcf77_a598_db0d_6474),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0x73f5_5062_6be9_d3fc),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
         ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xe18f_c212_5f78_e08b),
-        ("wheel-friction", " --runs 5:6", "/wheel_events", 0xcea0_ab4c_a7ca_0645),
-        ("wheel-friction", " --runs 5:6", "/metrics", 0xf87b_f387_9e1f_b874),
+        ("wheel-friction", " --runs 5:6", "/wheel_events", 0x3139_fe85_ed71_cad5),
+        ("wheel-friction", " --runs 5:6", "/metrics", 0xc1c6_7781_2ea6_1747),
         ("flexible-boom", " --runs 5:6", "/metrics", 0x43cf_c127_d43c_9db6),
-        ("sun-tracking", " --runs 5:6", "/metrics", 0x852d_a352_7be9_7855),
+        ("sun-tracking", " --runs 5:6", "/metrics", 0x26d3_5f4e_3fb9_1268),
+        ("wheels-and-jets", "", "/jets", 0xe93f_c40a_cfec_0f8e),
+        ("wheels-and-jets", "", "/metrics", 0xc2b5_ca99_aac0_ae9f),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
         ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
     ];

@@ -18,7 +18,7 @@ const KINDS: [(&str, &str, &str, usize); 9] = [
     ("| a sensor |", "sensor", "Sensor::SunSensor", 2),
     ("| an estimator |", "estimator", "Estimator::RigidRate", 2),
     ("| an estimator |", "estimator", "Estimator::Attitude", 2),
-    ("| an actuator about each axis |", "actuator", "Actuator::Hold", 4),
+    ("| an actuator about each axis |", "actuator", "Actuator::Hold", 3),
 ];
 
 #[test]

@@ -79,6 +79,7 @@ mod rivals;
 mod rooms;
 mod rotation;
 mod scene;
+mod several_actuators;
 mod several_sensors;
 mod shaped;
 mod spacecraft;

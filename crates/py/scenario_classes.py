@@ -168,7 +168,7 @@ class Schema:
             return self.literals(of["oneOf"])
         if "anyOf" in of:
             types = [self.type_of(choice) for choice in of["anyOf"] if choice.get("type") != "null"]
-            flat = [part for one in types for part in one.split(" | ")]
+            flat = [part for one in types for part in parts_of(one)]
             return " | ".join(dict.fromkeys(flat))
         kinds = of["type"] if isinstance(of["type"], list) else [of["type"]]
         [kind] = [kind for kind in kinds if kind != "null"]
@@ -182,6 +182,15 @@ class Schema:
 
     def literals(self, choices: list[dict[str, Any]]) -> str:
         return f"Literal[{', '.join(json.dumps(choice['const']) for choice in choices)}]"
+
+
+def parts_of(union: str) -> list[str]:
+    """The types of a union; one within the brackets of another stays there."""
+    parts = [""]
+    for piece in union.split(" | "):
+        whole = parts[-1].count("[") == parts[-1].count("]")
+        parts = [*parts, piece] if whole else [*parts[:-1], f"{parts[-1]} | {piece}"]
+    return parts[1:]
 
 
 def told(text: str) -> str:

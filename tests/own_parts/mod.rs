@@ -8,7 +8,7 @@ mod sensor;
 
 use std::sync::Arc;
 
-use flexsc_core::actuator::Actuator;
+use flexsc_core::actuator::{Actuator, Effector};
 use flexsc_core::adaptation::Adaptation;
 use flexsc_core::campaign::Campaign;
 use flexsc_core::estimator::Estimator;
@@ -30,6 +30,11 @@ const THREE_AXES: &str = "duration = 200.0\nseed = 5\n[law.open]\n[body.spatial]
                           modes = [{ frequency = 1.3, damping = 0.02, shapes.hub = { rotation = [0.02, 0.01, 0.03] } }]\n\
                           [log]\nperiod = 1.0";
 
+/// A servo from outside (N m).
+pub fn servo(most: f64, step: f64) -> Arc<dyn Effector> {
+    Arc::new(actuator::Servo { most, step })
+}
+
 /// A scenario whose control system is all from outside.
 fn of_own_parts(text: &str) -> Scenario {
     let scenario = Scenario::parse("own.toml", text).expect("a scenario");
@@ -40,7 +45,7 @@ fn of_own_parts(text: &str) -> Scenario {
             Parts::one(Sensor::Own(Own::new(Arc::new(sensor::Encoder { step: 1e-6, period: 0.25 }))));
         scenario.estimator =
             Some(Estimator::Own(Own::new(Arc::new(estimator::AlphaBeta { alpha: 0.4, beta: 0.1 }))));
-        scenario.actuator = Actuator::Own(Own::new(Arc::new(actuator::Servo { most: 0.05, step: 1e-5 })));
+        scenario.actuator = Parts::one(Actuator::Own(Own::new(servo(0.05, 1e-5))).into());
     });
     whole.expect("parts that fit each other")
 }

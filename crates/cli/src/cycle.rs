@@ -3,7 +3,6 @@
 use std::io::Write;
 
 use flexsc_core::Scenario;
-use flexsc_core::actuator::Actuator;
 use flexsc_core::analysis::rigid_cycle::{Resonance, RigidCycle, cycles, resonances};
 use flexsc_core::law::{Law, Sides};
 use serde_json::{Value as Json, json};
@@ -36,7 +35,7 @@ pub fn results(scenario: &Scenario) -> Result<RelayCycles, Failure> {
             scenario.name
         )));
     };
-    if matches!(scenario.actuator, Actuator::Wheel(_)) {
+    if scenario.actuator.wheel().is_some() {
         return Err(Failure::Arguments(format!(
             "{}: limit cycles are computed for an ideal torque, not for a wheel",
             scenario.name

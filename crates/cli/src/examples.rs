@@ -65,6 +65,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "wheel-scheduled-gain",
     "wheel-slow-mode",
     "wheel-unstable-band",
+    "wheels-and-jets",
 ];
 
 /// What a new scenario is a copy of, if nothing else is said.

@@ -34,20 +34,20 @@ struct Spatial {
     /// Name of the scenario.
     name: String,
     modes: Influences,
-    /// Whether the actuator is jets; of others a torque of 1 N m is told.
-    jets: bool,
+    /// About which axes jets act; about others a torque of 1 N m is told.
+    jets: [bool; 3],
 }
 
 /// The modes of a scenario's body.
 pub fn results(scenario: &Scenario) -> Box<dyn Results> {
     let name = scenario.name.clone();
     if let Some(craft) = scenario.body.craft() {
-        let (parts, jets) = (Parts::of(scenario, craft), scenario.study.groups.is_some());
+        let (parts, jets) = (Parts::of(scenario, craft), scenario.study.fired);
         return Box::new(spacecraft::Spacecraft { name, parts, jets });
     }
     match scenario.body.spatial() {
         Some(body) => {
-            let (modes, jets) = (Influences::of(scenario, body), scenario.study.groups.is_some());
+            let (modes, jets) = (Influences::of(scenario, body), scenario.study.fired);
             Box::new(Spatial { name, modes, jets })
         }
         None => Box::new(Planar { name, modal: Modal::of(&scenario.model) }),
@@ -59,9 +59,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Prints what the actuator of a body with three axes does to its modes.
-fn tell_influences(modes: &Influences, jets: bool) {
-    let (of, giver) = if jets { ("jets", "the jets give") } else { ("1 N m", "a torque gives") };
-    for (axis, [plus, minus]) in AXES.iter().zip(modes.accelerations_rad_s2) {
+fn tell_influences(modes: &Influences, jets: [bool; 3]) {
+    let giver = match jets {
+        [true, true, true] => "the jets give",
+        [false, false, false] => "a torque gives",
+        _ => "the jets or a torque give",
+    };
+    for ((axis, [plus, minus]), jets) in AXES.iter().zip(modes.accelerations_rad_s2).zip(jets) {
+        let of = if jets { "jets" } else { "1 N m" };
         say!("  {of}, {axis:<8} {plus:+.4e} {:+.4e} rad/s²", -minus);
     }
     say!("  influence: elastic rate at the gyro for each rigid rate that {giver} about the same axis");

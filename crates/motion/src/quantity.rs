@@ -67,6 +67,11 @@ quantity!(
     {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
 );
 quantity!(
+    /// A part of a whole, or all of it.
+    Share, |v| v > 0.0 && v <= 1.0, "a number above 0 and at most 1",
+    {"type": "number", "exclusiveMinimum": 0, "maximum": 1}
+);
+quantity!(
     /// The natural frequency of an elastic mode (rad/s).
     Frequency, |v| (1e-4..=1e3).contains(&v), "a natural frequency of 1e-4 to 1e3 rad/s",
     {"type": "number", "minimum": 1e-4, "maximum": 1e3}

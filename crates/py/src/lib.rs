@@ -26,7 +26,6 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use flexsc_core::actuator::Actuator;
 use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
@@ -270,7 +269,7 @@ fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
         let why = format!("{}: limit cycles are computed for a law `relay`", scenario.inner.name);
         return Err(PyValueError::new_err(why));
     };
-    if matches!(scenario.inner.actuator, Actuator::Wheel(_)) {
+    if scenario.inner.actuator.wheel().is_some() {
         let why = "limit cycles are computed for an ideal torque, not for a wheel";
         return Err(PyValueError::new_err(format!("{}: {why}", scenario.inner.name)));
     }

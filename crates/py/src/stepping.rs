@@ -32,8 +32,8 @@ pub fn fields(fields: &[Field]) -> Vec<FieldRow> {
 /// The unit of commands to a scenario.
 pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
     use flexsc_core::actuator::Actuator;
-    match &scenario.actuator {
-        Actuator::Wheel(_) => "",
+    match scenario.actuator.alone() {
+        Some(Actuator::Wheel(_)) => "",
         _ if scenario.axis_count() == 3 => "N m",
         _ => scenario.model.commanded().1,
     }
@@ -42,7 +42,8 @@ pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
 /// The largest command about each axis that the actuator of a scenario can execute; infinite without a limit.
 pub fn command_limit(scenario: &flexsc_core::Scenario) -> Vec<f64> {
     use flexsc_core::actuator::Actuator;
-    let gain = if let Actuator::Wheel(wheel) = &scenario.actuator { wheel.gain.get() } else { 1.0 };
+    let gain =
+        if let Some(Actuator::Wheel(wheel)) = scenario.actuator.alone() { wheel.gain.get() } else { 1.0 };
     let axes = scenario.study.axes.iter().zip(&scenario.study.authorities);
     axes.map(|(axis, can)| can.accelerations[0].min(can.accelerations[1]) * axis.commanded_inertia() / gain)
         .collect()

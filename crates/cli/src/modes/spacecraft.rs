@@ -16,8 +16,8 @@ pub struct Spacecraft {
     /// Name of the scenario.
     pub name: String,
     pub parts: Parts,
-    /// Whether the actuator is jets; of others a torque of 1 N m is told.
-    pub jets: bool,
+    /// About which axes jets act; about others a torque of 1 N m is told.
+    pub jets: [bool; 3],
 }
 
 impl Results for Spacecraft {

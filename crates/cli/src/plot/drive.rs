@@ -38,7 +38,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     if acts(feedback) {
         rest.push(("feedback", colour::BLUE, feedback));
     }
-    let wheel = matches!(story.scenario.actuator, Actuator::Wheel(_));
+    let wheel = matches!(story.scenario.actuator.alone(), Some(Actuator::Wheel(_)));
     let panels = match (rest.is_empty(), executed || acts(planned)) {
         _ if wheel => {
             // No manoeuvre is planned for a wheel; what the law asks of it may be far more than it gives.

@@ -1,6 +1,6 @@
 //! Figure `wheel`: speed and momentum of the flywheel with its limits.
 
-use flexsc_core::actuator::{Actuator, Rotor};
+use flexsc_core::actuator::Rotor;
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
 
 use super::motion::Motion;
@@ -9,10 +9,7 @@ use super::{time, title};
 
 /// The wheel of a scenario, if it has one that stores momentum.
 pub fn rotor(story: &Story) -> Option<&Rotor> {
-    match &story.scenario.actuator {
-        Actuator::Wheel(wheel) => wheel.rotor.as_ref(),
-        _ => None,
-    }
+    story.scenario.actuator.wheel().and_then(|(wheel, _)| wheel.rotor.as_ref())
 }
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {

@@ -1,6 +1,6 @@
 //! Figure `wheel` of three axes: speed and torque of each wheel, with their limits; with friction this and the pointing error too.
 
-use flexsc_core::actuator::{Actuator, Wheels};
+use flexsc_core::actuator::Wheels;
 use flexsc_core::attitude::AXES;
 use flexsc_core::motion::turning::Bearing;
 use flexsc_core::quantity::Positive;
@@ -17,7 +17,7 @@ const COLOURS: [plotters::style::RGBColor; 5] =
 
 /// The wheels of a scenario, if it has them.
 pub fn of(story: &Story) -> Option<&Wheels> {
-    if let Actuator::Wheels(wheels) = &story.scenario.actuator { Some(wheels) } else { None }
+    story.scenario.actuator.wheels().map(|(wheels, _)| wheels)
 }
 
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {

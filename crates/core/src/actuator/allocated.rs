@@ -51,11 +51,17 @@ fn asked(wanted: &Vector, force_free: bool) -> Vec<f64> {
     wanted.iter().copied().chain([0.0; 3].into_iter().filter(|_| force_free)).collect()
 }
 
-/// What the thrusters do together that give the largest torque about each axis, one way and the other, for the least propellant.
+/// What the thrusters do together that give the largest torque about each axis about which they act, one way and the other, for the
+/// least propellant.
 ///
 /// # Errors
-/// They cannot turn the body about an axis.
-pub(super) fn largest(jets: &Jets, nozzles: &[Nozzle], inertia: [f64; 3]) -> Result<[[Group; 2]; 3], Fault> {
+/// They cannot turn the body about such an axis.
+pub(super) fn largest(
+    jets: &Jets,
+    nozzles: &[Nozzle],
+    inertia: [f64; 3],
+    acts: [bool; 3],
+) -> Result<[[Group; 2]; 3], Fault> {
     let programme = programme(nozzles, 1.0, jets.force_free);
     let costs: Vec<f64> = nozzles.iter().map(|nozzle| nozzle.flow).collect();
     // More than all of them have.
@@ -79,7 +85,10 @@ pub(super) fn largest(jets: &Jets, nozzles: &[Nozzle], inertia: [f64; 3]) -> Res
         let acceleration = push.torque[axis].abs() / inertia[axis];
         Ok(Group { push, flow, acceleration })
     };
-    let pair = |axis: usize| Ok([group(axis, 1.0)?, group(axis, -1.0)?]);
+    let pair = |axis: usize| {
+        let modes = nozzles.first().map_or(0, |nozzle| nozzle.push.forces.len());
+        if acts[axis] { Ok([group(axis, 1.0)?, group(axis, -1.0)?]) } else { Ok(Group::idle(modes)) }
+    };
     Ok([pair(0)?, pair(1)?, pair(2)?])
 }
 
@@ -93,12 +102,16 @@ impl Allocated {
             programme: programme(nozzles, cycle.seconds(), jets.force_free),
             torques: nozzles.iter().map(|nozzle| nozzle.push.torque).collect(),
             flows: nozzles.iter().map(|nozzle| nozzle.flow).collect(),
-            inertia: [0, 1, 2].map(|axis| torque(axis, 0) / groups[axis][0].acceleration),
+            // Nothing is asked about an axis without a group.
+            inertia: [0, 1, 2].map(|axis| match torque(axis, 0) {
+                0.0 => f64::INFINITY,
+                torque => torque / groups[axis][0].acceleration,
+            }),
             largest: [0, 1, 2].map(|axis| [torque(axis, 0), torque(axis, 1)]),
             width: jets.width(),
             delayed: jets.delay > 0,
             period: cycle,
-            next: jets.period.map(|_| Instant::START),
+            next: jets.period.map(|_| super::first(jets.phase)),
             demands: [Demand::Torque(0.0); 3],
             waiting: vec![0.0; count],
             executed: vec![0.0; count],
@@ -112,6 +125,7 @@ impl Allocated {
     fn wanted(&self) -> Vector {
         let about = |axis: usize| match self.demands[axis] {
             Demand::Torque(torque) => torque * self.period.seconds(),
+            Demand::Change(0.0) => 0.0,
             Demand::Change(change) => change * self.inertia[axis],
             Demand::Moment(_) => 0.0,
         };
@@ -194,7 +208,10 @@ impl Actuate for Allocated {
 
     fn cycle(&self) -> Option<Cycle> {
         let turned = self.impulse();
-        let on = [0, 1, 2].map(|axis| turned[axis] / self.largest[axis][usize::from(turned[axis] < 0.0)]);
+        let on = [0, 1, 2].map(|axis| match self.largest[axis][usize::from(turned[axis] < 0.0)] {
+            0.0 => 0.0,
+            largest => turned[axis] / largest,
+        });
         let since = self.valves.since();
         let left = |index: usize| self.ends[index].map_or(0.0, |end| end.since(since).seconds());
         Some(Cycle {

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AxisActuate, Failure, Setting};
+use crate::quantity::Time;
 use crate::time::{Instant, Span};
 
 /// A zero-order hold.
@@ -12,6 +13,9 @@ use crate::time::{Instant, Span};
 pub struct ZeroOrderHold {
     /// Period (s).
     pub period: Span,
+    /// Time of the first period (s); default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase: Option<Time>,
     /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
@@ -33,7 +37,7 @@ impl ZeroOrderHold {
         Holding {
             period: self.period,
             setting: setting.clone(),
-            next: Instant::START,
+            next: super::first(self.phase),
             feedback: 0.0,
             held: 0.0,
         }

@@ -29,7 +29,11 @@ pub struct Executing {
 impl Executing {
     /// The actuator before its first command.
     pub fn new(setting: &Setting) -> Self {
-        Self { torque: 0.0, waveform: setting.waveform.clone() }
+        let share = |waveform: &Arc<Waveform>| match setting.share {
+            1.0 => Arc::clone(waveform),
+            share => Arc::new(waveform.shifted(0.0, share)),
+        };
+        Self { torque: 0.0, waveform: setting.waveform.as_ref().map(share) }
     }
 }
 

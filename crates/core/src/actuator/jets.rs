@@ -8,7 +8,7 @@ use crate::attitude::{AXES, vector};
 use crate::body::Push;
 use crate::body::spatial::Spatial;
 use crate::document::Fault;
-use crate::quantity::{Finite, NonNegative, Positive};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::time::Span;
 
 /// Standard acceleration of free fall (m/s²), by which the specific impulse counts.
@@ -27,6 +27,9 @@ pub struct Jets {
     /// Period of the pulses (s); default: that of the law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
+    /// Time of the first cycle of pulses, for jets with a `period` (s); default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase: Option<Time>,
     /// Specific impulse (s).
     pub specific_impulse: Positive,
     /// Delay from a command to its pulses in whole cycles: 0, or 1 if computing it takes a cycle.
@@ -84,12 +87,22 @@ pub struct Thruster {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Groups {
-    /// About x.
-    pub roll: Pair,
-    /// About y.
-    pub pitch: Pair,
-    /// About z.
-    pub yaw: Pair,
+    /// About x; needed if the jets act about it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<Pair>,
+    /// About y; needed if the jets act about it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pitch: Option<Pair>,
+    /// About z; needed if the jets act about it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yaw: Option<Pair>,
+}
+
+impl Groups {
+    /// Those of roll, pitch and yaw.
+    pub fn each(&self) -> [Option<&Pair>; 3] {
+        [&self.roll, &self.pitch, &self.yaw].map(Option::as_ref)
+    }
 }
 
 /// The two groups of an axis.
@@ -103,7 +116,7 @@ pub struct Pair {
 }
 
 /// What a group does while it is on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Group {
     /// Its forces, all together.
     pub push: Push,
@@ -111,6 +124,14 @@ pub struct Group {
     pub flow: f64,
     /// Absolute acceleration about the group's own axis, m = |M_a|/J_aa (rad/s²).
     pub acceleration: f64,
+}
+
+impl Group {
+    /// Two groups that do nothing to a body with so many modes.
+    pub(super) fn idle(modes: usize) -> [Self; 2] {
+        let push = Push { forces: vec![0.0; modes], ..Push::default() };
+        [(); 2].map(|()| Self { push: push.clone(), ..Self::default() })
+    }
 }
 
 /// What a thruster does while it is open.
@@ -139,11 +160,11 @@ impl Jets {
 
     /// The groups in which each thruster is: axis, and 0 for plus or 1 for minus.
     pub(super) fn memberships(&self) -> Vec<Vec<[usize; 2]>> {
-        let Some(Groups { roll, pitch, yaw }) = &self.groups else { return Vec::new() };
+        let Some(groups) = &self.groups else { return Vec::new() };
         let of = |thruster: &Thruster| {
             let mut own = Vec::new();
-            for (axis, pair) in [roll, pitch, yaw].into_iter().enumerate() {
-                for (side, names) in [&pair.plus, &pair.minus].into_iter().enumerate() {
+            for (axis, pair) in groups.each().into_iter().enumerate() {
+                for (side, names) in pair.into_iter().flat_map(|pair| [&pair.plus, &pair.minus]).enumerate() {
                     own.extend(names.iter().filter(|name| **name == thruster.name).map(|_| [axis, side]));
                 }
             }
@@ -152,11 +173,12 @@ impl Jets {
         self.thrusters.iter().map(of).collect()
     }
 
-    /// The groups on a body: for each axis, plus and minus.
+    /// The groups on a body, of jets that act about these axes: for each axis, plus and minus. Without groups about another one
+    /// they do nothing there.
     ///
     /// # Errors
     /// A key within the jets, and why.
-    pub fn groups_on(&self, body: &Spatial) -> Result<[[Group; 2]; 3], Fault> {
+    pub fn groups_on(&self, body: &Spatial, acts: [bool; 3]) -> Result<[[Group; 2]; 3], Fault> {
         for (index, thruster) in self.thrusters.iter().enumerate() {
             let refused = |key: &str, why: String| Err(Fault::new(format!("thrusters[{index}].{key}"), why));
             let length = vector(&thruster.direction).norm();
@@ -182,23 +204,35 @@ impl Jets {
             }
             let tensor = body.tensor();
             let inertia = [0, 1, 2].map(|axis| tensor[(axis, axis)]);
-            return allocated::largest(self, &self.nozzles_on(body), inertia);
+            return allocated::largest(self, &self.nozzles_on(body), inertia, acts);
         }
         if self.force_free {
             return Err(Fault::new("force_free", "applies only to `allocation = \"least_propellant\"`"));
         }
-        let Some(Groups { roll, pitch, yaw }) = &self.groups else {
+        let Some(given) = &self.groups else {
             let why = "must be given, or `allocation = \"least_propellant\"`";
             return Err(Fault::new("groups", why));
         };
-        let mut groups = Vec::with_capacity(3);
-        for (axis, pair) in [roll, pitch, yaw].into_iter().enumerate() {
-            groups.push([
-                self.group(body, axis, "plus", 1.0, &pair.plus)?,
-                self.group(body, axis, "minus", -1.0, &pair.minus)?,
-            ]);
+        let mut groups = [(); 3].map(|()| Group::idle(body.modes.len()));
+        for (axis, pair) in given.each().into_iter().enumerate() {
+            match pair {
+                Some(pair) => {
+                    groups[axis] = [
+                        self.group(body, axis, "plus", 1.0, &pair.plus)?,
+                        self.group(body, axis, "minus", -1.0, &pair.minus)?,
+                    ];
+                }
+                None if acts[axis] => {
+                    let name = AXES[axis];
+                    return Err(Fault::new(
+                        "groups",
+                        format!("must have `{name}`, about which the jets act"),
+                    ));
+                }
+                None => {}
+            }
         }
-        groups.try_into().map_err(|_| Fault::new("groups", "must be those of three axes"))
+        Ok(groups)
     }
 
     fn group(

@@ -74,7 +74,7 @@ impl Torquing {
 
     /// Holds the moment whose torque is the part of this one across the field (N m), made smaller as a whole where it is too
     /// large.
-    pub fn give(&mut self, torque: Vector) {
+    fn give(&mut self, torque: Vector) {
         self.wanted = torque;
         let moment = self
             .field
@@ -86,7 +86,7 @@ impl Torquing {
     }
 
     /// The torque in the field as it is known (N m).
-    pub fn given(&self) -> Vector {
+    fn given(&self) -> Vector {
         self.field.map_or_else(Vector::zeros, |field| self.moment.cross(&field))
     }
 
@@ -143,9 +143,9 @@ impl Actuate for Torquing {
         self.given()[axis]
     }
 
-    /// What the moments give depends on the field of the instant: the plant tells it.
+    /// What the moments give depends on the field of the instant: the plant tells it. This zero changes no sum, -0 included.
     fn applied(&self, _: Instant, _: usize, _: [f64; 2]) -> f64 {
-        0.0
+        -0.0
     }
 
     fn moment(&self, axis: usize) -> f64 {
@@ -176,6 +176,7 @@ mod tests {
             rate: 0.0,
             cycle: Some(Span::from_seconds(0.5)),
             waveform: None,
+            share: 1.0,
         };
         torquers.start(&[0, 1, 2].map(setting))
     }

@@ -2,6 +2,7 @@
 
 mod allocated;
 mod allocation;
+mod assigned;
 mod failure;
 mod friction;
 mod hold;
@@ -9,12 +10,13 @@ mod ideal;
 mod imbalance;
 mod impaired;
 mod jets;
-mod magnetic_unloading;
 mod magnetorquers;
+mod member;
 mod per_wheel;
 mod pulse_timing;
 mod pulse_width;
 mod pulsing;
+mod several;
 mod spinning;
 mod thrusters;
 mod torquers;
@@ -22,7 +24,6 @@ mod unloading;
 mod valves;
 mod wheel;
 mod wheels;
-mod written;
 
 use std::any::Any;
 use std::fmt;
@@ -32,38 +33,38 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
 use crate::body::Wrench;
-use crate::document::Fault;
 use crate::motion::turning::Turned;
 use crate::own::{Halt, Own};
+use crate::quantity::{Share, Time};
 use crate::record::{self, WheelMotion};
 use crate::time::{Instant, Span};
 
 pub use allocated::Allocated;
 pub use allocation::{Allocation, Choice};
-use failure::Parts;
+pub use assigned::Assigned;
 pub use failure::{Failure, Lasting};
 pub use friction::Friction;
 pub use hold::ZeroOrderHold;
 pub use ideal::Ideal;
 pub use imbalance::{Harmonic, Imbalance};
 pub use jets::{Firing, Group, Groups, Jets, Nozzle, Pair, Thruster};
-pub use magnetic_unloading::Magnetic;
 pub use magnetorquers::{Magnetorquers, Torquing};
+pub use member::{Member, Task};
 pub use per_wheel::PerWheel;
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use pulsing::{Pulse, Pulsing};
+pub use several::Several;
 pub use spinning::Spinning;
 pub use thrusters::Thrusters;
 pub use torquers::{AxisActuate, Setting, Torquers};
-pub use unloading::{Unloaded, Unloading};
+pub use unloading::{Unloading, Unloads};
 pub use wheel::{Opposes, Rotor, Wheel};
 pub use wheels::{Arrangement, Compensation, SpeedBias, Wheels};
 
 /// The kinds of actuator. On a body with three axes, an actuator for one angle acts about each of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", remote = "Self")]
-#[schemars(transform = written::or_a_word)]
+#[serde(rename_all = "snake_case")]
 pub enum Actuator {
     /// The command itself, at every instant.
     Ideal(Ideal),
@@ -117,6 +118,9 @@ pub trait Actuate: fmt::Debug + Send + Sync {
 
     /// Takes over the magnetic field in the body's axes (T) as it is measured, before what follows from it.
     fn feel(&mut self, _field: Vector) {}
+
+    /// Makes wheels hold against a torque on the body (N m) from the next command on.
+    fn hold_against(&mut self, _torque: Vector) {}
 
     /// The next instant at which what it exerts changes by itself.
     fn due(&self) -> Option<Instant> {
@@ -238,6 +242,11 @@ pub struct Cycle {
     pub open: Vec<f64>,
 }
 
+/// When an actuator with a phase acts first.
+fn first(phase: Option<Time>) -> Instant {
+    Instant::START + Span::from_seconds(phase.map_or(0.0, Time::get))
+}
+
 impl Default for Actuator {
     fn default() -> Self {
         Self::Ideal(Ideal::default())
@@ -259,34 +268,7 @@ impl Actuator {
         }
     }
 
-    /// The jets that there are, laws act by them or not, and their key.
-    pub fn jets(&self) -> Option<(&Jets, &'static str)> {
-        match self {
-            Self::Jets(jets) => Some((jets, "actuator.jets")),
-            Self::Wheels(Wheels { unloading: Some(unloading), .. }) => {
-                Some((unloading.jets.as_ref()?, "actuator.wheels.unloading.jets"))
-            }
-            _ => None,
-        }
-    }
-
-    /// The magnetorquers that there are, laws act by them or not, and their key.
-    pub fn magnetorquers(&self) -> Option<(&Magnetorquers, &'static str)> {
-        match self {
-            Self::Magnetorquers(torquers) => Some((torquers, "actuator.magnetorquers")),
-            Self::Wheels(Wheels { unloading: Some(unloading), .. }) => {
-                Some((unloading.magnetorquers.as_ref()?, "actuator.wheels.unloading.magnetorquers"))
-            }
-            _ => None,
-        }
-    }
-
-    /// Whether it executes commands as they are: no failure changes that.
-    pub fn is_ideal(&self) -> bool {
-        matches!(self, Self::Ideal(_)) && self.failures().is_empty()
-    }
-
-    /// Its own failures, without those of what unloads its wheels.
+    /// Its failures.
     pub fn failures(&self) -> &[Failure] {
         match self {
             Self::Ideal(ideal) => &ideal.faults,
@@ -300,42 +282,24 @@ impl Actuator {
         }
     }
 
-    /// All failures, each with its key and those beside it.
-    pub fn all_failures(&self) -> Vec<(String, &[Failure])> {
-        let mut all = vec![(format!("actuator.{}", self.kind()), self.failures())];
-        if let Self::Wheels(_) = self {
-            all.extend(self.jets().map(|(jets, key)| (key.to_owned(), &jets.faults[..])));
-            all.extend(self.magnetorquers().map(|(torquers, key)| (key.to_owned(), &torquers.faults[..])));
-        }
-        all
-    }
-
-    /// What of its failures does not fit, of one about so many axes: a key, and why.
-    pub fn failure_fault(&self, axes: usize) -> Option<Fault> {
-        let names = self.jets().map_or(Vec::new(), |(jets, _)| jets.names());
-        for (key, failures) in self.all_failures() {
-            let parts = match self {
-                _ if key.ends_with("jets") => Parts::Thrusters(&names),
-                Self::Wheels(wheels) if key == "actuator.wheels" => Parts::Wheels(wheels.count()),
-                _ => Parts::Axes(axes),
-            };
-            let sines = !key.ends_with("magnetorquers");
-            for (index, failure) in failures.iter().enumerate() {
-                if let Some(fault) = failure.fault(parts, sines) {
-                    return Some(fault.within(&format!("{key}.faults[{index}]")));
-                }
-            }
-        }
-        None
-    }
-
     /// The period in which the command is executed; none for one that executes it at once.
     pub fn period(&self) -> Option<Span> {
+        self.timing().0
+    }
+
+    /// When the first period begins (s), if that is given.
+    pub fn phase(&self) -> Option<Time> {
+        self.timing().1
+    }
+
+    fn timing(&self) -> (Option<Span>, Option<Time>) {
         match self {
-            Self::Ideal(_) | Self::Wheel(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => None,
-            Self::Hold(hold) => Some(hold.period),
-            Self::Thrusters(thrusters) => Some(thrusters.period),
-            Self::Jets(jets) => jets.period,
+            Self::Ideal(_) | Self::Wheel(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => {
+                (None, None)
+            }
+            Self::Hold(hold) => (Some(hold.period), hold.phase),
+            Self::Thrusters(thrusters) => (Some(thrusters.period), thrusters.phase),
+            Self::Jets(jets) => (jets.period, jets.phase),
         }
     }
 

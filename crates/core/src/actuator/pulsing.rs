@@ -63,7 +63,7 @@ impl Pulsing {
             width: jets.width(),
             delayed: jets.delay > 0,
             period: jets.period.unwrap_or(period),
-            next: jets.period.map(|_| Instant::START),
+            next: jets.period.map(|_| super::first(jets.phase)),
             demands: [Demand::Torque(0.0); 3],
             waiting: [0.0; 3],
             executed: [0.0; 3],

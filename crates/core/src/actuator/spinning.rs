@@ -110,11 +110,6 @@ impl Spinning {
         self
     }
 
-    /// Makes them hold against a torque on the body (N m) from the next command on.
-    pub fn hold_against(&mut self, torque: Vector) {
-        self.against = torque;
-    }
-
     fn elapsed(&self, now: Instant) -> f64 {
         now.since(self.since).seconds()
     }
@@ -254,6 +249,10 @@ impl Actuate for Spinning {
             };
         }
         self.drive_all(now, &rigid.into());
+    }
+
+    fn hold_against(&mut self, torque: Vector) {
+        self.against = torque;
     }
 
     fn due(&self) -> Option<Instant> {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{AxisActuate, Failure, PulseWidth, Setting};
 use crate::axes::Each;
-use crate::quantity::{NonNegative, Positive};
+use crate::quantity::{NonNegative, Positive, Time};
 use crate::time::{Instant, Span};
 
 /// A pair of thrusters for each direction, with pulse-width modulation.
@@ -16,6 +16,9 @@ pub struct Thrusters {
     pub torque: Each<Positive>,
     /// Period of the pulses (s).
     pub period: Span,
+    /// Time of the first period (s); default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase: Option<Time>,
     /// Shortest pulse (s).
     #[serde(default)]
     pub minimum_on: NonNegative,
@@ -48,7 +51,7 @@ impl Thrusters {
             period: self.period,
             width: self.width(),
             setting: setting.clone(),
-            next: Instant::START,
+            next: super::first(self.phase),
             feedback: 0.0,
             held: 0.0,
             pulse: None,

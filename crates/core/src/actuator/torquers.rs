@@ -28,13 +28,15 @@ pub struct Setting {
     pub cycle: Option<Span>,
     /// The manoeuvre's command (N m).
     pub waveform: Option<Arc<Waveform>>,
+    /// The part of what is demanded about the axis that is the actuator's; 0 of one that does not act about it.
+    pub share: f64,
 }
 
 impl Setting {
-    /// Impulse of the waveform over the next `h` seconds (N m s).
+    /// Impulse of its share of the waveform over the next `h` seconds (N m s).
     pub fn planned(&self, now: Instant, h: f64) -> f64 {
         let from = now.seconds();
-        self.waveform.as_ref().map_or(0.0, |waveform| waveform.impulse(from, from + h))
+        self.waveform.as_ref().map_or(0.0, |waveform| self.share * waveform.impulse(from, from + h))
     }
 }
 
@@ -108,25 +110,32 @@ impl Clone for Box<dyn AxisActuate> {
     }
 }
 
-/// The actuators of all axes.
+/// The actuators of all axes; none about one that others serve.
 #[derive(Clone, Debug)]
-pub struct Torquers(Vec<(Box<dyn AxisActuate>, Setting)>);
+pub struct Torquers(Vec<Option<(Box<dyn AxisActuate>, Setting)>>);
 
 impl Torquers {
-    /// An actuator in the setting of each axis, with the failures that are its own.
+    /// An actuator in the setting of each axis about which it acts, with the failures that are its own.
     pub fn new(kind: &Actuator, settings: Vec<Setting>) -> Self {
         let of = |setting: Setting| {
             let (actuator, axis) = (kind.about_an_axis(&setting), setting.axis);
             let own = |of: &Lasting<'_>| of.about.is_none_or(|about| about.index() == axis);
             (Impaired::by(kind.failures(), own, actuator), setting)
         };
-        Self(settings.into_iter().map(of).collect())
+        Self(settings.into_iter().map(|setting| (setting.share > 0.0).then(|| of(setting))).collect())
+    }
+
+    /// A number of the actuator about an axis, 0 where there is none.
+    fn about(&self, axis: usize, number: impl Fn(&dyn AxisActuate, &Setting) -> f64) -> f64 {
+        let actuator = self.0.get(axis).and_then(Option::as_ref);
+        actuator.map_or(0.0, |(actuator, setting)| number(&**actuator, setting))
     }
 }
 
 impl Actuate for Torquers {
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
-        for (axis, ((actuator, setting), demand)) in self.0.iter_mut().zip(demands).enumerate() {
+        for (axis, (actuator, demand)) in self.0.iter_mut().zip(demands).enumerate() {
+            let Some((actuator, setting)) = actuator else { continue };
             let wanted = match demand {
                 Demand::Torque(torque) => *torque,
                 Demand::Change(change) => {
@@ -140,57 +149,57 @@ impl Actuate for Torquers {
     }
 
     fn due(&self) -> Option<Instant> {
-        self.0.iter().filter_map(|(actuator, _)| actuator.due()).min()
+        self.0.iter().flatten().filter_map(|(actuator, _)| actuator.due()).min()
     }
 
     fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
-        for ((actuator, _), rate) in self.0.iter_mut().zip(rigid) {
-            actuator.serve(now, rate);
+        for (actuator, rate) in self.0.iter_mut().zip(rigid) {
+            actuator.iter_mut().for_each(|(actuator, _)| actuator.serve(now, rate));
         }
     }
 
     fn exert(&self, now: Instant, onto: &mut Wrench) {
-        for ((actuator, _), torque) in self.0.iter().zip(&mut onto.hub) {
-            *torque += actuator.torque();
-        }
-        if let [(actuator, _)] = &self.0[..] {
-            onto.waveform = actuator.forced(now);
-            return;
-        }
-        for ((actuator, _), axis) in self.0.iter().zip([Vector::x(), Vector::y(), Vector::z()]) {
-            onto.sines.extend(actuator.sines().iter().map(|sine| (axis, *sine)));
+        let actuators = self.0.iter().zip([Vector::x(), Vector::y(), Vector::z()]).enumerate();
+        for (index, (actuator, axis)) in actuators {
+            let Some((actuator, _)) = actuator else { continue };
+            onto.hub[index] += actuator.torque();
+            if self.0.len() == 1 {
+                onto.force(actuator.forced(now));
+            } else {
+                onto.sines.extend(actuator.sines().iter().map(|sine| (axis, *sine)));
+            }
         }
     }
 
     fn asked(&self, axis: usize) -> f64 {
-        self.0[axis].0.asked()
+        self.about(axis, |actuator, _| actuator.asked())
     }
 
     fn torque(&self, axis: usize) -> f64 {
-        self.0[axis].0.torque()
+        self.about(axis, |actuator, _| actuator.torque())
     }
 
     fn applied(&self, now: Instant, axis: usize, rates: [f64; 2]) -> f64 {
-        self.0[axis].0.applied(now, rates)
+        self.about(axis, |actuator, _| actuator.applied(now, rates))
     }
 
     fn moment(&self, axis: usize) -> f64 {
-        let (actuator, setting) = &self.0[axis];
-        actuator.believed() / setting.inertia
+        self.about(axis, |actuator, setting| actuator.believed() / setting.inertia)
     }
 
     fn waveform_impulse(&self, from: f64, to: f64) -> f64 {
-        let (actuator, setting) = &self.0[0];
-        let forced = setting.waveform.as_ref().filter(|_| actuator.follows());
-        forced.map_or(0.0, |waveform| waveform.impulse(from, to) / setting.inertia)
+        self.about(0, |actuator, setting| {
+            let forced = setting.waveform.as_ref().filter(|_| actuator.follows());
+            forced.map_or(0.0, |waveform| setting.share * waveform.impulse(from, to) / setting.inertia)
+        })
     }
 
     fn back_emf(&self) -> (f64, bool) {
-        self.0[0].0.back_emf()
+        self.0[0].as_ref().map_or((0.0, false), |(actuator, _)| actuator.back_emf())
     }
 
     fn wheel(&self, axis: usize, rigid_rate: f64) -> Option<WheelMotion> {
-        self.0[axis].0.rotor(rigid_rate)
+        self.0[axis].as_ref()?.0.rotor(rigid_rate)
     }
 
     fn copy(&self) -> Box<dyn Actuate> {

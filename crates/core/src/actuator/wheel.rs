@@ -119,7 +119,7 @@ impl Driven {
         self.delayed.push_back((now + delay, self.wheel.shaped(whole)));
     }
 
-    /// What the motor has to add for the waveform over the law's next period, or until the waveform ends: its mean, and the
+    /// What the motor has to add for its share of the waveform over the law's next period, or until the waveform ends: its mean, and the
     /// back-EMF at its mean rate.
     fn feedforward(&mut self, now: Instant) -> f64 {
         let (Some(waveform), Some(cycle)) = (&self.setting.waveform, self.setting.cycle) else { return 0.0 };
@@ -130,7 +130,8 @@ impl Driven {
         let span = next.since(now).seconds();
         let rate =
             self.setting.rate + (waveform.impulse(0.0, from) + waveform.travel(from, to) / span) / inertia;
-        (waveform.impulse(from, to) / span + self.wheel.back_emf.get() * rate) / self.wheel.gain.get()
+        (self.setting.share * waveform.impulse(from, to) / span + self.wheel.back_emf.get() * rate)
+            / self.wheel.gain.get()
     }
 
     /// Gives the wheel the commands that have come through.

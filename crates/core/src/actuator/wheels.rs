@@ -157,9 +157,6 @@ impl Wheels {
                 format!("needs four wheels, whose torques can cancel each other in one way, got {count}");
             return Err(Fault::new("speed_bias", why));
         }
-        if let Some(fault) = self.unloading.as_deref().and_then(Unloading::inconsistency) {
-            return Err(fault.within("unloading"));
-        }
         if let Some(friction) = &self.friction {
             friction.check(count).map_err(|fault| fault.within("friction"))?;
         }

@@ -47,6 +47,7 @@ impl Influences {
                 study
                     .groups
                     .as_ref()
+                    .filter(|_| study.fired[axis])
                     .map_or([own(axis); 2], |groups| [0, 1].map(|sign| groups[axis][sign].acceleration))
             }),
         }

@@ -7,7 +7,6 @@ mod filters;
 mod motions;
 
 use super::{Batch, Job};
-use crate::actuator::Actuator;
 use crate::body::Lent;
 use crate::lanes::{Mask, Processor, Real, Work};
 use crate::law::Law;
@@ -28,7 +27,8 @@ impl Batch for Side {
     }
 
     fn takes(&self, scenario: &Scenario) -> bool {
-        (scenario.drift.is_some() || matches!(scenario.actuator, Actuator::Wheel(_)))
+        (scenario.drift.is_some() || scenario.actuator.wheel().is_some())
+            && scenario.actuator.alone().is_some()
             && matches!(scenario.law, Law::Pd(_))
             && scenario.plan.is_none()
             && scenario.model.outputs.is_empty()

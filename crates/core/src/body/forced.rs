@@ -65,6 +65,14 @@ impl Wrench {
         *waveform = None;
     }
 
+    /// Adds a waveform, which is on its way since the same instant as any other.
+    pub fn force(&mut self, by: Option<Forced>) {
+        self.waveform = match (self.waveform.take(), by) {
+            (Some(own), Some(by)) => Some(own.changed(1.0, &by.waveform)),
+            (own, by) => own.or(by),
+        };
+    }
+
     /// Adds a push.
     pub fn push(&mut self, push: &Push) {
         self.torque += push.torque;

@@ -12,7 +12,7 @@ mod spatial;
 
 use serde_json::{Map, Value, json};
 
-use crate::actuator::{Actuator, Firing};
+use crate::actuator::Firing;
 use crate::adaptation::{Adaptation, Objective};
 use crate::estimator::Estimator;
 use crate::metrics::Gather;
@@ -124,10 +124,10 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         let alone =
             scenario.actuator.jets().is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant);
         add(alone, "/thrusters", Events);
-        add(scenario.study.groups.is_none() || scenario.environment.is_some(), "/torques", Full);
+        add(!scenario.study.jets_alone || scenario.environment.is_some(), "/torques", Full);
         add(planar::filters(scenario), "/estimators", Full);
         add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
-        add(matches!(scenario.actuator, Actuator::Wheels(_)), "/wheels", Full);
+        add(scenario.study.wheels.is_some(), "/wheels", Full);
         add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);
         add(scenario.sensor.accelerometers().next().is_some(), "/accelerations", Full);
         add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);
@@ -148,10 +148,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         return topics;
     }
     let plan = scenario.plan.as_ref();
-    let wheel = match &scenario.actuator {
-        Actuator::Wheel(wheel) => Some(wheel),
-        _ => None,
-    };
+    let wheel = scenario.actuator.wheel().map(|(wheel, _)| wheel);
     add(true, "/law", Events);
     add(scenario.law.switches() || (plan.is_some() && planar::feeds_back(scenario)), "/command", Events);
     let window = estimator.and_then(Estimator::envelope).map(|envelope| envelope.window);

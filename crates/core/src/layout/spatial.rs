@@ -3,7 +3,6 @@
 use super::panel::{Line, MOST_LINES, Panel, line};
 use super::planar::adaptation;
 use super::{Tab, metrics};
-use crate::actuator::Actuator;
 use crate::attitude::AXES;
 use crate::body::Spatial;
 use crate::motion::turning::Bearing;
@@ -22,7 +21,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         ),
         Panel::plot("elastic", "Elastic rates at the sensor (rad/s)", rates(&[("elastic_rad_s", "")])),
     ];
-    if scenario.study.groups.is_none() {
+    if !scenario.study.jets_alone {
         motion.push(Panel::plot("torques", "Torques of the actuator (N m)", torques("applied_nm")));
     }
     if scenario.study.fires() {
@@ -47,7 +46,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         let title = format!("Specific force at {name} (m/s²)");
         motion.push(Panel::plot("accelerations", &title, (0..count).map(axis).collect()));
     }
-    if let Actuator::Wheels(_) = &scenario.actuator {
+    if scenario.study.wheels.is_some() {
         motion.push(Panel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }
     if scenario.study.moving.is_some() {
@@ -165,8 +164,7 @@ fn filter() -> Vec<Panel> {
 
 /// The speed of each wheel.
 fn wheels(scenario: &Scenario) -> Vec<Line> {
-    let Actuator::Wheels(wheels) = &scenario.actuator else { return Vec::new() };
-    let count = wheels.rotors().map_or(0, |rotors| rotors.len()).min(MOST_LINES);
+    let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len()).min(MOST_LINES);
     (0..count)
         .map(|wheel| line(format!("/wheels.wheels[{wheel}].speed_rad_s"), format!("wheel {}", wheel + 1)))
         .collect()

@@ -75,14 +75,18 @@ impl Scenario {
                 "needs wheels whose speed is known: an `[actuator.wheels]`, or a wheel with a `rotor`"
             }
             Objective::Firings
-                if !matches!(self.actuator, Actuator::Thrusters(_)) && self.actuator.jets().is_none() =>
+                if !self.actuator.any(|kind| matches!(kind, Actuator::Thrusters(_)))
+                    && self.actuator.jets().is_none() =>
             {
                 "counts pulses of thrusters or jets, and there are none"
+            }
+            Objective::Firings if self.actuator.jets().is_none() && self.actuator.len() > 1 => {
+                "counts the pulses of thrusters in the torque on the body, which is theirs alone if there are no other actuators"
             }
             Objective::Switchings if !(0..self.axis_count()).any(|axis| self.has_states(axis)) => {
                 "counts the switchings of a law `relay` or `phase_plane`, and there is none"
             }
-            Objective::TorqueMean if matches!(self.actuator, Actuator::Magnetorquers(_)) => {
+            Objective::TorqueMean if self.actuator.any(|kind| matches!(kind, Actuator::Magnetorquers(_))) => {
                 "is not known for magnetorquers, whose torque changes with the field"
             }
             _ => return None,
@@ -92,11 +96,11 @@ impl Scenario {
 
     /// Whether there are wheels whose speed is known.
     fn spins(&self) -> bool {
-        match &self.actuator {
+        self.actuator.any(|kind| match kind {
             Actuator::Wheels(_) => true,
             Actuator::Wheel(wheel) => wheel.rotor.is_some(),
             _ => false,
-        }
+        })
     }
 
     /// Whether the law about an axis has states between which it switches.

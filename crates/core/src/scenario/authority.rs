@@ -15,9 +15,32 @@ use crate::time::Instant;
 const NO_MOTION: f64 = 1.0;
 
 impl Study {
+    /// What the actuators can do about an axis: until the first of them is at its limit with its share.
     pub(super) fn authority(&self, scenario: &Scenario, axis: usize) -> Authority {
+        let members = scenario.actuator.members();
+        let acting: Vec<_> = members.iter().filter(|member| member.share(axis) > 0.0).collect();
+        let (accelerations, width, delay) = match &acting[..] {
+            [] => ([0.0; 2], PulseWidth::default(), 0.0),
+            [only] => self.authority_of(&only.kind, axis),
+            several => {
+                let each = several.iter().map(|member| {
+                    let (most, _, delay) = self.authority_of(&member.kind, axis);
+                    (most.map(|most| most / member.share(axis)), delay)
+                });
+                let (most, late) =
+                    each.fold(([f64::INFINITY; 2], 0.0_f64), |(least, late), (most, delay)| {
+                        ([least[0].min(most[0]), least[1].min(most[1])], late.max(delay))
+                    });
+                (most, PulseWidth::default(), late)
+            }
+        };
+        Authority { axis, accelerations, width, delay, threshold: 0.0 }
+    }
+
+    /// The same of one actuator that acts alone: largest accelerations (rad/s²), what becomes of pulses, and delay (s).
+    fn authority_of(&self, kind: &Actuator, axis: usize) -> ([f64; 2], PulseWidth, f64) {
         let inertia = self.axes[axis].commanded_inertia();
-        let (accelerations, width, delay) = match &scenario.actuator {
+        match kind {
             Actuator::Ideal(_) | Actuator::Hold(_) => ([f64::INFINITY; 2], PulseWidth::default(), 0.0),
             Actuator::Own(own) => {
                 let most = own.limit(axis).map_or(f64::INFINITY, |limit| limit / inertia);
@@ -45,8 +68,7 @@ impl Study {
                 let period = jets.period.or(self.cycle).unwrap_or(self.tick);
                 ([of(0), of(1)], jets.width(), f64::from(jets.delay) * period.seconds())
             }
-        };
-        Authority { axis, accelerations, width, delay, threshold: 0.0 }
+        }
     }
 
     /// The elastic rate beyond which the active damping of an axis acts (rad/s); 0 of a law without it.

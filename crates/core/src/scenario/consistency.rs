@@ -2,7 +2,7 @@
 
 use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
-use crate::actuator::{Actuator, Wheel};
+use crate::actuator::{Actuator, Member, Wheel};
 use crate::attitude::vector;
 use crate::body::craft::Limit;
 use crate::body::{Drive, Planar};
@@ -146,9 +146,9 @@ impl Scenario {
             return at("law.relay", why.to_owned());
         }
         let limited = |wheel: &Wheel| wheel.rotor.as_ref().is_some_and(|rotor| rotor.speed_limit.is_some());
-        if matches!(&self.actuator, Actuator::Wheel(wheel) if limited(wheel)) && continuous {
+        if let Some((_, key)) = self.actuator.wheel().filter(|(wheel, _)| limited(wheel) && continuous) {
             let why = "is checked at the law's commands: with a law `relay` it needs a `[sensor.sampled]`";
-            return at("actuator.wheel.rotor.speed_limit", why.to_owned());
+            return at(&format!("{key}.rotor.speed_limit"), why.to_owned());
         }
         None
     }
@@ -169,7 +169,7 @@ impl Scenario {
         }
         let why = match &self.estimator {
             _ if self.drift.is_some() => "has no closed form for modes that drift",
-            _ if self.manoeuvre.is_some() && matches!(self.actuator, Actuator::Ideal(_)) => {
+            _ if self.manoeuvre.is_some() && self.actuator.any(|kind| matches!(kind, Actuator::Ideal(_))) => {
                 "needs torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]` or \
                  thrusters"
             }
@@ -186,16 +186,16 @@ impl Scenario {
 
     fn coupling_inconsistency(&self) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
-        let wheel = matches!(self.actuator, Actuator::Wheel(_));
-        let key = if wheel { "actuator.wheel" } else { "drift" };
-        if !wheel && self.drift.is_none() {
+        let wheel = self.actuator.wheel().map(|(_, key)| key);
+        if wheel.is_none() && self.drift.is_none() {
             return None;
         }
-        if wheel && self.manoeuvre.is_some() && self.law.period().is_none() {
+        let key = wheel.as_deref().unwrap_or("drift");
+        if wheel.is_some() && self.manoeuvre.is_some() && self.law.period().is_none() {
             let why = "executes a `[manoeuvre]` sample by sample of a law, and the law has no period: give it a `[law.pd]`";
             return at(key, why.to_owned());
         }
-        if self.manoeuvre.is_some() && matches!(self.actuator, Actuator::Ideal(_)) {
+        if self.manoeuvre.is_some() && self.actuator.any(|kind| matches!(kind, Actuator::Ideal(_))) {
             let why = "has no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters";
             return at(key, why.to_owned());
         }
@@ -253,16 +253,18 @@ impl Scenario {
         if let Some(fault) = self.failing_fault() {
             return Some(fault);
         }
-        if let Actuator::Thrusters(thrusters) = &self.actuator {
+        for member in self.actuator.members() {
+            let Actuator::Thrusters(thrusters) = &*member.kind else { continue };
+            let at = |key: &str, why: String| Some(Fault::new(format!("{}.{key}", member.key), why));
             let (period, minimum) = (thrusters.period.seconds(), thrusters.minimum_on.get());
             if minimum > period {
                 let why = format!("must be at most the period of {period} s, got {minimum}");
-                return at("actuator.thrusters.minimum_on", why);
+                return at("minimum_on", why);
             }
             if thrusters.quantum.get() > period {
                 let why =
                     format!("must be at most the period of {period} s, got {}", thrusters.quantum.get());
-                return at("actuator.thrusters.quantum", why);
+                return at("quantum", why);
             }
         }
         None
@@ -271,14 +273,20 @@ impl Scenario {
     fn drive_inconsistency(&self) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
         let estimates = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
-        if estimates && self.manoeuvre.is_some() && matches!(self.actuator, Actuator::Ideal(_)) {
+        if estimates
+            && self.manoeuvre.is_some()
+            && self.actuator.any(|kind| matches!(kind, Actuator::Ideal(_)))
+        {
             let why = "follows torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]`, \
                        thrusters or a wheel";
             return at("estimator.envelope", why.to_owned());
         }
-        if estimates && matches!(&self.actuator, Actuator::Wheel(wheel) if wheel.back_emf.get() > 0.0) {
+        if let Some((wheel, key)) = self.actuator.wheel()
+            && estimates
+            && wheel.back_emf.get() > 0.0
+        {
             let why = "must be 0 with an `[estimator.envelope]`, which follows each mode on its own";
-            return at("actuator.wheel.back_emf", why.to_owned());
+            return at(&format!("{key}.back_emf"), why.to_owned());
         }
         if self.model.drive == Drive::Motion {
             let moves =
@@ -286,8 +294,9 @@ impl Scenario {
             if !self.disturbance.is_empty() {
                 return at("disturbance[0]", moves.to_owned());
             }
-            if matches!(self.actuator, Actuator::Thrusters(_)) {
-                return at("actuator.thrusters", moves.to_owned());
+            let thrusters = |member: &Member<'_>| matches!(&*member.kind, Actuator::Thrusters(_));
+            if let Some(member) = self.actuator.members().into_iter().find(thrusters) {
+                return at(&member.key, moves.to_owned());
             }
             if !matches!(self.law, Law::Open(_)) {
                 return at("law", moves.to_owned());

@@ -2,7 +2,7 @@
 //! yes.
 
 use super::Scenario;
-use crate::actuator::{Actuator, Jets};
+use crate::actuator::{Task, Unloads};
 use crate::attitude::vector;
 use crate::body::Spatial;
 use crate::body::spatial::{LONGEST_TURN, Periodic};
@@ -159,7 +159,7 @@ impl Scenario {
     pub(super) fn impossible(&self) -> Option<Fault> {
         let modes = self.mode_count();
         let filtered = self.estimator.as_ref().is_some_and(Estimator::filters);
-        let coupled = self.drift.is_some() || matches!(self.actuator, Actuator::Wheel(_));
+        let coupled = self.drift.is_some() || self.actuator.wheel().is_some();
         let why = if filtered { "that a filter estimates" } else { "that a wheel or a drift couples" };
         for (applies, most, why) in
             [(true, MOST_MODES, "of a body"), (coupled || filtered, MOST_COUPLED, why)]
@@ -169,7 +169,7 @@ impl Scenario {
                 return Some(Fault::new(self.body.key(), why));
             }
         }
-        if let (Actuator::Wheel(wheel), Some(period)) = (&self.actuator, self.decided_every()) {
+        if let (Some((wheel, key)), Some(period)) = (self.actuator.wheel(), self.decided_every()) {
             let waiting = wheel.delay.get().min(self.duration.seconds()) / period.seconds();
             if waiting > MOST_WAITING {
                 let why = format!(
@@ -178,7 +178,7 @@ impl Scenario {
                     period.seconds(),
                     told(MOST_WAITING)
                 );
-                return Some(Fault::new("actuator.wheel.delay", why));
+                return Some(Fault::new(format!("{key}.delay"), why));
             }
         }
         let messages = self.messages(Some(Detail::Scene));
@@ -217,20 +217,13 @@ impl Scenario {
                 each(format!("{}.period", self.law_key(axis)), duration, period);
             }
         }
-        if let Some((Jets { period: Some(period), .. }, key)) = self.actuator.jets() {
-            each(format!("{key}.period"), duration, *period);
-        }
-        match &self.actuator {
-            Actuator::Hold(hold) => each("actuator.hold.period".to_owned(), duration, hold.period),
-            Actuator::Thrusters(thrusters) => {
-                each("actuator.thrusters.period".to_owned(), duration, thrusters.period);
+        for member in self.actuator.members() {
+            if let Some(period) = member.kind.period() {
+                each(format!("{}.period", member.key), duration, period);
             }
-            Actuator::Ideal(_)
-            | Actuator::Wheel(_)
-            | Actuator::Wheels(_)
-            | Actuator::Magnetorquers(_)
-            | Actuator::Jets(_)
-            | Actuator::Own(_) => {}
+            if let Task::Unloads(Unloads { period: Some(period), .. }) = &member.task {
+                each(format!("{}.period", member.unloads_key()), duration, *period);
+            }
         }
         if let Some(envelope) = self.estimator.as_ref().and_then(Estimator::envelope) {
             each("estimator.envelope.window".to_owned(), duration, envelope.window);
@@ -283,7 +276,7 @@ impl Scenario {
 
     /// How often steps follow the imbalance of wheels, at their speed at the start or their bias (s).
     fn shaken_every(&self) -> f64 {
-        let Actuator::Wheels(wheels) = &self.actuator else { return f64::INFINITY };
+        let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
         let highest = self.study.bearings.iter().map(Bearing::highest).fold(0.0, f64::max);
         SHAKE / (highest * wheels.fastest())
     }

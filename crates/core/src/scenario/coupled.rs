@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Scenario;
-use crate::actuator::{Actuator, Opposes};
+use crate::actuator::Opposes;
 use crate::body::{Coupled, Coupling};
 use crate::document::Fault;
 use crate::motion::linear::Linear;
@@ -20,30 +20,27 @@ impl Scenario {
         if let Some(flow) = &self.linear {
             return Some(Coupling::by_poles(&self.model, flow, back_emf, total));
         }
-        let wheel = matches!(self.actuator, Actuator::Wheel(_));
-        (wheel || self.drift.is_some())
+        (self.actuator.wheel().is_some() || self.drift.is_some())
             .then(|| Coupling::new(&self.model, self.drift.as_ref(), back_emf, total))
     }
 
     /// What a wheel's back-EMF takes from a rate (1/s), and whether from that of the elastic body.
     pub(super) fn back_emf(&self) -> (f64, bool) {
-        match &self.actuator {
-            Actuator::Wheel(wheel) => {
-                (wheel.back_emf.get() / self.model.inertia.get(), wheel.opposes == Opposes::BodyRate)
-            }
-            _ => (0.0, true),
-        }
+        let wheel = self.actuator.wheel();
+        wheel.map_or((0.0, true), |(wheel, _)| {
+            (wheel.back_emf.get() / self.model.inertia.get(), wheel.opposes == Opposes::BodyRate)
+        })
     }
 
     /// The flow by poles of a body that a damping matrix couples, or a wheel under a law that switches at crossings.
     pub(super) fn flow(&self) -> Result<Option<Arc<Linear>>, Fault> {
-        let wheel = matches!(self.actuator, Actuator::Wheel(_));
+        let wheel = self.actuator.wheel().map(|(_, key)| key);
         let crosses = self.law.switches() && self.study.sampling.is_none();
         let damped = !self.model.damping_matrix.is_empty();
-        if self.body.spatial().is_some() || !(damped || wheel && crosses) {
+        if self.body.spatial().is_some() || !(damped || wheel.is_some() && crosses) {
             return Ok(None);
         }
-        let key = if damped { self.damping_key() } else { "actuator.wheel".to_owned() };
+        let key = wheel.filter(|_| !damped).unwrap_or_else(|| self.damping_key());
         let modes = self.model.modes.len();
         if modes > MOST_COUPLED {
             return Err(Fault::new(

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::Scenario;
-use crate::actuator::Actuator;
 use crate::attitude::Vector;
 use crate::body::craft::{Appendage, Drive, Piece, Track};
 use crate::document::Fault;
@@ -290,12 +289,12 @@ impl Scenario {
         {
             return place(format!("{key}.thrusters[{index}].point"));
         }
-        if let Actuator::Wheels(wheels) = &self.actuator
+        if let Some((wheels, of)) = self.actuator.wheels()
             && let Some(key) = wheels.rubs_or_shakes()
         {
             let why = "needs appendages that do not turn: the instants at which wheels stick, and the excitation of modes by imbalance, are \
                        searched for with constant modes";
-            return Some(Fault::new(format!("actuator.wheels.{key}"), why));
+            return Some(Fault::new(format!("{of}.{key}"), why));
         }
         let pressed = self.environment.as_ref().and_then(|around| {
             let pressure = around.solar_pressure.is_some().then_some("solar_pressure");

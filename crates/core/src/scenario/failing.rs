@@ -1,7 +1,7 @@
 //! Failures of sensors and actuators: what of them does not fit, and when each lasts.
 
 use super::Scenario;
-use crate::actuator::{Actuator, Failure, Lasting};
+use crate::actuator::{Failure, Lasting};
 use crate::attitude::AXES;
 use crate::document::Fault;
 use crate::law::Law;
@@ -32,14 +32,19 @@ impl Scenario {
                 outage: fault.outage(),
             }));
         }
-        for (part, failures) in self.actuator.all_failures() {
-            all.extend(failures.iter().map(|failure| {
+        for member in self.actuator.members() {
+            all.extend(member.kind.failures().iter().map(|failure| {
                 let Lasting { outage, about, wheel, thruster } = failure.lasting();
                 let about = about.map(|about| AXES[about.index()].to_owned());
                 let of = about
                     .or(wheel.map(|wheel| format!("wheel {wheel}")))
                     .or(thruster.map(|thruster| format!("thruster {thruster}")));
-                Failing { part: part.clone(), of: of.unwrap_or_default(), fault: failure.kind(), outage }
+                Failing {
+                    part: member.key.clone(),
+                    of: of.unwrap_or_default(),
+                    fault: failure.kind(),
+                    outage,
+                }
             }));
         }
         all
@@ -54,18 +59,20 @@ impl Scenario {
                 return Some(fault.within(&format!("{}.faults[{index}]", self.sensor_key(number))));
             }
         }
-        self.actuator.failure_fault(self.axis_count()).or_else(|| self.sines_fault())
+        let members = self.actuator.members();
+        let failed = members.iter().find_map(|member| member.failure_fault(self.axis_count()));
+        failed.or_else(|| self.sines_fault())
     }
 
     /// Sines in a torque where the motion under them has no closed form, and no steps that follow them.
     fn sines_fault(&self) -> Option<Fault> {
         let disturbed = self.disturbance.iter().position(|of| !of.sines.is_empty());
         let disturbed = disturbed.map(|index| format!("disturbance[{index}].sines"));
-        let mut failures = self.actuator.failures().iter();
-        let swings = |failure: &Failure| !failure.sines().is_empty();
-        let failed = failures.position(swings);
-        let failed =
-            failed.map(|index| format!("actuator.{}.faults[{index}].added.sines", self.actuator.kind()));
+        let failed = self.actuator.members().into_iter().find_map(|member| {
+            let swings = |failure: &Failure| !failure.sines().is_empty();
+            let index = member.kind.failures().iter().position(swings)?;
+            Some(format!("{}.faults[{index}].added.sines", member.key))
+        });
         if self.axis_count() == 3 {
             let key = failed.or(disturbed).filter(|_| self.body.flexible().is_none())?;
             let why = "are for a `[spacecraft]`: the modes of a `[body.spatial]` are pushed by torques that are constant for a \
@@ -78,17 +85,16 @@ impl Scenario {
             return Some(Fault::new(key, why));
         }
         let key = failed?;
-        let why = match (&self.actuator, &self.law) {
-            (Actuator::Wheel(_), _) => {
+        let why = match &self.law {
+            _ if self.actuator.wheel().is_some() => {
                 "have no closed form with a wheel, whose back-EMF couples the modes: use an `[actuator.hold]`"
             }
             _ if self.drift.is_some() => "have no closed form for modes that drift",
             _ if !self.model.damping_matrix.is_empty() => {
                 "have no closed form for modes that a damping matrix couples"
             }
-            (_, law)
-                if self.sensor.period(law.period()).is_none()
-                    && !matches!(law, Law::Open(_) | Law::Pd(_)) =>
+            law if self.sensor.period(law.period()).is_none()
+                && !matches!(law, Law::Open(_) | Law::Pd(_)) =>
             {
                 "leave no closed form for the crossings of the law: use a `[sensor.sampled]`"
             }

@@ -1,6 +1,7 @@
 //! The scenario: everything that a user writes about a study, and nothing that moves.
 
 mod adapting;
+mod assignment;
 mod authority;
 mod consistency;
 mod cost;
@@ -28,7 +29,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, value::Datetime};
 
-use crate::actuator::Actuator;
+use crate::actuator::Assigned;
 use crate::adaptation::Adaptation;
 use crate::body::craft::{Appendage, Spacecraft};
 use crate::body::{Body, Chain, Drift, Planar};
@@ -106,9 +107,9 @@ pub struct Scenario {
     /// The control law. Only a scenario with a manoeuvre can omit it.
     #[serde(default)]
     pub law: Law,
-    /// The actuator, which executes the commanded torque.
+    /// The actuator, which executes the commanded torque, or an array of several.
     #[serde(default)]
-    pub actuator: Actuator,
+    pub actuator: Parts<Assigned>,
     /// Disturbance torques and forces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub disturbance: Vec<Disturbance>,

@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use super::Scenario;
-use crate::actuator::{Actuator, Effector};
+use crate::actuator::{Actuator, Assigned, Effector};
 use crate::adaptation::{Adapt, Adaptation};
 use crate::document::{Document, Fault, ScenarioError};
 use crate::estimator::{Estimator, Observe};
@@ -11,10 +11,11 @@ use crate::law::{Law, Rule};
 use crate::own::Own;
 use crate::sensor::{Instrument, Sensor};
 
-/// What stands in a text for a sensor of a program's own.
-const IN_ITS_PLACE: &str = "continuous";
+/// What stands in a text for a sensor and for an actuator of a program's own.
+const SENSOR: &str = "continuous";
+const ACTUATOR: &str = "ideal";
 
-/// Parts of a program's own, one of each role at most, and sensors.
+/// Parts of a program's own, one of each role at most, and sensors and actuators.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OwnParts {
     /// The law.
@@ -25,8 +26,8 @@ pub struct OwnParts {
     pub estimator: Option<Own<dyn Observe>>,
     /// The adaptation.
     pub adaptation: Option<Own<dyn Adapt>>,
-    /// The actuator.
-    pub actuator: Option<Own<dyn Effector>>,
+    /// Actuators, each with its place among those of the scenario.
+    pub actuators: Vec<(usize, Own<dyn Effector>)>,
 }
 
 impl Scenario {
@@ -58,36 +59,63 @@ impl Scenario {
         let mut all = self.own_parts();
         all.sensors.retain(|(place, _)| own.sensors.iter().all(|(other, _)| other != place));
         all.sensors.extend(own.sensors);
+        all.actuators.retain(|(place, _)| own.actuators.iter().all(|(other, _)| other != place));
+        all.actuators.extend(own.actuators);
         all.law = own.law.or(all.law);
         all.estimator = own.estimator.or(all.estimator);
         all.adaptation = own.adaptation.or(all.adaptation);
-        all.actuator = own.actuator.or(all.actuator);
         let mut table = self.table_beside_own_parts();
-        for role in all.each().into_iter().filter(|role| *role != "sensor") {
+        for role in all.each().into_iter().filter(|role| !["sensor", "actuator"].contains(role)) {
             table.remove(role);
         }
-        // A sensor that is replaced gives its place up.
+        // A sensor or an actuator that is replaced gives its place up.
         for (place, _) in &all.sensors {
-            let count = self.sensor.len();
-            if *place >= count {
-                let why = format!(
-                    "is not there: the scenario has {count} sensor{}",
-                    if count == 1 { "" } else { "s" }
-                );
-                return Err(ScenarioError::Key {
-                    origin: self.name.clone(),
-                    key: format!("sensor[{place}]"),
-                    why,
-                });
-            }
-            let itself = Value::String(IN_ITS_PLACE.to_owned());
-            match table.get_mut("sensor") {
-                Some(Value::Array(sensors)) => sensors[*place] = itself,
-                _ => drop(table.insert("sensor".to_owned(), itself)),
-            }
+            self.give_up(&mut table, ("sensor", self.sensor.len()), *place, SENSOR)?;
+        }
+        for (place, _) in &all.actuators {
+            self.give_up(&mut table, ("actuator", self.actuator.len()), *place, ACTUATOR)?;
         }
         let document = Document::from_table(&self.name, table);
         Self::solved(&document, Some(self), &all, true)
+    }
+
+    /// Lets a part of a program's own have a place in the text among so many, with the word that stands there for it. An actuator
+    /// keeps what it is for.
+    fn give_up(
+        &self,
+        table: &mut Table,
+        (role, count): (&str, usize),
+        place: usize,
+        word: &str,
+    ) -> Result<(), ScenarioError> {
+        if place >= count {
+            let why =
+                format!("is not there: the scenario has {count} {role}{}", if count == 1 { "" } else { "s" });
+            return Err(ScenarioError::Key {
+                origin: self.name.clone(),
+                key: format!("{role}[{place}]"),
+                why,
+            });
+        }
+        let there = match table.get_mut(role) {
+            Some(Value::Array(parts)) => &mut parts[place],
+            Some(part) => part,
+            None => return Ok(drop(table.insert(role.to_owned(), Value::String(word.to_owned())))),
+        };
+        let task = |(key, _): &(&String, &Value)| ["axes", "share", "unloads"].contains(&key.as_str());
+        let kept: Table = there
+            .as_table()
+            .into_iter()
+            .flatten()
+            .filter(task)
+            .map(|(k, v)| (k.clone(), v.clone()))
+            .collect();
+        *there = if kept.is_empty() {
+            Value::String(word.to_owned())
+        } else {
+            Value::Table(kept.into_iter().chain([(word.to_owned(), Value::Table(Table::new()))]).collect())
+        };
+        Ok(())
     }
 
     /// Whether it has a part of a program's own, which no text can hold.
@@ -101,6 +129,10 @@ impl Scenario {
             Sensor::Own(own) => Some((place, own.clone())),
             _ => None,
         };
+        let actuator = |(place, assigned): (usize, &Assigned)| match &assigned.kind {
+            Actuator::Own(own) => Some((place, own.clone())),
+            _ => None,
+        };
         OwnParts {
             law: if let Law::Own(own) = &self.law { Some(own.clone()) } else { None },
             sensors: self.sensor.iter().enumerate().filter_map(sensor).collect(),
@@ -112,7 +144,7 @@ impl Scenario {
                 Some(Adaptation::Own(own)) => Some(own.clone()),
                 _ => None,
             },
-            actuator: if let Actuator::Own(own) = &self.actuator { Some(own.clone()) } else { None },
+            actuators: self.actuator.iter().enumerate().filter_map(actuator).collect(),
         }
     }
 
@@ -120,9 +152,11 @@ impl Scenario {
     pub fn table_beside_own_parts(&self) -> Table {
         let mut table = self.to_table();
         let is_own = |part: &Value| part.get("own").is_some();
-        if let Some(Value::Array(sensors)) = table.get_mut("sensor") {
-            let own = sensors.iter_mut().filter(|sensor| is_own(sensor));
-            own.for_each(|sensor| *sensor = Value::String(IN_ITS_PLACE.to_owned()));
+        for (role, word) in [("sensor", SENSOR), ("actuator", ACTUATOR)] {
+            if let Some(Value::Array(parts)) = table.get_mut(role) {
+                let own = parts.iter_mut().filter(|part| is_own(part));
+                own.for_each(|part| *part = Value::String(word.to_owned()));
+            }
         }
         table.retain(|_, part| !is_own(part));
         table
@@ -130,7 +164,7 @@ impl Scenario {
 
     /// Takes over parts of a program's own where the document says nothing else.
     pub(super) fn take_own_parts(&mut self, own: &OwnParts, document: &Document) {
-        let OwnParts { law, sensors, estimator, adaptation, actuator } = own;
+        let OwnParts { law, sensors, estimator, adaptation, actuators } = own;
         if let Some(law) = law.as_ref().filter(|_| !document.has("law")) {
             self.law = Law::Own(law.clone());
         }
@@ -145,8 +179,11 @@ impl Scenario {
         if let Some(adaptation) = adaptation.as_ref().filter(|_| !document.has("adaptation")) {
             self.adaptation = Some(Adaptation::Own(adaptation.clone()));
         }
-        if let Some(actuator) = actuator.as_ref().filter(|_| !document.has("actuator")) {
-            self.actuator = Actuator::Own(actuator.clone());
+        for (place, actuator) in actuators {
+            let ideal = |kind: &Actuator| matches!(kind, Actuator::Ideal(ideal) if ideal.faults.is_empty());
+            if let Some(there) = self.actuator.get_mut(*place).filter(|there| ideal(&there.kind)) {
+                there.kind = Actuator::Own(actuator.clone());
+            }
         }
     }
 }
@@ -159,7 +196,7 @@ impl OwnParts {
             ("sensor", !self.sensors.is_empty()),
             ("estimator", self.estimator.is_some()),
             ("adaptation", self.adaptation.is_some()),
-            ("actuator", self.actuator.is_some()),
+            ("actuator", !self.actuators.is_empty()),
         ];
         all.into_iter().filter_map(|(role, is_own)| is_own.then_some(role)).collect()
     }

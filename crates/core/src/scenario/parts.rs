@@ -1,7 +1,7 @@
 //! Which parts go together: what does not is refused here, with the reason and what would do.
 
 use super::{Scenario, Study};
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Task};
 use crate::disturbance::Disturbance;
 use crate::document::Fault;
 use crate::law::{Itinerary, Law, Measure, Target};
@@ -15,6 +15,7 @@ impl Scenario {
     pub(super) fn fit(&mut self) -> Result<(), Fault> {
         let faults = [
             self.axes_fault(),
+            self.assignment_fault(),
             self.environment_fault(),
             self.target_fault(),
             self.law_fault(),
@@ -39,23 +40,28 @@ impl Scenario {
         let refused = |key: &str, why: &str| Some(Fault::new(key, why));
         if self.axis_count() == 1 {
             let kind = self.body.kind();
-            let key = match (&self.law, &self.actuator) {
-                (Law::PerAxis(_), _) => "law.per_axis",
-                (_, Actuator::Jets(_)) => "actuator.jets",
-                (_, Actuator::Magnetorquers(_)) => "actuator.magnetorquers",
-                (Law::BDot(_), _) => "law.b_dot",
-                _ if !self.target.is_empty() => "target",
-                _ if self.environment.is_some() => "environment",
-                _ => "",
+            let members = self.actuator.members();
+            let of = |is: fn(&Actuator) -> bool| members.iter().find(|member| is(&member.kind));
+            let jets = of(|kind| matches!(kind, Actuator::Jets(_)));
+            let torquers = of(|kind| matches!(kind, Actuator::Magnetorquers(_)));
+            let wheels = self.actuator.wheels();
+            let alone = if wheels.is_none() { (jets, torquers) } else { (None, None) };
+            let found = match (&self.law, alone) {
+                (Law::PerAxis(_), _) => Some(("law.per_axis", "")),
+                (_, (Some(jets), _)) => {
+                    Some((&*jets.key, ": `[actuator.thrusters]` push a body with one angle"))
+                }
+                (_, (_, Some(torquers))) => Some((&*torquers.key, "")),
+                (Law::BDot(_), _) => Some(("law.b_dot", "")),
+                _ if !self.target.is_empty() => {
+                    Some(("target", ": a `[manoeuvre]` turns a body with one angle"))
+                }
+                _ if self.environment.is_some() => {
+                    Some(("environment", ": a `[[disturbance]]` acts on a body with one angle"))
+                }
+                _ => None,
             };
-            let instead = match key {
-                "" => None,
-                "actuator.jets" => Some(": `[actuator.thrusters]` push a body with one angle"),
-                "target" => Some(": a `[manoeuvre]` turns a body with one angle"),
-                "environment" => Some(": a `[[disturbance]]` acts on a body with one angle"),
-                _ => Some(""),
-            };
-            if let Some(instead) = instead {
+            if let Some((key, instead)) = found {
                 return Some(Fault::new(
                     key,
                     format!("is for a body with three axes, and the body is `{kind}`{instead}"),
@@ -73,9 +79,9 @@ impl Scenario {
                 let why = "is for three axes: use `[estimator.kalman]` for a body with one angle";
                 return refused("estimator.attitude", why);
             }
-            if matches!(self.actuator, Actuator::Wheels(_)) {
+            if let Some((_, key)) = wheels {
                 let why = "are for three axes: use `[actuator.wheel]` for a body with one angle";
-                return refused("actuator.wheels", why);
+                return refused(&key, why);
             }
             let trackers =
                 |sensor: &Sensor| matches!(sensor, Sensor::StarTracker(_)) || sensor.is_of_a_vector();
@@ -83,12 +89,12 @@ impl Scenario {
                 let why = "measures three axes: use a `sampled` sensor for a body with one angle";
                 return refused(&self.sensor_key(index), why);
             }
-            let pushed = match &self.actuator {
+            let pushed = members.iter().find_map(|member| match &*member.kind {
                 Actuator::Thrusters(thrusters) if thrusters.torque.is_three() => {
-                    Some("actuator.thrusters.torque".to_owned())
+                    Some(format!("{}.torque", member.key))
                 }
                 _ => None,
-            };
+            });
             if let Some(key) = measured.or(pushed) {
                 return refused(
                     &key,
@@ -119,13 +125,11 @@ impl Scenario {
                 return Some(fault.within(&format!("disturbance[{index}]")));
             }
         }
-        if let Actuator::Wheel(wheel) = &self.actuator
-            && wheel.back_emf.get() > 0.0
-        {
+        self.actuator.members().into_iter().find_map(|member| {
+            let Actuator::Wheel(wheel) = &*member.kind else { return None };
             let why = "couples the modes of one angle: leave it out for a body with three axes";
-            return refused("actuator.wheel.back_emf", why);
-        }
-        None
+            (wheel.back_emf.get() > 0.0).then(|| Fault::new(format!("{}.back_emf", member.key), why))
+        })
     }
 
     fn target_fault(&self) -> Option<Fault> {
@@ -183,7 +187,10 @@ impl Scenario {
                         return at("targets", "are those of all axes: write them as `[[target]]`".to_owned());
                     }
                     let period = law.period;
-                    let why = match &self.actuator {
+                    let members = self.actuator.members();
+                    let serving = members.iter().find(|member| member.share(axis) > 0.0);
+                    let Some(member) = serving else { continue };
+                    let why = match &*member.kind {
                         Actuator::Jets(jets) if jets.period.is_none_or(|own| own == period) => None,
                         Actuator::Thrusters(thrusters) if thrusters.period == period => None,
                         Actuator::Jets(_) | Actuator::Thrusters(_) => {
@@ -252,8 +259,11 @@ impl Scenario {
             let why = "need the field of `[environment.magnetic_field]`, and there is none";
             return Some(Fault::new(key, why));
         }
-        let Actuator::Jets(jets) = &self.actuator else { return None };
-        let at = |key: &str, why: String| Some(Fault::new(format!("actuator.jets.{key}"), why));
+        let acting = self.actuator.members().into_iter().find(|member| {
+            matches!(&*member.kind, Actuator::Jets(_)) && matches!(member.task, Task::Executes(_))
+        })?;
+        let Actuator::Jets(jets) = &*acting.kind else { return None };
+        let at = |key: &str, why: String| Some(Fault::new(format!("{}.{key}", acting.key), why));
         let laws = (0..3).map(|axis| self.law.about(axis).period());
         let own: Vec<_> = laws.collect();
         let Some(period) = jets.period.or(own[0]) else {
@@ -272,7 +282,9 @@ impl Scenario {
                 return at(key, format!("must be at most the {whose}period of {period} s, got {value}"));
             }
         }
-        (jets.delay > 1)
-            .then(|| Fault::new("actuator.jets.delay", format!("must be 0 or 1 cycles, got {}", jets.delay)))
+        if jets.delay > 1 {
+            return at("delay", format!("must be 0 or 1 cycles, got {}", jets.delay));
+        }
+        None
     }
 }

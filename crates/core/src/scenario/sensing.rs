@@ -1,7 +1,6 @@
 //! What does not fit of sensors, and of estimators with what they read.
 
 use super::Scenario;
-use crate::actuator::Actuator;
 use crate::document::Fault;
 use crate::estimator::Estimator;
 use crate::law::Reads;
@@ -55,7 +54,7 @@ impl Scenario {
     fn tachometer_fault(&self) -> Option<Fault> {
         let (index, _) = self.sensor.tachometer()?;
         let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
-        if !matches!(self.actuator, Actuator::Wheels(_)) {
+        if self.actuator.wheels().is_none() {
             return at(index, "is on the wheels of `[actuator.wheels]`, and there are none");
         }
         if self.sensor.of_body() == 0 {

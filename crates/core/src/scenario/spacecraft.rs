@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::Scenario;
-use crate::actuator::Actuator;
 use crate::body::Body;
 use crate::body::craft::Craft;
 use crate::document::{Document, Fault, ScenarioError};
@@ -37,11 +36,9 @@ impl Scenario {
         self.turn_drives().map_err(refused)?;
         let Some(spacecraft) = &self.spacecraft else { return Ok(()) };
         // Wheels are locked in the hub as it is written, and turn freely.
-        let rotors = match &self.actuator {
-            Actuator::Wheels(wheels) => {
-                wheels.rotors().map_err(|fault| refused(fault.within("actuator.wheels")))?
-            }
-            _ => Vec::new(),
+        let rotors = match self.actuator.wheels() {
+            Some((wheels, key)) => wheels.rotors().map_err(|fault| refused(fault.within(&key)))?,
+            None => Vec::new(),
         };
         let craft = Craft::assemble(spacecraft, &self.appendage, &rotors);
         self.body = Body::Spacecraft(Box::new(craft.map_err(refused)?));

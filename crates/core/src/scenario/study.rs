@@ -3,7 +3,9 @@
 use nalgebra::{Cholesky, Matrix3};
 
 use super::{Drives, Scenario};
-use crate::actuator::{Actuate, Actuator, Allocation, Firing, Group, Nozzle, Opposes, Setting, Torquers};
+use crate::actuator::{
+    Actuate, Actuator, Allocation, Firing, Group, Member, Nozzle, Opposes, Setting, Several, Task, Torquers,
+};
 use crate::attitude::{Vector, beyond, tensor};
 use crate::body::craft::{Moving, Rotor};
 use crate::body::{Drive, Mode, Planar, Spatial};
@@ -18,6 +20,8 @@ use crate::time::{Instant, Span};
 
 /// A run without a period of its own is assessed once in so long (s).
 const TICK: f64 = 1.0;
+/// Shares are rounded.
+const ROUNDING: f64 = 1e-9;
 
 /// What the parts of a scenario come to together.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,6 +54,10 @@ pub struct Study {
     pub groups: Option<[[Group; 2]; 3]>,
     /// What each thruster of jets does, whether laws act by them or they unload wheels.
     pub nozzles: Vec<Nozzle>,
+    /// About which axes these jets are the only actuator.
+    pub fired: [bool; 3],
+    /// Whether jets are the only actuator of all.
+    pub jets_alone: bool,
     /// The same of groups of jets that unload wheels.
     pub unloading: Option<[[Group; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
@@ -83,10 +91,11 @@ impl Study {
             sampling: scenario.sensor.period(cycle).or(cycle.filter(|_| samples)),
             targets: scenario.targets().to_vec(),
             way: Itinerary::new(scenario.targets(), &scenario.sky(), &scenario.body.free_modes()),
-            back_emf: match &scenario.actuator {
-                Actuator::Wheel(wheel) => (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate),
-                _ => (0.0, true),
-            },
+            back_emf: scenario
+                .actuator
+                .wheel()
+                .map_or((0.0, true), |(wheel, _)| (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate)),
+            jets_alone: matches!(scenario.actuator.alone(), Some(Actuator::Jets(_))),
             ..Self::default()
         };
         study.tick = study.cycle.or(study.sampling).unwrap_or(Span::from_seconds(TICK));
@@ -95,12 +104,20 @@ impl Study {
             Some(body) => study.place(scenario, body)?,
         }
         study.authorities = (0..study.axes.len()).map(|axis| study.authority(scenario, axis)).collect();
-        if let (Some(Estimator::Adaptive(_)), Some((jets, _))) =
-            (&scenario.estimator, scenario.actuator.jets())
-            && jets.allocation == Firing::LeastPropellant
-        {
-            let why = "predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`";
-            return Err(Fault::new("estimator.adaptive", why));
+        if let Some(Estimator::Adaptive(_)) = &scenario.estimator {
+            let at = |why: &str| Err(Fault::new("estimator.adaptive", why));
+            let jets = scenario.actuator.jets();
+            if jets.is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant) {
+                return at("predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`");
+            }
+            let members = scenario.actuator.members();
+            let part = |share: f64| share > 0.0 && share < 1.0 - ROUNDING;
+            let fires = |member: &&Member<'_>| matches!(&*member.kind, Actuator::Jets(_));
+            if members.iter().filter(fires).any(|member| (0..3).any(|axis| part(member.share(axis)))) {
+                return at(
+                    "predicts what one actuator about each axis does: it needs jets with all of the demand about theirs",
+                );
+            }
         }
         if let Some(Estimator::Adaptive(spec)) = &scenario.estimator {
             let Some(period) = study.sampling else {
@@ -139,20 +156,21 @@ impl Study {
             self.sensed_at.push(named(&key, sensor.point())?);
         }
         self.acts_at.clone_from(&first);
-        if let Some((jets, key)) = scenario.actuator.jets() {
-            let groups = Some(jets.groups_on(body).map_err(|fault| fault.within(key))?);
+        for member in scenario.actuator.members() {
+            let Actuator::Jets(jets) = &*member.kind else { continue };
+            let (acts, groups) = match &member.task {
+                Task::Executes(shares) => (shares.map(|share| share > 0.0), &mut self.groups),
+                Task::Unloads(_) => ([true; 3], &mut self.unloading),
+            };
+            *groups = Some(jets.groups_on(body, acts).map_err(|fault| fault.within(&member.key))?);
             self.nozzles = jets.nozzles_on(body);
-            if let Actuator::Jets(_) = &scenario.actuator {
-                self.groups = groups;
-            } else {
-                self.unloading = groups;
-            }
+            self.fired = [0, 1, 2].map(|axis| member.share(axis) > 1.0 - ROUNDING);
         }
-        if let Actuator::Wheels(wheels) = &scenario.actuator {
-            let allocation = wheels.allocation().map_err(|fault| fault.within("actuator.wheels"))?;
+        if let Some((wheels, of)) = scenario.actuator.wheels() {
+            let allocation = wheels.allocation().map_err(|fault| fault.within(&of))?;
             self.wheels = Some(allocation);
             let tachometer = scenario.sensor.tachometer().map(|(index, _)| scenario.sensor_key(index));
-            let own = wheels.bears().map(|key| format!("actuator.wheels.{key}"));
+            let own = wheels.bears().map(|key| format!("{of}.{key}"));
             if let Some(key) = own.or(tachometer) {
                 let Some(flexible) = scenario.body.flexible() else {
                     let why = "is for wheels on a `[spacecraft]`: the modes of a `[body.spatial]` do not act back on its rotation, \
@@ -160,7 +178,7 @@ impl Study {
                     return Err(Fault::new(key, why));
                 };
                 let bearings = wheels.bearings((body, flexible));
-                self.bearings = bearings.map_err(|fault| fault.within("actuator.wheels"))?;
+                self.bearings = bearings.map_err(|fault| fault.within(&of))?;
             }
         }
         self.around = surroundings(scenario, body)?;
@@ -200,7 +218,8 @@ impl Study {
         let (seen, hub) = (rotations(body, &self.sensed_at[0]), rotations(body, &self.acts_at));
         let tensor = body.tensor();
         let input = |axis: usize| {
-            let (forces, torque, acceleration) = if let Some(groups) = &self.groups {
+            let jets = self.groups.as_ref().filter(|_| self.fired[axis]);
+            let (forces, torque, acceleration) = if let Some(groups) = jets {
                 let group = &groups[axis][0];
                 (group.push.forces.clone(), group.push.torque, group.acceleration)
             } else {
@@ -250,22 +269,39 @@ impl Study {
             rate: model.rate.get(),
             cycle: scenario.law.about(axis).period(),
             waveform: waveform.clone(),
+            share: 1.0,
         };
         let settings: Vec<Setting> = self.axes.iter().enumerate().map(setting).collect();
-        match (&scenario.actuator, &self.groups, &self.wheels) {
+        if let Some(kind) = scenario.actuator.alone() {
+            return self.start(scenario, kind, settings, &self.groups, seed);
+        }
+        let members = scenario.actuator.members();
+        let start = |member: &Member<'_>| {
+            let (share, groups) = match &member.task {
+                Task::Executes(shares) => (*shares, &self.groups),
+                Task::Unloads(_) => ([1.0; 3], &self.unloading),
+            };
+            let own = settings.iter().map(|of| Setting { share: share[of.axis], ..of.clone() }).collect();
+            self.start(scenario, &member.kind, own, groups, seed)
+        };
+        let started = members.iter().map(|member| (&*member.kind, &member.task, start(member))).collect();
+        Box::new(Several::new(settings.len(), started))
+    }
+
+    /// One actuator before it first acts.
+    fn start(
+        &self,
+        scenario: &Scenario,
+        kind: &Actuator,
+        settings: Vec<Setting>,
+        groups: &Option<[[Group; 2]; 3]>,
+        seed: Seed,
+    ) -> Box<dyn Actuate> {
+        match (kind, groups, &self.wheels) {
             (Actuator::Jets(jets), Some(groups), _) => jets.start((groups, &self.nozzles), self.tick),
             (Actuator::Wheels(wheels), _, Some(allocation)) => {
                 let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
-                let spinning = wheels.start(allocation, &settings).read_by(tachometer);
-                let Some(unloading) = &wheels.unloading else { return Box::new(spinning) };
-                if let Some(magnetic) = unloading.start_magnetic(spinning.clone(), &settings) {
-                    return Box::new(magnetic);
-                }
-                let by_jets = self.unloading.as_ref();
-                match by_jets.and_then(|groups| unloading.start(spinning.clone(), (groups, &self.nozzles))) {
-                    Some(unloaded) => Box::new(unloaded),
-                    None => Box::new(spinning),
-                }
+                Box::new(wheels.start(allocation, &settings).read_by(tachometer))
             }
             (Actuator::Magnetorquers(torquers), ..) => Box::new(torquers.start(&settings)),
             (Actuator::Own(own), ..) => own.start(&settings),
@@ -285,9 +321,9 @@ fn surroundings(scenario: &Scenario, body: &Spatial) -> Result<Option<Around>, F
         return Err(Fault::new(format!("appendage[{}].thermal", index.unwrap_or(0)), why));
     }
     let Some(environment) = &scenario.environment else { return Ok(None) };
-    let rotors = match &scenario.actuator {
-        Actuator::Wheels(wheels) => wheels.rotors().map_err(|fault| fault.within("actuator.wheels"))?,
-        _ => Vec::new(),
+    let rotors = match scenario.actuator.wheels() {
+        Some((wheels, key)) => wheels.rotors().map_err(|fault| fault.within(&key))?,
+        None => Vec::new(),
     };
     let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
     let centre = scenario.body.craft().map_or_else(Vector::zeros, |craft| craft.centre);

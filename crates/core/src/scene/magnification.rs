@@ -2,7 +2,7 @@
 //!
 //! A run does not know its largest motion beforehand. What its actuator can do, and how it begins, give the order of magnitude.
 
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Member};
 use crate::attitude::{Vector, turned};
 use crate::body::spatial::SpatialMode;
 use crate::body::{Mode, Spatial};
@@ -66,9 +66,9 @@ pub fn angle(scenario: &Scenario) -> f64 {
 pub fn rate(scenario: &Scenario) -> f64 {
     let model = &scenario.model;
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| 2.0 * scenario.goal().angle.abs() / plan.time);
-    let by_law = match (&scenario.law, &scenario.actuator) {
+    let by_law = match (&scenario.law, scenario.actuator.wheel()) {
         // What the spring of the law makes of the angle.
-        (Law::Pd(pd), Actuator::Wheel(wheel)) => {
+        (Law::Pd(pd), Some((wheel, _))) => {
             angle(scenario) * libm::sqrt(pd.k_p.get() * wheel.gain.get() / model.commanded_inertia())
         }
         _ => 0.0,
@@ -97,7 +97,7 @@ pub fn displacements(scenario: &Scenario) -> Vec<f64> {
     let model = &scenario.model;
     let travel = angle(scenario);
     let moment = largest(scenario) / model.commanded_inertia();
-    let lets_go = matches!(scenario.actuator, Actuator::Wheel(_)) && !scenario.law.switches();
+    let lets_go = scenario.actuator.wheel().is_some() && !scenario.law.switches();
     let times = if lets_go { 1.0 } else { 2.0 };
     let of = |mode: &Mode| {
         let start = mode.start();
@@ -127,16 +127,22 @@ pub fn largest(scenario: &Scenario) -> f64 {
         }
         _ => 0.0,
     };
-    match &scenario.actuator {
+    let of = |member: Member<'_>| match &*member.kind {
         Actuator::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.shaped(by_law)),
         Actuator::Thrusters(thrusters) => thrusters.torque.about(0).get(),
         _ => planned.max(by_law),
-    }
+    };
+    scenario.actuator.members().into_iter().map(of).fold(0.0, f64::max)
 }
 
 /// The largest torque about an axis of a body with three (N m), about, of an actuator that is no jets.
 fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
-    let unit = if let Actuator::Wheel(wheel) = &scenario.actuator { wheel.gain.get() } else { 1.0 };
+    let members = scenario.actuator.members();
+    let serving = members.iter().find(|member| member.share(axis) > 0.0);
+    let unit = serving.map_or(1.0, |member| match &*member.kind {
+        Actuator::Wheel(wheel) => wheel.gain.get(),
+        _ => 1.0,
+    });
     let study = &scenario.study;
     let most = study.authorities[axis].accelerations[0] * study.axes[axis].inertia.get();
     by_law(scenario, body, axis, scenario.law.about(axis), (unit, most)).min(most)
@@ -189,14 +195,13 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let warmed = scenario.body.craft().map_or(&[][..], |craft| &craft.bendings);
     let mode = |(index, mode): (usize, &SpatialMode)| {
         let w = mode.frequency.get();
-        let forces: Vec<f64> = match &scenario.study.groups {
-            Some(groups) => groups.iter().flatten().map(|group| group.push.forces[index]).collect(),
-            None => torques.iter().zip(&hub[index].1).map(|(torque, shape)| torque * shape).collect(),
-        };
+        let fired = scenario.study.groups.iter().flatten().flatten().map(|group| group.push.forces[index]);
+        let others = (0..3).filter(|axis| !scenario.study.fired[*axis]);
+        let torques = others.map(|axis| torques[axis] * hub[index].1[axis]);
         let unloading =
             scenario.study.unloading.iter().flatten().flatten().map(|group| group.push.forces[index]);
         let pushed = pushes.iter().map(|(push, times)| push.forces[index] * times);
-        let force = forces.into_iter().chain(unloading).chain(pushed).map(f64::abs).fold(0.0, f64::max);
+        let force = fired.chain(torques).chain(unloading).chain(pushed).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
         let bent = warmed.iter().map(|of| of.forces[index].abs()).fold(0.0, f64::max);
         held.max(2.0 * force / (w * w)).max(bent / (w * w)).max(shaken(scenario, index, mode, &hub[index].1))
@@ -207,7 +212,7 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
 /// The displacement of a mode that imbalance makes (m sqrt(kg)), about: that in resonance, if wheels get there from their slowest
 /// speed at the start or their bias, else that at their fastest.
 fn shaken(scenario: &Scenario, index: usize, mode: &SpatialMode, hub: &Vector) -> f64 {
-    let Actuator::Wheels(wheels) = &scenario.actuator else { return 0.0 };
+    let Some((wheels, _)) = scenario.actuator.wheels() else { return 0.0 };
     let (w, damping) = (mode.frequency.get(), mode.damping.get().max(LEAST_DAMPING));
     let bias = wheels.speed_bias.map_or(f64::INFINITY, |bias| bias.speed.get().abs());
     let slowest = wheels.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::min);

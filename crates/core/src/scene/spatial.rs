@@ -96,7 +96,9 @@ impl SpatialScene {
         let own = |names: &[String]| -> Vec<usize> {
             names.iter().filter_map(|name| thrusters.iter().position(|t| t.name == *name)).collect()
         };
-        let pair = |pair: &Pair| [own(&pair.plus), own(&pair.minus)];
+        let pair = |pair: Option<&Pair>| {
+            pair.map_or_else(Default::default, |pair| [own(&pair.plus), own(&pair.minus)])
+        };
         let reached = modal(scenario, body);
         let bent = points.iter().map(|point| {
             let rotations = point.shapes.iter().zip(&reached);
@@ -110,7 +112,7 @@ impl SpatialScene {
             size,
             groups: jets.map_or_else(Default::default, |jets| {
                 let groups = jets.groups.as_ref();
-                groups.map_or_else(Default::default, |of| [&of.roll, &of.pitch, &of.yaw].map(pair))
+                groups.map_or_else(Default::default, |of| of.each().map(pair))
             }),
             plumes: Burning::new(nozzles.collect(), 0.3 * size),
             frames: FrameTransforms { transforms: Vec::new() },

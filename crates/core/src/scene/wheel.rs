@@ -3,7 +3,6 @@
 use super::PlanarView;
 use super::magnification::{rate, slowing};
 use super::part::{MARK, WHEEL, cone, cube, entity};
-use crate::actuator::Actuator;
 use crate::attitude::Vector;
 use crate::record::foxglove::SceneEntity;
 use crate::record::row::Stamp;
@@ -27,7 +26,7 @@ pub struct Wheel {
 impl Wheel {
     /// That of a scenario, if it has one, for frames with this period.
     pub fn of(scenario: &Scenario, period: Span) -> Option<Self> {
-        let Actuator::Wheel(wheel) = &scenario.actuator else { return None };
+        let (wheel, _) = scenario.actuator.wheel()?;
         let model = &scenario.model;
         let (speed, inertia) = match &wheel.rotor {
             Some(rotor) => (rotor.speed.get(), rotor.inertia.get()),

@@ -46,6 +46,8 @@ pub struct Telling {
     pub failures: Failures,
     /// Whether the torque has more to it than switchings.
     tells_torque: bool,
+    /// Whether jets are the only actuator.
+    jets_alone: bool,
     stage: Stage,
 }
 
@@ -75,6 +77,7 @@ impl Telling {
             accelerometers: Accelerometers::new(scenario, run),
             failures: Failures::new(scenario),
             tells_torque: scenario.tells_torque(),
+            jets_alone: scenario.study.jets_alone,
             stage: Stage::Before,
         }
     }
@@ -365,7 +368,7 @@ impl Simulation {
         };
         let wheels = actuator.wheels(self.now, (rigid + elastic).into());
         // Of jets on which nothing else acts their pulses tell.
-        let alone = actuator.cycle().is_some() && wheels.is_empty() && !plant.is_surrounded();
+        let alone = self.telling.jets_alone && !plant.is_surrounded();
         let torques = (!alone).then(|| Torques { axes: [0, 1, 2].map(torque).into() });
         SpatialMotion {
             pointing: plant.pointing(truth.orientation.beyond(&self.reference.origin(self.now))),

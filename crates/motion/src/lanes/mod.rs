@@ -8,11 +8,13 @@
 //! is `#[inline(always)]` and has plain loops. Closures, iterators' adaptors and `array::from_fn` are functions of their own
 //! that lack the instructions: they are right, and ten times as slow. [`Real::apart`] makes a function that has them.
 
+mod four;
 mod processor;
 mod real;
 mod register;
 #[cfg(test)]
 mod tests;
 
+pub use four::Four;
 pub use processor::Processor;
 pub use real::{Mask, Real, Work};

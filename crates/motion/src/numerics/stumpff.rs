@@ -15,10 +15,11 @@ pub fn stumpff(square: f64) -> [f64; 5] {
     [c1, c2, c3, (0.5 - c2) / square, (1.0 / 6.0 - c3) / square]
 }
 
-/// The series of c_k below 10, where 20 terms are exact to rounding.
+/// The series of c_k below 10, where 20 terms are exact to rounding, and five of small angles.
 fn series(square: f64, k: u32) -> f64 {
+    let terms = if square < 1e-2 { 5 } else { 20 };
     let term = |j: u32| f64::from((k + 2 * j - 1) * (k + 2 * j));
-    let sum = (1..20).rev().fold(1.0, |sum, j| 1.0 - square / term(j) * sum);
+    let sum = (1..terms).rev().fold(1.0, |sum, j| 1.0 - square / term(j) * sum);
     sum / (1..=k).map(f64::from).product::<f64>()
 }
 

@@ -5,7 +5,7 @@
 use nalgebra::Quaternion;
 
 use super::settled::SETTLED;
-use super::step::{Stage, weights};
+use super::step::weights;
 use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::MATRIX;
 
@@ -22,10 +22,10 @@ pub(super) struct Facing {
 }
 
 impl Facing {
-    /// Finds the turns of a step of `h` seconds from this attitude at the rates of the stages.
-    pub fn find(&mut self, from: &Quaternion<f64>, stages: &[Stage; 3], h: f64) {
-        let rates = [0, 1, 2].map(|node: usize| stages[node].mean * 0.5);
-        let fastest = stages.iter().map(|stage| stage.mean.norm_squared()).fold(0.0, f64::max);
+    /// Finds the turns of a step of `h` seconds from this attitude at the rates of the mean axes at the nodes.
+    pub fn find(&mut self, from: &Quaternion<f64>, means: &[Vector; 3], h: f64) {
+        let rates = means.map(|mean| mean * 0.5);
+        let fastest = means.iter().map(Vector::norm_squared).fold(0.0, f64::max);
         let contraction = LEAVES * h * libm::sqrt(fastest);
         self.turns = rates.map(|rate| spin(from, &rate));
         for _ in 0..PASSES {

@@ -1,5 +1,7 @@
 //! What the modes feel at a node of a step: Gt, and forces that vary.
 
+use nalgebra::Matrix3;
+
 use super::driven::Pulls;
 use super::model::outward;
 use super::step::{Beside, Felt, Memory, Step};
@@ -17,19 +19,16 @@ impl Step<'_> {
     /// Gives the modes what they feel at a node; tells by how much their forces changed.
     pub(super) fn feel(&self, felt: &Felt, modes: &mut [Memory], beside: &mut Beside, node: usize) -> f64 {
         let spun = outward(&felt.rate);
-        if self.is_alone() {
-            return self.feel_alone(felt, &spun, modes, node);
-        }
         for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
             memory.g[node] = of.rotation.dot(&felt.turning);
-            memory.rate += memory.g[node];
+            memory.rate[node] += memory.g[node];
         }
         if let Some((driving, _)) = self.driven {
             let scratch = &mut beside.driven;
             let pulls = Pulls { around: self.around, tide: felt.tide, push: self.push };
             driving.pull((felt.stage, felt.t), &felt.rate, &pulls, scratch);
             for (memory, (speed, p)) in modes.iter_mut().zip(scratch.speeds.iter().zip(&scratch.p)) {
-                (memory.g[node], memory.rate) = (speed - p, *speed);
+                (memory.g[node], memory.rate[node]) = (speed - p, *speed);
             }
         }
         if !self.is_loud() {
@@ -43,7 +42,7 @@ impl Step<'_> {
                 None => self.model.modes[index].moved(&spun),
             };
             if more {
-                force += self.other(index, felt, modes, &beside.spun.waves);
+                force += self.other((index, node), felt.t, felt.tide.as_ref(), modes, &beside.spun.waves);
             }
             let memory = &mut modes[index];
             change = change.max((force - memory.s[node]).abs());
@@ -52,33 +51,17 @@ impl Step<'_> {
         change
     }
 
-    /// Whether no more than Gt and the centrifugal force acts on modes.
-    fn is_alone(&self) -> bool {
-        self.around.is_none() && self.borne.is_none() && self.model.beside.is_none() && self.driven.is_none()
-    }
-
-    /// The same of modes on which no more acts.
-    fn feel_alone(&self, felt: &Felt, spun: &[f64; 6], modes: &mut [Memory], node: usize) -> f64 {
-        let stretches = self.model.stretches;
-        let mut change = 0.0_f64;
-        for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
-            let g = of.rotation.dot(&felt.turning);
-            memory.g[node] = g;
-            memory.rate += g;
-            if stretches {
-                let force = of.moved(spun);
-                let by = (force - memory.s[node]).abs();
-                change = if by > change { by } else { change };
-                memory.s[node] = force;
-            }
-        }
-        change
-    }
-
     /// The force on a mode of tides, waves, other modes' damping and warmth (N/sqrt(kg)); drives give the first and the last.
-    fn other(&self, index: usize, felt: &Felt, modes: &[Memory], waves: &[[f64; 2]]) -> f64 {
+    pub(super) fn other(
+        &self,
+        (index, node): (usize, usize),
+        t: f64,
+        tide: Option<&Matrix3<f64>>,
+        modes: &[Memory],
+        waves: &[[f64; 2]],
+    ) -> f64 {
         let mut force = 0.0;
-        if let (Some(tide), None) = (&felt.tide, self.driven) {
+        if let (Some(tide), None) = (tide, self.driven) {
             force += self.model.modes[index].pulled(tide);
         }
         if let Some(borne) = self.borne.filter(|_| !waves.is_empty()) {
@@ -86,10 +69,10 @@ impl Step<'_> {
         }
         if let Some(damping) = &self.model.beside {
             let others = modes.iter().enumerate();
-            force -= others.map(|(other, of)| damping[(index, other)] * of.rate).sum::<f64>();
+            force -= others.map(|(other, of)| damping[(index, other)] * of.rate[node]).sum::<f64>();
         }
         if self.driven.is_none() {
-            force += self.warmth(index, felt.t);
+            force += self.warmth(index, t);
         }
         force
     }

@@ -51,6 +51,8 @@ pub struct Turning {
     /// Those over the last steps that were beside the grid, and the place of the next.
     pub(super) beside: Vec<Regular>,
     pub(super) next_beside: usize,
+    /// The level of the next step of the grid, once it is known.
+    next: Option<usize>,
     /// The amplitude of each mode at the start of a step.
     amplitudes: Vec<Amplitude>,
     work: Work,
@@ -185,6 +187,7 @@ impl Turning {
             regular: Vec::new(),
             beside: Vec::new(),
             next_beside: 0,
+            next: None,
             amplitudes: vec![Amplitude::default(); state.modes.len()],
             work: Work::new(state.modes.len()),
             effort: Effort::default(),
@@ -222,6 +225,7 @@ impl Turning {
             }
         }
         self.ahead = None;
+        self.move_on();
         (self.acting.torque, self.acting.push) = (acting.torque, acting.push);
         self.acting.forces.clone_from(&acting.forces);
         self.acting.levers.clone_from(&acting.levers);
@@ -246,10 +250,15 @@ impl Turning {
         if t < self.reached {
             self.grid.copy_from(&self.departed);
             self.reached = 0.0;
+            self.move_on();
         }
         let (mut steps, watches) = (0_u64, self.watches());
         loop {
-            let level = self.level(around);
+            let level = match self.next {
+                Some(level) => level,
+                None => self.level(around),
+            };
+            self.next = Some(level);
             self.prepare(level);
             if watches {
                 self.foresee(level, around);
@@ -276,9 +285,16 @@ impl Turning {
                 self.grid = grid;
             }
             self.reached += h;
+            self.move_on();
         }
         self.step_beside(t - self.reached, around);
         Ok(None)
+    }
+
+    /// What is known of the start of the next step holds no longer.
+    pub(super) fn move_on(&mut self) {
+        self.work.move_on();
+        self.next = None;
     }
 
     /// Takes a state of the grid a step further, of this level; tells how long it is (s).
@@ -365,5 +381,6 @@ impl Turning {
     pub(super) fn set_pace(&mut self, pace: Pace) {
         self.pace = Arc::new(pace);
         self.regular.clear();
+        self.move_on();
     }
 }

@@ -25,16 +25,19 @@ mod flow;
 mod free;
 mod heated;
 mod model;
+mod nodes;
 mod pace;
 mod response;
 mod rotation;
 mod settled;
 mod shape;
 mod slipping;
+mod stage;
 mod state;
 mod step;
 #[cfg(test)]
 mod tests;
+mod vectors;
 mod watch;
 
 pub use acceleration::Accelerations;

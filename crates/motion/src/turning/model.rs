@@ -3,7 +3,9 @@
 use super::heated::Heated;
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
+use super::vectors::Vectors;
 use crate::attitude::Vector;
+use crate::lanes::{Four, Real};
 
 /// A free mode: of the whole body, in axes that follow its total momentum, mass-normalised.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,6 +89,8 @@ pub(super) struct Model {
     pub stretchable: f64,
     /// The frequencies of modes that turn the hub or change the inertia (rad/s).
     pub felt: Vec<f64>,
+    /// By which instructions the stages of a step are found.
+    pub lanes: Four,
 }
 
 /// The constants of a mode.
@@ -162,6 +166,7 @@ impl Model {
             }),
             stretches: body.modes.iter().any(|mode| mode.moments.norm() > 0.0),
             felt: felt.map(|mode| mode.frequency).collect(),
+            lanes: Four::best(),
             reach: body.modes.iter().map(|mode| mode.rotation.norm()).sum(),
             bendable: bending.norm(),
             stretchable: body.modes.iter().map(|mode| mode.moments.norm()).fold(0.0, f64::max),
@@ -173,6 +178,37 @@ impl Model {
     pub fn rates(&self, momentum: &Vector, elastic: &Vector, changed: &Matrix3<f64>) -> (Vector, Vector) {
         let rate = solved(&(self.left + changed), &(momentum + self.left * elastic));
         (momentum - changed * rate, rate)
+    }
+}
+
+impl Model {
+    /// As [`Model::rates`], in lanes, by changes xx, yy, zz, yz, zx and xy of the inertia.
+    #[inline(always)]
+    pub fn rates_of<R: Real>(
+        &self,
+        kind: R,
+        momentum: Vectors<R>,
+        elastic: Vectors<R>,
+        changed: &[R; 6],
+    ) -> (Vectors<R>, Vectors<R>) {
+        let m = &self.left;
+        let xx = kind.of(m.m11) + changed[0];
+        let yy = kind.of(m.m22) + changed[1];
+        let zz = kind.of(m.m33) + changed[2];
+        let yz = kind.of(m.m32) + changed[3];
+        let zx = kind.of(m.m31) + changed[4];
+        let xy = kind.of(m.m21) + changed[5];
+        let v = momentum + elastic.through(m);
+        // Cramer's rule.
+        let first = Vectors { x: yy * zz - yz * yz, y: yz * zx - xy * zz, z: xy * yz - yy * zx };
+        let (second, third, across) = (zz * xx - zx * zx, xx * yy - xy * xy, xy * zx - xx * yz);
+        let one = kind.of(1.0) / (xx * first.x + xy * first.y + zx * first.z);
+        let rate = Vectors {
+            x: first.dot(v) * one,
+            y: (first.y * v.x + second * v.y + across * v.z) * one,
+            z: (first.z * v.x + across * v.y + third * v.z) * one,
+        };
+        (momentum - rate.stretched(changed), rate)
     }
 }
 

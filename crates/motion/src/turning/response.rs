@@ -14,16 +14,16 @@ const NEAR_CRITICAL: f64 = 0.99;
 /// The responses of a mode at the three nodes and at the end of a step.
 #[derive(Clone, Debug)]
 pub struct Response {
-    /// Transitions of (q, P/W), row by row.
+    /// Transitions of (q, P/W), row by row, each entry at the nodes and the end.
     pub free: [[f64; 4]; 4],
     /// By how much the squares of the last transition's columns exceed 1 by rounding, halved; 0 with damping.
     pub excess: f64,
-    /// To g: of q and of P/W, for a unit at each of the nodes (s).
-    pub of_rate: [[[f64; 3]; 2]; 4],
+    /// To g: of q and of P/W, for a unit at each of the nodes (s), at the nodes and the end.
+    pub of_rate: [[[f64; 4]; 3]; 2],
     /// To s (s², s).
-    pub of_force: [[[f64; 3]; 2]; 4],
+    pub of_force: [[[f64; 4]; 3]; 2],
     /// To an s that stays 1.
-    pub of_constant: [[f64; 2]; 4],
+    pub of_constant: [[f64; 4]; 2],
 }
 
 impl Response {
@@ -32,28 +32,31 @@ impl Response {
         let mut response = Self {
             free: [[0.0; 4]; 4],
             excess: 0.0,
-            of_rate: [[[0.0; 3]; 2]; 4],
-            of_force: [[[0.0; 3]; 2]; 4],
-            of_constant: [[0.0; 2]; 4],
+            of_rate: [[[0.0; 4]; 3]; 2],
+            of_force: [[[0.0; 4]; 3]; 2],
+            of_constant: [[0.0; 4]; 2],
         };
         for (stage, part) in NODES.into_iter().chain([1.0]).enumerate() {
             let phis = phis(frequency * part * h, damping);
-            response.free[stage] = phis[0].matrix(damping);
+            for (entry, value) in response.free.iter_mut().zip(phis[0].matrix(damping)) {
+                entry[stage] = value;
+            }
             // To 1, x and x² of the step's fraction x.
             let powers = [part * h, part * part * h, 2.0 * part * part * part * h];
             let moments = [1, 2, 3].map(|n| phis[n].matrix(damping).map(|entry| entry * powers[n - 1]));
             for (node, parabola) in PARABOLAS.iter().enumerate() {
                 let [m00, m01, m10, m11]: [f64; 4] =
                     std::array::from_fn(|at| (0..3).map(|n| parabola[n] * moments[n][at]).sum());
-                response.of_rate[stage][0][node] = m00 - 2.0 * damping * m01;
-                response.of_rate[stage][1][node] = m10 - 2.0 * damping * m11;
-                response.of_force[stage][0][node] = m01 / frequency;
-                response.of_force[stage][1][node] = m11 / frequency;
+                response.of_rate[0][node][stage] = m00 - 2.0 * damping * m01;
+                response.of_rate[1][node][stage] = m10 - 2.0 * damping * m11;
+                response.of_force[0][node][stage] = m01 / frequency;
+                response.of_force[1][node][stage] = m11 / frequency;
             }
-            response.of_constant[stage] = [moments[0][1] / frequency, moments[0][3] / frequency];
+            response.of_constant[0][stage] = moments[0][1] / frequency;
+            response.of_constant[1][stage] = moments[0][3] / frequency;
         }
         if damping == 0.0 {
-            let [cos, sin, ..] = response.free[3];
+            let (cos, sin) = (response.free[0][3], response.free[1][3]);
             // cos² + sin² - 1 to twice the digits.
             let (c, s) = (cos * cos, sin * sin);
             let lost = libm::fma(cos, cos, -c) + libm::fma(sin, sin, -s);
@@ -168,15 +171,15 @@ mod tests {
             x = [0, 1].map(|i| x[i] + d / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
         }
         for part in 0..2 {
-            let free = response.free[3];
+            let free = response.free.map(|entry| entry[3]);
             let mut found = free[2 * part] * 0.4 - free[2 * part + 1] * 0.6;
             for (node, at) in NODES.into_iter().enumerate() {
-                found += response.of_rate[3][part][node] * g(at * h);
-                found += response.of_force[3][part][node] * s(at * h);
+                found += response.of_rate[part][node][3] * g(at * h);
+                found += response.of_force[part][node][3] * s(at * h);
             }
             assert!((found - x[part]).abs() < 1e-12, "{found} {}", x[part]);
-            let all: f64 = response.of_force[3][part].iter().sum();
-            assert!((all - response.of_constant[3][part]).abs() < 1e-15);
+            let all: f64 = response.of_force[part].iter().map(|of| of[3]).sum();
+            assert!((all - response.of_constant[part][3]).abs() < 1e-15);
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Finite rotations by a small vector, and the rate that a change of the vector makes.
 
+use super::vectors::{Vectors, vector};
 use crate::attitude::Vector;
+use crate::lanes::{Mask, Real};
 
 /// Squares of an angle below which the coefficients come from their series (rad²).
 const SMALL: f64 = 0.04;
@@ -78,6 +80,59 @@ impl Bend {
     pub fn excess(&self, v: &Vector) -> Vector {
         let once = self.by.cross(v);
         once * self.second - self.by.cross(&once) * self.third
+    }
+}
+
+/// The same by a vector in each of four lanes.
+pub(super) struct Bends<R> {
+    by: Vectors<R>,
+    first: R,
+    second: R,
+    third: R,
+}
+
+/// The first three terms of a series, which are enough below [`TINY`].
+#[inline(always)]
+fn short<R: Real>(of: &[f64; 7], x: R) -> R {
+    (x * of[2] + of[1]) * x + of[0]
+}
+
+impl<R: Real> Bends<R> {
+    /// The rotations by vectors (rad).
+    #[inline(always)]
+    pub fn new(kind: R, by: Vectors<R>) -> Self {
+        let x = by.dot(by);
+        if x.lt(kind.of(TINY)).all() {
+            return Self { by, first: short(&FIRST, x), second: short(&SECOND, x), third: short(&THIRD, x) };
+        }
+        let (mut each, mut all) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
+        by.store(&mut each);
+        for lane in 0..4 {
+            let Bend { first, second, third, .. } = Bend::new(vector(&each, lane));
+            (all[0][lane], all[1][lane], all[2][lane]) = (first, second, third);
+        }
+        Self { by, first: kind.load(&all[0]), second: kind.load(&all[1]), third: kind.load(&all[2]) }
+    }
+
+    /// As [`Bend::forward`].
+    #[inline(always)]
+    pub fn forward(&self, v: Vectors<R>) -> Vectors<R> {
+        let once = self.by.cross(v);
+        v + once.scaled(self.first) + self.by.cross(once).scaled(self.second)
+    }
+
+    /// As [`Bend::back`].
+    #[inline(always)]
+    pub fn back(&self, v: Vectors<R>) -> Vectors<R> {
+        let once = self.by.cross(v);
+        v - once.scaled(self.first) + self.by.cross(once).scaled(self.second)
+    }
+
+    /// As [`Bend::excess`].
+    #[inline(always)]
+    pub fn excess(&self, v: Vectors<R>) -> Vectors<R> {
+        let once = self.by.cross(v);
+        once.scaled(self.second) - self.by.cross(once).scaled(self.third)
     }
 }
 

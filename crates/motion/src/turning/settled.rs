@@ -10,9 +10,9 @@ pub(super) const SETTLED: f64 = 1e-18;
 #[derive(Default)]
 pub(super) struct Change {
     /// Of H_m' (N m), w_m (rad/s) and Gt (N m s).
-    push: f64,
-    mean: f64,
-    turning: f64,
+    pub push: f64,
+    pub mean: f64,
+    pub turning: f64,
     /// Of the forces on modes (N/sqrt(kg)).
     pub forced: f64,
     /// Of rotors in bearings, as a part of them.
@@ -44,6 +44,12 @@ impl Change {
 }
 
 impl Step<'_> {
+    /// Whether the next pass would change nothing that counts: by the rate of the last two, or by what this one changed.
+    pub(super) fn settles(&self, change: &Change, size: f64, speed: f64, before: f64) -> bool {
+        let most = change.most(self.h, size, speed);
+        most <= SETTLED || most * most <= SETTLED * before || self.leaves(change, size, speed) <= SETTLED
+    }
+
     /// A bound of what the next pass changes, as a part of what changes, where nothing but modes, momentum and a constant torque
     /// take part; none otherwise. Every pass begins with the rates, momenta and forces of the last, whose errors are about what
     /// that changed.

@@ -79,6 +79,7 @@ impl Turning {
         self.slips = slips;
         self.departed.copy_from(&self.here);
         self.grid.copy_from(&self.here);
+        self.move_on();
         self.look();
     }
 

@@ -5,22 +5,21 @@
 //! found by fixed-point passes; what modes need of a stage is Gt, three numbers, and s where there is any. The attitude follows
 //! from the rates of the mean axes afterwards, and is part of the passes only where the surroundings look at it.
 
-use nalgebra::{Matrix3, Quaternion, Vector2};
+use nalgebra::{Matrix3, Vector2};
 
 use super::bearing::{Borne, Spun};
 use super::driven::{Driving, Scratch};
 use super::facing::{Facing, inertial};
 use super::model::{Model, Surroundings};
+use super::nodes::{Guess, Nodes, Passes};
 use super::response::Response;
-use super::rotation::Bend;
-use super::settled::{Change, SETTLED};
-use super::shape::{Shape, Sums};
+use super::shape::Sums;
 use super::state::State;
-use crate::attitude::{Vector, rotation};
-use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
+use crate::attitude::Vector;
+use crate::numerics::gauss_legendre::{NODES, WEIGHTS, exact_sum};
 
 /// Passes after which the stages are taken as they are.
-const PASSES: u32 = 60;
+pub(super) const PASSES: u32 = 60;
 
 /// The part of the rotors' momenta below which none of the whole counts.
 const ROTORS: f64 = 1e-2;
@@ -54,7 +53,10 @@ pub(super) struct Step<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Work {
     modes: Vec<Memory>,
+    nodes: Nodes,
     beside: Beside,
+    /// The stage at the start of the last step, if other steps begin there too, and the largest rate of a mode and force on one.
+    start: Option<(Stage, [f64; 2])>,
 }
 
 /// What steps keep of rotors in bearings and of drives.
@@ -66,17 +68,19 @@ pub(super) struct Beside {
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memory {
+    /// g and s at the start of the step.
+    pub start: [f64; 2],
     /// q and P/W at the nodes and the end, but for g and s.
-    pub known: [[f64; 2]; 4],
-    /// phi' Gt, and the varying force s, at the nodes.
-    pub g: [f64; 3],
-    pub s: [f64; 3],
-    /// P of the stage at hand, then q'.
-    pub rate: f64,
+    pub known: [[f64; 4]; 2],
+    /// phi' Gt, and the varying force s, at the nodes; the fourth is none.
+    pub g: [f64; 4],
+    pub s: [f64; 4],
+    /// P at the nodes, then q'.
+    pub rate: [f64; 4],
 }
 
 /// What a stage comes to.
-#[derive(Copy, Clone)]
+#[derive(Copy, Clone, Debug)]
 pub(super) struct Stage {
     /// H_m'.
     pub push: Vector,
@@ -103,83 +107,73 @@ pub(super) struct Felt {
 impl Work {
     /// Memory for so many modes.
     pub fn new(modes: usize) -> Self {
-        Self { modes: vec![Memory::default(); modes], beside: Beside::default() }
+        Self {
+            modes: vec![Memory::default(); modes],
+            nodes: Nodes::default(),
+            beside: Beside::default(),
+            start: None,
+        }
+    }
+
+    /// The next step begins elsewhere, or under something else.
+    pub fn move_on(&mut self) {
+        self.start = None;
     }
 }
 
 impl Step<'_> {
     /// Takes the step; tells the number of passes.
     pub fn take(&self, state: &mut State, work: &mut Work) -> u32 {
-        let (modes, beside) = (&mut work.modes[..], &mut work.beside);
+        let Work { modes, nodes, beside, start } = work;
         if let Some((driving, t)) = self.driven {
             driving.prepare(t, self.h, &mut beside.driven);
         }
-        let mut stages = self.guess(state, modes, beside);
-        let speed =
-            modes.iter().fold(0.0, |most, mode| mode.rate.abs().max(self.h * mode.s[0].abs()).max(most));
-        let size = self.size(state);
+        let special = self.borne.is_some() || self.driven.is_some();
+        let (stage, [fastest, forced]) = match *start {
+            Some(start) if !special => start,
+            _ => self.start(state, modes, beside),
+        };
+        *start = Some((stage, [fastest, forced]));
+        let lanes = self.model.lanes;
+        lanes.run(Guess { step: self, state, start: &stage, modes, nodes });
+        let speed = fastest.max(self.h * forced);
+        let mut stages = nodes.stages();
         let mut facing = Facing::default();
-        let seeks = self.around.is_some();
-        if seeks {
-            facing.find(&state.attitude, &stages, self.h);
+        if self.around.is_some() {
+            facing.find(&state.attitude, &means(&stages), self.h);
         }
-        let (mut before, mut passes) = (0.0, 0);
-        while passes < PASSES {
-            passes += 1;
-            let mut change = Change::default();
-            for node in 0..3 {
-                let at = if seeks { facing.at(&state.attitude, node, self.h) } else { state.attitude };
-                let found = self.stage(node, state, (&stages, &at), (modes, beside), &mut change);
-                change.spun = change.spun.max(beside.spun.take_over(node, self.h));
-                change.see(&stages[node], &found);
-                stages[node] = found;
-            }
-            if seeks {
-                facing.find(&state.attitude, &stages, self.h);
-            }
-            // What the next pass changes, at the rate of the last two or by what changed.
-            let most = change.most(self.h, size, speed);
-            let settled = most <= SETTLED || most * most <= SETTLED * before;
-            if settled || self.leaves(&change, size, speed) <= SETTLED {
-                break;
-            }
-            before = most;
-        }
-        if !seeks {
-            facing.find(&state.attitude, &stages, self.h);
-        }
+        let passes = if special {
+            self.one_by_one(state, (&mut stages, &mut facing), (modes, beside), speed)
+        } else {
+            let passes = lanes.run(Passes { step: self, state, modes, nodes, facing: &mut facing, speed });
+            stages = nodes.stages();
+            passes
+        };
         self.end(state, (&stages, &facing), modes, &beside.spun);
         passes
     }
 
     /// What the momentum is measured by (N m s): sums of rotors' momenta are no more exact than a part of these.
-    fn size(&self, state: &State) -> f64 {
+    pub(super) fn size(&self, state: &State) -> f64 {
         state.momentum.norm() + self.h * self.torque.norm() + ROTORS * self.rotors.0.norm()
     }
 
     /// Keeps q and P of a mode, where drives turn what the others make of them.
     #[inline]
-    fn keep(&self, index: usize, q: f64, p: f64, beside: &mut Beside) {
+    pub(super) fn keep(&self, index: usize, q: f64, p: f64, beside: &mut Beside) {
         if self.driven.is_some() {
             (beside.driven.q[index], beside.driven.p[index]) = (q, p);
         }
     }
 
-    /// What the state comes to by itself, and the first guess: stages are like the start, and what turns grows.
-    fn guess(&self, state: &State, modes: &mut [Memory], beside: &mut Beside) -> [Stage; 3] {
+    /// The stage at the start, and the largest rate of a mode and force on one.
+    fn start(&self, state: &State, modes: &mut [Memory], beside: &mut Beside) -> (Stage, [f64; 2]) {
         let mut sums = Sums::default();
-        for (index, (memory, response)) in modes.iter_mut().zip(self.responses).enumerate() {
+        for (index, memory) in modes.iter_mut().enumerate() {
             let [q, p, ..] = state.modes[index];
-            let force = self.forces.get(index).copied().unwrap_or(0.0);
-            for (known, (free, constant)) in
-                memory.known.iter_mut().zip(response.free.iter().zip(&response.of_constant))
-            {
-                let [a, b, c, d] = free;
-                *known = [a * q + b * p + constant[0] * force, c * q + d * p + constant[1] * force];
-            }
-            memory.rate = self.model.modes[index].frequency * p;
-            self.keep(index, q, memory.rate, beside);
-            sums.add(&self.model.modes[index], q, memory.rate, self.model.stretches);
+            memory.rate[0] = self.model.modes[index].frequency * p;
+            self.keep(index, q, memory.rate[0], beside);
+            sums.add(&self.model.modes[index], q, memory.rate[0], self.model.stretches);
             sums.lever(self, index, q);
         }
         if self.borne.is_some() {
@@ -195,128 +189,12 @@ impl Step<'_> {
             rates.extend(now.iter().map(|now| [*now; 3]));
         }
         self.feel(&felt, modes, beside, 0);
-        // What turns the body grows as the torque and the rotors have it: most of what a first pass would find.
-        let grows = if self.driven.is_some() { Vector::zeros() } else { stage.push - self.rotors.1 };
-        for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
-            let slope = of.rotation.dot(&grows) * self.h;
-            memory.g = NODES.map(|node| memory.g[0] + slope * node);
-            memory.s = [memory.s[0]; 3];
+        let mut most = [0.0_f64; 2];
+        for memory in modes {
+            memory.start = [memory.g[0], memory.s[0]];
+            most = [most[0].max(memory.rate[0].abs()), most[1].max(memory.s[0].abs())];
         }
-        let slope = self.model.inverse * grows * self.h;
-        NODES.map(|node| {
-            let more = slope * node;
-            Stage {
-                rigid: stage.rigid + more,
-                mean: stage.mean + more,
-                turning: stage.turning + grows * (self.h * node),
-                push: stage.push - more.cross(&state.momentum),
-                pushed: stage.pushed,
-            }
-        })
-    }
-
-    /// The stage at a node, where the mean axes face this way.
-    fn stage(
-        &self,
-        node: usize,
-        state: &State,
-        (stages, facing): (&[Stage; 3], &Quaternion<f64>),
-        (modes, beside): (&mut [Memory], &mut Beside),
-        change: &mut Change,
-    ) -> Stage {
-        let shape = self.shape(node, modes, beside);
-        let [a, b, c] = weights(&MATRIX[node], self.h);
-        let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
-        if self.borne.is_some() {
-            let Spun { at, rates, .. } = &mut beside.spun;
-            for ((at, rates), spin) in at.iter_mut().zip(&*rates).zip(&state.spins) {
-                *at = spin.sums + rates[0] * a + rates[1] * b + rates[2] * c;
-            }
-        }
-        let (stage, felt) = self.turning((node + 1, NODES[node] * self.h), &shape, &momentum, facing, beside);
-        change.forced = change.forced.max(self.feel(&felt, modes, beside, node));
-        change.stretched = change.stretched.max(shape.changed.norm_squared());
-        change.rate = change.rate.max(felt.rate.norm_squared());
-        stage
-    }
-
-    /// How the modes are at a node.
-    fn shape(&self, node: usize, modes: &mut [Memory], beside: &mut Beside) -> Shape {
-        let mut sums = Sums::default();
-        let (loud, plain) = (self.is_loud(), self.driven.is_none() && self.levers.is_empty());
-        let all = modes.iter_mut().zip(self.responses).zip(&self.model.modes);
-        for (index, ((memory, response), of)) in all.enumerate() {
-            let [mut q, mut p] = memory.known[node];
-            let [of_q, of_p] = &response.of_rate[node];
-            q += dot(of_q, &memory.g);
-            p += dot(of_p, &memory.g);
-            if loud {
-                let [of_q, of_p] = &response.of_force[node];
-                q += dot(of_q, &memory.s);
-                p += dot(of_p, &memory.s);
-            }
-            memory.rate = of.frequency * p;
-            sums.add(of, q, memory.rate, self.model.stretches);
-            if !plain {
-                self.keep(index, q, memory.rate, beside);
-                sums.lever(self, index, q);
-            }
-        }
-        sums.shape()
-    }
-
-    /// How the body turns `t` seconds after the start of the step.
-    fn turning(
-        &self,
-        (stage, t): (usize, f64),
-        shape: &Shape,
-        momentum: &Vector,
-        facing: &Quaternion<f64>,
-        beside: &mut Beside,
-    ) -> (Stage, Felt) {
-        let model = self.model;
-        let bend = Bend::new(shape.bent);
-        let (rotors, change) = &self.rotors;
-        let mut free = bend.back(momentum) - (rotors + change * t);
-        let mut locked = None;
-        if let Some(borne) = &self.borne {
-            free -= borne.stored(beside.spun.at.iter().map(|at| at.x));
-            locked = borne.sticks().then(|| borne.locked());
-        }
-        let (mut levered, mut inertia) = (shape.levered, model.inertia + shape.changed);
-        let (turning, rigid, rate) = if let Some((driving, _)) = self.driven {
-            let turns = driving.turns(stage, &free, self.push, &mut beside.driven);
-            (levered, inertia) = (turns.levered, turns.inertia);
-            (free, turns.rate - turns.elastic, turns.rate)
-        } else if model.stretches || locked.is_some() {
-            let changed = locked.map_or(shape.changed, |locked| shape.changed + locked);
-            let (turning, rate) = model.rates(&free, &shape.elastic, &changed);
-            (turning, model.inverse * turning, rate)
-        } else {
-            let rigid = model.inverse * free;
-            (free, rigid, rigid + shape.elastic + model.bending * free)
-        };
-        let (mut torque, mut tide) = (self.torque, None);
-        if !self.levers.is_empty() || self.driven.is_some() {
-            torque += levered;
-        }
-        if let Some((around, since)) = self.around {
-            let hub = facing * rotation(&shape.bent);
-            torque += around.torque(since + t, &hub, &inertia);
-            tide = if model.stretches || self.driven.is_some() { around.tide(since + t, &hub) } else { None };
-        }
-        if let Some(borne) = &self.borne {
-            torque += borne.feel(&rate, &mut beside.spun);
-        }
-        let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
-        let made = Stage {
-            push: bend.forward(&torque) - mean.cross(momentum),
-            mean,
-            rigid,
-            turning,
-            pushed: self.push.map_or_else(Vector::zeros, |push| bend.forward(&push)),
-        };
-        (made, Felt { turning, rate, tide, t, stage })
+        (stage, most)
     }
 
     /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
@@ -362,20 +240,23 @@ impl Step<'_> {
         }
         let loud = self.is_loud();
         for ((memory, response), mode) in modes.iter().zip(self.responses).zip(states) {
-            let [of_q, of_p] = &response.of_rate[3];
-            let mut end = Vector2::from(memory.known[3]);
-            end += Vector2::new(dot(of_q, &memory.g), dot(of_p, &memory.g));
+            let mut end = Vector2::from(memory.known.map(|of| of[3]));
+            end += Vector2::from(answer(&response.of_rate, &memory.g, 3));
             if loud {
-                let [of_q, of_p] = &response.of_force[3];
-                end += Vector2::new(dot(of_q, &memory.s), dot(of_p, &memory.s));
+                end += Vector2::from(answer(&response.of_force, &memory.s, 3));
             }
             // What was left out moves on with the mode, with what the rounded transition makes too long.
-            let [a, b, c, d] = response.free[3];
+            let [a, b, c, d] = response.free.map(|entry| entry[3]);
             let left = Vector2::new(a * mode[2] + b * mode[3], c * mode[2] + d * mode[3]);
             let (end, left) = exact_sum(end, left - end * response.excess);
             *mode = [end.x, end.y, left.x, left.y];
         }
     }
+}
+
+/// The rates of the mean axes.
+pub(super) fn means(stages: &[Stage; 3]) -> [Vector; 3] {
+    [stages[0].mean, stages[1].mean, stages[2].mean]
 }
 
 /// The weights of the stages in a step of `h` seconds.
@@ -384,7 +265,8 @@ pub(super) fn weights(of: &[f64; 3], h: f64) -> [f64; 3] {
     [of[0] * h, of[1] * h, of[2] * h]
 }
 
+/// What q and P/W make at a node, or the end, of numbers at all nodes.
 #[inline]
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+pub(super) fn answer(of: &[[[f64; 4]; 3]; 2], by: &[f64; 4], node: usize) -> [f64; 2] {
+    of.map(|of| of[0][node] * by[0] + of[1][node] * by[1] + of[2][node] * by[2])
 }

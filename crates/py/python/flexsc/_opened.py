@@ -34,9 +34,7 @@ def linearise(
     )
     body = Linear(a, b.reshape(len(a), -1), c, np.zeros((len(c), b.shape[1])), states, inputs, outputs)
     keys = scenario.to_dict()
-    kind, wheel = kind_of(keys["actuator"])
-    own = float(wheel["delay"]) if kind == "wheel" else 0.0
-    late = own if delay is None else delay
+    late = _delay(scenario.name, keys["actuator"]) if delay is None else delay
     if loop is not None:
         if period is not None:
             raise ValueError("period must be left out where a loop is cut open: it is the law's own")
@@ -55,13 +53,9 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
     name = scenario.name
     if loop not in ("command", "torque", "measurement"):
         raise ValueError(f"loop must be 'command', 'torque' or 'measurement', got {loop!r}")
-    kind_of_actuator, own_keys = kind_of(keys["actuator"])
-    if kind_of_actuator not in ("ideal", "wheel", "wheels"):
-        why = f"the actuator `{kind_of_actuator}` is not linear: a loop has `ideal`, `wheel` or `wheels`"
-        raise refused(name, why)
     count = len(body.inputs)
     prefixes = [""] if count == 1 else [f"{axis}_" for axis in AXES]
-    gain = float(own_keys["gain"]) if kind_of_actuator == "wheel" else 1.0
+    gain = _gain(name, keys["actuator"], count)
     told = json.loads(engine.loop_json(scenario._native))
     laws = [law_about(name, keys, told["filters"][k], k, prefix) for k, prefix in enumerate(prefixes)]
     period = laws[0].period
@@ -130,6 +124,40 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
         signals = of_break, of_break
     none = np.zeros((len(out), into.shape[1]))
     return Linear(whole, into, -out, none, plant.states + tuple(inner.states), *signals, period)
+
+
+def _executing(actuators: Any) -> list[tuple[str, dict[str, Any], Mapping[str, Any]]]:
+    """Return the kind, the keys and the entry of each actuator that executes commands."""
+    entries = actuators if isinstance(actuators, list) else [actuators]
+    tasks: list[Mapping[str, Any]] = [{} if isinstance(entry, str) else entry for entry in entries]
+    return [
+        (*kind_of(entry), task) for entry, task in zip(entries, tasks, strict=True) if "unloads" not in task
+    ]
+
+
+def _delay(name: str, actuators: Any) -> float:
+    """Return the delay (s) of all actuators."""
+    delays = {float(keys["delay"]) if kind == "wheel" else 0.0 for kind, keys, _ in _executing(actuators)}
+    if len(delays) > 1:
+        raise refused(name, f"the actuators have different delays, {sorted(delays)} s: give `delay`")
+    return delays.pop()
+
+
+def _gain(name: str, actuators: Any, count: int) -> float:
+    """Return the torque for a unit of the command, of actuators whose shares make one linear actuator."""
+    gains = [0.0] * count
+    for kind, keys, task in _executing(actuators):
+        if kind not in ("ideal", "wheel", "wheels"):
+            why = f"the actuator `{kind}` is not linear: a loop has `ideal`, `wheel` or `wheels`"
+            raise refused(name, why)
+        share = float(task.get("share", 1.0)) * (float(keys["gain"]) if kind == "wheel" else 1.0)
+        for axis, about in enumerate(AXES[:count]):
+            gains[axis] += share if about in task.get("axes", AXES) else 0.0
+    if max(gains) - min(gains) > 1e-12 * max(gains):
+        raise refused(
+            name, f"the actuators have different gains about the axes, {gains}: a linear loop has one"
+        )
+    return gains[0]
 
 
 def _acting(

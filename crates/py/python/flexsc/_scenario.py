@@ -194,12 +194,13 @@ class Scenario:
         sensor: Sensor | Mapping[int, Sensor] | None = None,
         estimator: Estimator | None = None,
         adaptation: Adaptation | None = None,
-        actuator: Actuator | None = None,
+        actuator: Actuator | Mapping[int, Actuator] | None = None,
     ) -> Scenario:
         """Return a scenario with your own parts in place of its parts, as `flexsc.parts` describes them.
 
-        The objects are copied: later changes to them do not change the scenario. Give several sensors by
-        their positions in the scenario's list, `sensor={1: MyTracker()}`; a single sensor replaces the first.
+        The objects are copied: later changes to them do not change the scenario. Give sensors and actuators
+        of a list by their positions in it, `sensor={1: MyTracker()}`; a single one replaces the first. An
+        actuator of a list keeps its `axes` and its `share`.
         A file cannot hold such parts: `to_toml` has empty tables for them, the log of a run cannot be
         repeated without the objects, and campaigns run in this process only.
 
@@ -216,11 +217,12 @@ class Scenario:
         from flexsc import parts
 
         sensors = sensor if isinstance(sensor, Mapping) else {} if sensor is None else {0: sensor}
+        actuators = actuator if isinstance(actuator, Mapping) else {} if actuator is None else {0: actuator}
         given: list[tuple[str, type[Any], object]] = [
             ("law", parts.Law, law),
             ("estimator", parts.Estimator, estimator),
             ("adaptation", parts.Adaptation, adaptation),
-            ("actuator", parts.Actuator, actuator),
+            *((f"actuator {index(place)}", parts.Actuator, each) for place, each in actuators.items()),
             *((f"sensor {index(place)}", parts.Sensor, each) for place, each in sensors.items()),
         ]
         brought = []
@@ -235,7 +237,7 @@ class Scenario:
 
     @property
     def parts(self) -> dict[str, object]:
-        """Your own parts by role; sensors as `sensor 0`."""
+        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`."""
         return dict(engine.parts_of(self._native))
 
     def linearise(

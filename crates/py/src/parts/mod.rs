@@ -30,7 +30,7 @@ pub use instant::Instant;
 pub use law::{Authority, Event};
 pub use reading::{Reading, Truth};
 
-/// A part of each role by its key; sensors have their place behind it, `sensor 0`.
+/// A part of each role by its key; sensors have their place behind it, `sensor 0`, and actuators after the first.
 pub type Named = (String, Py<PyAny>);
 
 /// The engine's parts of Python's objects.
@@ -40,6 +40,9 @@ pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<OwnParts> {
         // The caller may change his object: a scenario does not.
         let part = part.bind(py).call_method0("copy")?;
         match role.split_once(' ') {
+            Some(("actuator", place)) => {
+                own.actuators.push((place.parse()?, Own::new(Arc::new(actuator::Brought::of(&part)?))));
+            }
             Some((_, place)) => {
                 own.sensors.push((place.parse()?, Own::new(Arc::new(sensor::Brought::of(&part)?))));
             }
@@ -53,7 +56,7 @@ pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<OwnParts> {
             None if role == "adaptation" => {
                 own.adaptation = Some(Own::new(Arc::new(adaptation::Brought::of(&part)?)));
             }
-            None => own.actuator = Some(Own::new(Arc::new(actuator::Brought::of(&part)?))),
+            None => own.actuators.push((0, Own::new(Arc::new(actuator::Brought::of(&part)?)))),
         }
     }
     Ok(own)
@@ -68,13 +71,17 @@ pub fn named(py: Python<'_>, own: &OwnParts) -> Vec<Named> {
         ("law", own.law.as_ref().and_then(|law| object(law.any()))),
         ("estimator", own.estimator.as_ref().and_then(|estimator| object(estimator.any()))),
         ("adaptation", own.adaptation.as_ref().and_then(|adaptation| object(adaptation.any()))),
-        ("actuator", own.actuator.as_ref().and_then(|actuator| object(actuator.any()))),
     ];
     let roles = roles.into_iter().filter_map(|(role, part)| Some((role.to_owned(), part?)));
     let sensors = own.sensors.iter();
     let sensors =
         sensors.filter_map(|(place, sensor)| Some((format!("sensor {place}"), object(sensor.any())?)));
-    roles.chain(sensors).collect()
+    let actuators = own.actuators.iter();
+    let actuators = actuators.filter_map(|(place, actuator)| {
+        let role = if *place == 0 { "actuator".to_owned() } else { format!("actuator {place}") };
+        Some((role, object(actuator.any())?))
+    });
+    roles.chain(sensors).chain(actuators).collect()
 }
 
 /// Work with parts written in Python, without the interpreter's lock: a thread that is known to it gets the lock back faster.

@@ -17,6 +17,7 @@ fn start(keys: &str) -> Spinning {
         rate: 0.0,
         cycle: Some(Span::from_seconds(PERIOD)),
         waveform: None,
+        share: 1.0,
     };
     wheels.start(&wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
 }

@@ -44,20 +44,23 @@ impl Loop {
             );
         }
         let inertia = body.inertia.get();
-        let (wheel, gain, back_emf, total, delay) = match &scenario.actuator {
-            Actuator::Ideal(_) => (None, 1.0, 0.0, true, 0.0),
-            Actuator::Wheel(wheel) => {
+        let (wheel, gain, back_emf, total, delay) = match scenario.actuator.alone() {
+            Some(Actuator::Ideal(_)) => (None, 1.0, 0.0, true, 0.0),
+            Some(Actuator::Wheel(wheel)) => {
                 let total = wheel.opposes == Opposes::BodyRate;
                 (Some(wheel), wheel.gain.get(), wheel.back_emf.get(), total, wheel.delay.get())
             }
-            Actuator::Hold(_)
-            | Actuator::Thrusters(_)
-            | Actuator::Wheels(_)
-            | Actuator::Magnetorquers(_)
-            | Actuator::Jets(_)
-            | Actuator::Own(_) => {
-                return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop");
+            None => {
+                return refused("actuator", "must be one, `wheel` or `ideal`, for the analysis of the loop");
             }
+            Some(
+                Actuator::Hold(_)
+                | Actuator::Thrusters(_)
+                | Actuator::Wheels(_)
+                | Actuator::Magnetorquers(_)
+                | Actuator::Jets(_)
+                | Actuator::Own(_),
+            ) => return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop"),
         };
         let late = delay / law.period.seconds();
         if late > MOST_LATE {

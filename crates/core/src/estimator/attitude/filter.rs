@@ -54,9 +54,16 @@ impl Filter {
     pub fn predict(&mut self, reading: &Vector, seconds: f64, noise: &GyroNoise) {
         let turn = (reading - self.bias) * seconds;
         let (white, walk) = (noise.angle_random_walk, noise.rate_random_walk);
-        let (transition, added) = interval(&turn, seconds, [white * white, walk * walk]);
+        let Interval { turned, drifted, added: [angle, both, bias] } =
+            interval(&turn, seconds, [white * white, walk * walk]);
         self.attitude = unit(self.attitude * rotation(&turn));
-        self.covariance = symmetric(&(transition * self.covariance * transition.transpose() + added));
+        // The transition is [turned, -drifted; 0, 1].
+        let block = |row, column| self.covariance.fixed_view::<3, 3>(row, column).into_owned();
+        let (of_angle, across, of_bias) = (block(0, 0), block(0, 3), block(3, 3));
+        let carried = turned * across - drifted * of_bias;
+        let moved = turned * of_angle - drifted * across.transpose();
+        let of_angle = moved * turned.transpose() - carried * drifted.transpose() + angle;
+        self.covariance = blocks(&of_angle, &(carried + both), &(of_bias + bias));
     }
 
     /// The same with modes, under torques (N m) each for so long (s).
@@ -207,27 +214,36 @@ impl Filter {
     }
 }
 
-/// The transition of the errors through an interval in which the body turns so far (rad), and the covariance that noise of these
-/// densities adds.
-fn interval(turn: &Vector, seconds: f64, [white, walk]: [f64; 2]) -> (Matrix6<f64>, Matrix6<f64>) {
+/// What errors go through while the body turns: theta becomes `turned` theta - `drifted` beta.
+struct Interval {
+    turned: Matrix3<f64>,
+    drifted: Matrix3<f64>,
+    /// The covariance that noise adds: of theta, of theta with beta, and of beta.
+    added: [Matrix3<f64>; 3],
+}
+
+/// An interval in which the body turns so far (rad), under noise of these densities.
+fn interval(turn: &Vector, seconds: f64, [white, walk]: [f64; 2]) -> Interval {
     let [c1, c2, c3, c4, c5] = stumpff(turn.norm_squared());
     let (one, cross) = (Matrix3::identity(), turn.cross_matrix());
     let twice = cross * cross;
-    let turned = one - cross * c1 + twice * c2;
-    let drifted = (one - cross * c2 + twice * c3) * seconds;
     let with_bias = (one * 0.5 - cross * c3 + twice * c4) * (seconds * seconds * walk);
     let both = (one * c3 + turn * turn.transpose() * c5) * (2.0 * seconds * seconds * seconds * walk);
-    let assemble = |blocks: [Matrix3<f64>; 4]| {
-        Matrix6::from_fn(|row, column| blocks[row / 3 * 2 + column / 3][(row % 3, column % 3)])
-    };
-    let transition = assemble([turned, -drifted, Matrix3::zeros(), one]);
-    let added = assemble([
-        both + one * (white * seconds),
-        -with_bias,
-        -with_bias.transpose(),
-        one * (walk * seconds),
-    ]);
-    (transition, added)
+    Interval {
+        turned: one - cross * c1 + twice * c2,
+        drifted: (one - cross * c2 + twice * c3) * seconds,
+        added: [both + one * (white * seconds), -with_bias, one * (walk * seconds)],
+    }
+}
+
+/// The symmetric matrix of these blocks.
+fn blocks(first: &Matrix3<f64>, across: &Matrix3<f64>, second: &Matrix3<f64>) -> Matrix6<f64> {
+    let mut all = Matrix6::zeros();
+    all.fixed_view_mut::<3, 3>(0, 0).copy_from(&((first + first.transpose()) * 0.5));
+    all.fixed_view_mut::<3, 3>(0, 3).copy_from(across);
+    all.fixed_view_mut::<3, 3>(3, 0).copy_from(&across.transpose());
+    all.fixed_view_mut::<3, 3>(3, 3).copy_from(second);
+    all
 }
 
 fn unit(q: Quaternion<f64>) -> Quaternion<f64> {

@@ -142,5 +142,6 @@ impl Turning {
         self.beside.clear();
         self.next_beside = 0;
         self.ahead = None;
+        self.move_on();
     }
 }

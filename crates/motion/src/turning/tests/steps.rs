@@ -1,6 +1,9 @@
 //! How much steps lose: by the rule of their lengths, and by halving them.
 
+use std::sync::Arc;
+
 use super::*;
+use crate::lanes::Four;
 use crate::turning::Common;
 
 /// The step of the rule errs by less than 1e-10 rad in 1e4 s: against steps a quarter as long, over 200 s.
@@ -119,6 +122,24 @@ fn one_pass_is_enough_where_nothing_acts_back() {
     assert!((seen.rate - finer.rate).norm() < 1e-14);
     let effort = turning.effort();
     assert_eq!(effort.passes, effort.steps);
+}
+
+/// Whatever registers the processor has, with bends small and large.
+#[test]
+fn no_bit_depends_on_the_processor() {
+    for speed in [1e-4, 0.02] {
+        let craft = craft();
+        let modes: Vec<[f64; 2]> =
+            craft.body.modes.iter().map(|mode| [0.0, speed / mode.rotation.norm()]).collect();
+        let start = || Turning::new(&craft.body, Quaternion::identity(), TUMBLE, &modes);
+        let (mut best, mut any) = (start(), start());
+        Arc::make_mut(&mut any.model).lanes = Four::any();
+        for turning in [&mut best, &mut any] {
+            turning.depart(&Acting { rotors: rotors(SPUN, [0.01; 4]), ..Acting::default() });
+            go(turning, 20.0);
+        }
+        assert_eq!(best.seen(), any.seen());
+    }
 }
 
 /// Runs that share responses move as one that computes its own, and another body has its own.

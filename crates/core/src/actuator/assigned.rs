@@ -1,0 +1,174 @@
+//! How an actuator is written, `[actuator.KIND]` or an entry of `[[actuator]]`, with what it is for.
+
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::{MapAccessDeserializer, StrDeserializer};
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+use serde::ser::{Serialize, Serializer};
+
+use super::{
+    Actuator, Ideal, Jets, Magnetorquers, Share, Thrusters, Unloading, Unloads, Wheel, Wheels, ZeroOrderHold,
+};
+use crate::axes::Axis;
+
+/// The name of the kind that needs no keys.
+const IDEAL: &str = "ideal";
+
+/// An actuator, and which part of the demand it executes, or that it unloads wheels.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Assigned {
+    /// The actuator.
+    pub kind: Actuator,
+    /// The axes whose demand it executes; all by default.
+    pub axes: Option<Vec<Axis>>,
+    /// The share of the demand about them; all by default.
+    pub share: Option<Share>,
+    /// How it unloads the wheels beside it, in place of a part of the demand.
+    pub unloads: Option<Box<Unloads>>,
+}
+
+impl From<Actuator> for Assigned {
+    fn from(kind: Actuator) -> Self {
+        Self { kind, ..Self::default() }
+    }
+}
+
+/// Declares the keys of an actuator in a list: those of the kinds, and of what it is for.
+macro_rules! keys {
+    ($($(#[doc = $doc:literal])* $key:ident: $name:ident($kind:ident)),* $(,)?) => {
+        /// An actuator of a list: exactly one of the kinds, and which part of the demand it executes.
+        #[derive(Default, serde::Serialize, serde::Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        #[schemars(rename = "Assigned")]
+        struct Keys {
+            $(
+                $(#[doc = $doc])*
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                $key: Option<$kind>,
+            )*
+            /// Axes about which it executes the demand, on a body with three; default: all.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            axes: Option<Vec<Axis>>,
+            /// Its share of the demand about these axes; default: 1. The shares of all actuators about an axis must sum to 1.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            share: Option<Share>,
+            /// For `jets` or `magnetorquers`: how they unload the `wheels` of the list. They then execute no demand.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            unloads: Option<Box<Unloads>>,
+        }
+
+        impl Keys {
+            /// The kinds that are given.
+            fn kinds(&mut self) -> Vec<Actuator> {
+                [$(self.$key.take().map(Actuator::$name)),*].into_iter().flatten().collect()
+            }
+
+            fn of(assigned: &Assigned) -> Self {
+                let Assigned { kind, axes, share, unloads } = assigned.clone();
+                let mut keys = Self { axes, share, unloads, ..Self::default() };
+                match kind {
+                    $(Actuator::$name(kind) => keys.$key = Some(kind),)*
+                    Actuator::Own(_) => keys.ideal = Some(Ideal::default()),
+                }
+                keys
+            }
+
+            const NAMES: &str = concat!($("`", stringify!($key), "`, "),*);
+        }
+    };
+}
+
+keys! {
+    /// The command itself, at every instant.
+    ideal: Ideal(Ideal),
+    /// A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its start.
+    hold: Hold(ZeroOrderHold),
+    /// One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold.
+    thrusters: Thrusters(Thrusters),
+    /// A flywheel on a motor with back-EMF.
+    wheel: Wheel(Wheel),
+    /// Reaction wheels about axes of their own.
+    wheels: Wheels(Wheels),
+    /// Thrusters at points of a spatial body.
+    jets: Jets(Jets),
+    /// Magnetorquers of a spatial body in the field of its planet.
+    magnetorquers: Magnetorquers(Magnetorquers),
+}
+
+impl Assigned {
+    /// What unloads wheels and is written within them.
+    pub(super) fn unloading(&self) -> Option<&Unloading> {
+        if let Actuator::Wheels(wheels) = &self.kind { wheels.unloading.as_deref() } else { None }
+    }
+
+    /// Whether it is written with what it is for.
+    pub(super) fn is_particular(&self) -> bool {
+        self.axes.is_some() || self.share.is_some() || self.unloads.is_some()
+    }
+}
+
+struct Written;
+
+impl<'de> Visitor<'de> for Written {
+    type Value = Assigned;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an actuator")
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<Assigned, E> {
+        if name == IDEAL {
+            return Ok(Assigned::default());
+        }
+        Actuator::deserialize(StrDeserializer::new(name)).map(Assigned::from)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Assigned, A::Error> {
+        let mut keys = Keys::deserialize(MapAccessDeserializer::new(map))?;
+        let mut kinds = keys.kinds();
+        let given: Vec<_> = kinds.iter().map(|kind| format!("`{}`", kind.kind())).collect();
+        let why = match (kinds.pop(), kinds.is_empty()) {
+            (Some(kind), true) => {
+                return Ok(Assigned { kind, axes: keys.axes, share: keys.share, unloads: keys.unloads });
+            }
+            (None, _) => format!("needed here, and none is given: {}", Keys::NAMES.trim_end_matches(", ")),
+            (Some(_), false) => {
+                let given = given.join(", ");
+                format!(
+                    "accepted here, and more than one is given: {given}; several are a list, [[actuator]]"
+                )
+            }
+        };
+        Err(A::Error::custom(format!("exactly one kind is {why}")))
+    }
+}
+
+impl<'de> Deserialize<'de> for Assigned {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Written)
+    }
+}
+
+impl Serialize for Assigned {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.kind {
+            _ if self.is_particular() => Keys::of(self).serialize(serializer),
+            Actuator::Ideal(ideal) if ideal.faults.is_empty() => serializer.serialize_str(IDEAL),
+            kind => kind.serialize(serializer),
+        }
+    }
+}
+
+impl JsonSchema for Assigned {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "AssignedActuator".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let kind = generator.subschema_for::<Actuator>();
+        let keys = generator.subschema_for::<Keys>();
+        let word = json_schema!({ "const": IDEAL, "description": "The command itself, at every instant." });
+        json_schema!({ "anyOf": [kind, keys, word] })
+    }
+}

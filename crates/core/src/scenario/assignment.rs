@@ -1,0 +1,166 @@
+//! Several actuators: which go together, and whether their shares make the whole of what laws demand.
+
+use super::Scenario;
+use crate::actuator::{Actuator, Assigned, Member, Task, Unloading};
+use crate::attitude::AXES;
+use crate::document::Fault;
+use crate::law::Law;
+use crate::parts::Parts;
+use crate::quantity::Time;
+
+/// Shares are rounded; their sum is 1 to this.
+const ROUNDING: f64 = 1e-9;
+
+impl Scenario {
+    /// What of the actuators does not fit: of each on its own, of those of one kind, of their shares.
+    pub(super) fn assignment_fault(&self) -> Option<Fault> {
+        let members = self.actuator.members();
+        let each = self.actuator.iter().enumerate();
+        each.map(|(index, of)| (self.actuator.key("actuator", index), of))
+            .find_map(|(key, of)| self.assigned_fault(of).map(|fault| fault.within(&key)))
+            .or_else(|| unloading_fault(&self.actuator, &members))
+            .or_else(|| self.twin_fault(&members))
+            .or_else(|| self.phase_fault(&members))
+            .or_else(|| self.share_fault(&members))
+    }
+
+    /// What of an actuator's part of the demand does not fit: a key within it, and why.
+    fn assigned_fault(&self, of: &Assigned) -> Option<Fault> {
+        let at = |key: &str, why: &str| Some(Fault::new(key, why));
+        if of.unloads.is_some() {
+            let why = "must be left out with `unloads`: an actuator that unloads wheels executes no demand";
+            return match (&of.axes, of.share) {
+                (Some(_), _) => at("axes", why),
+                (None, Some(_)) => at("share", why),
+                (None, None) => None,
+            };
+        }
+        let axes = of.axes.as_ref()?;
+        if self.axis_count() == 1 {
+            return at("axes", "names axes of three, and the body has one angle: leave it out");
+        }
+        if axes.is_empty() {
+            return at("axes", "must name an axis: `roll`, `pitch` or `yaw`, got none");
+        }
+        let twice = axes.iter().enumerate().find(|(index, axis)| axes[..*index].contains(axis));
+        twice.and_then(|(_, axis)| at("axes", &format!("names `{}` twice", AXES[axis.index()])))
+    }
+
+    /// Two actuators where there can be one.
+    fn twin_fault(&self, members: &[Member<'_>]) -> Option<Fault> {
+        for (index, member) in members.iter().enumerate() {
+            let before = &members[..index];
+            let is_alike = |other: &&Member<'_>| other.kind.kind() == member.kind.kind();
+            let why = match &*member.kind {
+                Actuator::Wheels(_) => "write all wheels in one `wheels`, by their `axes`",
+                Actuator::Jets(_) => "write all thrusters in one `jets`",
+                Actuator::Magnetorquers(_) => "they act along all three axes: write one `magnetorquers`",
+                Actuator::Wheel(wheel) => {
+                    if members.len() > 1 && wheel.rotor.is_some() {
+                        let why = "gets its speed from the rate of the body, which other actuators change too: leave it out, or use \
+                                   `[actuator.wheels]` on a body with three axes";
+                        return Some(Fault::new(format!("{}.rotor", member.key), why));
+                    }
+                    let meets = |other: &Member<'_>| {
+                        (0..self.axis_count()).find(|axis| other.share(*axis) * member.share(*axis) > 0.0)
+                    };
+                    if before.iter().filter(is_alike).find_map(meets).is_none() {
+                        continue;
+                    }
+                    "an axis has one flywheel: give it the gain of both"
+                }
+                _ => continue,
+            };
+            if let Some(other) = before.iter().find(is_alike) {
+                return Some(Fault::new(
+                    &member.key,
+                    format!("are there already, as `{}`: {why}", other.key),
+                ));
+            }
+        }
+        None
+    }
+
+    /// A phase where the first period would be missed.
+    fn phase_fault(&self, members: &[Member<'_>]) -> Option<Fault> {
+        let planned = (0..self.axis_count()).any(|axis| matches!(self.law.about(axis), Law::PhasePlane(_)));
+        members.iter().find_map(|member| {
+            let at = |why: &str| Some(Fault::new(format!("{}.phase", member.key), why));
+            let phase = member.kind.phase()?;
+            if member.kind.period().is_none() {
+                return at(
+                    "applies only to jets with a `period` of their own: without one they act with the law",
+                );
+            }
+            if phase == Time::ZERO {
+                return None;
+            }
+            if self.manoeuvre.is_some() {
+                return at("must be 0 with a `[manoeuvre]`, whose begin it would miss");
+            }
+            let acts = (0..3).any(|axis| member.share(axis) > 0.0);
+            if planned && acts {
+                return at("must be 0 with a law `phase_plane`, whose pulses begin with the law's periods");
+            }
+            None
+        })
+    }
+
+    /// Shares that are not the whole of what laws demand.
+    fn share_fault(&self, members: &[Member<'_>]) -> Option<Fault> {
+        for (axis, name) in AXES.iter().enumerate().take(self.axis_count()) {
+            let serving: Vec<&Member<'_>> =
+                members.iter().filter(|member| member.share(axis) > 0.0).collect();
+            let about = if self.axis_count() == 1 { String::new() } else { format!(" about {name}") };
+            let Some(last) = serving.last() else {
+                if matches!(self.law.about(axis), Law::Open(_)) {
+                    continue;
+                }
+                let why = format!(
+                    "has none that acts{about}, and the law acts there: name `{name}` in the `axes` of one"
+                );
+                return Some(Fault::new("actuator", why));
+            };
+            let sum: f64 = serving.iter().map(|member| member.share(axis)).sum();
+            if (sum - 1.0).abs() > ROUNDING {
+                let each: Vec<String> =
+                    serving.iter().map(|of| format!("{} of `{}`", of.share(axis), of.key)).collect();
+                let why = format!("must make 1 with the others{about}, got {sum}: {}", each.join(", "));
+                let key = last.key.rsplit_once('.').map_or("actuator", |(entry, _)| entry);
+                return Some(Fault::new(format!("{key}.share"), why));
+            }
+            if serving.len() > 1 && matches!(self.law.about(axis), Law::PhasePlane(_)) {
+                let why = format!("needs one actuator{about}, and there are {}", serving.len());
+                return Some(Fault::new(self.law_key(axis), why));
+            }
+        }
+        None
+    }
+}
+
+/// What of unloading does not fit.
+fn unloading_fault(actuators: &Parts<Assigned>, members: &[Member<'_>]) -> Option<Fault> {
+    if let Some((wheels, key)) = actuators.wheels()
+        && let Some(fault) = wheels.unloading.as_deref().and_then(Unloading::inconsistency)
+    {
+        return Some(fault.within(&format!("{key}.unloading")));
+    }
+    let mut unloaders = members.iter().filter_map(|member| match &member.task {
+        Task::Unloads(unloads) => Some((member, unloads)),
+        Task::Executes(_) => None,
+    });
+    let (member, unloads) = unloaders.next()?;
+    let how = member.unloads_key();
+    if let Some((fault, within)) = unloads.fault(&member.kind) {
+        return Some(fault.within(if within { &member.key } else { &how }));
+    }
+    if actuators.wheels().is_none() {
+        return Some(Fault::new(
+            how,
+            "needs `wheels` in the list, whose momentum it takes, and there are none",
+        ));
+    }
+    let (second, _) = unloaders.next()?;
+    let why = format!("must be left out: `{}` unloads the wheels, and only one can", member.key);
+    Some(Fault::new(&second.key, why))
+}

@@ -1,0 +1,52 @@
+//! Four lanes on every processor: what belongs together in one run, side by side.
+
+use pulp::Simd;
+#[cfg(target_arch = "aarch64")]
+use pulp::aarch64::Neon;
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::V3;
+
+use super::real::Work;
+use super::register::Vectorized;
+
+/// The instructions by which this processor does something to four numbers.
+#[derive(Copy, Clone, Debug)]
+pub struct Four(Instructions);
+
+#[derive(Copy, Clone, Debug)]
+enum Instructions {
+    #[cfg(target_arch = "x86_64")]
+    Avx2(V3),
+    #[cfg(target_arch = "aarch64")]
+    Neon(Neon),
+    Any,
+}
+
+impl Four {
+    /// The best that there are.
+    pub fn best() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        let best = V3::try_new().map(Instructions::Avx2);
+        #[cfg(target_arch = "aarch64")]
+        let best = Neon::try_new().map(Instructions::Neon);
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        let best = None;
+        Self(best.unwrap_or(Instructions::Any))
+    }
+
+    /// Those that every processor has.
+    pub fn any() -> Self {
+        Self(Instructions::Any)
+    }
+
+    /// Does some work over four lanes.
+    pub fn run<W: Work>(self, work: W) -> W::Output {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(simd) => Simd::vectorize(simd, Vectorized::<W, 1>(work)),
+            #[cfg(target_arch = "aarch64")]
+            Instructions::Neon(simd) => Simd::vectorize(simd, Vectorized::<W, 2>(work)),
+            Instructions::Any => Simd::vectorize(pulp::Scalar256b, Vectorized::<W, 1>(work)),
+        }
+    }
+}

@@ -1,0 +1,384 @@
+//! The stages of a step side by side: a pass finds all three at once, each in a lane, from those of the last pass.
+//!
+//! The fourth lane is the end of the step; nothing reads it, it only fills the register.
+
+use nalgebra::{Matrix3, Quaternion};
+
+use super::facing::Facing;
+use super::settled::Change;
+use super::state::State;
+use super::step::{Memory, PASSES, Stage, Step};
+use super::vectors::{Kept, Vectors, vector};
+use crate::attitude::{Vector, rotation};
+use crate::lanes::{Real, Work};
+use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS};
+use crate::turning::model::{outward, tensor};
+use crate::turning::rotation::Bends;
+
+/// So many passes among momentum and rates follow each pass.
+const AMONG: usize = 2;
+
+/// The weights of each stage at all nodes, and at the end.
+static COLUMNS: [[f64; 4]; 3] = [column(0), column(1), column(2)];
+
+const fn column(stage: usize) -> [f64; 4] {
+    [MATRIX[0][stage], MATRIX[1][stage], MATRIX[2][stage], WEIGHTS[stage]]
+}
+
+/// The stages of a step at its nodes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Nodes {
+    push: Kept,
+    mean: Kept,
+    rigid: Kept,
+    turning: Kept,
+    pushed: Kept,
+}
+
+impl Nodes {
+    /// The stage at a node.
+    pub fn stage(&self, node: usize) -> Stage {
+        Stage {
+            push: vector(&self.push, node),
+            mean: vector(&self.mean, node),
+            rigid: vector(&self.rigid, node),
+            turning: vector(&self.turning, node),
+            pushed: vector(&self.pushed, node),
+        }
+    }
+
+    /// All of them.
+    pub fn stages(&self) -> [Stage; 3] {
+        [self.stage(0), self.stage(1), self.stage(2)]
+    }
+
+    fn means(&self) -> [Vector; 3] {
+        [vector(&self.mean, 0), vector(&self.mean, 1), vector(&self.mean, 2)]
+    }
+}
+
+/// The first guess of a step: what modes come to by themselves, and stages like the start, but for the growth of what turns.
+pub(super) struct Guess<'a> {
+    pub step: &'a Step<'a>,
+    pub state: &'a State,
+    pub start: &'a Stage,
+    pub modes: &'a mut [Memory],
+    pub nodes: &'a mut Nodes,
+}
+
+impl Work for Guess<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self, kind: R) {
+        let Self { step, state, start, modes, nodes } = self;
+        // It grows as the torque and the rotors have it: most of what a first pass would find.
+        let grows = if step.driven.is_some() { Vector::zeros() } else { start.push - step.rotors.1 };
+        let times = times(kind, step.h);
+        for index in 0..modes.len() {
+            let (memory, response) = (&mut modes[index], &step.responses[index]);
+            let [q, p, ..] = state.modes[index];
+            let ([a, b, c, d], [by_q, by_p]) = (&response.free, &response.of_constant);
+            let mut known = [kind.load(a) * q + kind.load(b) * p, kind.load(c) * q + kind.load(d) * p];
+            if index < step.forces.len() {
+                known[0] = known[0] + kind.load(by_q) * step.forces[index];
+                known[1] = known[1] + kind.load(by_p) * step.forces[index];
+            }
+            known[0].store(&mut memory.known[0]);
+            known[1].store(&mut memory.known[1]);
+            let [g, s] = memory.start;
+            (times * step.model.modes[index].rotation.dot(&grows) + g).store(&mut memory.g);
+            memory.s = [s; 4];
+        }
+        let slope = step.model.inverse * grows;
+        let none = Vectors::of(kind, &Vector::zeros());
+        let more = none.with(&slope, times);
+        let momentum = Vectors::of(kind, &state.momentum);
+        (Vectors::of(kind, &start.rigid) + more).store(&mut nodes.rigid);
+        (Vectors::of(kind, &start.mean) + more).store(&mut nodes.mean);
+        Vectors::of(kind, &start.turning).with(&grows, times).store(&mut nodes.turning);
+        (Vectors::of(kind, &start.push) - more.cross(momentum)).store(&mut nodes.push);
+        Vectors::of(kind, &start.pushed).store(&mut nodes.pushed);
+    }
+}
+
+/// The nodes of a step of `h` seconds, and its end (s).
+#[inline(always)]
+fn times<R: Real>(kind: R, h: f64) -> R {
+    kind.load(&[NODES[0], NODES[1], NODES[2], 1.0]) * h
+}
+
+/// The momentum at the nodes that follows from its rates there.
+#[inline(always)]
+fn momentum<R: Real>(kind: R, from: &Vector, push: &Kept, h: f64) -> Vectors<R> {
+    let mut momentum = Vectors::of(kind, from);
+    for node in 0..3 {
+        momentum = momentum.with(&vector(push, node), kind.load(&COLUMNS[node]) * h);
+    }
+    momentum
+}
+
+/// The passes of a step in which nothing but modes, momentum, forces and surroundings take part.
+pub(super) struct Passes<'a> {
+    pub step: &'a Step<'a>,
+    pub state: &'a State,
+    pub modes: &'a mut [Memory],
+    pub nodes: &'a mut Nodes,
+    pub facing: &'a mut Facing,
+    /// What rates of modes are measured by.
+    pub speed: f64,
+}
+
+/// How the modes are at the nodes.
+struct Shapes<R> {
+    bent: Vectors<R>,
+    elastic: Vectors<R>,
+    changed: [R; 6],
+    levered: Vectors<R>,
+}
+
+/// Gt and the hub's rate at the nodes, and the tides there.
+struct Felt<R> {
+    turning: Vectors<R>,
+    rate: Vectors<R>,
+    tides: [Option<Matrix3<f64>>; 3],
+}
+
+impl Work for Passes<'_> {
+    /// The number of passes.
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<R: Real>(self, kind: R) -> u32 {
+        let Self { step, state, modes, nodes, facing, speed } = self;
+        let size = step.size(state);
+        let seeks = step.around.is_some();
+        let (mut before, mut passes) = (0.0, 0);
+        while passes < PASSES {
+            passes += 1;
+            let shapes = shapes(kind, step, modes);
+            let (felt, mut change) = turn(kind, step, (state, &*facing), &shapes, nodes);
+            change.forced = feel(kind, step, &felt, modes);
+            change.stretched = size_of(&shapes.changed);
+            change.rate = most(felt.rate.dot(felt.rate));
+            if seeks {
+                facing.find(&state.attitude, &nodes.means(), step.h);
+            }
+            if step.settles(&change, size, speed, before) {
+                break;
+            }
+            before = change.most(step.h, size, speed);
+        }
+        if !seeks {
+            facing.find(&state.attitude, &nodes.means(), step.h);
+        }
+        passes
+    }
+}
+
+/// The largest of the nodes.
+#[inline(always)]
+fn most<R: Real>(of: R) -> f64 {
+    let mut all = [0.0; 4];
+    of.store(&mut all);
+    all[0].max(all[1]).max(all[2])
+}
+
+/// The largest square of the norms of tensors.
+#[inline(always)]
+fn size_of<R: Real>(of: &[R; 6]) -> f64 {
+    let [xx, yy, zz, yz, zx, xy] = *of;
+    most(xx * xx + yy * yy + zz * zz + (yz * yz + zx * zx + xy * xy) * 2.0)
+}
+
+/// How the modes are at the nodes.
+#[inline(always)]
+fn shapes<R: Real>(kind: R, step: &Step<'_>, modes: &mut [Memory]) -> Shapes<R> {
+    let zero = kind.of(0.0);
+    let none = Vectors { x: zero, y: zero, z: zero };
+    let (mut bent, mut elastic, mut changed, mut levered) = (none, none, [zero; 6], none);
+    let (loud, stretches) = (step.is_loud(), step.model.stretches);
+    for index in 0..modes.len() {
+        let (memory, response, of) = (&mut modes[index], &step.responses[index], &step.model.modes[index]);
+        let (mut q, mut p) = (kind.load(&memory.known[0]), kind.load(&memory.known[1]));
+        for node in 0..3 {
+            q = q + kind.load(&response.of_rate[0][node]) * memory.g[node];
+            p = p + kind.load(&response.of_rate[1][node]) * memory.g[node];
+        }
+        if loud {
+            for node in 0..3 {
+                q = q + kind.load(&response.of_force[0][node]) * memory.s[node];
+                p = p + kind.load(&response.of_force[1][node]) * memory.s[node];
+            }
+        }
+        let rate = p * of.frequency;
+        rate.store(&mut memory.rate);
+        bent = bent.with(&of.rotation, q);
+        elastic = elastic.with(&of.rotation, rate);
+        if stretches {
+            for entry in 0..6 {
+                changed[entry] = changed[entry] + q * of.moments[entry];
+            }
+        }
+        if index < step.levers.len() {
+            levered = levered.with(&step.levers[index], q);
+        }
+    }
+    Shapes { bent, elastic, changed, levered }
+}
+
+/// How the body turns at the nodes.
+#[inline(always)]
+fn turn<R: Real>(
+    kind: R,
+    step: &Step<'_>,
+    (state, facing): (&State, &Facing),
+    shapes: &Shapes<R>,
+    nodes: &mut Nodes,
+) -> (Felt<R>, Change) {
+    let (model, h) = (step.model, step.h);
+    let momentum = momentum(kind, &state.momentum, &nodes.push, h);
+    let bend = Bends::new(kind, shapes.bent);
+    let times = times(kind, h);
+    let (rotors, change) = &step.rotors;
+    let free = bend.back(momentum) - Vectors::of(kind, rotors).with(change, times);
+    let (turning, rigid, rate) = if model.stretches {
+        let (turning, rate) = model.rates_of(kind, free, shapes.elastic, &shapes.changed);
+        (turning, turning.through(&model.inverse), rate)
+    } else {
+        let rigid = free.through(&model.inverse);
+        (free, rigid, rigid + shapes.elastic + free.through(&model.bending))
+    };
+    let (mut torque, mut tides) = (Vectors::of(kind, &step.torque), [None; 3]);
+    if !step.levers.is_empty() {
+        torque = torque + shapes.levered;
+    }
+    if step.around.is_some() {
+        torque = torque + surround(kind, step, (state, facing), shapes, &mut tides);
+    }
+    let mut mean = bend.forward(rigid + bend.excess(rate - rigid));
+    let pull = bend.forward(torque);
+    let mut push = pull - mean.cross(momentum);
+    // The momentum follows from these rates, and the rates from it, nearly as those of a rigid body: cheap passes among them alone
+    // spare passes of all.
+    let (at, mut more) = (mean, Vectors::of(kind, &Vector::zeros()));
+    for _ in 0..AMONG {
+        let mut kept = [[0.0; 4]; 3];
+        push.store(&mut kept);
+        let next = self::momentum(kind, &state.momentum, &kept, h);
+        more = next - momentum;
+        mean = at + more.through(&model.inverse);
+        push = pull - mean.cross(next);
+    }
+    let (turning, rigid, rate) = (turning + more, rigid + (mean - at), rate + (mean - at));
+    if let Some(pushed) = &step.push {
+        bend.forward(Vectors::of(kind, pushed)).store(&mut nodes.pushed);
+    }
+    let (by_push, by_mean, by_turning) = (
+        push - Vectors::load(kind, &nodes.push),
+        mean - Vectors::load(kind, &nodes.mean),
+        turning - Vectors::load(kind, &nodes.turning),
+    );
+    let found = Change {
+        push: most(by_push.dot(by_push)),
+        mean: most(by_mean.dot(by_mean)),
+        turning: most(by_turning.dot(by_turning)),
+        ..Change::default()
+    };
+    push.store(&mut nodes.push);
+    mean.store(&mut nodes.mean);
+    rigid.store(&mut nodes.rigid);
+    turning.store(&mut nodes.turning);
+    (Felt { turning, rate, tides }, found)
+}
+
+/// The torque of the surroundings at the nodes (N m), and the tides there.
+#[inline(always)]
+fn surround<R: Real>(
+    kind: R,
+    step: &Step<'_>,
+    (state, facing): (&State, &Facing),
+    shapes: &Shapes<R>,
+    tides: &mut [Option<Matrix3<f64>>; 3],
+) -> Vectors<R> {
+    let (mut bent, mut changed, mut torque) = ([[0.0; 4]; 3], [[0.0; 4]; 6], [[0.0; 4]; 3]);
+    shapes.bent.store(&mut bent);
+    for entry in 0..6 {
+        shapes.changed[entry].store(&mut changed[entry]);
+    }
+    for node in 0..3 {
+        let at = facing.at(&state.attitude, node, step.h);
+        let changed = tensor(changed.map(|of| of[node]));
+        let (found, tide) = step.surrounded(NODES[node] * step.h, &at, &vector(&bent, node), &changed);
+        for axis in 0..3 {
+            torque[axis][node] = found[axis];
+        }
+        tides[node] = tide;
+    }
+    Vectors::load(kind, &torque)
+}
+
+/// Gives the modes what they feel at the nodes; tells by how much their forces changed.
+#[inline(always)]
+fn feel<R: Real>(kind: R, step: &Step<'_>, felt: &Felt<R>, modes: &mut [Memory]) -> f64 {
+    let Vectors { x, y, z } = felt.rate;
+    let spun = [x * x * 0.5, y * y * 0.5, z * z * 0.5, y * z, z * x, x * y];
+    let (stretches, loud) = (step.model.stretches, step.is_loud());
+    let more = loud && (step.around.is_some() || step.model.beside.is_some());
+    let mut change = kind.of(0.0);
+    for index in 0..modes.len() {
+        let (memory, of) = (&mut modes[index], &step.model.modes[index]);
+        let g = felt.turning.along(&of.rotation);
+        g.store(&mut memory.g);
+        if more {
+            (kind.load(&memory.rate) + g).store(&mut memory.rate);
+        } else if stretches {
+            let [xx, yy, zz, yz, zx, xy] = of.moments;
+            let [a, b, c, d, e, f] = spun;
+            let force = (a * xx + b * yy + c * zz) + (d * yz + e * zx + f * xy);
+            let by = (force - kind.load(&memory.s)).abs();
+            change = by.max(change);
+            force.store(&mut memory.s);
+        }
+    }
+    if !more {
+        return most(change);
+    }
+    let mut rate = [[0.0; 4]; 3];
+    felt.rate.store(&mut rate);
+    step.force(&rate, &felt.tides, modes)
+}
+
+impl Step<'_> {
+    /// Forces modes at the nodes by more than the centrifugal acceleration; tells by how much their forces changed.
+    fn force(&self, rate: &Kept, tides: &[Option<Matrix3<f64>>; 3], modes: &mut [Memory]) -> f64 {
+        let mut change = 0.0_f64;
+        for node in 0..3 {
+            let spun = outward(&vector(rate, node));
+            for index in 0..modes.len() {
+                let mut force = self.model.modes[index].moved(&spun);
+                force += self.other((index, node), NODES[node] * self.h, tides[node].as_ref(), modes, &[]);
+                let memory = &mut modes[index];
+                change = change.max((force - memory.s[node]).abs());
+                memory.s[node] = force;
+            }
+        }
+        change
+    }
+
+    /// The torque of the surroundings (N m) so many seconds after the start of the step, where the mean axes face this way and modes
+    /// bend the body and change its inertia so, and the tide on the modes.
+    pub(super) fn surrounded(
+        &self,
+        t: f64,
+        facing: &Quaternion<f64>,
+        bent: &Vector,
+        changed: &Matrix3<f64>,
+    ) -> (Vector, Option<Matrix3<f64>>) {
+        let Some((around, since)) = self.around else { return (Vector::zeros(), None) };
+        let hub = facing * rotation(bent);
+        let torque = around.torque(since + t, &hub, &(self.model.inertia + changed));
+        let tide = if self.model.stretches { around.tide(since + t, &hub) } else { None };
+        (torque, tide)
+    }
+}

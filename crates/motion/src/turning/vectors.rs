@@ -1,0 +1,115 @@
+//! Vectors in lanes.
+
+use std::ops::{Add, Sub};
+
+use nalgebra::Matrix3;
+
+use crate::attitude::Vector;
+use crate::lanes::Real;
+
+/// Four vectors as they are kept: along x, y and z, each.
+pub(super) type Kept = [[f64; 4]; 3];
+
+/// A vector in each lane.
+#[derive(Copy, Clone)]
+pub(super) struct Vectors<R> {
+    pub x: R,
+    pub y: R,
+    pub z: R,
+}
+
+/// The vector in a lane of those that are kept.
+#[inline]
+pub(super) fn vector([x, y, z]: &Kept, lane: usize) -> Vector {
+    Vector::new(x[lane], y[lane], z[lane])
+}
+
+impl<R: Real> Vectors<R> {
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn of(kind: R, v: &Vector) -> Self {
+        Self { x: kind.of(v.x), y: kind.of(v.y), z: kind.of(v.z) }
+    }
+
+    /// Those that were kept.
+    #[inline(always)]
+    pub fn load(kind: R, from: &Kept) -> Self {
+        Self { x: kind.load(&from[0]), y: kind.load(&from[1]), z: kind.load(&from[2]) }
+    }
+
+    /// Keeps them.
+    #[inline(always)]
+    pub fn store(self, to: &mut Kept) {
+        self.x.store(&mut to[0]);
+        self.y.store(&mut to[1]);
+        self.z.store(&mut to[2]);
+    }
+
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> R {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    #[inline(always)]
+    pub fn along(self, other: &Vector) -> R {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    #[inline(always)]
+    pub fn scaled(self, by: R) -> Self {
+        Self { x: self.x * by, y: self.y * by, z: self.z * by }
+    }
+
+    /// With `v` times a number of each lane.
+    #[inline(always)]
+    pub fn with(self, v: &Vector, by: R) -> Self {
+        Self { x: self.x + by * v.x, y: self.y + by * v.y, z: self.z + by * v.z }
+    }
+
+    /// What a matrix makes of them.
+    #[inline(always)]
+    pub fn through(self, m: &Matrix3<f64>) -> Self {
+        Self {
+            x: self.x * m.m11 + self.y * m.m12 + self.z * m.m13,
+            y: self.x * m.m21 + self.y * m.m22 + self.z * m.m23,
+            z: self.x * m.m31 + self.y * m.m32 + self.z * m.m33,
+        }
+    }
+
+    /// What the tensors of xx, yy, zz, yz, zx and xy make of them.
+    #[inline(always)]
+    pub fn stretched(self, [xx, yy, zz, yz, zx, xy]: &[R; 6]) -> Self {
+        Self {
+            x: self.x * *xx + self.y * *xy + self.z * *zx,
+            y: self.x * *xy + self.y * *yy + self.z * *yz,
+            z: self.x * *zx + self.y * *yz + self.z * *zz,
+        }
+    }
+}
+
+impl<R: Real> Add for Vectors<R> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl<R: Real> Sub for Vectors<R> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
