@@ -205,7 +205,7 @@ fn every_run_says_whether_it_meets_its_goal() {
     }
     let dir = Dir::with(&["rotation-robust"]);
     let said =
-        dir.run("simulate rotation-robust.toml --log none").exits(0).says(&["goal           met: outside"]);
+        dir.run("simulate rotation-robust.toml --log none").exits(0).says(&["goal           met: within"]);
     assert_eq!(said.err.lines().filter(|line| line.trim_start().starts_with("goal ")).count(), 1);
     dir.run("simulate rotation-robust.toml --set duration=20 --runs 3 -o some").exits(0);
     let statistics = dir.text("some/statistics.csv");

@@ -21,7 +21,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     } else if scenario.law.switches() {
         say!("{head}, {}, {:.1} ms", counted(number("switchings"), "switching"), took * 1e3);
         switchings(scenario, metrics);
-        goal(metrics, outside);
+        goal(metrics, within);
     } else {
         say!("{head}, {:.1} ms", took * 1e3);
         rotation(scenario, metrics);
@@ -81,7 +81,7 @@ fn spatial(metrics: &Metrics, bends: bool) {
         say!("  requirement    {word}: {rms:.3e} rad rms in its window");
     }
     // Each axis has a band of its own: their root sum of squares may be more.
-    goal(metrics, |band| format!("an axis outside its band (at most ±{band:.3e} rad)"));
+    goal(metrics, |band| format!("each axis in its band (at most ±{band:.3e} rad)"));
     if let Some(Value::Numbers(frequencies)) = metrics.get("frequency_estimates_hz") {
         let found: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.4}")).collect();
         say!(
@@ -93,18 +93,20 @@ fn spatial(metrics: &Metrics, bends: bool) {
     }
 }
 
-/// What is outside a band about the goal: the angle.
-fn outside(band: f64) -> String {
-    format!("outside ±{band:.3e} rad")
+/// The band about the goal.
+fn within(band: f64) -> String {
+    format!("within ±{band:.3e} rad")
 }
 
-/// Whether the run meets its goal; `outside` says what may be outside a band.
-fn goal(metrics: &Metrics, outside: impl FnOnce(f64) -> String) {
+/// Whether the run meets its goal; `within` says what has to be within a band.
+fn goal(metrics: &Metrics, within: impl FnOnce(f64) -> String) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     let Some(Value::Word(word)) = metrics.get("goal") else { return };
     let band = number("goal_band_rad");
     if band.is_finite() {
-        say!("  goal           {word}: {} for {:.6} s", outside(band), number("time_outside_s"));
+        let outside = number("time_outside_s");
+        let but = if outside > 0.0 { format!(", but for {outside:.6} s") } else { String::new() };
+        say!("  goal           {word}: {}{but}", within(band));
     } else {
         say!("  goal           {word}");
     }
@@ -175,7 +177,7 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
         number("angle_error_peak_rad"),
         number("angle_error_late_rad"),
     );
-    goal(metrics, outside);
+    goal(metrics, within);
     let settling = number("settling_time_s");
     if settling.is_finite() {
         say!("  settling time  {settling} s");
