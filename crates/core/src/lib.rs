@@ -12,7 +12,8 @@
 //!                   manoeuvre or target --goal---------------+--waveform------+
 //! ```
 //!
-//! One loop runs bodies with one angle and with three axes; about each axis there are a belief, a law and a goal. Each role is a
+//! One loop runs bodies with one angle and with three axes (plain single-axis runs may take a shorter one with the same records,
+//! `sim/plain.rs`); about each axis there are a belief, a law and a goal. Each role is a
 //! trait: [`sensor::Sense`], [`estimator::Estimate`], [`law::Control`], [`actuator::Actuate`]. `docs/extending.md` tells how to add
 //! a kind.
 //!
