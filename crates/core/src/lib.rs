@@ -50,6 +50,7 @@ pub mod campaign;
 pub mod disturbance;
 pub mod environment;
 pub mod estimator;
+mod flight;
 mod label;
 pub mod law;
 pub mod layout;

@@ -6,7 +6,6 @@ use crate::document::Fault;
 use crate::estimator::AttitudeFilter;
 use crate::estimator::attitude::{Form, Role};
 use crate::scenario::Scenario;
-use crate::sensor::Sensor;
 use crate::time::Span;
 
 /// The filter: beyond the angle a that it expects, an attitude z corrects by k (z - a).
@@ -52,7 +51,7 @@ impl AttitudeParts {
             Mounted {
                 period: sensor.period(study.cycle).or(study.sampling).map_or(0.0, Span::seconds),
                 latency,
-                integrates: matches!(sensor, Sensor::Gyro(gyro) if gyro.integrates()),
+                integrates: sensor.integrates(),
                 turned: shapes.iter().map(|(_, rotation)| (*rotation).into()).collect(),
             }
         };

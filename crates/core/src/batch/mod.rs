@@ -3,7 +3,7 @@
 //! A batch takes what it can, and declines a run at any time: that one is then simulated alone, as every run is where there is
 //! no batch for it.
 
-pub(crate) mod relay;
+mod relay;
 mod sampled;
 
 use crate::lanes::Processor;

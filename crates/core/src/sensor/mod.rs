@@ -253,6 +253,11 @@ impl Sensor {
         }
     }
 
+    /// Whether it measures the mean rate over each of its periods.
+    pub fn integrates(&self) -> bool {
+        matches!(self, Self::Gyro(gyro) if gyro.integrates())
+    }
+
     /// The point of the structure at which it is, if it names one.
     pub fn point(&self) -> Option<&str> {
         match self {

@@ -5,9 +5,7 @@
 
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
-use crate::batch::relay::crew::{Crew, Place, Rest, Searched, Setup, Sight};
-use crate::batch::relay::flight::Flight;
-use crate::batch::relay::{phase, see};
+use crate::flight::{Crew, Flight, Place, Rest, Searched, Setup, Sight, instant, phase, see};
 use crate::lanes::{Processor, Real, Work};
 use crate::law::Command;
 use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
@@ -26,10 +24,6 @@ struct Alone<'a, R> {
     stopped: bool,
     failed: Option<SimulationError>,
     rest: Rest,
-}
-
-fn instant((whole, part): (u64, u64)) -> Instant {
-    Instant::of_parts(whole, part)
 }
 
 impl Simulation {

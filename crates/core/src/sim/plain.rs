@@ -5,9 +5,9 @@
 
 use super::plant::{Exerted, Plant};
 use super::{MOST_DECISIONS, Simulation, SimulationError};
-use crate::batch::relay::{self, crew::Setup};
 use crate::belief::Belief;
 use crate::estimator::Estimator;
+use crate::flight::{self, Setup};
 use crate::law::{Command, Event};
 use crate::record::Record;
 use crate::scenario::Scenario;
@@ -26,7 +26,7 @@ pub struct Quick {
 impl Quick {
     /// Those that suit runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        Self { plain: is_plain(scenario), flight: relay::alone(scenario).map(Box::new) }
+        Self { plain: is_plain(scenario), flight: flight::alone(scenario).map(Box::new) }
     }
 }
 

@@ -1,12 +1,13 @@
 //! A body with one angle on its way: its motion since the last event, and what is seen of it now.
 
+mod course;
+
 use super::lent::Elsewhere;
-use crate::body::{Coupling, Flight, Flown, Input, Lent, Output, Segment, Unfolding, Wrench};
+use crate::body::{Coupling, Flight, Input, Lent, Output, Segment, Wrench};
 use crate::guard::Guard;
 use crate::motion::crossing::locate;
-use crate::motion::{Expansion, Sensed, State, Stretch};
-use crate::numerics::polynomial::{Polynomial, Series, TERMS};
-use crate::record::{Attitude, Course, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
+use crate::motion::{Sensed, State};
+use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
@@ -47,13 +48,6 @@ pub struct Exerted {
     pub feedback: f64,
     /// Back-EMF for each unit of the rate (N m s), and whether it is that of the elastic body.
     pub back_emf: (f64, bool),
-}
-
-/// A motion that is taken apart from its departure on.
-enum Unfolded<'a> {
-    Planar(&'a Segment, State),
-    Chain(Flown<'a>),
-    Coupled(Unfolding<'a>),
 }
 
 impl PlanarPlant {
@@ -130,39 +124,6 @@ impl PlanarPlant {
         self.sight
     }
 
-    /// Tells the motion that ends now, stretch by stretch, where the record wants it.
-    pub fn tell_course(
-        &self,
-        now: Instant,
-        exerted: &Exerted,
-        record: &mut impl Record,
-    ) -> Result<(), RecordError> {
-        match record.course() {
-            Course::None => Ok(()),
-            Course::Beyond(band) if self.stays_within(band, now, record)? => Ok(()),
-            _ => self.walk(now, exerted, |stretch| record.stretch(now, stretch)),
-        }
-    }
-
-    /// Whether the angle is certain to stay within so much of 0 on this motion until an instant: as bounds tell, which cost
-    /// next to nothing, or the search for a crossing.
-    ///
-    /// # Errors
-    /// The record ends the search.
-    pub fn stays_within(
-        &self,
-        band: f64,
-        until: Instant,
-        record: &mut impl Record,
-    ) -> Result<bool, RecordError> {
-        let Motion::Planar(arc) = &self.motion else { return Ok(false) };
-        let span = until.since(self.departed);
-        let guards = [Guard::at_least(band), Guard::at_most(-band)];
-        Ok(arc.stays_within(band, span.seconds())
-            || arc.knows_bounds()
-                && locate(arc, &guards, span, &mut self.state.clone(), || record.poll())?.is_none())
-    }
-
     /// Lets someone else compute the motion from now on; none but that of coupled or drifting modes between departures.
     pub fn lend(&mut self) -> Option<Lent> {
         let Motion::Coupled(coupling) = &self.motion else { return None };
@@ -189,127 +150,6 @@ impl PlanarPlant {
     /// When a motion that is computed elsewhere began anew, and its reduced moment (rad/s²); none since this was asked last.
     pub fn departed(&mut self) -> Option<(Instant, f64)> {
         if let Motion::Lent(lent) = &mut self.motion { lent.departed() } else { None }
-    }
-
-    /// Takes the motion apart from an instant to another, not before the first: what is observed, and the rigid angle.
-    pub fn measure(
-        &self,
-        [since, until]: [Instant; 2],
-        exerted: &Exerted,
-        mut take: impl FnMut(&Stretch, &Polynomial),
-    ) {
-        let first = since.max(self.departed).since(self.departed).seconds();
-        let _ = self.pieces(until, |series, h, length| {
-            let late = (first - h).max(0.0);
-            if late < length {
-                let whole = self.observed(series, (h, length), exerted);
-                let rigid = Polynomial::of(&series.coordinates[0], length);
-                let from = late / length;
-                if late > 0.0 {
-                    let part = Stretch {
-                        from: whole.from + late,
-                        length: length - late,
-                        angle: whole.angle.part(from, 1.0),
-                        applied: whole.applied.part(from, 1.0),
-                        ..whole
-                    };
-                    take(&part, &rigid.part(from, 1.0));
-                } else {
-                    take(&whole, &rigid);
-                }
-            }
-            Ok(())
-        });
-    }
-
-    /// Takes the motion apart, from its departure to an instant.
-    pub fn walk(
-        &self,
-        until: Instant,
-        exerted: &Exerted,
-        mut take: impl FnMut(&Stretch) -> Result<(), RecordError>,
-    ) -> Result<(), RecordError> {
-        self.pieces(until, |series, h, length| take(&self.observed(series, (h, length), exerted)))
-    }
-
-    /// The series of the motion from its departure to an instant, each with when it begins after it and how long it is (s).
-    fn pieces(
-        &self,
-        until: Instant,
-        mut take: impl FnMut(&Expansion, f64, f64) -> Result<(), RecordError>,
-    ) -> Result<(), RecordError> {
-        let span = until.since(self.departed).seconds();
-        let mut unfolded = match &self.motion {
-            Motion::Planar(arc) => Unfolded::Planar(arc, self.state.clone()),
-            Motion::Chain(flight) => Unfolded::Chain(flight.unfold()),
-            Motion::Coupled(coupling) => Unfolded::Coupled(coupling.unfold()),
-            Motion::Lent(_) => return Ok(()),
-        };
-        let coordinates = match &self.motion {
-            Motion::Chain(flight) => flight.coordinates(),
-            Motion::Planar(_) | Motion::Coupled(_) | Motion::Lent(_) => self.state.modes.len() + 1,
-        };
-        let mut series = Expansion::new(coordinates);
-        let mut h = 0.0;
-        while h < span {
-            let reach = match &mut unfolded {
-                Unfolded::Planar(arc, state) => arc.expand(h, 0.5 * span, state, &mut series),
-                Unfolded::Chain(flown) => flown.expand(h, 0.5 * span, &mut series),
-                Unfolded::Coupled(unfolding) => unfolding.expand(h, span, &mut series),
-            };
-            // What does not move, or is no number, is one stretch.
-            let next = if reach > 0.0 && h + reach > h { span.min(h + reach) } else { span };
-            take(&series, h, next - h)?;
-            h = next;
-        }
-        Ok(())
-    }
-
-    /// What is observed over a stretch that begins so long after departure and is so long (s).
-    fn observed(&self, series: &Expansion, (after, length): (f64, f64), exerted: &Exerted) -> Stretch {
-        let Expansion { coordinates, command } = series;
-        let add = |sum: &mut Series, weight: f64, of: &Series| {
-            sum.iter_mut().zip(of).for_each(|(sum, c)| *sum += weight * c);
-        };
-        let mut angle = coordinates[0];
-        let shows = match &self.motion {
-            Motion::Planar(arc) => arc.shows_modes(),
-            Motion::Coupled(_) | Motion::Lent(_) => true,
-            Motion::Chain(_) => false,
-        };
-        if shows {
-            coordinates[1..].iter().for_each(|mode| add(&mut angle, 1.0, mode));
-        }
-        let mut applied = *command;
-        applied[0] += exerted.constant;
-        let (back_emf, total) = exerted.back_emf;
-        if back_emf != 0.0 {
-            let felt = if total { &angle } else { &coordinates[0] };
-            for n in 0..TERMS - 1 {
-                applied[n] -= back_emf * (n + 1) as f64 * felt[n + 1];
-            }
-        }
-        let output = |index: usize, output: &Output| {
-            let mut sum = [0.0; TERMS];
-            if let Motion::Chain(_) = &self.motion {
-                // Of a chain, the angles of the sections relative to the hub.
-                add(&mut sum, 1.0, &coordinates[index + 1]);
-                add(&mut sum, -1.0, &coordinates[0]);
-            } else {
-                add(&mut sum, output.rigid.get(), &coordinates[0]);
-                let modes = output.modes.iter().zip(&coordinates[1..]);
-                modes.for_each(|(weight, mode)| add(&mut sum, weight.get(), mode));
-            }
-            Polynomial::of(&sum, length)
-        };
-        Stretch {
-            from: self.departed.seconds() + after,
-            length,
-            angle: Polynomial::of(&angle, length),
-            outputs: self.outputs.iter().enumerate().map(|(index, of)| output(index, of)).collect(),
-            applied: Polynomial::of(&applied, length),
-            feedback: exerted.feedback,
-        }
     }
 
     /// Begins a new motion at the instant seen last.

@@ -4,9 +4,9 @@
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 use super::{Flight, MOST, NEVER, ROWS};
-use crate::batch::relay::clock::Clock;
-use crate::batch::relay::crew::{Crew, Setup, Sight};
-use crate::batch::relay::track::Track;
+use crate::flight::clock::Clock;
+use crate::flight::crew::{Crew, Setup, Sight};
+use crate::flight::track::Track;
 use crate::lanes::Real;
 use crate::motion::guess::Oscillator;
 

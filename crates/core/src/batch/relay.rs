@@ -1,33 +1,24 @@
-//! Runs of the relay law about a body of undamped modes: motions, crossings and envelopes in lanes, windows' ends and metrics one by
-//! one.
-
-mod clock;
-pub mod crew;
-pub mod flight;
-mod track;
+//! Relay runs side by side: flights in lanes, windows' ends and metrics one by one.
 
 #[cfg(test)]
 mod tests;
 
 use super::{Batch, Job};
-use crate::adaptation::Adaptation;
-use crate::body::{Drive, Input, Mode, Planar, Segment};
-use crate::estimator::{Estimator, Form, Monitor};
+use crate::body::{Input, Segment};
+use crate::estimator::Monitor;
+use crate::flight::{
+    Crew, Flight, MOST, Place, Searched, Setup, Sight, flies, instant, phase, see, setup, watched,
+};
 use crate::guard::Guard;
 use crate::lanes::{Processor, Real, Work};
-use crate::law::{Law, Phase, Relay, Sides};
+use crate::law::Phase;
 use crate::metrics::{Gather, Metrics};
+use crate::motion::State;
 use crate::motion::crossing::locate;
-use crate::motion::{self, State};
-use crate::numerics::trig::FARTHEST;
 use crate::random::Seed;
 use crate::record::{self, Command, Course, Record, Sample, Trigger};
 use crate::scenario::Scenario;
-use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
-
-use crew::{Crew, Place, Searched, Setup, Sight};
-use flight::Flight;
 
 /// Runs that share the lanes of one flight, one after the other.
 const RUNS: usize = 64;
@@ -43,7 +34,7 @@ impl Batch for Side {
     }
 
     fn takes(&self, scenario: &Scenario) -> bool {
-        scenario.duration.seconds() <= LONGEST && law(scenario).is_some_and(|law| suits(scenario, law))
+        scenario.duration.seconds() <= LONGEST && flies(scenario).is_some()
     }
 
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
@@ -51,46 +42,6 @@ impl Batch for Side {
         processor.run::<1, _>(&mut runs);
         runs.found
     }
-}
-
-fn law(scenario: &Scenario) -> Option<&Relay> {
-    if let Law::Relay(law) = &scenario.law { Some(law) } else { None }
-}
-
-/// The modes of the envelope's model; none without one.
-fn watched(scenario: &Scenario) -> &[Mode] {
-    let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
-    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or(&scenario.model.modes))
-}
-
-/// Whether nothing but the law moves the body, in closed form, and nothing but the envelope is estimated.
-fn suits(scenario: &Scenario, law: &Relay) -> bool {
-    let model = &scenario.model;
-    let is_simple = scenario.axis_count() == 1
-        && model.drive == Drive::Torque
-        && scenario.linear.is_none()
-        && scenario.chain.is_none()
-        && scenario.drift.is_none()
-        && scenario.plan.is_none()
-        && scenario.disturbance.is_empty()
-        && scenario.environment.is_none()
-        && scenario.study.sampling.is_none()
-        && scenario.actuator.is_ideal()
-        && scenario.sensor.iter().all(|sensor| matches!(sensor, Sensor::Continuous));
-    let observes = scenario
-        .estimator
-        .as_ref()
-        .is_none_or(|estimator| estimator.envelope().is_some_and(|envelope| envelope.form == Form::Dynamic));
-    let learns = scenario.adaptation.as_ref().is_none_or(
-        |adaptation| matches!(adaptation, Adaptation::RandomSearch(search) if search.tunes == "k_t" && search.objective.is_default()),
-    );
-    let duration = scenario.duration.seconds();
-    let modes = model.modes.iter().chain(watched(scenario));
-    let are_exact =
-        modes.clone().all(|mode| mode.damping.get() == 0.0 && mode.frequency.get() * duration < FARTHEST);
-    let begins = model.start().angle().abs() < law.dead_zone.get();
-    let has_band = scenario.promise().band(f64::NAN) > 0.0;
-    is_simple && observes && learns && are_exact && begins && has_band && law.sides == Sides::Two
 }
 
 /// Some runs, and what is known of those in the lanes.
@@ -120,7 +71,7 @@ struct Lane<'a> {
 
 impl<'a> Runs<'a> {
     fn new(jobs: &'a [Job<'a>]) -> Self {
-        let lanes = (0..flight::MOST).map(|_| None).collect();
+        let lanes = (0..MOST).map(|_| None).collect();
         let found = vec![None; jobs.len()];
         Self { jobs, next: 0, lanes, found, listens: false, looks: false }
     }
@@ -143,18 +94,6 @@ impl Work for &mut Runs<'_> {
     }
 }
 
-/// The state of the law at a place of the cycle.
-pub fn phase(place: Place, side: f64) -> Phase {
-    match (place, side > 0.0) {
-        (Place::Coast, true) => Phase::WeakRight,
-        (Place::Coast, false) => Phase::WeakLeft,
-        (Place::Push, true) => Phase::RightPush,
-        (Place::Push, false) => Phase::LeftPush,
-        (Place::Brake, true) => Phase::RightBrake,
-        (Place::Brake, false) => Phase::LeftBrake,
-    }
-}
-
 impl Lane<'_> {
     /// Departs from what was seen, on the motion of a place.
     fn depart(&mut self, place: Place, from: &Sight) {
@@ -162,18 +101,6 @@ impl Lane<'_> {
         let constant = self.setup.torque(place, from.side);
         self.segment.depart(&self.state, &Input { constant, waveform: None });
     }
-}
-
-/// Takes a sight over.
-pub fn see(state: &mut State, sight: &Sight) {
-    (state.rigid_angle, state.rigid_rate) = (sight.angle, sight.rate);
-    for (phase, [displacement, quadrature]) in state.modes.iter_mut().zip(&sight.modes) {
-        *phase = motion::Phase { displacement: *displacement, quadrature: *quadrature };
-    }
-}
-
-fn instant((whole, part): (u64, u64)) -> Instant {
-    Instant::of_parts(whole, part)
 }
 
 impl Crew for Runs<'_> {
@@ -192,7 +119,7 @@ impl Crew for Runs<'_> {
         }
         while let Some(job) = self.jobs.get(self.next) {
             self.next += 1;
-            let Some(law) = law(job.scenario) else { continue };
+            let Some(law) = flies(job.scenario) else { continue };
             if Self::structure(job.scenario) != Self::structure(self.jobs[0].scenario) {
                 continue;
             }
@@ -291,37 +218,5 @@ impl Crew for Runs<'_> {
 
     fn band(&self, lane: usize) -> f64 {
         self.lanes[lane].as_ref().map_or(1.0, |lane| lane.scenario.promise().band(1.0))
-    }
-}
-
-/// A run at its start, for a flight of its own; none of a run that has to be simulated otherwise.
-pub fn alone(scenario: &Scenario) -> Option<Setup> {
-    let law = law(scenario).filter(|law| suits(scenario, law))?;
-    // A mode that nothing excites may come out of the mirror with zeros of another sign.
-    let mut modes = scenario.model.modes.iter().chain(watched(scenario));
-    modes.all(|mode| mode.gain.get() != 0.0).then(|| setup(scenario, &scenario.model, law))
-}
-
-/// A run at its start.
-fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
-    let mobility = 1.0 / model.commanded_inertia();
-    let of = |mode: &Mode| {
-        let phase = mode.start();
-        [mode.frequency.get(), mode.excitability(), phase.displacement, phase.quadrature]
-    };
-    let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
-    Setup {
-        angle: model.angle.get(),
-        rate: model.rate.get(),
-        modes: model.modes.iter().map(of).collect(),
-        tracks: watched(scenario).iter().map(of).collect(),
-        edge: law.dead_zone.get(),
-        back: law.dead_zone.get() - law.hysteresis.get(),
-        torques: [law.strong.get(), law.weak.get()],
-        strong: law.strong.get() * mobility,
-        weak: law.weak.get() * mobility,
-        k_t: law.k_t.get(),
-        end: (Instant::START + scenario.duration).parts(),
-        window: envelope.map(|envelope| (Instant::START + envelope.window).parts()),
     }
 }

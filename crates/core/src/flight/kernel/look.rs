@@ -4,8 +4,8 @@
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 use super::Flight;
-use crate::batch::relay::clock::Clock;
-use crate::batch::relay::crew::{Crew, Place, Rest};
+use crate::flight::clock::Clock;
+use crate::flight::crew::{Crew, Place, Rest};
 use crate::lanes::{Mask, Real};
 
 impl<R: Real> Flight<R> {

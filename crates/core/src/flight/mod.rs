@@ -1,0 +1,118 @@
+//! Flights: runs of the relay law about a body of undamped modes, with motions, crossings and envelopes in lanes, or one alone.
+
+mod clock;
+mod crew;
+mod kernel;
+mod track;
+
+use crate::adaptation::Adaptation;
+use crate::body::{Drive, Mode, Planar};
+use crate::estimator::{Estimator, Form};
+use crate::law::{Law, Phase, Relay, Sides};
+use crate::motion::{self, State};
+use crate::numerics::trig::FARTHEST;
+use crate::scenario::Scenario;
+use crate::sensor::Sensor;
+use crate::time::Instant;
+
+pub use crew::{Crew, Place, Rest, Searched, Setup, Sight};
+pub use kernel::{Flight, MOST};
+
+/// The law of a scenario whose runs can fly.
+pub fn flies(scenario: &Scenario) -> Option<&Relay> {
+    let Law::Relay(law) = &scenario.law else { return None };
+    suits(scenario, law).then_some(law)
+}
+
+/// The modes of the envelope's model; none without one.
+pub fn watched(scenario: &Scenario) -> &[Mode] {
+    let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
+    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or(&scenario.model.modes))
+}
+
+/// Whether nothing but the law moves the body, in closed form, and nothing but the envelope is estimated.
+fn suits(scenario: &Scenario, law: &Relay) -> bool {
+    let model = &scenario.model;
+    let is_simple = scenario.axis_count() == 1
+        && model.drive == Drive::Torque
+        && scenario.linear.is_none()
+        && scenario.chain.is_none()
+        && scenario.drift.is_none()
+        && scenario.plan.is_none()
+        && scenario.disturbance.is_empty()
+        && scenario.environment.is_none()
+        && scenario.study.sampling.is_none()
+        && scenario.actuator.is_ideal()
+        && scenario.sensor.iter().all(|sensor| matches!(sensor, Sensor::Continuous));
+    let observes = scenario
+        .estimator
+        .as_ref()
+        .is_none_or(|estimator| estimator.envelope().is_some_and(|envelope| envelope.form == Form::Dynamic));
+    let learns = scenario.adaptation.as_ref().is_none_or(
+        |adaptation| matches!(adaptation, Adaptation::RandomSearch(search) if search.tunes == "k_t" && search.objective.is_default()),
+    );
+    let duration = scenario.duration.seconds();
+    let modes = model.modes.iter().chain(watched(scenario));
+    let are_exact =
+        modes.clone().all(|mode| mode.damping.get() == 0.0 && mode.frequency.get() * duration < FARTHEST);
+    let begins = model.start().angle().abs() < law.dead_zone.get();
+    let has_band = scenario.promise().band(f64::NAN) > 0.0;
+    is_simple && observes && learns && are_exact && begins && has_band && law.sides == Sides::Two
+}
+
+/// A run at its start, for a flight of its own; none of a run that has to be simulated otherwise.
+pub fn alone(scenario: &Scenario) -> Option<Setup> {
+    let law = flies(scenario)?;
+    // A mode that nothing excites may come out of the mirror with zeros of another sign.
+    let mut modes = scenario.model.modes.iter().chain(watched(scenario));
+    modes.all(|mode| mode.gain.get() != 0.0).then(|| setup(scenario, &scenario.model, law))
+}
+
+/// A run at its start.
+pub fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
+    let mobility = 1.0 / model.commanded_inertia();
+    let of = |mode: &Mode| {
+        let phase = mode.start();
+        [mode.frequency.get(), mode.excitability(), phase.displacement, phase.quadrature]
+    };
+    let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
+    Setup {
+        angle: model.angle.get(),
+        rate: model.rate.get(),
+        modes: model.modes.iter().map(of).collect(),
+        tracks: watched(scenario).iter().map(of).collect(),
+        edge: law.dead_zone.get(),
+        back: law.dead_zone.get() - law.hysteresis.get(),
+        torques: [law.strong.get(), law.weak.get()],
+        strong: law.strong.get() * mobility,
+        weak: law.weak.get() * mobility,
+        k_t: law.k_t.get(),
+        end: (Instant::START + scenario.duration).parts(),
+        window: envelope.map(|envelope| (Instant::START + envelope.window).parts()),
+    }
+}
+
+/// The state of the law at a place of the cycle.
+pub fn phase(place: Place, side: f64) -> Phase {
+    match (place, side > 0.0) {
+        (Place::Coast, true) => Phase::WeakRight,
+        (Place::Coast, false) => Phase::WeakLeft,
+        (Place::Push, true) => Phase::RightPush,
+        (Place::Push, false) => Phase::LeftPush,
+        (Place::Brake, true) => Phase::RightBrake,
+        (Place::Brake, false) => Phase::LeftBrake,
+    }
+}
+
+/// Takes a sight over.
+pub fn see(state: &mut State, sight: &Sight) {
+    (state.rigid_angle, state.rigid_rate) = (sight.angle, sight.rate);
+    for (phase, [displacement, quadrature]) in state.modes.iter_mut().zip(&sight.modes) {
+        *phase = motion::Phase { displacement: *displacement, quadrature: *quadrature };
+    }
+}
+
+/// An instant of whole seconds and ticks.
+pub fn instant((whole, part): (u64, u64)) -> Instant {
+    Instant::of_parts(whole, part)
+}
