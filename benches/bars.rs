@@ -3,6 +3,8 @@
 //! `cargo bench -p flexsc-bench --bench bars -- 9 'one run'` prints the table; both arguments may be left out: the number of passes,
 //! and a part of the names of the kinds beside the yardstick.
 
+#![allow(clippy::print_stdout, reason = "it prints a table")]
+
 #[allow(dead_code, reason = "the other benchmark has the rest")]
 mod reference;
 
@@ -85,7 +87,7 @@ impl<'a> Kinds<'a> {
 }
 
 fn main() {
-    let passes = std::env::args().filter_map(|argument| argument.parse().ok()).next().unwrap_or(7);
+    let passes = std::env::args().find_map(|argument| argument.parse().ok()).unwrap_or(7);
     let windows = format!("{EVENTS}{WINDOWS}");
     let (start, rest) = EVENTS.split_once("modes = [\n").expect("modes");
     let damped = format!("{start}modes = [\n{DAMPED}]{}", rest.split_once(']').expect("modes").1);
@@ -109,7 +111,7 @@ fn main() {
         Box::new(|| {
             (0..8).for_each(|_| {
                 black_box(reference::exact(black_box(0.3389), 20_000.0));
-            })
+            });
         }),
     );
     for ((name, _), run) in texts.iter().zip(&one) {
@@ -119,7 +121,7 @@ fn main() {
             Box::new(move || {
                 (0..8).for_each(|_| {
                     Simulation::new(black_box(&run.scenario), 0).run(&mut ()).expect("a run");
-                })
+                });
             }),
         );
         kinds.add(
@@ -128,7 +130,7 @@ fn main() {
             Box::new(move || {
                 (0..8).for_each(|_| {
                     black_box(Campaign::simulate(black_box(run), ()).expect("a run"));
-                })
+                });
             }),
         );
     }
@@ -138,7 +140,7 @@ fn main() {
         Box::new(|| {
             gains().for_each(|k_t| {
                 black_box(reference::exact(black_box(k_t), 20_000.0));
-            })
+            });
         }),
     );
     for ((name, _), runs) in texts.iter().zip(&many) {

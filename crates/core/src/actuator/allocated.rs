@@ -125,9 +125,8 @@ impl Allocated {
     fn wanted(&self) -> Vector {
         let about = |axis: usize| match self.demands[axis] {
             Demand::Torque(torque) => torque * self.period.seconds(),
-            Demand::Change(0.0) => 0.0,
+            Demand::Change(0.0) | Demand::Moment(_) => 0.0,
             Demand::Change(change) => change * self.inertia[axis],
-            Demand::Moment(_) => 0.0,
         };
         Vector::from_fn(|axis, _| about(axis))
     }

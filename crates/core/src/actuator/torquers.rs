@@ -154,7 +154,9 @@ impl Actuate for Torquers {
 
     fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
         for (actuator, rate) in self.0.iter_mut().zip(rigid) {
-            actuator.iter_mut().for_each(|(actuator, _)| actuator.serve(now, rate));
+            if let Some((actuator, _)) = actuator {
+                actuator.serve(now, rate);
+            }
         }
     }
 

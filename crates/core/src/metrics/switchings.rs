@@ -38,8 +38,15 @@ pub struct Switchings {
     reduced: bool,
     goal: Goal,
     verdict: Verdict,
-    /// Whether the cycle and the verdict are wanted, and what switchings come to otherwise.
-    wants: (bool, bool),
+    wanted: Wanted,
+}
+
+/// What of these metrics is wanted.
+#[derive(Copy, Clone, Debug)]
+struct Wanted {
+    cycle: bool,
+    verdict: bool,
+    /// What switchings come to otherwise.
     counts: bool,
 }
 
@@ -81,8 +88,11 @@ impl Switchings {
             reduced: scenario.model.commands_acceleration(),
             goal: scenario.goal(),
             verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
-            wants: (selection.wants_any(OF_CYCLE), selection.wants_any(goal::TOLD)),
-            counts: selection.wants_any(COUNTED),
+            wanted: Wanted {
+                cycle: selection.wants_any(OF_CYCLE),
+                verdict: selection.wants_any(goal::TOLD),
+                counts: selection.wants_any(COUNTED),
+            },
         }
     }
 
@@ -163,11 +173,11 @@ fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<Told> {
 
 impl Record for Switchings {
     fn switchings(&self) -> bool {
-        self.counts || self.wants.0
+        self.wanted.counts || self.wanted.cycle
     }
 
     fn course(&self) -> Course {
-        if !self.wants.1 {
+        if !self.wanted.verdict {
             return Course::None;
         }
         // About a goal that is 0 from the start on, bounds of the angle show most motions to be inside.
@@ -192,7 +202,7 @@ impl Record for Switchings {
             Sample::Switching(command, _) => {
                 self.count += 1;
                 self.enter(now, command.state, command.torque_nm);
-                if self.wants.0 {
+                if self.wanted.cycle {
                     self.cycle.record(now, sample)?;
                 }
             }

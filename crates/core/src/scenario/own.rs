@@ -100,7 +100,10 @@ impl Scenario {
         let there = match table.get_mut(role) {
             Some(Value::Array(parts)) => &mut parts[place],
             Some(part) => part,
-            None => return Ok(drop(table.insert(role.to_owned(), Value::String(word.to_owned())))),
+            None => {
+                table.insert(role.to_owned(), Value::String(word.to_owned()));
+                return Ok(());
+            }
         };
         let task = |(key, _): &(&String, &Value)| ["axes", "share", "unloads"].contains(&key.as_str());
         let kept: Table = there
