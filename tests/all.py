@@ -239,18 +239,18 @@ def python_and_around() -> str:
 
 
 STEPS = [
-    Step("form of the code: rustfmt, ruff, spelling", 15, form, quick=True),
+    Step("form of the code: rustfmt, ruff, spelling", 10, form, quick=True),
     Step("licences, sources and duplicates of all crates", 5, crates, quick=True),
-    Step("clippy of everything", 200, lint),
-    Step("clippy of the light build", 60, lint_light),
-    Step("building the command, the tests and the fuzzer", 560, build),
-    Step("Rust tests", 150, rust),
-    Step("docs/papers.md is what the program computes", 20, papers),
-    Step("fuzzing", 50, fuzz),
-    Step("the wheel", 65, wheel),
+    Step("clippy of everything", 110, lint),
+    Step("clippy of the light build", 35, lint_light),
+    Step("building the command, the tests and the fuzzer", 345, build),
+    Step("Rust tests", 120, rust),
+    Step("docs/papers.md is what the program computes", 15, papers),
+    Step("fuzzing", 40, fuzz),
+    Step("the wheel", 40, wheel),
     Step(
         "Python tests; the wheel with an extra, with pyNastran, and the documentation site",
-        200,
+        130,
         python_and_around,
     ),
 ]
