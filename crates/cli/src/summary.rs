@@ -33,10 +33,11 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
 fn spatial(metrics: &Metrics, bends: bool) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     // Other actuators use none.
-    if number("fuel_kg").is_finite() {
+    let fuel = number("fuel_kg");
+    if fuel.is_finite() {
+        let fuel = if 0.0 < fuel && fuel < 0.1 { format!("{fuel:.2e}") } else { format!("{fuel:.3}") };
         say!(
-            "  jets           {:.3} kg of propellant, {} in {}",
-            number("fuel_kg"),
+            "  jets           {fuel} kg of propellant, {} in {}",
             counted(number("firings"), "pulse"),
             counted(number("firing_cycles"), "cycle"),
         );
