@@ -11,6 +11,7 @@ fn examples(dir: &Dir, verb: &str) -> Vec<String> {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn every_example_of_the_help_works() {
     let dir = Dir::new();
     for entry in std::fs::read_dir(SCENARIOS).expect("shipped").flatten() {

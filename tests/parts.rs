@@ -24,6 +24,7 @@ fn numbers(path: &Path, name: &str) -> Vec<f64> {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn a_campaign_is_a_directory_of_parts() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     dir.run("simulate u.toml --runs 600 -o out").exits(0).says(&["600 runs", "table          out"]);
@@ -56,6 +57,7 @@ fn a_campaign_is_a_directory_of_parts() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn threads_and_wishes_change_no_row() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     dir.run("simulate u.toml --runs 300 -o one --jobs 1").exits(0);
@@ -81,6 +83,7 @@ fn threads_and_wishes_change_no_row() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn what_does_not_fit_changes_nothing() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     dir.run("simulate u.toml --runs 20 -o out").exits(0);
@@ -116,6 +119,7 @@ fn what_does_not_fit_changes_nothing() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn a_run_that_fails_is_a_row() {
     let wide = UNCERTAIN.replace("{ uniform = [0.3, 0.32] }", "{ normal = { mean = 0.31, sd = 0.3 } }");
     let dir = Dir::holding("u.toml", wide);
@@ -136,6 +140,7 @@ fn a_run_that_fails_is_a_row() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn any_row_is_run_again_with_its_log() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     dir.run("simulate u.toml --runs 30 --sample sobol --replicas 3 -o out").exits(0);
@@ -164,6 +169,7 @@ fn any_row_is_run_again_with_its_log() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn parts_of_several_machines_are_merged() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     for (part, runs) in [("a", "0:300"), ("b", "300:400"), ("c", "400:1000"), ("all", "0:1000")] {
@@ -197,6 +203,7 @@ fn parts_of_several_machines_are_merged() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn designs_have_lists_tables_ranges_and_replicas() {
     let dir = Dir::with(&["relay-fixed"]);
     let sweep = "sweep relay-fixed.toml --set duration=50 -o";
@@ -248,6 +255,7 @@ fn designs_have_lists_tables_ranges_and_replicas() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn uncertain_keys_are_drawn_together_and_evenly() {
     let together = "[[correlated]]\nkeys = [\"law.relay.k_t\", \"body.planar.rate\"]\nmatrix = [[1.0, 0.9], [0.9, 1.0]]\n";
     let dir = Dir::holding("u.toml", UNCERTAIN);
@@ -284,6 +292,7 @@ fn uncertain_keys_are_drawn_together_and_evenly() {
 
 #[cfg(unix)]
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn a_full_disk_leaves_whole_parts() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     let ran = dir.run_within(10, "simulate u.toml --runs 2000 --set duration=1 -o out").exits(1);
