@@ -258,8 +258,8 @@ QUICK = [
     *(step for step in STEPS if step.quick),
     Step("Rust tests of the light build", 150, rust_light),
 ]
-LEFT_OUT = """left out: clippy, the features `matrices`, `papers` and `png` with their tests, docs/papers.md,
-the fuzzer, the wheel, the Python tests and the documentation site"""
+LEFT_OUT = """left out: clippy, the features `matrices`, `papers`, `parquet` and `png` with their tests,
+docs/papers.md, the fuzzer, the wheel, the Python tests and the documentation site"""
 
 
 def perform(steps: Sequence[Step]) -> None:
