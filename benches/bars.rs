@@ -16,26 +16,7 @@ use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
 use flexsc_core::{Scenario, Simulation};
-
-/// \[Silaev\]'s case, without its observer.
-const EVENTS: &str = r"
-duration = 20000.0
-[body.planar]
-angle = 4.5e-4
-rate = 2.2e-5
-modes = [
-    { frequency = 0.44, gain = 0.0213, displacement = 2.75e-6 },
-    { frequency = 0.755, gain = 0.0216 },
-]
-[law.relay]
-dead_zone = 5e-4
-hysteresis = 1e-4
-strong = 4e-5
-weak = 1e-6
-k_t = 0.3389
-";
-
-const WINDOWS: &str = "[estimator.envelope]\nwindow = 500.0\n";
+use reference::{EVENTS, WINDOWS};
 
 /// Five modes with damping.
 const DAMPED: &str = "    { frequency = 0.44, gain = 0.0213, damping = 0.002, displacement = 2.75e-6 },

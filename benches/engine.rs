@@ -20,30 +20,11 @@ use flexsc_core::record::{Detail, McapLog, Record, RunEnd, Trace};
 use flexsc_core::structure::{Hub, Structure};
 use flexsc_core::{Scenario, Simulation};
 use nalgebra::DMatrix;
-
-/// relay-quiet without its observer: switchings alone.
-const EVENTS: &str = r"
-duration = 20000.0
-[body.planar]
-angle = 4.5e-4
-rate = 2.2e-5
-modes = [
-    { frequency = 0.44, gain = 0.0213, displacement = 2.75e-6 },
-    { frequency = 0.755, gain = 0.0216 },
-]
-[law.relay]
-dead_zone = 5e-4
-hysteresis = 1e-4
-strong = 4e-5
-weak = 1e-6
-k_t = 0.3389
-";
+use reference::{EVENTS, WINDOWS};
 
 /// The body of \[Wheel11, Sukhanov\], with four modes.
 const MODES: &str = "duration = 1.0\n[law.open]\n[body.planar]\nangle = 0.01\nmodes = [{ frequency = 0.3, gain = 1.44 }, \
                      { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
-
-const WINDOWS: &str = "[estimator.envelope]\nwindow = 500.0\n";
 
 fn scenario(text: &str) -> Scenario {
     Scenario::parse("bench.toml", text).expect("a valid scenario")

@@ -6,6 +6,27 @@
 #![allow(clippy::disallowed_methods, reason = "the yardstick may use the platform's fastest sine")]
 #![allow(clippy::needless_range_loop, reason = "indices keep the modes' arrays in step")]
 
+/// The same case as a scenario: relay-quiet without its observer, switchings alone.
+pub const EVENTS: &str = r"
+duration = 20000.0
+[body.planar]
+angle = 4.5e-4
+rate = 2.2e-5
+modes = [
+    { frequency = 0.44, gain = 0.0213, displacement = 2.75e-6 },
+    { frequency = 0.755, gain = 0.0216 },
+]
+[law.relay]
+dead_zone = 5e-4
+hysteresis = 1e-4
+strong = 4e-5
+weak = 1e-6
+k_t = 0.3389
+";
+
+/// Its observer, with 40 window means.
+pub const WINDOWS: &str = "[estimator.envelope]\nwindow = 500.0\n";
+
 const W: [f64; 2] = [0.44, 0.755];
 const K: [f64; 2] = [0.0213, 0.0216];
 const EPS: f64 = 5e-4;

@@ -204,8 +204,8 @@ fn an_actuator_from_outside_has_a_place_in_a_list() {
 /// Actuators of a body with one angle or three axes, and words of the one error.
 #[rustfmt::skip] // One case a line.
 const BAD: &[(&str, &str, &[&str])] = &[
-    (ONE_ANGLE, "[[actuator]]\nideal = {}\nshare = 0.4\n[[actuator]]\nwheel = { gain = 1.0 }\nshare = 0.5\n", &["`actuator[1].share` must make 1 with the others, got 0.9: 0.4 of `actuator[0].ideal`, 0.5 of `actuator[1].wheel`"]),
-    (ONE_ANGLE, "[[actuator]]\nideal = {}\n[[actuator]]\nhold = { period = 1.0 }\n", &["`actuator[1].share` must make 1 with the others, got 2"]),
+    (ONE_ANGLE, "[[actuator]]\nideal = {}\nshare = 0.4\n[[actuator]]\nwheel = { gain = 1.0 }\nshare = 0.5\n", &["`actuator[1].share` must sum to 1 with the others, got 0.9 (0.4 of `actuator[0].ideal`, 0.5 of `actuator[1].wheel`)"]),
+    (ONE_ANGLE, "[[actuator]]\nideal = {}\n[[actuator]]\nhold = { period = 1.0 }\n", &["`actuator[1].share` must sum to 1 with the others, got 2"]),
     (ONE_ANGLE, "[[actuator]]\nideal = {}\nshare = 1.5\n", &["`actuator[0].share`", "must be a number above 0 and at most 1, got 1.5"]),
     (ONE_ANGLE, "[[actuator]]\nideal = {}\naxes = [\"yaw\"]\n", &["`actuator[0].axes` names axes of three, and the body has one angle"]),
     (ONE_ANGLE, "[[actuator]]\nideal = {}\nhold = { period = 1.0 }\n", &["`actuator[0]`: exactly one kind is accepted here, and more than one is given: `ideal`, `hold`; several are a list, [[actuator]]"]),
@@ -218,7 +218,7 @@ const BAD: &[(&str, &str, &[&str])] = &[
     (THREE_AXES, "[[actuator]]\nideal = {}\naxes = []\n", &["`actuator[0].axes` must name an axis"]),
     (THREE_AXES, "[[actuator]]\nideal = {}\naxes = [\"yaw\", \"yaw\"]\n", &["`actuator[0].axes` names `yaw` twice"]),
     (THREE_AXES, "[[actuator]]\nideal = {}\naxes = [\"gier\"]\n", &["`actuator[0].axes[0]`", "`gier`", "`yaw`"]),
-    (THREE_AXES, "[[actuator]]\nideal = {}\nshare = 0.7\n[[actuator]]\nwheels = { arrangement = \"orthogonal\", inertia = 0.02 }\nshare = 0.4\n", &["`actuator[1].share` must make 1 with the others about roll, got 1.1"]),
+    (THREE_AXES, "[[actuator]]\nideal = {}\nshare = 0.7\n[[actuator]]\nwheels = { arrangement = \"orthogonal\", inertia = 0.02 }\nshare = 0.4\n", &["`actuator[1].share` must sum to 1 with the others about roll, got 1.1"]),
     (THREE_AXES, "[[actuator]]\nwheels = { arrangement = \"orthogonal\", inertia = 0.02 }\nshare = 0.5\n[[actuator]]\nwheels = { arrangement = \"pyramid\", inertia = 0.02 }\nshare = 0.5\n", &["`actuator[1].wheels` are there already, as `actuator[0].wheels`: write all wheels in one `wheels`, by their `axes`"]),
     (THREE_AXES, "[[actuator]]\nideal = {}\n[[actuator]]\nhold = { period = 1.0 }\nunloads = { above = 1.0, below = 0.1, torque = 1.0 }\n", &["`actuator[1].unloads` is for `jets` or `magnetorquers`, which can unload `wheels`, got `hold`"]),
     (THREE_AXES, "[[actuator]]\nideal = {}\n[[actuator]]\njets = { period = 1.0, specific_impulse = 200.0, thrusters = [] }\nunloads = { above = 1.0, below = 0.1, torque = 1.0 }\n", &["`actuator[1].unloads` needs `wheels` in the list"]),

@@ -44,7 +44,7 @@ def test_typed_parts_make_a_list() -> None:
     assert scenario.to_dict()["actuator"][1]["share"] == 0.75
     assert scenario.with_("actuator[0].share", 0.25) == scenario
     with pytest.raises(
-        flexsc.ScenarioError, match=r"`actuator\[1\].share` must make 1 with the others, got 1.5"
+        flexsc.ScenarioError, match=r"`actuator\[1\].share` must sum to 1 with the others, got 1.5"
     ):
         scenario.with_("actuator[0].share", 0.75)
     spatial = flexsc.Scenario(

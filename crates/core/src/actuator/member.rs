@@ -63,7 +63,7 @@ impl Parts<Assigned> {
     pub fn members(&self) -> Vec<Member<'_>> {
         let mut members = Vec::with_capacity(self.len());
         for (index, assigned) in self.iter().enumerate() {
-            let key = format!("{}.{}", self.key("actuator", index), assigned.kind.kind());
+            let key = self.kind_key(index);
             let share = assigned.share.map_or(1.0, Share::get);
             let serves = |axis: usize| {
                 assigned.axes.as_ref().is_none_or(|axes| axes.iter().any(|own| own.index() == axis))
@@ -80,6 +80,11 @@ impl Parts<Assigned> {
             members.extend(within);
         }
         members
+    }
+
+    /// The key of one of them, with its kind.
+    fn kind_key(&self, index: usize) -> String {
+        format!("{}.{}", self.key("actuator", index), self[index].kind.kind())
     }
 
     /// The only actuator, if there are no others and it executes all that is demanded.
@@ -102,10 +107,9 @@ impl Parts<Assigned> {
 
     /// The first of a kind, and its key.
     fn first<'a, T>(&'a self, of: impl Fn(&'a Actuator) -> Option<T>) -> Option<(T, String)> {
-        self.iter().enumerate().find_map(|(index, assigned)| {
-            let key = format!("{}.{}", self.key("actuator", index), assigned.kind.kind());
-            Some((of(&assigned.kind)?, key))
-        })
+        self.iter()
+            .enumerate()
+            .find_map(|(index, assigned)| Some((of(&assigned.kind)?, self.kind_key(index))))
     }
 
     /// The flywheel about the first axis, and its key.

@@ -12,7 +12,6 @@ use crate::law::{Law, Phase, Relay, Sides};
 use crate::motion::{self, State};
 use crate::numerics::trig::FARTHEST;
 use crate::scenario::Scenario;
-use crate::sensor::Sensor;
 use crate::time::Instant;
 
 pub use crew::{Crew, Place, Rest, Searched, Setup, Sight};
@@ -30,20 +29,9 @@ pub fn watched(scenario: &Scenario) -> &[Mode] {
     envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or(&scenario.model.modes))
 }
 
-/// Whether nothing but the law moves the body, in closed form, and nothing but the envelope is estimated.
+/// Whether the law alone moves the body, whose modes are undamped, and nothing but the envelope is estimated.
 fn suits(scenario: &Scenario, law: &Relay) -> bool {
     let model = &scenario.model;
-    let is_simple = scenario.axis_count() == 1
-        && model.drive == Drive::Torque
-        && scenario.linear.is_none()
-        && scenario.chain.is_none()
-        && scenario.drift.is_none()
-        && scenario.plan.is_none()
-        && scenario.disturbance.is_empty()
-        && scenario.environment.is_none()
-        && scenario.study.sampling.is_none()
-        && scenario.actuator.is_ideal()
-        && scenario.sensor.iter().all(|sensor| matches!(sensor, Sensor::Continuous));
     let observes = scenario
         .estimator
         .as_ref()
@@ -57,7 +45,14 @@ fn suits(scenario: &Scenario, law: &Relay) -> bool {
         modes.clone().all(|mode| mode.damping.get() == 0.0 && mode.frequency.get() * duration < FARTHEST);
     let begins = model.start().angle().abs() < law.dead_zone.get();
     let has_band = scenario.promise().band(f64::NAN) > 0.0;
-    is_simple && observes && learns && are_exact && begins && has_band && law.sides == Sides::Two
+    scenario.is_plain()
+        && model.drive == Drive::Torque
+        && observes
+        && learns
+        && are_exact
+        && begins
+        && has_band
+        && law.sides == Sides::Two
 }
 
 /// A run at its start, for a flight of its own; none of a run that has to be simulated otherwise.

@@ -125,7 +125,7 @@ impl Scenario {
             if (sum - 1.0).abs() > ROUNDING {
                 let each: Vec<String> =
                     serving.iter().map(|of| format!("{} of `{}`", of.share(axis), of.key)).collect();
-                let why = format!("must make 1 with the others{about}, got {sum}: {}", each.join(", "));
+                let why = format!("must sum to 1 with the others{about}, got {sum} ({})", each.join(", "));
                 let key = last.key.rsplit_once('.').map_or("actuator", |(entry, _)| entry);
                 return Some(Fault::new(format!("{key}.share"), why));
             }

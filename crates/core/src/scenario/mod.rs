@@ -15,6 +15,7 @@ mod learning;
 mod log;
 mod own;
 mod parts;
+mod plain;
 mod reference;
 mod sensing;
 mod sky;

@@ -11,7 +11,6 @@ use crate::flight::{self, Setup};
 use crate::law::{Command, Event};
 use crate::record::Record;
 use crate::scenario::Scenario;
-use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
 
 /// Which quicker loops suit a run.
@@ -33,18 +32,7 @@ impl Quick {
 /// Whether runs of a scenario are plain.
 fn is_plain(scenario: &Scenario) -> bool {
     let observes = |estimator: &Estimator| estimator.envelope().is_some();
-    scenario.axis_count() == 1
-        && scenario.linear.is_none()
-        && scenario.chain.is_none()
-        && scenario.drift.is_none()
-        && scenario.plan.is_none()
-        && scenario.disturbance.is_empty()
-        && scenario.environment.is_none()
-        && scenario.study.sampling.is_none()
-        && scenario.actuator.is_ideal()
-        && !scenario.has_own_parts()
-        && scenario.sensor.iter().all(|sensor| matches!(sensor, Sensor::Continuous))
-        && scenario.estimator.as_ref().is_none_or(observes)
+    scenario.is_plain() && !scenario.has_own_parts() && scenario.estimator.as_ref().is_none_or(observes)
 }
 
 impl Simulation {

@@ -9,8 +9,9 @@ from operator import index
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
-from flexsc._scenario import Scenario, run_number
+from flexsc._scenario import Scenario
 from flexsc._table import Table
+from flexsc._values import run_number
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from flexsc import _native as engine
 from flexsc._plan import Plan
 from flexsc._result import Detail, Result
-from flexsc._values import arrays, counted, document, plain, toml
+from flexsc._values import arrays, counted, document, plain, run_number, toml
 
 if TYPE_CHECKING:
     import numpy as np
@@ -370,18 +370,19 @@ class Scenario:
         return hash(self.to_toml().replace("-0.0", "0.0"))
 
     def __repr__(self) -> str:
-        modes = counted(self._native.mode_count, "mode")
-        return f"<flexsc.Scenario {self.name}: {self.duration:g} s, {modes}, seed {self.seed}>"
+        return f"<flexsc.Scenario {self.name}: {self._about()}>"
+
+    def _about(self) -> str:
+        return f"{self.duration:g} s, {counted(self._native.mode_count, 'mode')}, seed {self.seed}"
 
     def _repr_html_(self) -> str:
         from flexsc import _html
 
         values = self.to_dict()
-        about = f"{self.duration:g} s, {counted(self._native.mode_count, 'mode')}, seed {self.seed}"
         figure = engine.modes_figure(self._native)
         text = _html.folded("all keys", _html.pre(self.to_toml()))
         shown = _html.picture(figure) if figure else ""
-        return _html.heading(self.name, about) + _html.line(values.get("about", "")) + shown + text
+        return _html.heading(self.name, self._about()) + _html.line(values.get("about", "")) + shown + text
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = engine.parts_of(self._native)
@@ -392,10 +393,3 @@ class Scenario:
 
 def _beside(text: str, name: str, parts: list[tuple[str, object]]) -> Scenario:
     return Scenario._of(engine.beside_parts(text, name, parts))
-
-
-def run_number(number: int) -> int:
-    """Check the number of a run."""
-    if not 0 <= index(number) < 2**63:
-        raise ValueError(f"the number of a run must be from 0 to 2**63 - 1, got {number}")
-    return index(number)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal
 from flexsc import _native as engine
 from flexsc._quantities import Fields, Quantities, commands_of
 from flexsc._result import Detail, Logged, Result
-from flexsc._scenario import Scenario, run_number
+from flexsc._scenario import Scenario
 from flexsc._units import Metrics
+from flexsc._values import run_number
 
 if TYPE_CHECKING:
     import numpy as np

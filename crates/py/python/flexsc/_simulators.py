@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._quantities import Fields, Quantities, commands_of
-from flexsc._scenario import Scenario, run_number
+from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator
+from flexsc._values import run_number
 
 if TYPE_CHECKING:
     import numpy as np

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable, Mapping
 from datetime import date, datetime, time
+from operator import index
 from typing import TYPE_CHECKING, Any
 
 from flexsc._native import ScenarioError
@@ -154,6 +155,13 @@ def objects(items: list[Any]) -> npt.NDArray[Any]:
     import numpy as np
 
     array = np.empty(len(items), dtype=object)
-    for index, item in enumerate(items):
-        array[index] = item
+    for place, item in enumerate(items):
+        array[place] = item
     return array
+
+
+def run_number(number: int) -> int:
+    """Check the number of a run."""
+    if not 0 <= index(number) < 2**63:
+        raise ValueError(f"the number of a run must be from 0 to 2**63 - 1, got {number}")
+    return index(number)
