@@ -25,7 +25,7 @@ fn search_freezes_where_an_independent_one_does() {
     let exact = [(2153, 20_000.0, 0.338_913_4, 6.569_8e-6), (1491, 14_500.0, 0.338_918_4, 6.559_4e-6)];
     for (seed, frozen_at, k_t, level) in exact {
         let mut scenario = scenario("relay-adaptive", &[]);
-        let Some(Adaptation::RandomSearch(constants)) = scenario.adaptation.take() else {
+        let Some(Adaptation::RandomSearch(constants)) = scenario.written.adaptation.take() else {
             panic!("no search")
         };
         let mut search = Search::new(constants, 0.31);

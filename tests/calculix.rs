@@ -62,7 +62,7 @@ fn a_beam_has_its_closed_form(results: &str) {
     }
     // Free, against Euler and Bernoulli's equation with the hub's translation and rotation at the root.
     let free: Vec<f64> =
-        scenario.body.spatial().expect("three axes").modes.iter().map(|mode| mode.frequency.get()).collect();
+        scenario.model.spatial().expect("three axes").modes.iter().map(|mode| mode.frequency.get()).collect();
     for (index, exact, error) in [
         (0, 4.35521656439, 7e-6),
         (1, 9.24863725801, 1.3e-5),
@@ -113,7 +113,7 @@ fn a_panel_of_solids_has_the_frequencies_of_a_beam_and_of_its_full_matrices() {
     near(tip.rotation[1].get().abs(), 2.0 * 1.376_505_7 / 6.0 / 18_f64.sqrt(), 2e-3);
     // With the hub free, 8 modes make the 7 lowest of the full matrices of hub and panel, from above.
     let free: Vec<f64> =
-        scenario.body.spatial().expect("three axes").modes.iter().map(|mode| mode.frequency.get()).collect();
+        scenario.model.spatial().expect("three axes").modes.iter().map(|mode| mode.frequency.get()).collect();
     for (found, exact) in free.iter().zip(FREE).take(7) {
         near(*found, exact, 3e-4);
         assert!(*found > exact * (1.0 - 1e-5), "{found} {exact}");

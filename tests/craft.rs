@@ -45,7 +45,7 @@ pub fn reference(set: &[(&str, &str)]) -> Result<Scenario, ScenarioError> {
 }
 
 pub fn craft(scenario: &Scenario) -> &Craft {
-    scenario.body.craft().expect("a spacecraft")
+    scenario.model.craft().expect("a spacecraft")
 }
 
 /// The four wheels of the oracle, a pyramid of 35 degrees.
@@ -62,7 +62,7 @@ fn wheels() -> Vec<Rotor> {
 fn open() -> Craft {
     let scenario = reference(&[]).expect("valid");
     let hub = scenario.spacecraft.as_ref().expect("a hub");
-    Craft::assemble(hub, &scenario.appendage, &wheels()).expect("valid")
+    Craft::assemble(hub, &scenario.appendage, &[0.0; 2], &wheels()).expect("valid")
 }
 
 /// The rows of the oracle for wheels that are open or locked.
@@ -270,7 +270,8 @@ fn order_origin_and_axes_do_not_matter() {
         let scenario = Scenario::parse("again.toml", text).expect("valid");
         craft(&scenario).clone()
     };
-    let swapped = Craft::assemble(hub, &[panels[1].clone(), panels[0].clone()], &[]).expect("valid");
+    let swapped =
+        Craft::assemble(hub, &[panels[1].clone(), panels[0].clone()], &[0.0; 2], &[]).expect("valid");
     // O is moved by (1, -2, 0.5), and with it everything that is given from there.
     let mut moved = scenario.clone();
     let mut document = Document::from_table("moved.toml", moved.to_table());
@@ -357,7 +358,7 @@ fn damping_that_couples_modes_is_kept_whole() {
     let near_modes =
         [("appendage[1].modes[1].frequency", "4.301"), ("appendage[1].modes[1].damping", "0.05")];
     let scenario = reference(&near_modes).expect("valid");
-    let flexible = scenario.body.flexible().expect("a spacecraft");
+    let flexible = scenario.model.flexible().expect("a spacecraft");
     let damping = flexible.damping.as_ref().expect("coupled");
     assert!(craft(&scenario).damping_coupling > 0.05);
     for (index, mode) in flexible.modes.iter().enumerate() {

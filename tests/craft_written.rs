@@ -145,6 +145,6 @@ fn rotors_are_part_of_the_hub() {
     let scenario = reference(&[]).expect("valid");
     let hub = scenario.spacecraft.as_ref().expect("a hub");
     let heavy = [Rotor { axis: Vector::z(), spin_inertia: 400.0 }];
-    let fault = Craft::assemble(hub, &scenario.appendage, &heavy).expect_err("impossible");
+    let fault = Craft::assemble(hub, &scenario.appendage, &[0.0; 2], &heavy).expect_err("impossible");
     assert_eq!(fault.key, "spacecraft.inertia");
 }

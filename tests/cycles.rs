@@ -62,7 +62,7 @@ fn rigid_cycles_in_closed_form_and_simulated() {
     for (k_t, entry, push, brake, coast, period, multiplier) in exact {
         let scenario = rigid(k_t);
         let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
-        let cycle = cycles(law, &scenario.model, k_t)[0];
+        let cycle = cycles(law, scenario.one_angle().expect("one angle"), k_t)[0];
         assert_eq!(cycle.sides, Sides::Two);
         for (ours, exact) in [
             (cycle.entry_rate_rad_s, entry),
@@ -87,7 +87,7 @@ fn rigid_cycles_exist_and_are_stable_where_they_should_be() {
     let of = |k_t: f64| {
         let scenario = rigid(k_t);
         let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
-        cycles(law, &scenario.model, k_t)
+        cycles(law, scenario.one_angle().expect("one angle"), k_t)
     };
     let kinds = |k_t: f64| of(k_t).iter().map(|c| (c.sides, c.stable)).collect::<Vec<_>>();
     // Two-sided below 0.547089, stable below 0.450650; one-sided from 0.415477 on, always stable.
@@ -110,7 +110,7 @@ fn rigid_cycles_exist_and_are_stable_where_they_should_be() {
 fn resonances_with_the_modes() {
     let scenario = scenario("relay-fixed", &[]);
     let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
-    let found = resonances(law, &scenario.model);
+    let found = resonances(law, scenario.one_angle().expect("one angle"));
     let exact = [
         (0, 3, 42.8399, 0.297_777),
         (0, 5, 71.3998, 0.485_146),
@@ -130,7 +130,7 @@ fn one_sided_law_ends_in_its_cycle() {
     let set = [("body.planar.modes", "[]"), ("duration", "50000")];
     let scenario = scenario("relay-one-sided", &set);
     let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
-    let closed = cycles(law, &scenario.model, 0.31)[0];
+    let closed = cycles(law, scenario.one_angle().expect("one angle"), 0.31)[0];
     close(closed.period_s, 120.343, 1e-5);
     close(closed.angle_min_rad, -1.25e-3, 0.05);
     let simulated = metrics(scenario.clone());

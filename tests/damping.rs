@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use flexsc_core::actuator::PulseTiming;
-use flexsc_core::analysis::damping::{Decay, Study};
+use flexsc_core::analysis::damping::{Decay, PulsedDamping};
 use flexsc_core::estimator::adaptive::{Oscillator, Phase};
 use flexsc_core::numerics::delay_margin::delay_margin;
 
@@ -308,12 +308,12 @@ fn the_command_tells_what_a_relay_does() {
     ] {
         dir.run(&format!("damping {arguments}")).exits(2).says(&[words]);
     }
-    let study = Study {
+    let pulsed = PulsedDamping {
         timing: relay(0.0, CYCLE),
         damping: 0.005,
         acceleration: YAW,
         amplitude: 5e-4,
         threshold: 0.0,
     };
-    assert_eq!(study.table(&[1.0, 2.0]).len(), 2);
+    assert_eq!(pulsed.table(&[1.0, 2.0]).len(), 2);
 }

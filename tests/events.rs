@@ -38,8 +38,9 @@ fn random_body(stream: &mut Stream) -> (Planar, State) {
         text += &mode;
     }
     let scenario = scenario(&(text + RELAY));
-    let state = scenario.model.start();
-    (scenario.model, state)
+    let body = scenario.one_angle().expect("one angle").clone();
+    let state = body.start();
+    (body, state)
 }
 
 #[test]
@@ -92,8 +93,9 @@ fn a_tangent_touch_is_found() {
     // The body turns round a ten-thousandth of the last bit of its angle beyond the level: 1e-4 + v²/2m.
     let text = format!("duration = 1.0\n[body.planar]\nangle = 1e-4\nrate = 1e-5\n{RELAY}");
     let scenario = scenario(&text);
-    let mut segment = Segment::new(&scenario.model);
-    let state = scenario.model.start();
+    let body = scenario.one_angle().expect("one angle");
+    let mut segment = Segment::new(body);
+    let state = body.start();
     segment.depart(&state, &Input::constant(-1e-6));
     let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
     let mut there = state.clone();
@@ -110,8 +112,9 @@ fn a_tangent_touch_is_found() {
 #[test]
 fn a_guard_that_holds_trips_at_once() {
     let scenario = scenario(&format!("duration = 1.0\n[body.planar]\nangle = 1e-4\n{RELAY}"));
-    let mut segment = Segment::new(&scenario.model);
-    let state = scenario.model.start();
+    let body = scenario.one_angle().expect("one angle");
+    let mut segment = Segment::new(body);
+    let state = body.start();
     segment.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
@@ -124,8 +127,9 @@ fn a_guard_that_holds_trips_at_once() {
 fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     let text = format!("duration = 1.0\n[body.planar]\nrate = 1e-9\n{RELAY}");
     let scenario = scenario(&text);
-    let mut segment = Segment::new(&scenario.model);
-    let state = scenario.model.start();
+    let body = scenario.one_angle().expect("one angle");
+    let mut segment = Segment::new(body);
+    let state = body.start();
     segment.depart(&state, &Input::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];

@@ -177,7 +177,7 @@ fn where_nothing_is_in_closed_form_no_sample_is_larger() {
 #[test]
 fn worst_residuals_are_the_largest_of_a_much_finer_grid() {
     let scenario = scenario("rotation-cosine", &[]);
-    let (plan, body) = (scenario.plan.as_ref().expect("a plan"), &scenario.model);
+    let (plan, body) = (scenario.plan.as_ref().expect("a plan"), scenario.one_angle().expect("one angle"));
     let report = flexsc_core::manoeuvre::Report::new(plan, body, 0.1);
     for (index, residual) in report.residuals.iter().enumerate() {
         let finest = (0..=40_000).map(|i| 0.9 + 0.2 * f64::from(i) / 4e4);

@@ -60,6 +60,7 @@ mod loops;
 mod lqg;
 mod magnetic;
 mod manoeuvres;
+mod model;
 mod newcomers;
 mod objectives;
 mod outside;

@@ -201,7 +201,7 @@ fn a_campaign_plans_for_the_body_as_it_is_written() {
     let runs: Vec<Run> = (0..4).map(|number| study.run(number).expect("a run")).collect();
     for run in &runs {
         assert_eq!(run.scenario.plan.as_ref().expect("a plan").coefficients, nominal);
-        assert_ne!(run.scenario.model.modes, study.scenario().model.modes);
+        assert_ne!(run.scenario.model, study.scenario().model);
         // The scenario that its log holds is the same run.
         let again = Scenario::parse("log", &run.scenario.self_contained().to_toml()).expect("valid");
         let again = Run { number: run.number, scenario: again, drawn: Vec::new() };

@@ -87,7 +87,7 @@ pub fn with(text: &str, set: &[(&str, String)]) -> Result<Scenario, ScenarioErro
 
 /// The planar body of a scenario.
 pub fn body(scenario: &Scenario) -> &Planar {
-    &scenario.model
+    scenario.one_angle().expect("one angle")
 }
 
 /// The plan of a scenario.

@@ -3,7 +3,6 @@
 //! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
 
 use flexsc_core::attitude::Vector;
-use flexsc_core::body::Body;
 use flexsc_core::body::spatial::{Elastic, Rigid, Spatial, SpatialState, Turn};
 use flexsc_core::quantity::Finite;
 use flexsc_core::{Document, Scenario};
@@ -56,8 +55,7 @@ pub fn free(set: &[(&str, &str)]) -> Scenario {
 
 /// The body of a scenario.
 pub fn body(scenario: &Scenario) -> &Spatial {
-    let Body::Spatial(body) = &scenario.body else { panic!("a spatial body") };
-    body
+    scenario.model.spatial().expect("three axes")
 }
 
 /// Nothing stops these motions.

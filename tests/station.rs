@@ -40,7 +40,8 @@ fn last(trace: &Trace, topic: &str, name: &str) -> f64 {
 fn the_energy_that_the_gyro_sees_is_told_apart() {
     let study = scenario("iss-manoeuvre", &[("duration", "120"), ("log.period", "10")]);
     let full = trace(&study);
-    let shapes = study.body.spatial().map(|body| body.shapes(&study.study.sensed_at[0])).expect("three axes");
+    let shapes =
+        study.model.spatial().map(|body| body.shapes(&study.study.sensed_at[0])).expect("three axes");
     let Some(Column::Rows(_, modes)) = full.topic("/vibrations").and_then(|rows| rows.get("modes")) else {
         panic!("modes")
     };

@@ -9,7 +9,7 @@ use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::parts::Parts;
 use flexsc_core::attitude::AXES;
-use flexsc_core::body::Drive;
+use flexsc_core::body::{Axes, Drive};
 use flexsc_core::count::counted;
 use serde_json::{Value as Json, json};
 
@@ -41,16 +41,16 @@ struct Spatial {
 /// The modes of a scenario's body.
 pub fn results(scenario: &Scenario) -> Box<dyn Results> {
     let name = scenario.name.clone();
-    if let Some(craft) = scenario.body.craft() {
+    if let Some(craft) = scenario.model.craft() {
         let (parts, jets) = (Parts::of(scenario, craft), scenario.study.fired);
         return Box::new(spacecraft::Spacecraft { name, parts, jets });
     }
-    match scenario.body.spatial() {
-        Some(body) => {
+    match scenario.model.axes() {
+        Axes::Three(body) => {
             let (modes, jets) = (Influences::of(scenario, body), scenario.study.fired);
             Box::new(Spatial { name, modes, jets })
         }
-        None => Box::new(Planar { name, modal: Modal::of(&scenario.model) }),
+        Axes::One(body) => Box::new(Planar { name, modal: Modal::of(body) }),
     }
 }
 

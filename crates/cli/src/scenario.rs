@@ -59,6 +59,6 @@ pub fn with(mut document: Document, set: &[String], seed: Option<u64>) -> Result
         document.set_text(key.trim(), value.trim())?;
     }
     let mut scenario = Scenario::from_document(&document)?;
-    scenario.seed = seed.unwrap_or(scenario.seed);
+    scenario.written.seed = seed.unwrap_or(scenario.seed);
     Ok(scenario)
 }

@@ -200,7 +200,7 @@ fn rotation(scenario: &Scenario, metrics: &Metrics) {
         Some(value) => value.numbers().get(index).copied().unwrap_or(f64::NAN),
         None => f64::NAN,
     };
-    for (index, output) in scenario.model.outputs.iter().enumerate() {
+    for (index, output) in scenario.model.outputs().iter().enumerate() {
         say!(
             "  {:<14} at most {:.4e} {}; swings by {:.3e} after it, by {:.3e} over the last 5 s",
             output.name,

@@ -16,7 +16,6 @@ mod sampling;
 mod summary;
 mod work;
 
-use std::collections::BTreeMap;
 use std::time::Instant as WallInstant;
 
 use thiserror::Error;
@@ -112,8 +111,8 @@ impl Campaign {
     }
 
     /// The campaign of a scenario over its `[uncertain]` keys and the points of a design.
-    pub fn of(scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
-        let scenario = scenario.with_own_modes();
+    pub fn of(mut scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
+        scenario.written.forget_files();
         // Parts of a program's own have no text: runs take them over.
         let mut table = scenario.table_beside_own_parts();
         // What was drawn is said by the keys themselves.
@@ -171,15 +170,16 @@ impl Campaign {
     pub fn run(&self, number: u64) -> Result<Run, ScenarioError> {
         let drawn = self.draw(number);
         if drawn.is_empty() {
-            let scenario =
-                Scenario { uncertain: BTreeMap::new(), correlated: Vec::new(), ..self.scenario.clone() };
+            let mut scenario = self.scenario.clone();
+            scenario.written.uncertain.clear();
+            scenario.written.correlated.clear();
             return Ok(Run { number, scenario, drawn });
         }
         let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
         if self.plans_first() {
-            let model = self.scenario_with(&keys[..self.design.keys().len()])?.model;
+            let written = self.scenario_with(&keys[..self.design.keys().len()])?;
             // A body holds nothing that TOML cannot express.
-            let model = Value::try_from(model).unwrap_or_else(|_| Value::Table(Table::new()));
+            let model = Value::try_from(written.one_angle()?).unwrap_or_else(|_| Value::Table(Table::new()));
             keys.push(("manoeuvre.model", model));
         }
         // A plan's body is more than numbers.
@@ -193,7 +193,7 @@ impl Campaign {
         let monitored =
             run.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
         if monitored && run.scenario.adaptation.is_none() && !selection.wants_any(metrics::OF_ENVELOPE) {
-            run.scenario.estimator = None;
+            run.scenario.written.estimator = None;
         }
         Ok(run)
     }
@@ -259,7 +259,7 @@ impl Campaign {
             outputs: run
                 .scenario
                 .model
-                .outputs
+                .outputs()
                 .iter()
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),

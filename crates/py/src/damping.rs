@@ -1,7 +1,7 @@
 //! Active damping by relays, and the observer that it needs.
 
 use flexsc_core::actuator::PulseTiming;
-use flexsc_core::analysis::damping::{Convergence, Study, persistence as least_eigenvalue};
+use flexsc_core::analysis::damping::{Convergence, PulsedDamping, persistence as least_eigenvalue};
 use flexsc_core::analysis::identification::Trial;
 use flexsc_core::quantity::NonNegative;
 use numpy::PyReadonlyArray2;
@@ -37,10 +37,10 @@ pub fn relay_damping_json(
     let (period, delay, on_time) = relay;
     let ((damping, acceleration), (amplitude, threshold)) = (mode, amplitudes);
     let timing = PulseTiming { period, delay, on_time };
-    let study = Study { timing, damping, acceleration, amplitude, threshold };
-    refused(study.inconsistency())?;
+    let pulsed = PulsedDamping { timing, damping, acceleration, amplitude, threshold };
+    refused(pulsed.inconsistency())?;
     all_positive("frequencies", &frequencies)?;
-    Ok(json!(study.table(&frequencies)).to_string())
+    Ok(json!(pulsed.table(&frequencies)).to_string())
 }
 
 #[pyfunction]

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use flexsc_cli::figures;
 use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
+use flexsc_core::body::Axes;
 use flexsc_core::campaign::Column;
 use flexsc_figure::{Axis, Layer, Named, Panel, RGBColor, Scale, Shape};
 use numpy::PyArray2;
@@ -163,12 +164,12 @@ pub fn directory_figures(
 #[pyfunction]
 pub fn modes_figure(scenario: &Scenario) -> Option<Figure> {
     let size = |values: &[f64]| values.iter().map(|value| value.abs()).collect::<Vec<_>>();
-    let figure = match scenario.inner.body.spatial() {
-        None => {
-            let modal = Modal::of(&scenario.inner.model);
+    let figure = match scenario.inner.model.axes() {
+        Axes::One(body) => {
+            let modal = Modal::of(body);
             figures::modes(&modal.frequencies_rad_s, &size(&modal.gains), ("modal gain", ""))
         }
-        Some(body) => {
+        Axes::Three(body) => {
             let of = Influences::of(&scenario.inner, body);
             let most = |mode: usize| of.influences.iter().map(|axis| axis[mode].abs()).fold(0.0, f64::max);
             let most: Vec<f64> = (0..of.frequencies_rad_s.len()).map(most).collect();

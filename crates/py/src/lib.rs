@@ -29,7 +29,7 @@ use std::sync::Arc;
 use flexsc_core::analysis::influence::Influences;
 use flexsc_core::analysis::modal::Modal;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
-use flexsc_core::body::Planar;
+use flexsc_core::body::{Axes, Planar};
 use flexsc_core::campaign::{Campaign, Run};
 use flexsc_core::law::Law;
 use flexsc_core::manoeuvre::{Common, Manoeuvre, Plan, Report, Row, compare};
@@ -187,9 +187,9 @@ impl Scenario {
     }
 
     fn modes_json(&self) -> String {
-        match self.inner.body.spatial() {
-            None => json!(Modal::of(&self.inner.model)).to_string(),
-            Some(body) => json!(Influences::of(&self.inner, body)).to_string(),
+        match self.inner.model.axes() {
+            Axes::One(body) => json!(Modal::of(body)).to_string(),
+            Axes::Three(body) => json!(Influences::of(&self.inner, body)).to_string(),
         }
     }
 
@@ -280,8 +280,7 @@ fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
 /// The manoeuvre of a scenario, its plan and its body.
 fn planned(scenario: &Scenario) -> PyResult<(&Manoeuvre, &Plan, &Planar)> {
     let body = scenario.inner.one_angle().map_err(scenario_error)?;
-    let flexsc_core::Scenario { manoeuvre, plan, .. } = &scenario.inner;
-    match (manoeuvre, plan) {
+    match (&scenario.inner.manoeuvre, &scenario.inner.plan) {
         (Some(manoeuvre), Some(plan)) => Ok((manoeuvre, plan, body)),
         _ => Err(PyValueError::new_err(format!("{}: there is no manoeuvre to plan", scenario.inner.name))),
     }
@@ -311,12 +310,12 @@ fn plan_torque<'py>(
 
 #[pyfunction]
 fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Option<f64>) -> PyResult<String> {
-    let (manoeuvre, plan, _) = planned(scenario)?;
+    let (manoeuvre, plan, body) = planned(scenario)?;
     let band = checked_band(band)?;
     let none = |peak| PyValueError::new_err(format!("peak_torque must be a positive number, got {peak}"));
     let limit = peak_torque.map(|peak| Positive::new(peak).ok_or_else(|| none(peak))).transpose()?;
     let common = Common::of(manoeuvre, limit, plan);
-    let (manoeuvre, body) = (manoeuvre.clone(), scenario.inner.planned_for().clone());
+    let (manoeuvre, body) = (manoeuvre.clone(), manoeuvre.planned_for(body).clone());
     let rows = aside(py, move |_| compare(&manoeuvre, common, &body, band))?;
     Ok(serde_json::Value::from(rows.iter().map(Row::to_json).collect::<Vec<_>>()).to_string())
 }

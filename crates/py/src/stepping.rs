@@ -34,7 +34,6 @@ pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
     use flexsc_core::actuator::Actuator;
     match scenario.actuator.alone() {
         Some(Actuator::Wheel(_)) => "",
-        _ if scenario.axis_count() == 3 => "N m",
         _ => scenario.model.commanded().1,
     }
 }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use std::io::Write;
 
 use flexsc_core::actuator::PulseTiming;
-use flexsc_core::analysis::damping::{Damped, Study};
+use flexsc_core::analysis::damping::{Damped, PulsedDamping};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
@@ -67,18 +67,18 @@ impl Args {
             delay: self.delay,
             on_time: self.on_time.unwrap_or(self.period),
         };
-        let study = Study {
+        let pulsed = PulsedDamping {
             timing,
             damping: self.damping,
             acceleration: self.acceleration,
             amplitude: self.amplitude.unwrap_or(0.0),
             threshold: self.threshold,
         };
-        if let Some((name, why)) = study.inconsistency() {
+        if let Some((name, why)) = pulsed.inconsistency() {
             return Err(Failure::Arguments(format!("--{} {why}", name.replace('_', "-"))));
         }
         let Even(frequencies) = &self.frequency;
-        let mut rows = study.table(frequencies);
+        let mut rows = pulsed.table(frequencies);
         if self.amplitude.is_none() {
             for row in &mut rows {
                 (row.decay_s, row.thrust_s) = (None, None);

@@ -58,8 +58,8 @@ impl Args {
         }
         let limit = self.limit()?;
         let shown = chosen(self.coordinate.as_deref(), &body)?;
-        let model = scenario.planned_for().clone();
-        let name = scenario.name;
+        let model = manoeuvre.planned_for(&body).clone();
+        let name = scenario.written.name;
         if self.compare {
             let common = Common::of(&manoeuvre, limit, &plan);
             let rows = compare(&manoeuvre, common, &model, band);

@@ -17,7 +17,7 @@ const FAR: f64 = 10.0;
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let scenario = &story.scenario;
     let measurements = 1 + usize::from(scenario.sensor.rate_noise(0).is_some());
-    let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.model.modes.len()));
+    let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.mode_count()));
     let window = WINDOW.min(motion.estimates.len()).max(1);
     let panel = |name: &str, ratio: fn(&Estimate) -> f64, degrees: usize, averaged: usize, named: bool| {
         let values: Vec<Point> =

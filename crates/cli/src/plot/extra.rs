@@ -40,7 +40,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
 /// The natural frequency of the dominant mode (rad/s) that an ideal observer gives the law.
 fn frequency(scenario: &Scenario, t: f64) -> f64 {
     let ratio = |mode: usize| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
-    let modes = scenario.model.modes.iter().enumerate();
+    let modes = scenario.model.planar().into_iter().flat_map(|body| &body.modes).enumerate();
     let now = modes.map(|(index, mode)| {
         let ratio = ratio(index);
         (mode.frequency.get() * ratio, mode.excitability().abs() / (ratio * ratio))

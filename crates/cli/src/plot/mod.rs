@@ -275,7 +275,7 @@ fn swings(story: &Story) -> std::ops::Range<f64> {
     if !story.switches() {
         return 0.0..story.end;
     }
-    let frequencies = story.scenario.model.modes.iter().map(|mode| mode.frequency.get());
+    let frequencies = story.scenario.model.frequencies();
     let slowest = frequencies.fold(f64::INFINITY, f64::min);
     let span = if slowest.is_finite() { round_to_nice(7.0 * TAU / slowest) } else { 100.0 };
     (story.end - span).max(0.0)..story.end

@@ -11,7 +11,7 @@ const PANELS: usize = 6;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let shown = swings(story);
-    let frequencies = story.scenario.model.modes.iter().map(|mode| mode.frequency.get());
+    let frequencies = story.scenario.model.frequencies();
     let since = if story.scenario.drift.is_some() { " at the start" } else { "" };
     let last = motion.modes.len().min(PANELS).saturating_sub(1);
     let panel = |(index, (values, frequency)): (usize, (&Vec<f64>, f64))| {

@@ -10,7 +10,7 @@ use super::{arrival, time, title};
 const PANELS: usize = 6;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
-    let outputs = &story.scenario.model.outputs;
+    let outputs = story.scenario.model.outputs();
     let skipped = motion.outputs.len().saturating_sub(PANELS);
     let panel = |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::body::Output))| {
         let x = time(0.0..story.end);

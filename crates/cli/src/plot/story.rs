@@ -137,7 +137,7 @@ impl Story {
     /// The motion under a law that switches, with points between its rows.
     fn smooth(&self, mut motion: Motion) -> Motion {
         if self.switches() {
-            let frequencies = self.scenario.model.modes.iter().map(|mode| mode.frequency.get());
+            let frequencies = self.scenario.model.frequencies();
             let period = self.scenario.log.period_for(self.scenario.duration).seconds();
             motion.smoothed(period, frequencies.fold(0.0, f64::max));
         }

@@ -85,12 +85,12 @@ impl What {
         match self {
             Self::PhasePlane => story.switches() && !spatial,
             Self::Torque | Self::Angle => !spatial,
-            Self::Outputs => !story.scenario.model.outputs.is_empty() && !story.switches(),
+            Self::Outputs => !story.scenario.model.outputs().is_empty() && !story.switches(),
             Self::Envelope => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
             }
             Self::Gain => !story.steps.is_empty(),
-            Self::Modes => !story.scenario.model.modes.is_empty(),
+            Self::Modes => !spatial && story.scenario.mode_count() > 0,
             Self::Pointing | Self::Rates | Self::Energy => spatial,
             Self::Position => story.scenario.study.moving.is_some(),
             Self::Jets => story.scenario.study.fires(),

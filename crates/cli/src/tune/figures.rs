@@ -5,14 +5,14 @@ use flexsc_core::analysis::sampled_loop::{Region, Robust};
 use flexsc_core::law::Extra;
 use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, band, colour};
 
-use super::study::Study;
+use super::tuning::Tuning;
 
 /// Settling times beyond so many limits are not shown.
 const BEYOND: f64 = 3.0;
 
 /// What is drawn.
 struct Drawn<'a> {
-    study: &'a Study,
+    tuning: &'a Tuning,
     /// The region at each frequency.
     regions: &'a [Region],
     /// The robust gains, and the part by which the model may be off; none if they were not asked for.
@@ -20,8 +20,8 @@ struct Drawn<'a> {
 }
 
 /// The figures.
-pub fn all(study: &Study, regions: &[Region], robust: Option<(&[Robust], f64)>) -> Vec<Named> {
-    let (drawn, name) = (Drawn { study, regions, robust }, &study.name);
+pub fn all(tuning: &Tuning, regions: &[Region], robust: Option<(&[Robust], f64)>) -> Vec<Named> {
+    let (drawn, name) = (Drawn { tuning, regions, robust }, &tuning.name);
     vec![(format!("{name}-tune-region"), drawn.region()), (format!("{name}-tune-settling"), drawn.settling())]
 }
 
@@ -31,21 +31,21 @@ impl Drawn<'_> {
         let lower = line(&|r| r.gain.map(|gain| gain.0));
         let upper = line(&|r| r.gain.map(|gain| gain.1));
         let middle = line(&|r| r.midpoint);
-        let own: Vec<Point> = self.study.own.iter().flat_map(|own| self.of(own)).collect();
+        let own: Vec<Point> = self.tuning.own.iter().flat_map(|own| self.of(own)).collect();
         let robust: Vec<Point> =
             self.robust.map_or_else(Vec::new, |(of, _)| over(of, |r| r.frequency_rad_s, |r| r.gain));
         let shown = [&lower, &upper, &own, &robust].into_iter().flatten().map(|point| point.1);
         let y = Axis::around("gain k_d of the extra loop", "", shown.chain([0.0]));
         let x = self.frequency();
         let zero = vec![(x.range.start, 0.0), (x.range.end, 0.0)];
-        let within = format!("stable, settles within {} s", self.study.limit);
+        let within = format!("stable, settles within {} s", self.tuning.limit);
         let mut layers = vec![
             Layer::new(&within, colour::SKY, Shape::Area(0.35), band(&lower, &upper)),
             Layer::new("", colour::GREY, Shape::Line(0.8), zero),
             Layer::new("", colour::SKY, Shape::Line(1.0), lower),
             Layer::new("", colour::SKY, Shape::Line(1.0), upper),
         ];
-        let highest = self.study.gains.values().last().copied().unwrap_or(self.study.gains.high);
+        let highest = self.tuning.gains.values().last().copied().unwrap_or(self.tuning.gains.high);
         // Where the region ends only because no higher gain was tried, its middle means little.
         if self.regions.iter().any(|region| region.gain.is_some_and(|gain| gain.1 >= highest)) {
             let level = vec![(x.range.start, highest), (x.range.end, highest)];
@@ -56,7 +56,7 @@ impl Drawn<'_> {
             layers.push(Layer::new("of the scenario", colour::BLACK, Shape::Dashes, own));
         }
         layers.push(Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), robust));
-        let title = format!("{}: gains of the extra loop", self.study.name);
+        let title = format!("{}: gains of the extra loop", self.tuning.name);
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 
@@ -69,10 +69,10 @@ impl Drawn<'_> {
         let (nominal, worst) = (robust(&|r| r.settling_s), robust(&|r| r.settling_quantile_s));
         let x = self.frequency();
         let shown = [&middle, &without, &nominal, &worst].into_iter().flatten().map(|point| point.1);
-        let finite = shown.filter(|time| time.is_finite()).chain([self.study.limit]);
-        let times = finite.map(|time| time.min(BEYOND * self.study.limit));
+        let finite = shown.filter(|time| time.is_finite()).chain([self.tuning.limit]);
+        let times = finite.map(|time| time.min(BEYOND * self.tuning.limit));
         let y = Axis::from_zero("settling time (s)", "", times);
-        let level = vec![(x.range.start, self.study.limit), (x.range.end, self.study.limit)];
+        let level = vec![(x.range.start, self.tuning.limit), (x.range.end, self.tuning.limit)];
         let layers = vec![
             Layer::new("limit", colour::GREY, Shape::Dashes, level),
             Layer::new("without the extra loop", colour::BLACK, Shape::Line(1.4), without),
@@ -80,7 +80,7 @@ impl Drawn<'_> {
             Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), nominal),
             Layer::new("the same, perturbed", colour::VERMILLION, Shape::Dashes, worst),
         ];
-        let title = format!("{}: settling time", self.study.name);
+        let title = format!("{}: settling time", self.tuning.name);
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 

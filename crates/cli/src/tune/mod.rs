@@ -1,9 +1,9 @@
 //! `flexsc tune`: the gains of the extra loop that do, and a schedule of the best ones.
 
 mod figures;
-mod study;
 mod table;
 mod tuned;
+mod tuning;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{Doubt, Goal, Search, robust};
@@ -14,8 +14,8 @@ use crate::grid::{Even, Tried};
 use crate::results::{Results, show};
 use crate::sampled::{Settled, positive, sampled};
 use crate::{print, scenario};
-use study::Study;
 use tuned::{Found, Tuned};
+use tuning::Tuning;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -71,7 +71,7 @@ impl Args {
         positive("--limit", self.limit)?;
         let own = || Even::new(of.frequency() / 6.0, of.frequency() * 4.0 / 3.0, 36);
         let Even(frequencies) = self.frequency.clone().unwrap_or_else(own);
-        let study = Study {
+        let tuning = Tuning {
             name: scenario.name.clone(),
             own: law.extra.clone(),
             window: self.settled.window(&of, &scenario.name)?,
@@ -81,28 +81,28 @@ impl Args {
             of,
             frequencies,
         };
-        let closed = study.frequencies.len() * study.gains.values().len();
+        let closed = tuning.frequencies.len() * tuning.gains.values().len();
         let found = match self.robust {
             None => {
-                self.settled.allow(&study.of, closed, study.of.period, 0.0)?;
-                Found::Regions(study.regions())
+                self.settled.allow(&tuning.of, closed, tuning.of.period, 0.0)?;
+                Found::Regions(tuning.regions())
             }
             Some(off) => {
-                let search = self.search(&study, off)?;
+                let search = self.search(&tuning, off)?;
                 self.settled.allow(
-                    &study.of,
+                    &tuning.of,
                     closed * search.doubt.most_loops(),
-                    study.of.period,
+                    tuning.of.period,
                     self.delay,
                 )?;
-                Found::Robust { off, rows: robust(&study.of, &study.frequencies, search) }
+                Found::Robust { off, rows: robust(&tuning.of, &tuning.frequencies, search) }
             }
         };
-        Ok(Tuned { study, found })
+        Ok(Tuned { tuning, found })
     }
 
     /// The search for gains that do with the model off by a part.
-    fn search(&self, study: &Study, off: f64) -> Result<Search, Failure> {
+    fn search(&self, tuning: &Tuning, off: f64) -> Result<Search, Failure> {
         part("--robust", off)?;
         part("--margin", self.margin)?;
         if !(self.quantile > 0.0 && self.quantile <= 1.0) {
@@ -113,9 +113,9 @@ impl Args {
             return Err(Failure::Arguments(format!("--delay must be 0 or more, got {}", self.delay)));
         }
         Ok(Search {
-            gains: study.gains,
-            scaling: study.scaling,
-            window: study.window,
+            gains: tuning.gains,
+            scaling: tuning.scaling,
+            window: tuning.window,
             doubt: Doubt { frequency: off, modal_gain: off, authority: off, delay: self.delay },
             goal: if self.itae { Goal::Itae } else { Goal::Settling },
             quantile: self.quantile,

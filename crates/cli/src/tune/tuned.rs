@@ -4,7 +4,7 @@ use flexsc_core::analysis::sampled_loop::{Region, Robust, midpoints};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
-use super::study::Study;
+use super::tuning::Tuning;
 use super::{figures, table};
 use crate::failure::Failure;
 use crate::results::Results;
@@ -19,7 +19,7 @@ pub enum Found {
 
 /// What tuning comes to.
 pub struct Tuned {
-    pub study: Study,
+    pub tuning: Tuning,
     pub found: Found,
 }
 
@@ -39,7 +39,7 @@ impl Tuned {
         let point = |(w, gain): &(f64, f64)| format!("    {{ frequency = {w:.6}, gain = {gain:.4} }},\n");
         let points: String = self.schedule().iter().map(point).collect();
         if points.is_empty() {
-            let name = &self.study.name;
+            let name = &self.tuning.name;
             return Err(Failure::Arguments(format!(
                 "{name}: no gain is suitable at any of these frequencies"
             )));
@@ -56,20 +56,20 @@ impl Results for Tuned {
         };
         let point = |(frequency, gain)| json!({"frequency": frequency, "gain": gain});
         let schedule: Vec<Json> = self.schedule().into_iter().map(point).collect();
-        vec![json!({"scenario": self.study.name, "rows": rows, "schedule": schedule})]
+        vec![json!({"scenario": self.tuning.name, "rows": rows, "schedule": schedule})]
     }
 
     fn figures(&self) -> Vec<Named> {
         match &self.found {
-            Found::Regions(regions) => figures::all(&self.study, regions, None),
+            Found::Regions(regions) => figures::all(&self.tuning, regions, None),
             Found::Robust { off, rows } => {
-                figures::all(&self.study, &self.study.regions(), Some((rows, *off)))
+                figures::all(&self.tuning, &self.tuning.regions(), Some((rows, *off)))
             }
         }
     }
 
     fn tell(&self) -> Result<(), Failure> {
-        let Study { name, limit, gains, .. } = &self.study;
+        let Tuning { name, limit, gains, .. } = &self.tuning;
         match &self.found {
             Found::Regions(regions) => table::tell(name, *limit, *gains, regions),
             Found::Robust { off, rows } => table::tell_robust(name, *off, rows),

@@ -42,7 +42,7 @@ impl AttitudeParts {
             return Err(Fault::new("elastic", "is not supported in linear loops: leave it out"));
         }
         let study = &scenario.study;
-        let (Some(setting), Some(body)) = (&study.attitude, scenario.body.spatial()) else {
+        let (Some(setting), Some(body)) = (&study.attitude, scenario.model.spatial()) else {
             return Err(Fault::new("", "needs a body with three axes"));
         };
         let mounted = |index: usize, latency: f64| {

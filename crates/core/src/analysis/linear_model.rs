@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 
 use crate::attitude::{AXES, Vector};
-use crate::body::{Coupled, Drift, Drive, Planar, Spatial};
+use crate::body::{Axes, Coupled, Drift, Drive, Planar, Spatial};
 use crate::document::Fault;
 use crate::random::Seed;
 use crate::scenario::Scenario;
@@ -57,18 +57,16 @@ impl LinearModel {
             let why = "turn appendages, so the body changes with time and is not a linear system";
             return Err(Fault::new("appendage", format!("has drives that {why}")));
         }
-        Ok(match scenario.body.spatial() {
-            None => Self::of_one_angle(scenario, at),
-            Some(body) => Self::of_three_axes(scenario, body),
+        Ok(match scenario.model.axes() {
+            Axes::One(body) => Self::of_one_angle(scenario, body, at),
+            Axes::Three(body) => Self::of_three_axes(scenario, body),
         })
     }
 
-    fn of_one_angle(scenario: &Scenario, at: f64) -> Self {
-        let body: &Planar = &scenario.model;
+    fn of_one_angle(scenario: &Scenario, body: &Planar, at: f64) -> Self {
         let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, at));
         let ratios: Vec<f64> = (0..body.modes.len()).map(ratio).collect();
-        let (back_emf, total) = scenario.study.back_emf;
-        let back_emf = back_emf / body.inertia.get();
+        let (back_emf, total) = scenario.back_emf(body);
         let coupled = Coupled::new(body, back_emf, total, &ratios);
         let order = coupled.system.nrows();
         let shown = |first: usize, j: usize| {
@@ -98,7 +96,7 @@ impl LinearModel {
 
     fn of_three_axes(scenario: &Scenario, body: &Spatial) -> Self {
         let (study, modes) = (&scenario.study, body.modes.len());
-        let flexible = scenario.body.flexible();
+        let flexible = scenario.model.flexible();
         let inertia = flexible.map_or_else(|| body.tensor(), |flexible| flexible.inertia);
         // A tensor that was checked has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);

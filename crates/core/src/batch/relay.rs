@@ -78,7 +78,7 @@ impl<'a> Runs<'a> {
 
     /// How many modes bodies and envelopes have.
     fn structure(scenario: &Scenario) -> (usize, usize) {
-        (scenario.model.modes.len(), watched(scenario).len())
+        (scenario.mode_count(), watched(scenario).len())
     }
 }
 
@@ -119,7 +119,7 @@ impl Crew for Runs<'_> {
         }
         while let Some(job) = self.jobs.get(self.next) {
             self.next += 1;
-            let Some(law) = flies(job.scenario) else { continue };
+            let Some((model, law)) = flies(job.scenario) else { continue };
             if Self::structure(job.scenario) != Self::structure(self.jobs[0].scenario) {
                 continue;
             }
@@ -130,7 +130,6 @@ impl Crew for Runs<'_> {
             if gather.record(Instant::START, Sample::Begin(&row)).is_err() {
                 continue;
             }
-            let model = &job.scenario.model;
             let setup = setup(job.scenario, model, law);
             self.lanes[lane] = Some(Lane {
                 index: self.next - 1,

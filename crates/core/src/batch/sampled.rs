@@ -31,7 +31,7 @@ impl Batch for Side {
             && scenario.actuator.alone().is_some()
             && matches!(scenario.law, Law::Pd(_))
             && scenario.plan.is_none()
-            && scenario.model.outputs.is_empty()
+            && scenario.model.outputs().is_empty()
     }
 
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {

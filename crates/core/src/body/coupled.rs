@@ -102,8 +102,9 @@ mod tests {
     fn the_discrete_system_of_the_third_paper() {
         let text = "duration = 1.0\n[law.open]\n[body.planar]\nmodes = [{ frequency = 0.3, gain = 1.44 }, \
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
-        let body = Scenario::parse("c1", text).expect("valid").model;
-        let (ad, bd) = Coupled::new(&body, 1e-4, true, &[1.0; 4]).discrete(0.3);
+        let scenario = Scenario::parse("c1", text).expect("valid");
+        let body = scenario.one_angle().expect("one angle");
+        let (ad, bd) = Coupled::new(body, 1e-4, true, &[1.0; 4]).discrete(0.3);
         // SciPy's expm of the same system.
         let close = |value: f64, exact: f64| assert!((value / exact - 1.0).abs() < 1e-12, "{value} {exact}");
         close(5e-4 * bd[0], 2.249_920_797_089e-05);

@@ -12,6 +12,7 @@ mod guess_tests;
 mod hub;
 mod matrices;
 mod mode;
+mod model;
 mod output;
 mod panels;
 mod planar;
@@ -23,13 +24,12 @@ mod weights;
 mod wheeled;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::document::Fault;
-use crate::motion::turning::Flexible;
-use crate::quantity::Finite;
 
 pub use chain::{Chain, Flight, Flown};
 pub use coupled::Coupled;
@@ -41,6 +41,7 @@ pub use forced::{Forced, Input, Push, Wrench};
 pub use matrices::{Matrices, Sum};
 pub(crate) use mode::Flow;
 pub use mode::Mode;
+pub use model::{Axes, Model};
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
 pub use planar::{Drive, Planar};
@@ -62,16 +63,6 @@ pub enum Body {
     Panels(Panels),
     /// Three axes, and elastic modes with shapes at points of the structure.
     Spatial(Spatial),
-    /// The body built from `[spacecraft]` and `[[appendage]]`, which are keys of their own.
-    #[serde(skip)]
-    Spacecraft(Box<Craft>),
-}
-
-impl Default for Body {
-    /// A spacecraft that is still to be put together.
-    fn default() -> Self {
-        Self::Spacecraft(Box::default())
-    }
 }
 
 impl Body {
@@ -82,18 +73,7 @@ impl Body {
             Self::Matrices(_) => "matrices",
             Self::Panels(_) => "panels",
             Self::Spatial(_) => "spatial",
-            Self::Spacecraft(_) => "spacecraft",
         }
-    }
-
-    /// The key of its table.
-    pub fn key(&self) -> String {
-        if self.is_spacecraft() { self.kind().to_owned() } else { format!("body.{}", self.kind()) }
-    }
-
-    /// Whether it is put together from `[spacecraft]`.
-    pub fn is_spacecraft(&self) -> bool {
-        matches!(self, Self::Spacecraft(_))
     }
 
     /// Makes the paths of files absolute: relative ones begin at a directory.
@@ -107,7 +87,7 @@ impl Body {
                 }
             }
             Self::Spatial(spatial) => spatial.modes.locate(directory),
-            Self::Planar(_) | Self::Panels(_) | Self::Spacecraft(_) => {}
+            Self::Planar(_) | Self::Panels(_) => {}
         }
     }
 
@@ -122,51 +102,33 @@ impl Body {
         spatial.modes.read(other).map_err(|why| Fault::new("modes", why))
     }
 
-    /// The body in free modes, if it has three axes.
-    pub fn spatial(&self) -> Option<&Spatial> {
+    /// How many axes it has.
+    pub fn axis_count(&self) -> usize {
         match self {
-            Self::Spatial(spatial) => Some(spatial),
-            Self::Spacecraft(craft) => Some(&craft.spatial),
-            Self::Planar(_) | Self::Matrices(_) | Self::Panels(_) => None,
+            Self::Planar(_) | Self::Matrices(_) | Self::Panels(_) => 1,
+            Self::Spatial(_) => 3,
         }
     }
 
-    /// The modes of a body with three axes as a command is planned for them: frequencies and damping ratios.
-    pub fn free_modes(&self) -> Vec<Mode> {
-        let modes = self.spatial().map_or(&[][..], |spatial| &spatial.modes[..]);
-        modes.iter().map(|mode| Mode::at_rest(mode.frequency, Finite::default(), mode.damping)).collect()
-    }
-
-    /// The spacecraft, if it is put together from parts.
-    pub fn craft(&self) -> Option<&Craft> {
-        if let Self::Spacecraft(craft) = self { Some(craft) } else { None }
-    }
-
-    /// The coupling of rotation and modes in both directions, where the body has it: of a spacecraft.
-    pub fn flexible(&self) -> Option<&Flexible> {
-        self.craft().map(|craft| &craft.flexible)
-    }
-
-    /// The planar body that moves; of a spatial body, which is checked alone, one without modes.
+    /// The body as it moves.
     ///
     /// # Errors
     /// What is wrong with the body: a key within it, and why.
-    pub fn solve(&self) -> Result<Planar, Fault> {
-        let model = match self {
+    pub fn assemble(&self) -> Result<Model, Fault> {
+        let body = match self {
             Self::Planar(planar) => planar.clone(),
             Self::Matrices(matrices) => matrices.solve()?,
             Self::Panels(panels) => panels.solve()?,
-            Self::Spatial(spatial) => spatial.check().map(|()| Planar::default())?,
-            Self::Spacecraft(_) => Planar::default(),
+            Self::Spatial(spatial) => {
+                spatial.check()?;
+                return Ok(Model::Spatial(Arc::new(spatial.clone())));
+            }
         };
-        model.inconsistency().map_or(Ok(model), Err)
-    }
-
-    /// The exact chain behind the planar body, where the scenario asks for it.
-    pub fn chain(&self, model: &Planar) -> Option<Chain> {
-        match self {
-            Self::Panels(panels) => panels.chain(model),
-            Self::Planar(_) | Self::Matrices(_) | Self::Spatial(_) | Self::Spacecraft(_) => None,
+        if let Some(fault) = body.inconsistency() {
+            return Err(fault);
         }
+        let chain = if let Self::Panels(panels) = self { panels.chain(&body) } else { None };
+        let body = Arc::new(body);
+        Ok(chain.map_or(Model::Planar(body.clone()), |chain| Model::Chain(body, Arc::new(chain))))
     }
 }

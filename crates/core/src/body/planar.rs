@@ -119,6 +119,11 @@ impl Planar {
         Some(Fault::new(format!("damping_matrix[{index}]"), why))
     }
 
+    /// Whether damping couples its modes.
+    pub fn is_coupled(&self) -> bool {
+        !self.damping_matrix.is_empty()
+    }
+
     /// What a unit of the command accelerates (kg m²): 1 where the motion itself is commanded.
     pub fn commanded_inertia(&self) -> f64 {
         match self.drive {

@@ -6,7 +6,6 @@ use super::{Campaign, Run};
 use crate::law::Command;
 use crate::metrics::{Gather, Metrics};
 use crate::record::{Attachment, COMMANDS, Detail, Provenance, Record};
-use crate::scenario::Scenario;
 use crate::sim::{Simulation, SimulationError};
 use crate::time::Instant;
 
@@ -60,8 +59,11 @@ impl Commanded {
     ) -> Result<Metrics, SimulationError> {
         // A run that is left is judged as one that ends there.
         let end = Instant::START + run.scenario.duration;
-        let left =
-            (until < end).then(|| Scenario { duration: until.since(Instant::START), ..run.scenario.clone() });
+        let left = (until < end).then(|| {
+            let mut left = run.scenario.clone();
+            left.written.duration = until.since(Instant::START);
+            left
+        });
         let judged = left.as_ref().unwrap_or(&run.scenario);
         let mut both = (Gather::new(judged), record);
         let mut simulation = Simulation::new(&run.scenario, run.number);
@@ -148,6 +150,7 @@ impl Commanded {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Scenario;
     use crate::time::Span;
 
     const TEXT: &str = "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0";

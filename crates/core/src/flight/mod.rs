@@ -17,21 +17,21 @@ use crate::time::Instant;
 pub use crew::{Crew, Place, Rest, Searched, Setup, Sight};
 pub use kernel::{Flight, MOST};
 
-/// The law of a scenario whose runs can fly.
-pub fn flies(scenario: &Scenario) -> Option<&Relay> {
-    let Law::Relay(law) = &scenario.law else { return None };
-    suits(scenario, law).then_some(law)
+/// The body and the law of a scenario whose runs can fly.
+pub fn flies(scenario: &Scenario) -> Option<(&Planar, &Relay)> {
+    let (Some(body), Law::Relay(law)) = (scenario.model.planar(), &scenario.law) else { return None };
+    suits(scenario, body, law).then_some((body, law))
 }
 
 /// The modes of the envelope's model; none without one.
 pub fn watched(scenario: &Scenario) -> &[Mode] {
     let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
-    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or(&scenario.model.modes))
+    let own = || scenario.model.planar().map_or(&[][..], |body| &body.modes);
+    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or_else(own))
 }
 
 /// Whether the law alone moves the body, whose modes are undamped, and nothing but the envelope is estimated.
-fn suits(scenario: &Scenario, law: &Relay) -> bool {
-    let model = &scenario.model;
+fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
     let observes = scenario
         .estimator
         .as_ref()
@@ -57,10 +57,10 @@ fn suits(scenario: &Scenario, law: &Relay) -> bool {
 
 /// A run at its start, for a flight of its own; none of a run that has to be simulated otherwise.
 pub fn alone(scenario: &Scenario) -> Option<Setup> {
-    let law = flies(scenario)?;
+    let (model, law) = flies(scenario)?;
     // A mode that nothing excites may come out of the mirror with zeros of another sign.
-    let mut modes = scenario.model.modes.iter().chain(watched(scenario));
-    modes.all(|mode| mode.gain.get() != 0.0).then(|| setup(scenario, &scenario.model, law))
+    let mut modes = model.modes.iter().chain(watched(scenario));
+    modes.all(|mode| mode.gain.get() != 0.0).then(|| setup(scenario, model, law))
 }
 
 /// A run at its start.

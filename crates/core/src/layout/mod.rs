@@ -14,6 +14,7 @@ use serde_json::{Map, Value, json};
 
 use crate::actuator::Firing;
 use crate::adaptation::{Adaptation, Objective};
+use crate::body::Axes;
 use crate::estimator::Estimator;
 use crate::metrics::Gather;
 use crate::motion::turning::Bearing;
@@ -44,9 +45,9 @@ struct Tab {
 impl Layout {
     /// The layout of a scenario's logs, with all that they can show.
     pub fn of(scenario: &Scenario) -> Self {
-        let tabs = match scenario.body.spatial() {
-            None => planar::tabs(scenario),
-            Some(body) => spatial::tabs(scenario, body),
+        let tabs = match scenario.model.axes() {
+            Axes::One(body) => planar::tabs(scenario, body),
+            Axes::Three(body) => spatial::tabs(scenario, body),
         };
         Self { tabs, topics: topics(scenario) }
     }
@@ -160,7 +161,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
     for topic in ["/attitude", "/rate", "/modes"] {
         add(true, topic, Full);
     }
-    add(!scenario.model.outputs.is_empty(), "/outputs", Full);
+    add(!scenario.model.outputs().is_empty(), "/outputs", Full);
     add(scenario.tells_torque(), "/goal", Full);
     add(scenario.tells_torque(), "/torque", Full);
     add(wheel.is_some_and(|wheel| wheel.rotor.is_some()), "/wheel", Full);

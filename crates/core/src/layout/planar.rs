@@ -2,6 +2,7 @@
 
 use super::panel::{Line, MOST_LINES, Panel, line};
 use super::{Tab, metrics};
+use crate::body::{Output, Planar};
 use crate::estimator::Estimator;
 use crate::law::Law;
 use crate::scenario::Scenario;
@@ -24,17 +25,17 @@ pub fn feeds_back(scenario: &Scenario) -> bool {
 }
 
 /// The tabs of a scenario.
-pub fn tabs(scenario: &Scenario) -> Vec<Tab> {
+pub fn tabs(scenario: &Scenario, body: &Planar) -> Vec<Tab> {
     let mut log = vec![Panel::log(), Panel::message("arrival", "End of the manoeuvre", "/arrival")];
     log.extend(metrics(scenario));
     vec![
-        Tab { title: "Motion", panels: motion(scenario) },
-        Tab { title: "Estimator", panels: estimator(scenario) },
+        Tab { title: "Motion", panels: motion(scenario, body) },
+        Tab { title: "Estimator", panels: estimator(scenario, body) },
         Tab { title: "Log", panels: log },
     ]
 }
 
-fn motion(scenario: &Scenario) -> Vec<Panel> {
+fn motion(scenario: &Scenario, body: &Planar) -> Vec<Panel> {
     let relay = scenario.law.switches();
     let mut panels = vec![Panel::scene(Extent::of(scenario))];
     if relay {
@@ -53,9 +54,9 @@ fn motion(scenario: &Scenario) -> Vec<Panel> {
                 line("/goal.rate_rad_s", "goal"),
             ],
         ),
-        Panel::plot("modes", "Elastic modes (rad)", modes(scenario)),
-        Panel::plot("outputs", "Observed coordinates", outputs(scenario)),
-        Panel::plot("torque", torque_title(scenario), torques(scenario)),
+        Panel::plot("modes", "Elastic modes (rad)", modes(body)),
+        Panel::plot("outputs", "Observed coordinates", outputs(body)),
+        Panel::plot("torque", torque_title(body), torques(scenario)),
         Panel::plot("wheel", "Wheel speed (rad/s)", vec![line("/wheel.speed_rad_s", "speed")]),
     ]);
     let state = if relay { "/command.state" } else { "/law.state" };
@@ -78,17 +79,17 @@ fn angles(scenario: &Scenario) -> Vec<Line> {
     lines
 }
 
-fn modes(scenario: &Scenario) -> Vec<Line> {
-    let count = scenario.model.modes.len();
+fn modes(body: &Planar) -> Vec<Line> {
+    let count = body.modes.len();
     let each = (0..count.min(MOST_LINES))
         .map(|mode| line(format!("/modes.modes[{mode}].displacement_rad"), format!("mode {mode}")));
     let sum = (count != 1).then(|| line("/modes.elastic_rad", "sum"));
     sum.into_iter().chain(each).collect()
 }
 
-fn outputs(scenario: &Scenario) -> Vec<Line> {
-    let outputs = scenario.model.outputs.iter().enumerate().take(MOST_LINES);
-    let of = |(index, output): (usize, &crate::body::Output)| {
+fn outputs(body: &Planar) -> Vec<Line> {
+    let outputs = body.outputs.iter().enumerate().take(MOST_LINES);
+    let of = |(index, output): (usize, &Output)| {
         line(format!("/outputs.outputs[{index}].value"), format!("{} ({})", output.name, output.unit))
     };
     outputs.map(of).collect()
@@ -110,13 +111,13 @@ fn torques(scenario: &Scenario) -> Vec<Line> {
 }
 
 /// What drives the body, and its unit.
-fn torque_title(scenario: &Scenario) -> String {
-    let (name, unit) = scenario.model.commanded();
+fn torque_title(body: &Planar) -> String {
+    let (name, unit) = body.commanded();
     let (first, rest) = name.split_at(1);
     format!("{}{rest} ({unit})", first.to_uppercase())
 }
 
-fn estimator(scenario: &Scenario) -> Vec<Panel> {
+fn estimator(scenario: &Scenario, body: &Planar) -> Vec<Panel> {
     let mut panels = vec![Panel::plot(
         "envelope",
         "Envelope of the elastic modes (rad)",
@@ -142,7 +143,7 @@ fn estimator(scenario: &Scenario) -> Vec<Panel> {
             &[("frequency_rad_s", "as the law reads it"), ("true_frequency_rad_s", "true")],
         ),
         plot("deviation", "Its standard deviation (rad/s)", &[("frequency_sd_rad_s", "standard deviation")]),
-        Panel::plot("dominant", "Dominant mode (rad)", dominant(scenario)),
+        Panel::plot("dominant", "Dominant mode (rad)", dominant(scenario, body)),
         plot("nis", "NIS and NEES", &[("nis", "NIS"), ("nees", "NEES")]),
         Panel::states(
             "lock",
@@ -180,10 +181,10 @@ pub fn adaptation(scenario: &Scenario) -> Vec<Panel> {
 }
 
 /// The dominant mode, as the law reads it and as it really is.
-fn dominant(scenario: &Scenario) -> Vec<Line> {
+fn dominant(scenario: &Scenario, body: &Planar) -> Vec<Line> {
     let mut lines = vec![line("/estimator.displacement_rad", "as the law reads it")];
-    let excitability = |mode: usize| scenario.model.modes[mode].excitability().abs();
-    let modes = 0..scenario.model.modes.len();
+    let excitability = |mode: usize| body.modes[mode].excitability().abs();
+    let modes = 0..body.modes.len();
     // Without an estimator there is nothing to compare with.
     if filters(scenario)
         && let Some(mode) =

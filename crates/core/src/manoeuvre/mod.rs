@@ -78,6 +78,11 @@ pub struct Manoeuvre {
 }
 
 impl Manoeuvre {
+    /// The body that it is planned for, of the body that makes it.
+    pub fn planned_for<'a>(&'a self, body: &'a Planar) -> &'a Planar {
+        self.model.as_ref().unwrap_or(body)
+    }
+
     /// The plan of the manoeuvre for a body.
     pub fn plan(&self, body: &Planar) -> Result<Plan, Fault> {
         if let Some(index) = body.modes.iter().position(|mode| mode.damping.get() >= 1.0) {

@@ -11,6 +11,7 @@ mod spatial;
 mod switchings;
 mod tracking;
 
+use crate::body::Axes;
 use crate::motion::Stretch;
 use crate::record::{self, Record, RecordError, Sample};
 use crate::scenario::Scenario;
@@ -192,8 +193,7 @@ pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meani
         &[PEAK_ACCELERATION, PEAK_FEEDBACK_ACCELERATION, REDUCED_IMPULSE, CYCLE_REDUCED_IMPULSE];
     const UNIT_INERTIA: &[Meaning] = &[RESIDUAL_ENERGY_UNIT_INERTIA];
     let of = |some: &'static [Meaning]| some.iter().find(|meaning| meaning.name == name);
-    // A body with three axes has a moment of inertia.
-    let model = scenario.filter(|scenario| scenario.axis_count() == 1).map(|scenario| &scenario.model);
+    let model = scenario.map(|scenario| &scenario.model);
     let accelerations = model.filter(|model| model.commands_acceleration()).and_then(|_| of(ACCELERATIONS));
     let unit_inertia = model.filter(|model| model.has_unit_inertia()).and_then(|_| of(UNIT_INERTIA));
     let objectives = scenario.and_then(adapted::meanings).and_then(|some| of(some));
@@ -230,12 +230,12 @@ impl Gather {
 
     /// The same for some of the metrics: what only the others need is not computed.
     pub fn of(scenario: &Scenario, selection: &Selection) -> Self {
-        let kind = if scenario.axis_count() == 3 {
-            Kind::Spatial(Box::new(Spatial::new(scenario)))
-        } else if scenario.law.switches() {
-            Kind::Switchings(Box::new(Switchings::new(scenario, selection)))
-        } else {
-            Kind::Rotation(Box::new(Rotation::new(scenario, selection)))
+        let kind = match scenario.model.axes() {
+            Axes::Three(_) => Kind::Spatial(Box::new(Spatial::new(scenario))),
+            Axes::One(body) if scenario.law.switches() => {
+                Kind::Switchings(Box::new(Switchings::new(scenario, body, selection)))
+            }
+            Axes::One(body) => Kind::Rotation(Box::new(Rotation::new(scenario, body, selection))),
         };
         Self {
             kind,

@@ -12,6 +12,7 @@ use super::{
     RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME, SPECTRAL_RADIUS, Selection, Told, Value,
 };
 use crate::analysis::sampled_loop::{Held, Loop};
+use crate::body::Planar;
 use crate::law::{Goal, Law, Promise};
 use crate::motion::Stretch;
 use crate::numerics::polynomial::Polynomial;
@@ -117,15 +118,15 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
 
 impl Rotation {
     /// An empty gathering for runs of a scenario.
-    pub fn new(scenario: &Scenario, selection: &Selection) -> Self {
-        let (model, end) = (&scenario.model, scenario.duration.seconds());
+    pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
+        let end = scenario.duration.seconds();
         let seen =
             |unit: &String| Seen { unit: unit.clone(), peak: 0.0, after: Range::EMPTY, late: Range::EMPTY };
         Self {
             goal: scenario.goal(),
             promise: scenario.promise(),
             planned: scenario.plan.is_some(),
-            reduced: (model.commands_acceleration(), model.has_unit_inertia()),
+            reduced: (body.commands_acceleration(), body.has_unit_inertia()),
             late: end - LATE,
             end,
             arrival: None,
@@ -136,7 +137,7 @@ impl Rotation {
             radius: matches!(scenario.law, Law::Pd(_)).then(|| {
                 if selection.wants_any(&[SPECTRAL_RADIUS]) { spectral_radius(scenario) } else { f64::NAN }
             }),
-            outputs: model.outputs.iter().map(|output| seen(&output.unit)).collect(),
+            outputs: body.outputs.iter().map(|output| seen(&output.unit)).collect(),
             wants_course: selection.wants_any(OF_COURSE) || selection.wants_any(goal::TOLD),
         }
     }

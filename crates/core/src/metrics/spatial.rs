@@ -62,7 +62,7 @@ impl Spatial {
         let own: [f64; 3] =
             std::array::from_fn(|axis| scenario.study.bands.get(axis).copied().flatten().unwrap_or(f64::NAN));
         let bands = scenario.reference.band.map_or(own, |band| [Positive::get(band); 3]);
-        let from = scenario.study.last_target(end).seconds();
+        let from = scenario.last_target(end).seconds();
         Self {
             verdict: Verdict::new(from, bands.into_iter().fold(0.0, f64::max)),
             bands,

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::adaptation::Objective;
 use crate::analysis::cycle::CycleWatch;
+use crate::body::Planar;
 use crate::law::{Goal, Phase};
 use crate::motion::Stretch;
 use crate::record::{Course, Record, RecordError, Sample};
@@ -68,7 +69,7 @@ const COUNTED: &[Meaning] = &[SWITCHINGS, PUSHES_RIGHT, PUSHES_LEFT, DUTY, IMPUL
 
 impl Switchings {
     /// An empty gathering for runs of a scenario.
-    pub fn new(scenario: &Scenario, selection: &Selection) -> Self {
+    pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
         // The multipliers are those of modes that move on their own.
         let smooth = scenario.study.sampling.is_none() && scenario.linear.is_none();
         Self {
@@ -82,10 +83,10 @@ impl Switchings {
             gain: (f64::NAN, f64::NAN),
             tuned: scenario.tuned(),
             frozen_at: f64::NAN,
-            cycle: CycleWatch::new(&scenario.model, smooth),
+            cycle: CycleWatch::new(body, smooth),
             observed: scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()),
             adapted: scenario.objective() == Some(Objective::EnvelopeMean),
-            reduced: scenario.model.commands_acceleration(),
+            reduced: body.commands_acceleration(),
             goal: scenario.goal(),
             verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
             wanted: Wanted {

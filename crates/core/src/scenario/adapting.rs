@@ -68,7 +68,7 @@ impl Scenario {
             return Some((".window", format!("must be given for the objective `{word}`")));
         }
         let why = match objective {
-            Objective::ElasticRms if self.mode_count() == 0 || self.chain.is_some() => {
+            Objective::ElasticRms if self.mode_count() == 0 || self.model.chain().is_some() => {
                 "needs elastic modes, and the body has none"
             }
             Objective::WheelPowerMean if !self.spins() => {

@@ -1,6 +1,6 @@
 //! Several actuators: which go together, and whether their shares make the whole of what laws demand.
 
-use super::Scenario;
+use super::Written;
 use crate::actuator::{Actuator, Assigned, Member, Task, Unloading};
 use crate::attitude::AXES;
 use crate::document::Fault;
@@ -11,7 +11,7 @@ use crate::quantity::Time;
 /// Shares are rounded; their sum is 1 to this.
 const ROUNDING: f64 = 1e-9;
 
-impl Scenario {
+impl Written {
     /// What of the actuators does not fit: of each on its own, of those of one kind, of their shares.
     pub(super) fn assignment_fault(&self) -> Option<Fault> {
         let members = self.actuator.members();

@@ -1,6 +1,6 @@
 //! What the actuator can do about each axis, and how near to its target a law then keeps the body.
 
-use super::Scenario;
+use super::Written;
 use super::study::Study;
 use crate::actuator::{Actuator, PulseWidth};
 use crate::attitude::beyond;
@@ -16,8 +16,8 @@ const NO_MOTION: f64 = 1.0;
 
 impl Study {
     /// What the actuators can do about an axis: until the first of them is at its limit with its share.
-    pub(super) fn authority(&self, scenario: &Scenario, axis: usize) -> Authority {
-        let members = scenario.actuator.members();
+    pub(super) fn authority(&self, written: &Written, axis: usize) -> Authority {
+        let members = written.actuator.members();
         let acting: Vec<_> = members.iter().filter(|member| member.share(axis) > 0.0).collect();
         let (accelerations, width, delay) = match &acting[..] {
             [] => ([0.0; 2], PulseWidth::default(), 0.0),
@@ -72,11 +72,11 @@ impl Study {
     }
 
     /// The elastic rate beyond which the active damping of an axis acts (rad/s); 0 of a law without it.
-    pub(super) fn threshold(&self, scenario: &Scenario, axis: usize) -> Result<f64, Fault> {
-        let Law::PhasePlane(PhasePlane { damping: Some(damping), .. }) = scenario.law.about(axis) else {
+    pub(super) fn threshold(&self, written: &Written, axis: usize) -> Result<f64, Fault> {
+        let Law::PhasePlane(PhasePlane { damping: Some(damping), .. }) = written.law.about(axis) else {
             return Ok(0.0);
         };
-        let key = format!("{}.damping", scenario.law_key(axis));
+        let key = format!("{}.damping", written.law_key(axis));
         let Some(plan) = &self.adaptive else {
             let why = "needs the elastic rates of an `[estimator.adaptive]`, and there is none";
             return Err(Fault::new(key, why));
@@ -95,22 +95,19 @@ impl Study {
         Ok(threshold)
     }
 
-    pub(super) fn band(&self, scenario: &Scenario, body: Option<&Spatial>, axis: usize) -> Option<f64> {
-        match (scenario.law.about(axis), body) {
+    pub(super) fn band(&self, written: &Written, body: Option<&Spatial>, axis: usize) -> Option<f64> {
+        match (written.law.about(axis), body) {
             (Law::PhasePlane(law), _) => Some(band(law, &self.authorities[axis])),
             (law, Some(body)) => match law.promise() {
                 Promise::Nothing => None,
                 Promise::Within(band) => Some(band),
                 Promise::Part(part) => {
                     // Of the whole turn to the last target.
-                    let end = Instant::START + scenario.duration;
-                    let goal = self.way.target(self.last_target(end));
-                    let from = self
-                        .targets
-                        .iter()
-                        .rev()
-                        .nth(1)
-                        .map_or_else(|| body.attitude.get(), |target| self.way.target(target.begins()));
+                    let end = Instant::START + written.duration;
+                    let goal = self.way.target(written.last_target(end));
+                    let before = written.targets().iter().rev().nth(1);
+                    let from =
+                        before.map_or_else(|| body.attitude.get(), |target| self.way.target(target.begins()));
                     let distance = beyond(&goal, &from).norm();
                     (distance > 0.0).then_some(part * distance)
                 }
@@ -120,10 +117,10 @@ impl Study {
     }
 
     /// How near to a target the body has arrived, about each axis (rad).
-    pub fn zones(&self, scenario: &Scenario) -> [f64; 3] {
+    pub fn zones(&self, written: &Written) -> [f64; 3] {
         let mut zones = [f64::NAN; 3];
         for (axis, (zone, band)) in zones.iter_mut().zip(&self.bands).enumerate() {
-            *zone = match scenario.law.about(axis) {
+            *zone = match written.law.about(axis) {
                 Law::PhasePlane(law) => law.dead_zone.get(),
                 _ => band.unwrap_or(f64::NAN),
             };

@@ -5,7 +5,7 @@ use super::epoch::nanoseconds_since_1970;
 use crate::actuator::{Actuator, Member, Wheel};
 use crate::attitude::vector;
 use crate::body::craft::Limit;
-use crate::body::{Drive, Planar};
+use crate::body::{Axes, Drive, Planar};
 use crate::disturbance::{Disturbance, Pulses};
 use crate::document::Fault;
 use crate::document::key;
@@ -14,8 +14,15 @@ use crate::law::{Extra, Itinerary, Law, Target};
 use crate::quantity::Time;
 
 impl Scenario {
+    /// Checks what the single values cannot show to be wrong.
+    ///
+    /// # Errors
     /// The first key that does not fit the others, and what is wrong with it.
-    pub(super) fn inconsistency(&self) -> Option<Fault> {
+    pub(super) fn consistent(&self) -> Result<(), Fault> {
+        self.inconsistency().map_or(Ok(()), Err)
+    }
+
+    fn inconsistency(&self) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
         if self.name.contains(['/', '\\']) || self.name.contains(char::is_control) || self.name.len() > 200 {
             let why = "is used for file names: at most 200 bytes, no slash, no control character";
@@ -46,8 +53,10 @@ impl Scenario {
             return Some(fault.within("reference.pointing"));
         }
         // The parts of a spatial loop were found to fit each other when it was put together.
-        let parts =
-            if self.axis_count() == 3 { self.spatial_inconsistency() } else { self.planar_inconsistency() };
+        let parts = match self.model.axes() {
+            Axes::One(body) => self.planar_inconsistency(body),
+            Axes::Three(_) => self.spatial_inconsistency(),
+        };
         parts.or_else(|| {
             if self.uncertain.is_empty() && self.correlated.is_empty() {
                 return None;
@@ -55,7 +64,9 @@ impl Scenario {
             if let Some(fault) = self.correlation_fault() {
                 return Some(fault);
             }
-            let mut table = self.clone().with_own_modes().to_table();
+            let mut written = self.written.clone();
+            written.forget_files();
+            let mut table = written.to_table();
             table.remove("uncertain");
             table.remove("correlated");
             self.uncertain.iter().find_map(|(key, distribution)| {
@@ -98,7 +109,7 @@ impl Scenario {
 
     /// A spacecraft that turns faster than its modes tell how it bends.
     fn rate_inconsistency(&self) -> Option<Fault> {
-        let craft = self.body.craft()?;
+        let craft = self.model.craft()?;
         let Limit { rate: limit, why } = craft.rate_limit()?;
         let start = vector(&craft.spatial.rate).norm();
         if start > limit {
@@ -107,7 +118,7 @@ impl Scenario {
         }
         let own = matches!(&self.law, Law::PhasePlane(law) if !law.targets.is_empty());
         let key = if own { "law.phase_plane.targets" } else { "target" };
-        let way = Itinerary::new(self.targets(), &self.sky(), &self.body.free_modes());
+        let way = Itinerary::new(self.targets(), &self.sky(), &self.model.free_modes());
         let fast = |(index, target): (usize, &Target)| {
             let planned = || Some(("duration", way.fastest(index).filter(|_| target.command.is_some())?));
             let (of, rate) = target.fastest().or_else(planned).filter(|(_, rate)| *rate > limit)?;
@@ -117,15 +128,15 @@ impl Scenario {
         self.targets().iter().enumerate().find_map(fast)
     }
 
-    fn planar_inconsistency(&self) -> Option<Fault> {
+    fn planar_inconsistency(&self, body: &Planar) -> Option<Fault> {
         self.law_inconsistency()
-            .or_else(|| self.damping_inconsistency())
+            .or_else(|| self.damping_inconsistency(body))
             .or_else(|| self.schedule_inconsistency())
             .or_else(|| self.drift_inconsistency())
-            .or_else(|| self.coupling_inconsistency())
+            .or_else(|| self.coupling_inconsistency(body))
             .or_else(|| self.timing_inconsistency())
-            .or_else(|| self.drive_inconsistency())
-            .or_else(|| self.estimator_inconsistency())
+            .or_else(|| self.drive_inconsistency(body))
+            .or_else(|| self.estimator_inconsistency(body))
             .or_else(|| self.adaptation_inconsistency())
     }
 
@@ -137,7 +148,7 @@ impl Scenario {
             return at("law.relay", why.to_owned());
         }
         let continuous = self.study.sampling.is_none();
-        if self.chain.is_some() && continuous {
+        if self.model.chain().is_some() && continuous {
             let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form; or use a `[sensor.sampled]`";
             return at("body.panels.kinematics", why.to_owned());
         }
@@ -155,16 +166,15 @@ impl Scenario {
 
     /// The key of the damping matrix.
     pub(super) fn damping_key(&self) -> String {
-        format!("body.{}.damping_matrix", self.body.kind())
+        format!("body.{}.damping_matrix", self.body_kind())
     }
 
-    fn damping_inconsistency(&self) -> Option<Fault> {
-        let couples = |body: &Planar| !body.damping_matrix.is_empty();
-        if self.manoeuvre.is_some() && couples(self.planned_for()) {
+    fn damping_inconsistency(&self, body: &Planar) -> Option<Fault> {
+        if self.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.planned_for(body).is_coupled()) {
             let why = "couples modes, and a `[manoeuvre]` treats each mode on its own: give it a `model` without this matrix";
             return Some(Fault::new(self.damping_key(), why));
         }
-        if !couples(&self.model) {
+        if !body.is_coupled() {
             return None;
         }
         let why = match &self.estimator {
@@ -184,7 +194,7 @@ impl Scenario {
         Some(Fault::new(self.damping_key(), why))
     }
 
-    fn coupling_inconsistency(&self) -> Option<Fault> {
+    fn coupling_inconsistency(&self, body: &Planar) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
         let wheel = self.actuator.wheel().map(|(_, key)| key);
         if wheel.is_none() && self.drift.is_none() {
@@ -199,7 +209,7 @@ impl Scenario {
             let why = "has no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters";
             return at(key, why.to_owned());
         }
-        if self.chain.is_some() || self.model.drive == Drive::Motion {
+        if self.model.chain().is_some() || body.drive == Drive::Motion {
             let why = "needs linear modes of a body that a torque drives";
             return at(key, why.to_owned());
         }
@@ -270,7 +280,7 @@ impl Scenario {
         None
     }
 
-    fn drive_inconsistency(&self) -> Option<Fault> {
+    fn drive_inconsistency(&self, body: &Planar) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
         let estimates = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
         if estimates
@@ -288,7 +298,7 @@ impl Scenario {
             let why = "must be 0 with an `[estimator.envelope]`, which follows each mode on its own";
             return at(&format!("{key}.back_emf"), why.to_owned());
         }
-        if self.model.drive == Drive::Motion {
+        if body.drive == Drive::Motion {
             let moves =
                 "moves the hub by force, but the body's hub follows a given motion (`drive = \"motion\"`)";
             if !self.disturbance.is_empty() {
@@ -301,7 +311,7 @@ impl Scenario {
             if !matches!(self.law, Law::Open(_)) {
                 return at("law", moves.to_owned());
             }
-            if self.chain.is_some() {
+            if self.model.chain().is_some() {
                 let why = "must be \"linear\" where the hub's motion is given";
                 return at("body.panels.kinematics", why.to_owned());
             }

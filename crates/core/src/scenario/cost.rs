@@ -169,7 +169,7 @@ impl Scenario {
         {
             if applies && modes > most {
                 let why = format!("gives {modes} modes, and at most {most} {why} are supported");
-                return Some(Fault::new(self.body.key(), why));
+                return Some(Fault::new(self.body_key(), why));
             }
         }
         if let (Some((wheel, key)), Some(period)) = (self.actuator.wheel(), self.decided_every()) {
@@ -249,17 +249,18 @@ impl Scenario {
         }
         // Crossings are guessed or searched, and exact panels integrated, by strides within a vibration.
         let strides = match &self.law {
-            _ if self.chain.is_some() => 20.0,
+            _ if self.model.chain().is_some() => 20.0,
             Law::Relay(_) if self.study.sampling.is_none() => RELAY_STRIDES,
             _ => 0.0,
         };
-        let fastest = self.model.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
+        let modes = self.model.planar().into_iter().flat_map(|body| &body.modes);
+        let fastest = modes.map(|mode| mode.frequency.get()).fold(0.0, f64::max);
         if strides * fastest > 0.0 {
             steps.push(("duration".to_owned(), strides * duration * fastest));
         }
-        if let Some(body) = self.body.spatial() {
+        if let Some(body) = self.model.spatial() {
             let rate = self.fastest_turn(body);
-            let step = self.body.flexible().map_or(LONGEST_TURN / rate, |flexible| flexible.step(rate));
+            let step = self.model.flexible().map_or(LONGEST_TURN / rate, |flexible| flexible.step(rate));
             let step = step.min(self.shaken_every());
             if step.is_finite() {
                 steps.push((TURNS.to_owned(), duration / step));

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::Scenario;
+use super::{Scenario, Written};
 use crate::attitude::Vector;
+use crate::body::Model;
 use crate::body::craft::{Appendage, Drive, Piece, Track};
 use crate::document::Fault;
 use crate::environment::{Sky, into};
@@ -125,15 +126,11 @@ impl Courses {
     }
 }
 
-impl Scenario {
-    /// The angles of the drives at the start, to which appendages are put together.
-    pub(super) fn turn_drives(&mut self) -> Result<(), Fault> {
-        let courses: Vec<Option<Course>> =
-            (0..self.appendage.len()).map(|index| self.course(index)).collect::<Result<_, _>>()?;
-        for (appendage, course) in self.appendage.iter_mut().zip(courses) {
-            appendage.start_angle = course.map_or(0.0, |course| course.at(0.0)[0]);
-        }
-        Ok(())
+impl Written {
+    /// The angles of the drives at the start (rad), 0 of an appendage without one.
+    pub(super) fn start_angles(&self) -> Result<Vec<f64>, Fault> {
+        let angle = |index| Ok(self.course(index)?.map_or(0.0, |course| course.at(0.0)[0]));
+        (0..self.appendage.len()).map(angle).collect()
     }
 
     /// How the drive of an appendage turns, if it has one.
@@ -194,8 +191,8 @@ impl Scenario {
     }
 
     /// All drives of the run.
-    pub(super) fn drives(&self) -> Result<Option<Drives>, Fault> {
-        let Some(driven) = self.body.craft().and_then(|craft| craft.driven.clone()) else { return Ok(None) };
+    pub(super) fn drives(&self, model: &Model) -> Result<Option<Drives>, Fault> {
+        let Some(driven) = model.craft().and_then(|craft| craft.driven.clone()) else { return Ok(None) };
         let (mut each, mut fastest, mut edges) = (Vec::new(), 0.0_f64, vec![Instant::START]);
         let end = Instant::START + self.duration;
         for index in 0..self.appendage.len() {
@@ -255,10 +252,12 @@ impl Scenario {
         );
         Err(Fault::new(format!("appendage[{index}].drive.rate"), why))
     }
+}
 
+impl Scenario {
     /// What does not go with drives.
     pub(super) fn drive_fault(&self) -> Option<Fault> {
-        let driven = self.body.craft()?.driven.as_ref()?;
+        let driven = &self.study.drives.as_ref()?.driven;
         let spacecraft = self.spacecraft.as_ref()?;
         let on_hub = |point: Option<&str>| {
             let Some(point) = point else { return true };

@@ -1,8 +1,9 @@
 //! Failures of sensors and actuators: what of them does not fit, and when each lasts.
 
-use super::Scenario;
+use super::{Scenario, Written};
 use crate::actuator::{Failure, Lasting};
 use crate::attitude::AXES;
+use crate::body::Planar;
 use crate::document::Fault;
 use crate::law::Law;
 use crate::outage::Outage;
@@ -20,7 +21,7 @@ pub struct Failing {
     pub outage: Outage,
 }
 
-impl Scenario {
+impl Written {
     /// All failures: of sensors in their order, then of the actuator.
     pub fn failing(&self) -> Vec<Failing> {
         let mut all = Vec::new();
@@ -49,7 +50,9 @@ impl Scenario {
         }
         all
     }
+}
 
+impl Scenario {
     /// A failure that does not fit its sensor or actuator, or the motion.
     pub(super) fn failing_fault(&self) -> Option<Fault> {
         for (number, sensor) in self.sensor.iter().enumerate() {
@@ -74,7 +77,7 @@ impl Scenario {
             Some(format!("{}.faults[{index}].added.sines", member.key))
         });
         if self.axis_count() == 3 {
-            let key = failed.or(disturbed).filter(|_| self.body.flexible().is_none())?;
+            let key = failed.or(disturbed).filter(|_| self.spacecraft.is_none())?;
             let why = "are for a `[spacecraft]`: the modes of a `[body.spatial]` are pushed by torques that are constant for a \
                        while, and its own `disturbance` is periodic";
             return Some(Fault::new(key, why));
@@ -90,7 +93,7 @@ impl Scenario {
                 "have no closed form with a wheel, whose back-EMF couples the modes: use an `[actuator.hold]`"
             }
             _ if self.drift.is_some() => "have no closed form for modes that drift",
-            _ if !self.model.damping_matrix.is_empty() => {
+            _ if self.model.planar().is_some_and(Planar::is_coupled) => {
                 "have no closed form for modes that a damping matrix couples"
             }
             law if self.sensor.period(law.period()).is_none()

@@ -1,9 +1,9 @@
 //! What the estimator and the monitor of the envelope are told of a scenario before a run.
 
-use super::Scenario;
+use super::{Scenario, Written};
 use crate::adaptation::{Adaptation, Objective};
+use crate::body::Axes;
 use crate::estimator::{Estimator, Known, Meter, Monitor, Searching};
-use crate::law::Goal;
 use crate::random::Seed;
 
 impl Scenario {
@@ -30,8 +30,9 @@ impl Scenario {
         let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
         let learns = self.objective() == Some(Objective::EnvelopeMean);
         let search = self.searching(seed).filter(|_| learns);
-        let Some(body) = self.body.spatial() else {
-            return Some(Monitor::new(envelope, &self.model, search));
+        let body = match self.model.axes() {
+            Axes::One(body) => return Some(Monitor::new(envelope, body, search)),
+            Axes::Three(body) => body,
         };
         let point = self.study.sensed_at.first().map_or("", String::as_str);
         let rotations = body.shapes(point).into_iter().map(|(_, rotation)| rotation.norm());
@@ -43,15 +44,17 @@ impl Scenario {
     pub fn meter(&self, seed: Seed) -> Option<Meter> {
         let (adaptation, objective) = (self.adaptation.as_ref()?, self.objective()?);
         let window = adaptation.window().filter(|_| objective != Objective::EnvelopeMean)?;
-        let goal = if self.axis_count() == 1 { self.goal() } else { Goal::default() };
+        let goal = self.goal();
         Some(Meter::new(objective, window, goal, self.searching(seed)?))
     }
 
     /// The unit of its torques.
     pub fn torque_unit(&self) -> &'static str {
-        if self.axis_count() == 1 { self.model.commanded().1 } else { "N m" }
+        self.model.commanded().1
     }
+}
 
+impl Written {
     /// What its adaptation measures, if it has one.
     pub fn objective(&self) -> Option<Objective> {
         self.adaptation.as_ref().map(Adaptation::objective)

@@ -1,7 +1,7 @@
 //! What does not fit of an estimator: its own keys, and the modes that it knows.
 
 use super::Scenario;
-use crate::body::{Body, Drive};
+use crate::body::{Body, Drive, Planar};
 use crate::document::Fault;
 use crate::estimator::{Estimator, Form};
 use crate::quantity::Positive;
@@ -13,7 +13,7 @@ const MOST_FILTERED: usize = 24;
 const ONE_NUMBER: &str = "must be one number for a body with one angle, got one for each of three axes";
 
 impl Scenario {
-    pub(super) fn estimator_inconsistency(&self) -> Option<Fault> {
+    pub(super) fn estimator_inconsistency(&self, body: &Planar) -> Option<Fault> {
         let envelope = match self.estimator.as_ref()? {
             Estimator::Envelope(envelope) => envelope,
             estimator => return self.filter_inconsistency(estimator),
@@ -23,12 +23,12 @@ impl Scenario {
             return Some(Fault::new("estimator.envelope.modes", why));
         }
         let own = envelope.modes.as_ref().map(|modes| ("estimator.envelope", modes.as_slice()));
-        let (place, modes) = own.unwrap_or(("body.planar", &self.model.modes));
+        let (place, modes) = own.unwrap_or(("body.planar", &body.modes));
         modes.iter().enumerate().find(|(_, mode)| mode.damping.get() >= 1.0).map(|(index, mode)| {
             let why = format!("must be below 1 for a mode to have an envelope, got {}", mode.damping.get());
             match (&self.body, own) {
-                (Body::Matrices(_) | Body::Panels(_) | Body::Spatial(_) | Body::Spacecraft(_), None) => {
-                    Fault::new(format!("{}.damping", self.body.key()), why)
+                (Some(Body::Matrices(_) | Body::Panels(_)), None) => {
+                    Fault::new(format!("{}.damping", self.body_key()), why)
                 }
                 _ => Fault::new(format!("{place}.modes[{index}].damping"), why),
             }
@@ -49,10 +49,10 @@ impl Scenario {
             let why = "needs constant modes, and an appendage that turns changes them";
             return at("", why);
         }
-        let spatial = self.body.spatial()?;
+        let spatial = self.model.spatial()?;
         let damped = spatial.modes.iter().find(|mode| mode.damping.get() >= 1.0)?;
         let why = format!("must be below 1 for a mode to have an envelope, got {}", damped.damping.get());
-        Some(Fault::new(format!("{}.damping", self.body.key()), why))
+        Some(Fault::new(format!("{}.damping", self.body_key()), why))
     }
 
     /// What is wrong with an estimator that acts at each sample.
@@ -80,11 +80,11 @@ impl Scenario {
         if modes == 0 {
             return at("", "has no modes to estimate: the body has none".to_owned());
         }
-        if self.model.drive == Drive::Motion {
+        if self.model.planar().is_some_and(|body| body.drive == Drive::Motion) {
             let why = "observes the modes through the hub's angle, where they do not appear with `drive = \"motion\"`";
             return at("", why.to_owned());
         }
-        if self.chain.is_some() {
+        if self.model.chain().is_some() {
             let why = "must be \"linear\" for an estimator of modes";
             return Some(Fault::new("body.panels.kinematics", why));
         }

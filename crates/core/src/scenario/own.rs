@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::Scenario;
+use super::{Scenario, Written};
 use crate::actuator::{Actuator, Assigned, Effector};
 use crate::adaptation::{Adapt, Adaptation};
 use crate::document::{Document, Fault, ScenarioError};
@@ -35,12 +35,11 @@ impl Scenario {
     ///
     /// # Errors
     /// The part does not fit the others.
-    pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Result<Self, ScenarioError> {
-        change(&mut self);
+    pub fn with(mut self, change: impl FnOnce(&mut Written)) -> Result<Self, ScenarioError> {
+        change(&mut self.written);
         let origin = self.name.clone();
         let fault = |fault: Fault| ScenarioError::Key { origin, key: fault.key, why: fault.why };
-        self.fit().and_then(|()| self.inconsistency().map_or(Ok(()), Err)).map_err(fault)?;
-        Ok(self)
+        Self::fitted(self.written, self.model).map_err(fault)
     }
 
     /// Reads a scenario from a document beside which these parts stand, in place of what it says of their roles.
@@ -78,7 +77,9 @@ impl Scenario {
         let document = Document::from_table(&self.name, table);
         Self::solved(&document, Some(self), &all, true)
     }
+}
 
+impl Written {
     /// Lets a part of a program's own have a place in the text among so many, with the word that stands there for it. An actuator
     /// keeps what it is for.
     fn give_up(

@@ -1,45 +1,37 @@
 //! Which parts go together: what does not is refused here, with the reason and what would do.
 
-use super::{Scenario, Study};
+use super::Written;
 use crate::actuator::{Actuator, Task};
+use crate::body::Model;
 use crate::disturbance::Disturbance;
 use crate::document::Fault;
 use crate::law::{Itinerary, Law, Measure, Target};
 use crate::sensor::Sensor;
 
-impl Scenario {
-    /// Puts the parts together.
+impl Written {
+    /// Checks that the parts go together.
     ///
     /// # Errors
     /// A key that does not fit the others, and why.
-    pub(super) fn fit(&mut self) -> Result<(), Fault> {
+    pub(super) fn fit(&self, model: &Model) -> Result<(), Fault> {
         let faults = [
             self.axes_fault(),
             self.assignment_fault(),
             self.environment_fault(),
-            self.target_fault(),
+            self.target_fault(model),
             self.law_fault(),
             self.sensor_fault(),
             self.actuator_fault(),
             self.reading_fault(),
         ];
-        if let Some(fault) = faults.into_iter().flatten().next() {
-            return Err(fault);
-        }
-        self.study = Study::of(self)?;
-        Ok(())
-    }
-
-    /// How many axes the body has.
-    pub fn axis_count(&self) -> usize {
-        if self.body.spatial().is_some() { 3 } else { 1 }
+        faults.into_iter().flatten().next().map_or(Ok(()), Err)
     }
 
     /// A part for bodies with one angle, or with three axes, of a scenario with the other.
     fn axes_fault(&self) -> Option<Fault> {
         let refused = |key: &str, why: &str| Some(Fault::new(key, why));
         if self.axis_count() == 1 {
-            let kind = self.body.kind();
+            let kind = self.body_kind();
             let members = self.actuator.members();
             let of = |is: fn(&Actuator) -> bool| members.iter().find(|member| is(&member.kind));
             let jets = of(|kind| matches!(kind, Actuator::Jets(_)));
@@ -116,7 +108,7 @@ impl Scenario {
         if self.manoeuvre.is_some() {
             return refused("manoeuvre", "is for bodies with one angle: use `[[target]]` for three axes");
         }
-        if self.drift.is_some() && self.body.craft().is_some() {
+        if self.drift.is_some() && self.spacecraft.is_some() {
             let why = "is for modes that are given: those of a `[spacecraft]` follow from its appendages, which a `drive` can turn";
             return refused("drift", why);
         }
@@ -132,7 +124,7 @@ impl Scenario {
         })
     }
 
-    fn target_fault(&self) -> Option<Fault> {
+    fn target_fault(&self, model: &Model) -> Option<Fault> {
         if let Law::PhasePlane(law) = &self.law
             && !law.targets.is_empty()
         {
@@ -144,14 +136,13 @@ impl Scenario {
             if Target::disorder(&law.targets).is_some() {
                 return None;
             }
-            let fault = Itinerary::fault(&law.targets, &self.sky(), &self.body.free_modes())?;
+            let fault = Itinerary::fault(&law.targets, &self.sky(), &model.free_modes())?;
             return Some(fault.within("law.phase_plane.targets"));
         }
         if let Some((late, why)) = Target::disorder(&self.target) {
             return Some(Fault::new(format!("target[{late}].from"), why));
         }
-        Itinerary::fault(&self.target, &self.sky(), &self.body.free_modes())
-            .map(|fault| fault.within("target"))
+        Itinerary::fault(&self.target, &self.sky(), &model.free_modes()).map(|fault| fault.within("target"))
     }
 
     fn law_fault(&self) -> Option<Fault> {

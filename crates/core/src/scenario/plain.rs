@@ -1,14 +1,14 @@
 //! Whether the law alone moves the body of a scenario, which quicker loops and lanes need.
 
 use super::Scenario;
+use crate::body::Model;
 use crate::sensor::Sensor;
 
 impl Scenario {
     /// Whether the law alone moves a body of one angle, in closed form, and knows its angle at every instant.
     pub fn is_plain(&self) -> bool {
-        self.axis_count() == 1
+        matches!(self.model, Model::Planar(_))
             && self.linear.is_none()
-            && self.chain.is_none()
             && self.drift.is_none()
             && self.plan.is_none()
             && self.disturbance.is_empty()

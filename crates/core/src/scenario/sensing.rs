@@ -1,12 +1,12 @@
 //! What does not fit of sensors, and of estimators with what they read.
 
-use super::Scenario;
+use super::Written;
 use crate::document::Fault;
 use crate::estimator::Estimator;
 use crate::law::Reads;
 use crate::sensor::Sensor;
 
-impl Scenario {
+impl Written {
     pub(super) fn sensor_fault(&self) -> Option<Fault> {
         let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
         for (index, sensor) in self.sensor.iter().enumerate() {
@@ -69,7 +69,7 @@ impl Scenario {
     /// An accelerometer on another body than a spacecraft, or without another sensor.
     fn accelerometer_fault(&self) -> Option<Fault> {
         let (index, _) = self.sensor.accelerometers().next()?;
-        let why = if self.body.flexible().is_none() {
+        let why = if self.spacecraft.is_none() {
             "measures at a point of a `[spacecraft]`, whose mass and centre of mass are known, and whose modes act back on it"
         } else if self.sensor.of_body() == 0 {
             "is not used by the law: list a sensor of the body beside it, such as \"continuous\", which gives the exact motion"

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::Scenario;
+use super::Written;
 use crate::document::Fault;
 use crate::environment::{Sky, Sun};
 use crate::sensor::Sensor;
@@ -10,7 +10,7 @@ use crate::sensor::Sensor;
 /// The planet's shadow is known for so many orbits at most.
 const MOST_ORBITS: f64 = 1e6;
 
-impl Scenario {
+impl Written {
     /// An environment that does not fit itself, or the run.
     pub(super) fn environment_fault(&self) -> Option<Fault> {
         let around = self.environment.as_ref()?;

@@ -2,17 +2,17 @@
 
 use nalgebra::{Cholesky, Matrix3};
 
-use super::{Drives, Scenario};
+use super::{Drives, Scenario, Written};
 use crate::actuator::{
     Actuate, Actuator, Allocation, Firing, Group, Member, Nozzle, Opposes, Setting, Several, Task, Torquers,
 };
 use crate::attitude::{Vector, beyond, tensor};
 use crate::body::craft::{Moving, Rotor};
-use crate::body::{Drive, Mode, Planar, Spatial};
+use crate::body::{Axes, Drive, Mode, Model, Planar, Spatial};
 use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
-use crate::law::{Authority, Distribution, Itinerary, Target};
+use crate::law::{Authority, Distribution, Itinerary};
 use crate::motion::turning::{Bearing, Common};
 use crate::quantity::{Finite, Positive};
 use crate::random::Seed;
@@ -46,9 +46,7 @@ pub struct Study {
     pub around: Option<Around>,
     /// The drives of appendages.
     pub drives: Option<Drives>,
-    /// Attitudes to turn to, and the way to them.
-    pub targets: Vec<Target>,
-    /// See `targets`.
+    /// The way to the targets.
     pub way: Itinerary,
     /// What each group of jets by which laws act does: for each axis, plus and minus.
     pub groups: Option<[[Group; 2]; 3]>,
@@ -81,36 +79,34 @@ impl Study {
     ///
     /// # Errors
     /// A key that does not fit the others, and why.
-    pub fn of(scenario: &Scenario) -> Result<Self, Fault> {
-        let body = scenario.body.spatial();
-        let cycle = scenario.law.period();
-        let samples = scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_none());
+    pub fn of(written: &Written, model: &Model) -> Result<Self, Fault> {
+        let cycle = written.law.period();
+        let samples = written.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_none());
         let mut study = Self {
             cycle,
             // A continuous sensor is read in the cycles of the law, where an estimator acts at samples.
-            sampling: scenario.sensor.period(cycle).or(cycle.filter(|_| samples)),
-            targets: scenario.targets().to_vec(),
-            way: Itinerary::new(scenario.targets(), &scenario.sky(), &scenario.body.free_modes()),
-            back_emf: scenario
+            sampling: written.sensor.period(cycle).or(cycle.filter(|_| samples)),
+            way: Itinerary::new(written.targets(), &written.sky(), &model.free_modes()),
+            back_emf: written
                 .actuator
                 .wheel()
                 .map_or((0.0, true), |(wheel, _)| (wheel.back_emf.get(), wheel.opposes == Opposes::BodyRate)),
-            jets_alone: matches!(scenario.actuator.alone(), Some(Actuator::Jets(_))),
+            jets_alone: matches!(written.actuator.alone(), Some(Actuator::Jets(_))),
             ..Self::default()
         };
         study.tick = study.cycle.or(study.sampling).unwrap_or(Span::from_seconds(TICK));
-        match body {
-            None => study.axes.push(scenario.model.clone()),
-            Some(body) => study.place(scenario, body)?,
+        match model.axes() {
+            Axes::One(body) => study.axes.push(body.clone()),
+            Axes::Three(body) => study.place(written, model, body)?,
         }
-        study.authorities = (0..study.axes.len()).map(|axis| study.authority(scenario, axis)).collect();
-        if let Some(Estimator::Adaptive(_)) = &scenario.estimator {
+        study.authorities = (0..study.axes.len()).map(|axis| study.authority(written, axis)).collect();
+        if let Some(Estimator::Adaptive(_)) = &written.estimator {
             let at = |why: &str| Err(Fault::new("estimator.adaptive", why));
-            let jets = scenario.actuator.jets();
+            let jets = written.actuator.jets();
             if jets.is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant) {
                 return at("predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`");
             }
-            let members = scenario.actuator.members();
+            let members = written.actuator.members();
             let part = |share: f64| share > 0.0 && share < 1.0 - ROUNDING;
             let fires = |member: &&Member<'_>| matches!(&*member.kind, Actuator::Jets(_));
             if members.iter().filter(fires).any(|member| (0..3).any(|axis| part(member.share(axis)))) {
@@ -119,29 +115,32 @@ impl Study {
                 );
             }
         }
-        if let Some(Estimator::Adaptive(spec)) = &scenario.estimator {
+        if let Some(Estimator::Adaptive(spec)) = &written.estimator {
             let Some(period) = study.sampling else {
                 return Err(Fault::new("estimator.adaptive", Estimator::AT_SAMPLES));
             };
-            let measured = body.map_or_else(|| of_one_angle(&scenario.model), |body| study.measured(body));
+            let measured = match model.axes() {
+                Axes::One(body) => of_one_angle(body),
+                Axes::Three(body) => study.measured(body),
+            };
             let plan = adaptive::ObserverDesign::of(spec, &measured, period.seconds());
             study.adaptive = Some(Box::new(plan.map_err(|fault| fault.within("estimator.adaptive"))?));
         }
-        if let Some(spec) = scenario.estimator.as_ref().and_then(Estimator::attitude) {
+        if let Some(spec) = written.estimator.as_ref().and_then(Estimator::attitude) {
             let jets = study.groups.is_some();
-            let mounted = body.map(|body| (body, &study.sensed_at[..], jets));
-            let setting = spec.setting(&scenario.sensor, cycle, mounted);
+            let mounted = model.spatial().map(|body| (body, &study.sensed_at[..], jets));
+            let setting = spec.setting(&written.sensor, cycle, mounted);
             study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
         }
         for axis in 0..study.axes.len() {
-            study.authorities[axis].threshold = study.threshold(scenario, axis)?;
+            study.authorities[axis].threshold = study.threshold(written, axis)?;
         }
-        study.bands = (0..study.axes.len()).map(|axis| study.band(scenario, body, axis)).collect();
+        study.bands = (0..study.axes.len()).map(|axis| study.band(written, model.spatial(), axis)).collect();
         Ok(study)
     }
 
     /// The places of sensor and actuator on a body with three axes, its groups of jets, and its axes as if each were alone.
-    fn place(&mut self, scenario: &Scenario, body: &Spatial) -> Result<(), Fault> {
+    fn place(&mut self, written: &Written, model: &Model, body: &Spatial) -> Result<(), Fault> {
         let first = body.points.first().map_or(String::new(), |point| point.name.clone());
         let named = |key: &str, point: Option<&str>| {
             let Some(name) = point else { return Ok(first.clone()) };
@@ -151,12 +150,12 @@ impl Study {
             let points = body.point_names();
             Err(Fault::new(key, format!("must be one of the body's points, {points}, got `{name}`")))
         };
-        for (index, sensor) in scenario.sensor.iter().enumerate() {
-            let key = format!("{}.{}.point", scenario.sensor.key("sensor", index), sensor.kind());
+        for (index, sensor) in written.sensor.iter().enumerate() {
+            let key = format!("{}.{}.point", written.sensor.key("sensor", index), sensor.kind());
             self.sensed_at.push(named(&key, sensor.point())?);
         }
         self.acts_at.clone_from(&first);
-        for member in scenario.actuator.members() {
+        for member in written.actuator.members() {
             let Actuator::Jets(jets) = &*member.kind else { continue };
             let (acts, groups) = match &member.task {
                 Task::Executes(shares) => (shares.map(|share| share > 0.0), &mut self.groups),
@@ -166,13 +165,13 @@ impl Study {
             self.nozzles = jets.nozzles_on(body);
             self.fired = [0, 1, 2].map(|axis| member.share(axis) > 1.0 - ROUNDING);
         }
-        if let Some((wheels, of)) = scenario.actuator.wheels() {
+        if let Some((wheels, of)) = written.actuator.wheels() {
             let allocation = wheels.allocation().map_err(|fault| fault.within(&of))?;
             self.wheels = Some(allocation);
-            let tachometer = scenario.sensor.tachometer().map(|(index, _)| scenario.sensor_key(index));
+            let tachometer = written.sensor.tachometer().map(|(index, _)| written.sensor_key(index));
             let own = wheels.bears().map(|key| format!("{of}.{key}"));
             if let Some(key) = own.or(tachometer) {
-                let Some(flexible) = scenario.body.flexible() else {
+                let Some(flexible) = model.flexible() else {
                     let why = "is for wheels on a `[spacecraft]`: the modes of a `[body.spatial]` do not act back on its rotation, \
                                against which wheels turn";
                     return Err(Fault::new(key, why));
@@ -181,13 +180,13 @@ impl Study {
                 self.bearings = bearings.map_err(|fault| fault.within(&of))?;
             }
         }
-        self.around = surroundings(scenario, body)?;
-        self.drives = scenario.drives()?;
-        for (index, disturbance) in scenario.disturbance.iter().enumerate() {
+        self.around = surroundings(written, model, body)?;
+        self.drives = written.drives(model)?;
+        for (index, disturbance) in written.disturbance.iter().enumerate() {
             named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
         }
-        let pushed = self.fires() || scenario.disturbance.iter().any(|of| of.force.is_some());
-        let craft = scenario.body.craft().filter(|_| pushed);
+        let pushed = self.fires() || written.disturbance.iter().any(|of| of.force.is_some());
+        let craft = model.craft().filter(|_| pushed);
         self.moving = craft.map(|craft| Moving::new(body, craft.mass));
         let measured = self.measured(body);
         let angles = beyond(&self.way.target(Instant::START), &body.attitude.get());
@@ -243,17 +242,11 @@ impl Study {
         self.groups.is_some() || self.unloading.is_some()
     }
 
-    /// When the last target begins that does so before an instant; the start without one.
-    pub fn last_target(&self, before: Instant) -> Instant {
-        let begins = self.targets.iter().rev().map(Target::begins);
-        begins.into_iter().find(|from| *from < before).unwrap_or(Instant::START)
-    }
-
     /// What turns the body as laws command.
     pub fn distribution(&self, scenario: &Scenario) -> Distribution {
-        match scenario.body.spatial() {
-            None => Distribution::of_one_angle(scenario.model.commanded_inertia()),
-            Some(body) => {
+        match scenario.model.axes() {
+            Axes::One(body) => Distribution::of_one_angle(body.commanded_inertia()),
+            Axes::Three(body) => {
                 Distribution::of_three_axes(scenario.law.inertia().map_or_else(|| body.tensor(), tensor))
             }
         }
@@ -262,10 +255,11 @@ impl Study {
     /// The actuator of a run.
     pub fn actuator(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Actuate> {
         let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
+        let manoeuvre = scenario.manoeuvre.as_ref();
         let setting = |(axis, model): (usize, &Planar)| Setting {
             axis,
             inertia: model.commanded_inertia(),
-            planned_inertia: scenario.planned_for().commanded_inertia(),
+            planned_inertia: manoeuvre.map_or(model, |of| of.planned_for(model)).commanded_inertia(),
             rate: model.rate.get(),
             cycle: scenario.law.about(axis).period(),
             waveform: waveform.clone(),
@@ -311,23 +305,23 @@ impl Study {
 }
 
 /// What is around a body, of which wheels are a part that its inertia is without.
-fn surroundings(scenario: &Scenario, body: &Spatial) -> Result<Option<Around>, Fault> {
-    let bendings = scenario.body.craft().map_or(&[][..], |craft| &craft.bendings);
+fn surroundings(written: &Written, model: &Model, body: &Spatial) -> Result<Option<Around>, Fault> {
+    let bendings = model.craft().map_or(&[][..], |craft| &craft.bendings);
     let sunny =
-        scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some() && around.sun.is_some());
+        written.environment.as_ref().is_some_and(|around| around.orbit.is_some() && around.sun.is_some());
     if !bendings.is_empty() && !sunny {
-        let index = scenario.appendage.iter().position(|appendage| appendage.thermal.is_some());
+        let index = written.appendage.iter().position(|appendage| appendage.thermal.is_some());
         let why = "depends on sunlight and shadow: it needs `environment.orbit` and `environment.sun`";
         return Err(Fault::new(format!("appendage[{}].thermal", index.unwrap_or(0)), why));
     }
-    let Some(environment) = &scenario.environment else { return Ok(None) };
-    let rotors = match scenario.actuator.wheels() {
+    let Some(environment) = &written.environment else { return Ok(None) };
+    let rotors = match written.actuator.wheels() {
         Some((wheels, key)) => wheels.rotors().map_err(|fault| fault.within(&key))?,
         None => Vec::new(),
     };
     let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
-    let centre = scenario.body.craft().map_or_else(Vector::zeros, |craft| craft.centre);
-    let around = Around::new(environment, scenario.sky(), [body.tensor(), spinning], &centre);
+    let centre = model.craft().map_or_else(Vector::zeros, |craft| craft.centre);
+    let around = Around::new(environment, written.sky(), [body.tensor(), spinning], &centre);
     Ok(Some(around.warming(bendings)))
 }
 

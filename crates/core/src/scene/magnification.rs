@@ -5,7 +5,7 @@
 use crate::actuator::{Actuator, Member};
 use crate::attitude::{Vector, turned};
 use crate::body::spatial::SpatialMode;
-use crate::body::{Mode, Spatial};
+use crate::body::{Mode, Planar, Spatial};
 use crate::disturbance::Disturbance;
 use crate::law::{Commands, Frame, Law};
 use crate::motion::turning::Line;
@@ -53,8 +53,8 @@ pub fn slowing(step: f64) -> f64 {
 }
 
 /// The angle by which a body of one angle turns, about (rad).
-pub fn angle(scenario: &Scenario) -> f64 {
-    let start = scenario.model.angle.get();
+pub fn angle(scenario: &Scenario, body: &Planar) -> f64 {
+    let start = body.angle.get();
     let zone = match &scenario.law {
         Law::Relay(relay) => relay.dead_zone.get(),
         _ => 0.0,
@@ -63,17 +63,16 @@ pub fn angle(scenario: &Scenario) -> f64 {
 }
 
 /// The rate at which a body of one angle turns at most, about (rad/s).
-pub fn rate(scenario: &Scenario) -> f64 {
-    let model = &scenario.model;
+pub fn rate(scenario: &Scenario, body: &Planar) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| 2.0 * scenario.goal().angle.abs() / plan.time);
     let by_law = match (&scenario.law, scenario.actuator.wheel()) {
         // What the spring of the law makes of the angle.
         (Law::Pd(pd), Some((wheel, _))) => {
-            angle(scenario) * libm::sqrt(pd.k_p.get() * wheel.gain.get() / model.commanded_inertia())
+            angle(scenario, body) * libm::sqrt(pd.k_p.get() * wheel.gain.get() / body.commanded_inertia())
         }
         _ => 0.0,
     };
-    model.rate.get().abs().max(planned).max(by_law)
+    body.rate.get().abs().max(planned).max(by_law)
 }
 
 /// The angle by which a body with three axes turns, about (rad).
@@ -93,10 +92,9 @@ pub fn spatial_angle(scenario: &Scenario, body: &Spatial) -> f64 {
 
 /// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, or once where a
 /// wheel under a PD law lets go as the body turns, but no more than the same push gives without a spring, or what the initial state holds.
-pub fn displacements(scenario: &Scenario) -> Vec<f64> {
-    let model = &scenario.model;
-    let travel = angle(scenario);
-    let moment = largest(scenario) / model.commanded_inertia();
+pub fn displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
+    let travel = angle(scenario, body);
+    let moment = largest(scenario, body) / body.commanded_inertia();
     let lets_go = scenario.actuator.wheel().is_some() && !scenario.law.switches();
     let times = if lets_go { 1.0 } else { 2.0 };
     let of = |mode: &Mode| {
@@ -106,24 +104,24 @@ pub fn displacements(scenario: &Scenario) -> Vec<f64> {
         let held = if swing.is_nan() { libm::hypot(start.displacement, start.quadrature) } else { swing };
         held.max((times * mode.excitability().abs() * moment).min(mode.gain.get().abs() * travel))
     };
-    model.modes.iter().map(of).collect()
+    body.modes.iter().map(of).collect()
 }
 
 /// The largest torque, about (N m; rad/s² where the motion is commanded).
-pub fn largest(scenario: &Scenario) -> f64 {
+pub fn largest(scenario: &Scenario, body: &Planar) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| plan.peak().value.abs());
     let by_law = match &scenario.law {
         Law::Relay(relay) => relay.strong.get(),
-        Law::Pd(pd) if scenario.plan.is_none() => pd.k_p.get() * scenario.model.angle.get().abs(),
+        Law::Pd(pd) if scenario.plan.is_none() => pd.k_p.get() * body.angle.get().abs(),
         Law::StateSpace(law) if scenario.plan.is_none() => {
             let unit = match law.command {
                 Commands::Torque => 1.0,
-                Commands::Acceleration => scenario.model.commanded_inertia(),
+                Commands::Acceleration => body.commanded_inertia(),
             };
-            unit * law.first_command(scenario.model.angle.get())
+            unit * law.first_command(body.angle.get())
         }
         Law::Attitude(law) if scenario.plan.is_none() => {
-            law.first_torque(scenario.model.angle.get(), scenario.model.commanded_inertia())
+            law.first_torque(body.angle.get(), body.commanded_inertia())
         }
         _ => 0.0,
     };
@@ -160,7 +158,7 @@ fn by_law(scenario: &Scenario, body: &Spatial, axis: usize, law: &Law, (unit, mo
         Law::Attitude(law) => {
             let inertia = study.axes[axis].inertia.get();
             // A turn along a profile asks for its acceleration, and not for all of the angle at once.
-            let led = study.targets.iter().map(|target| target.acceleration.map(Positive::get));
+            let led = scenario.targets().iter().map(|target| target.acceleration.map(Positive::get));
             match led.reduce(|most, next| Some(most?.max(next?))).flatten() {
                 Some(acceleration) => inertia * acceleration,
                 None => law.first_torque(spatial_angle(scenario, body), inertia),
@@ -192,7 +190,7 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let times = |of: &Disturbance| if of.pulse.is_some() { 2.0 } else { 1.0 };
     let pushes: Vec<_> =
         scenario.disturbance.iter().filter_map(|of| Some((of.push(body)?, times(of)))).collect();
-    let warmed = scenario.body.craft().map_or(&[][..], |craft| &craft.bendings);
+    let warmed = scenario.model.craft().map_or(&[][..], |craft| &craft.bendings);
     let mode = |(index, mode): (usize, &SpatialMode)| {
         let w = mode.frequency.get();
         let fired = scenario.study.groups.iter().flatten().flatten().map(|group| group.push.forces[index]);

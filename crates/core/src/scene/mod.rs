@@ -12,6 +12,7 @@ mod pose;
 mod spatial;
 mod wheel;
 
+use crate::body::Axes;
 use crate::record::foxglove::{FrameTransforms, SceneUpdate};
 use crate::record::row::Stamp;
 use crate::scenario::Scenario;
@@ -32,9 +33,9 @@ pub enum Scene {
 impl Scene {
     /// The scene of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        match scenario.body.spatial() {
-            None => Self::Planar(PlanarScene::new(scenario)),
-            Some(body) => Self::Spatial(SpatialScene::new(scenario, body)),
+        match scenario.model.axes() {
+            Axes::One(body) => Self::Planar(PlanarScene::new(scenario, body)),
+            Axes::Three(body) => Self::Spatial(SpatialScene::new(scenario, body)),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::PlanarView;
 use super::magnification::displacements;
-use crate::body::Body;
+use crate::body::{Body, Planar};
 use crate::scenario::Scenario;
 
 /// Panels of a body that has none of its own: so many sections, of this length altogether, from this distance on (m).
@@ -39,10 +39,10 @@ pub struct Panels {
 
 impl Panels {
     /// Those of a scenario's body.
-    pub fn of(scenario: &Scenario) -> Self {
-        let (model, reached) = (&scenario.model, displacements(scenario));
-        if let Body::Panels(panels) = &scenario.body {
-            let bent = model.outputs.iter().map(|output| {
+    pub fn of(scenario: &Scenario, body: &Planar) -> Self {
+        let reached = displacements(scenario, body);
+        if let Some(Body::Panels(panels)) = &scenario.body {
+            let bent = body.outputs.iter().map(|output| {
                 output.modes.iter().zip(&reached).map(|(weight, x)| (weight.get() * x).abs()).sum()
             });
             return Self {
@@ -56,7 +56,7 @@ impl Panels {
         Self {
             root: ROOT,
             lengths: vec![LENGTH / SECTIONS as f64; SECTIONS],
-            bends: Bends::Modes((0..model.modes.len()).map(|mode| slopes(mode, SECTIONS)).collect()),
+            bends: Bends::Modes((0..body.modes.len()).map(|mode| slopes(mode, SECTIONS)).collect()),
             count: 2,
             bent: reached.iter().sum(),
         }

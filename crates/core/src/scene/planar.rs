@@ -10,6 +10,7 @@ use super::plume::{Burning, Nozzle};
 use super::pose::{about_z, attitude};
 use super::wheel::{Wheel, disc};
 use crate::attitude::Vector;
+use crate::body::Planar;
 use crate::motion::Phase;
 use crate::quantity::Positive;
 use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneEntity, SceneUpdate};
@@ -54,19 +55,19 @@ pub struct PlanarScene {
 
 impl PlanarScene {
     /// The scene of a scenario.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &Scenario, body: &Planar) -> Self {
         let spec = &scenario.log.scene;
-        let panels = Panels::of(scenario);
+        let panels = Panels::of(scenario, body);
         let period = spec.period(scenario.log_period());
         let mut scene = Self {
             period,
             bending: spec.bending.map_or_else(|| bending(panels.bent), Positive::get),
-            turning: spec.turning.map_or_else(|| turning(angle(scenario)), Positive::get),
+            turning: spec.turning.map_or_else(|| turning(angle(scenario, body)), Positive::get),
             goal: scenario.plan.as_ref().map(|_| scenario.goal().angle),
             panels,
-            wheel: Wheel::of(scenario, period),
+            wheel: Wheel::of(scenario, body, period),
             plumes: None,
-            largest: largest(scenario),
+            largest: largest(scenario, body),
             frames: FrameTransforms { transforms: Vec::new() },
         };
         if scene.wheel.is_none() {

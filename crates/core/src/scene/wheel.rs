@@ -4,6 +4,7 @@ use super::PlanarView;
 use super::magnification::{rate, slowing};
 use super::part::{MARK, WHEEL, cone, cube, entity};
 use crate::attitude::Vector;
+use crate::body::Planar;
 use crate::record::foxglove::SceneEntity;
 use crate::record::row::Stamp;
 use crate::scenario::Scenario;
@@ -25,16 +26,15 @@ pub struct Wheel {
 
 impl Wheel {
     /// That of a scenario, if it has one, for frames with this period.
-    pub fn of(scenario: &Scenario, period: Span) -> Option<Self> {
+    pub fn of(scenario: &Scenario, body: &Planar, period: Span) -> Option<Self> {
         let (wheel, _) = scenario.actuator.wheel()?;
-        let model = &scenario.model;
         let (speed, inertia) = match &wheel.rotor {
             Some(rotor) => (rotor.speed.get(), rotor.inertia.get()),
-            None => (0.0, ROTOR * model.inertia.get()),
+            None => (0.0, ROTOR * body.inertia.get()),
         };
-        let from = (model.angle.get(), model.rate.get());
-        let ratio = model.commanded_inertia() / inertia;
-        let slowed = slowing((speed.abs() + ratio * rate(scenario)) * period.seconds());
+        let from = (body.angle.get(), body.rate.get());
+        let ratio = body.commanded_inertia() / inertia;
+        let slowed = slowing((speed.abs() + ratio * rate(scenario, body)) * period.seconds());
         Some(Self { speed, ratio, slowed, from })
     }
 

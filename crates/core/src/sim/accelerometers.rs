@@ -18,7 +18,7 @@ impl Accelerometers {
         let seed = Seed { scenario: scenario.seed, run };
         let of = |(index, accelerometer): (usize, &Accelerometer)| {
             let point = scenario.study.sensed_at.get(index)?;
-            let mount = Mount::new(scenario.body.spatial()?, scenario.body.craft()?.mass, point);
+            let mount = Mount::new(scenario.model.spatial()?, scenario.model.craft()?.mass, point);
             Some((index, mount, accelerometer.start(seed, scenario.sensor.ordinal(index))))
         };
         Self(scenario.sensor.accelerometers().filter_map(of).collect())

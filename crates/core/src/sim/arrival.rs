@@ -14,22 +14,22 @@ pub struct Arrival {
     /// When.
     pub at: Instant,
     goal: Goal,
-    model: Planar,
+    body: Planar,
 }
 
 impl Arrival {
     /// The end of a scenario's manoeuvre, if it has one.
     pub fn new(scenario: &Scenario, goal: &Goal) -> Option<Self> {
-        let (goal, model) = (*goal, scenario.model.clone());
-        scenario.plan.as_ref().map(|_| Self { at: goal.from, goal, model })
+        let body = scenario.model.planar().filter(|_| scenario.plan.is_some())?.clone();
+        Some(Self { at: goal.from, goal: *goal, body })
     }
 
     /// What is logged, for a body in this state.
     pub fn row(&self, truth: &Truth, state: &State) -> record::Arrival {
-        let modes = || self.model.modes.iter().zip(&state.modes);
+        let modes = || self.body.modes.iter().zip(&state.modes);
         let amplitudes: Vec<f64> = modes().map(|(mode, phase)| mode.amplitude(*phase)).collect();
-        let visible = if self.model.drive == Drive::Torque { 1.0 } else { 0.0 };
-        let outputs = self.model.outputs.iter().map(|output| {
+        let visible = if self.body.drive == Drive::Torque { 1.0 } else { 0.0 };
+        let outputs = self.body.outputs.iter().map(|output| {
             let parts = output.modes.iter().zip(&amplitudes);
             Residual {
                 amplitude: parts.map(|(weight, amplitude)| weight.get().abs() * amplitude).sum(),
@@ -40,9 +40,7 @@ impl Arrival {
             angle_error_rad: truth.seen()[0] - self.goal.angle,
             rate_error_rad_s: truth.rate[0] - self.goal.rate,
             angle_residual_rad: visible * amplitudes.iter().sum::<f64>(),
-            elastic_energy_j: modes()
-                .map(|(mode, phase)| mode.energy(*phase, self.model.inertia.get()))
-                .sum(),
+            elastic_energy_j: modes().map(|(mode, phase)| mode.energy(*phase, self.body.inertia.get())).sum(),
             outputs: outputs.collect(),
         }
     }

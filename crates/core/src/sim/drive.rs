@@ -45,7 +45,7 @@ impl Drive {
             actuator: scenario.study.actuator(scenario, seed),
             distribution: scenario.study.distribution(scenario),
             disturbances: disturbances
-                .map(|(index, of)| Disturbing::new(of, scenario.body.spatial(), stream(index)))
+                .map(|(index, of)| Disturbing::new(of, scenario.model.spatial(), stream(index)))
                 .collect(),
             edges,
             due: None,

@@ -83,7 +83,7 @@ mod tests {
     fn both(name: &str, duration: f64, topics: &[&str], every: usize) {
         let path = format!("{SCENARIOS}/{name}.toml");
         let mut scenario = Scenario::load(path.as_ref()).expect("a scenario");
-        scenario.duration = Span::from_seconds(duration);
+        scenario.written.duration = Span::from_seconds(duration);
         let mut whole = Trace::new(Detail::Full);
         Simulation::new(&scenario, 0).run(&mut whole).expect("a run");
         let times: Vec<f64> = whole

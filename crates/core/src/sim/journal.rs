@@ -39,8 +39,7 @@ impl Journal {
 
 /// The line with which a run begins.
 pub fn opening(scenario: &Scenario, run: u64) -> String {
-    let Scenario { name, duration, seed, .. } = scenario;
-    format!("{name}: {} s, seed {seed}, run {run}", duration.seconds())
+    format!("{}: {} s, seed {}, run {run}", scenario.name, scenario.duration.seconds(), scenario.seed)
 }
 
 /// The line of a step of the adaptation.

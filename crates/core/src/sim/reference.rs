@@ -16,13 +16,33 @@ use nalgebra::Quaternion;
 pub struct Reference {
     /// The end of the manoeuvre, or angle 0.
     pub goal: Goal,
-    /// The manoeuvre's command.
-    waveform: Option<Arc<Waveform>>,
-    /// Angle (rad) and rate (rad/s) at which the manoeuvre begins, and what a unit of its command accelerates (kg m²).
-    from: (f64, f64),
-    inertia: f64,
+    /// The manoeuvre.
+    planned: Option<Planned>,
     /// The way to the targets of a body with three axes.
     way: Option<Itinerary>,
+}
+
+/// A manoeuvre, as a rigid body makes it.
+#[derive(Clone, Debug)]
+struct Planned {
+    waveform: Arc<Waveform>,
+    /// Angle (rad) and rate (rad/s) at which it begins.
+    from: (f64, f64),
+    /// What a unit of its command accelerates (kg m²).
+    inertia: f64,
+}
+
+impl Planned {
+    /// That of a scenario, if it has one.
+    fn new(scenario: &Scenario) -> Option<Self> {
+        let (manoeuvre, plan) = scenario.manoeuvre.as_ref().zip(scenario.plan.as_ref())?;
+        let body = scenario.model.planar()?;
+        Some(Self {
+            waveform: Arc::new(plan.waveform.clone()),
+            from: (body.angle.get(), body.rate.get()),
+            inertia: manoeuvre.planned_for(body).commanded_inertia(),
+        })
+    }
 }
 
 impl Reference {
@@ -30,20 +50,18 @@ impl Reference {
     pub fn new(scenario: &Scenario) -> Self {
         Self {
             goal: scenario.goal(),
-            waveform: scenario.plan.as_ref().map(|plan| Arc::new(plan.waveform.clone())),
-            from: (scenario.model.angle.get(), scenario.model.rate.get()),
-            inertia: scenario.planned_for().commanded_inertia(),
-            way: scenario.body.spatial().map(|_| scenario.study.way.clone()),
+            planned: Planned::new(scenario),
+            way: scenario.model.spatial().map(|_| scenario.study.way.clone()),
         }
     }
 
     /// Angle (rad) and rate (rad/s) where a body with one angle shall be: on the manoeuvre, where it would be if it were rigid.
     pub fn at(&self, now: Instant) -> (f64, f64) {
-        match &self.waveform {
-            Some(waveform) if now < self.goal.from => {
-                let ((angle, rate), t) = (self.from, now.seconds());
+        match &self.planned {
+            Some(Planned { waveform, from: (angle, rate), inertia }) if now < self.goal.from => {
+                let t = now.seconds();
                 let (travel, impulse) = (waveform.travel(0.0, t), waveform.impulse(0.0, t));
-                (angle + rate * t + travel / self.inertia, rate + impulse / self.inertia)
+                (angle + rate * t + travel / inertia, rate + impulse / inertia)
             }
             _ => self.goal.at(now),
         }
@@ -99,6 +117,6 @@ impl Reference {
 
     /// What the manoeuvre commands (N m).
     pub fn feedforward(&self, now: Instant) -> f64 {
-        self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds()))
+        self.planned.as_ref().map_or(0.0, |planned| planned.waveform.at(now.seconds()))
     }
 }

@@ -69,7 +69,7 @@ impl Telling {
             log_period: scenario.log_period(),
             next_dense: None,
             next_law: Instant::START,
-            cycle: scenario.body.spatial().map(|_| scenario.study.tick),
+            cycle: scenario.model.spatial().map(|_| scenario.study.tick),
             slips: Vec::new(),
             pulses: 0,
             next_cycle: None,

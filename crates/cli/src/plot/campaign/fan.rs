@@ -173,7 +173,7 @@ fn of_rotation(story: &Story, motion: &Motion) -> Vec<Signal> {
         line: over_time(&mut beyond),
         held: false,
     }];
-    if let (Some(output), Some(values)) = (story.scenario.model.outputs.last(), motion.outputs.last()) {
+    if let (Some(output), Some(values)) = (story.scenario.model.outputs().last(), motion.outputs.last()) {
         let (name, unit) = flexsc_figure::name_and_unit(&output.name, &output.unit);
         signals.push(Signal { name, unit, line: over_time(&mut values.iter().copied()), held: false });
     }

@@ -48,7 +48,7 @@ fn craft(imbalance: &str) -> (Flexible, Vec<Bearing>, Vec<Vector>) {
         "{CRAFT}\n[actuator.wheels]\narrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\n"
     );
     let scenario = Scenario::parse("craft", &text).unwrap();
-    let craft = scenario.body.craft().unwrap();
+    let craft = scenario.model.craft().unwrap();
     let mut flexible = craft.flexible.clone();
     let rows = rows(MODES);
     // The table's modes may have other signs.
@@ -201,7 +201,7 @@ fn steady_at(
 fn what_does_not_fit_is_refused_with_its_key() {
     let (flexible, spatial) = {
         let scenario = Scenario::parse("craft", CRAFT).unwrap();
-        let craft = scenario.body.craft().unwrap();
+        let craft = scenario.model.craft().unwrap();
         (craft.flexible.clone(), craft.spatial.clone())
     };
     let found = wheels("static = 1e-6, point = \"nowhere\"").bearings((&spatial, &flexible)).unwrap_err();

@@ -44,7 +44,7 @@ pub struct Damped {
 
 /// A relay against the modes of one damping ratio.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Study {
+pub struct PulsedDamping {
     /// When the relay pushes.
     pub timing: PulseTiming,
     /// Damping ratio of the modes.
@@ -57,7 +57,7 @@ pub struct Study {
     pub threshold: f64,
 }
 
-impl Study {
+impl PulsedDamping {
     /// The first number that is out of its range, by its name, and what is wrong with it.
     pub fn inconsistency(&self) -> Option<(&'static str, String)> {
         let Self { timing, damping, acceleration, amplitude, threshold } = *self;

@@ -21,16 +21,15 @@ impl Loop {
     /// A key that has no place in such a loop, and why.
     pub fn of(scenario: &Scenario) -> Result<(Self, &Pd), Fault> {
         let refused = |key: &str, why: &str| Err(Fault::new(key, why));
-        if scenario.axis_count() == 3 {
+        let Some(body) = scenario.model.planar() else {
             return refused(
-                &scenario.body.key(),
+                &scenario.body_key(),
                 "turns about three axes: only loops with one angle are analysed",
             );
-        }
+        };
         let Law::Pd(law) = &scenario.law else {
             return refused("law", "must be `pd`: only sampled loops are analysed");
         };
-        let body = scenario.model.clone();
         if body.modes.is_empty() {
             return refused("body", "must have a mode whose frequency changes");
         }
@@ -88,7 +87,7 @@ impl Loop {
             period: law.period.seconds(),
             delay,
             shape,
-            body,
+            body: body.clone(),
         };
         Ok((sampled, law))
     }

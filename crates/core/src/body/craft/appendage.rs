@@ -40,9 +40,6 @@ pub struct Appendage {
     /// Drive that turns it about an axis through its root during a run; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<Drive>,
-    /// The angle of the drive at the start (rad): see `drive`.
-    #[serde(skip)]
-    pub start_angle: f64,
     /// For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments then follow
     /// from the participations in rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -84,10 +81,10 @@ impl Appendage {
         tensor(&self.inertia) == Matrix3::zeros()
     }
 
-    /// Turns vectors of its own axes, as they are at the start, into those of the body.
-    pub(super) fn axes(&self) -> Matrix3<f64> {
+    /// Turns vectors of its own axes, as they are where its drive has this angle (rad), into those of the body.
+    pub(super) fn axes(&self, angle: f64) -> Matrix3<f64> {
         let turned = self.turned.matrix();
-        self.drive.as_ref().map_or(turned, |drive| turned * drive.turn(self.start_angle))
+        self.drive.as_ref().map_or(turned, |drive| turned * drive.turn(angle))
     }
 
     /// What it is to its drive, if it has one: the next of so many.
@@ -109,9 +106,8 @@ impl Appendage {
         }
     }
 
-    /// What it weighs and how it turns, not deformed, in the body's axes from O.
-    pub(super) fn mass_properties(&self) -> MassProperties {
-        let axes = self.axes();
+    /// What it weighs and how it turns, not deformed, in the body's axes from O, where its own are turned so.
+    pub(super) fn mass_properties(&self, axes: &Matrix3<f64>) -> MassProperties {
         MassProperties {
             mass: self.mass.get(),
             centre: vector(&self.at) + axes * vector(&self.centre),

@@ -36,6 +36,9 @@ pub struct Part {
     pub knows_moments: bool,
 }
 
+/// An appendage, and what turns vectors of its own axes into those of the body.
+type Turned<'a> = (&'a Appendage, Matrix3<f64>);
+
 /// A point of the structure: where it is in the body, and what the clamped modes do there.
 struct Place<'a> {
     point: &'a NamedPoint,
@@ -45,21 +48,23 @@ struct Place<'a> {
 }
 
 impl Craft {
-    /// Puts a spacecraft together.
+    /// Puts a spacecraft together, with the drives of its appendages at these angles (rad), which those without a drive have too.
     ///
     /// # Errors
     /// A key of data that no spacecraft has, such as `appendage[1].modes[0].translation`, and why.
     pub fn assemble(
         spacecraft: &Spacecraft,
         appendages: &[Appendage],
+        angles: &[f64],
         rotors: &[Rotor],
     ) -> Result<Self, Fault> {
         check::check(spacecraft, appendages)?;
-        let bodies = appendages.iter().map(Appendage::mass_properties);
+        let turned: Vec<_> = appendages.iter().zip(angles).map(|(of, angle)| (of, of.axes(*angle))).collect();
+        let bodies = turned.iter().map(|(appendage, axes)| appendage.mass_properties(axes));
         let bodies: Vec<_> = std::iter::once(spacecraft.mass_properties()).chain(bodies).collect();
         let whole = MassProperties::together(&bodies);
         let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
-        let parts = parts(appendages, &whole.centre);
+        let parts = parts(&turned, &whole.centre);
         for (index, appendage) in appendages.iter().enumerate() {
             let thermal = appendage.thermal.as_ref();
             if let Some(fault) = thermal.and_then(|thermal| thermal.fault(appendage.modes.len())) {
@@ -80,7 +85,7 @@ impl Craft {
         let ratios: Vec<f64> = parts.iter().map(|part| part.damping).collect();
         let damping = FreeDamping::new(&free, &held.frequencies, &ratios);
         let hub_points = spacecraft.hub_points();
-        let places = places(&hub_points, appendages, parts.len());
+        let places = places(&hub_points, &turned, parts.len());
         Ok(Self {
             spatial: Spatial {
                 inertia: rows(&held.inertia)?,
@@ -132,9 +137,9 @@ impl Part {
 }
 
 /// The clamped modes about the total centre of mass, at a distance b from each root: N becomes C N C' + b (C t)'.
-fn parts(appendages: &[Appendage], centre: &Vector) -> Vec<Part> {
-    let of = |appendage: &Appendage| -> Vec<Part> {
-        let (axes, from_centre) = (appendage.axes(), vector(&appendage.at) - centre);
+fn parts(appendages: &[Turned<'_>], centre: &Vector) -> Vec<Part> {
+    let of = |(appendage, axes): &Turned<'_>| -> Vec<Part> {
+        let from_centre = vector(&appendage.at) - centre;
         let mode = |mode| {
             let mode: &super::ClampedMode = mode;
             let translation = axes * appendage.translation(mode);
@@ -158,13 +163,12 @@ fn columns(parts: &[Part], of: impl Fn(&Part) -> Vector) -> Matrix3xX<f64> {
 }
 
 /// All points, those of the hub first.
-fn places<'a>(hub: &'a [NamedPoint], appendages: &'a [Appendage], modes: usize) -> Vec<Place<'a>> {
+fn places<'a>(hub: &'a [NamedPoint], appendages: &[Turned<'a>], modes: usize) -> Vec<Place<'a>> {
     let rigid = || vec![(Vector::zeros(), Vector::zeros()); modes];
     let mut places: Vec<_> =
         hub.iter().map(|point| Place { point, at: vector(&point.position), shapes: rigid() }).collect();
     let mut first = 0;
-    for appendage in appendages {
-        let axes = appendage.axes();
+    for (appendage, axes) in appendages {
         for point in &appendage.points {
             let mut shapes = rigid();
             for (index, mode) in appendage.modes.iter().enumerate() {

@@ -44,7 +44,7 @@ pub struct Rotor {
 }
 
 /// A spacecraft as it moves.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Craft {
     /// Its rigid body and its free modes, which do not act back on it. Positions are from the total centre of mass.
     pub spatial: Spatial,

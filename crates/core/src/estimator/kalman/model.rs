@@ -244,7 +244,7 @@ mod tests {
         let text = "duration = 1.0\n[law.open]\n[body.planar]\nmodes = [{ frequency = 0.3, gain = 1.44 }, \
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165, damping = 0.02 }, \
                     { frequency = 2.0, gain = 0.72, damping = 1.5 }]";
-        Scenario::parse("body", text).expect("valid").model
+        Scenario::parse("body", text).expect("valid").one_angle().expect("one angle").clone()
     }
 
     const STATE: [f64; 10] = [0.06, -1e-3, 4e-3, 2e-3, -1e-3, 3e-4, 2e-4, -5e-4, 1e-4, 7e-4];

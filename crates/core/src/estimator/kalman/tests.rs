@@ -22,8 +22,8 @@ fn filter(estimator: &str, rate_noise: Option<f64>) -> Filter {
 fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> Filter {
     use crate::estimator::Estimator;
     let scenario = scenario(estimator);
-    let setting =
-        Setting { body: &scenario.model, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise };
+    let body = scenario.one_angle().expect("one angle");
+    let setting = Setting { body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise };
     let draws = &mut Seed { scenario: scenario_seed, run: 0 }.stream("prior");
     match &scenario.estimator {
         Some(Estimator::Kalman(spec)) => spec.filter(&setting, draws),

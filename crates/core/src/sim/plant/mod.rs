@@ -8,7 +8,7 @@ mod two_way;
 use std::borrow::Cow;
 
 use super::SimulationError;
-use crate::body::Wrench;
+use crate::body::{Axes, Wrench};
 use crate::environment::Seen;
 use crate::guard::Guard;
 use crate::motion::turning::Turned;
@@ -34,10 +34,10 @@ pub enum Plant {
 impl Plant {
     /// The body of a scenario at the start, under nothing.
     pub fn new(scenario: &Scenario) -> Self {
-        match scenario.body.spatial() {
-            None => Self::Planar(Box::new(PlanarPlant::new(scenario))),
-            Some(body) => {
-                let plant = SpatialPlant::new(body, scenario.body.flexible(), &scenario.study);
+        match scenario.model.axes() {
+            Axes::One(body) => Self::Planar(Box::new(PlanarPlant::new(scenario, body))),
+            Axes::Three(body) => {
+                let plant = SpatialPlant::new(body, scenario.model.flexible(), &scenario.study);
                 Self::Spatial(Box::new(plant.drifting(body, scenario.drift.as_ref())))
             }
         }

@@ -3,7 +3,7 @@
 mod course;
 
 use super::lent::Elsewhere;
-use crate::body::{Coupling, Flight, Input, Lent, Output, Segment, Wrench};
+use crate::body::{Coupling, Flight, Input, Lent, Output, Planar, Segment, Wrench};
 use crate::guard::Guard;
 use crate::motion::crossing::locate;
 use crate::motion::{Sensed, State};
@@ -52,12 +52,12 @@ pub struct Exerted {
 
 impl PlanarPlant {
     /// The body of a scenario at the start, under no input.
-    pub fn new(scenario: &Scenario) -> Self {
-        let (model, state) = (&scenario.model, scenario.model.start());
-        let mut arc = Segment::new(model);
+    pub fn new(scenario: &Scenario, body: &Planar) -> Self {
+        let state = body.start();
+        let mut arc = Segment::new(body);
         arc.depart(&state, &Input::default());
         let sight = arc.origin();
-        let motion = match (&scenario.chain, scenario.coupling()) {
+        let motion = match (scenario.model.chain(), scenario.coupling(body)) {
             (Some(chain), _) => Motion::Chain(Box::new(Flight::new(chain, sight.angle, sight.rate))),
             (None, Some(coupling)) => Motion::Coupled(Box::new(coupling)),
             (None, None) => Motion::Planar(arc),
@@ -68,8 +68,8 @@ impl PlanarPlant {
             sight,
             seen: Instant::START,
             ahead: (state.clone(), Sensed::default(), Instant::START),
-            frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
-            outputs: model.outputs.clone(),
+            frequencies: body.modes.iter().map(|mode| mode.frequency.get()).collect(),
+            outputs: body.outputs.clone(),
             state,
         }
     }

@@ -4,7 +4,7 @@ use flexsc_core::analysis::sampled_loop::{Gains, Loop, Region, Scaling, Window, 
 use flexsc_core::law::Extra;
 
 /// What is tuned.
-pub struct Study {
+pub struct Tuning {
     /// Name of the scenario.
     pub name: String,
     /// Its extra loop, if it has one.
@@ -23,7 +23,7 @@ pub struct Study {
     pub limit: f64,
 }
 
-impl Study {
+impl Tuning {
     /// The region of the gains at each frequency.
     pub fn regions(&self) -> Vec<Region> {
         regions(&self.of, &self.frequencies, self.scaling, self.gains, self.window, self.limit)

@@ -1,0 +1,66 @@
+//! The body of a scenario, put together from whatever describes it.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{Scenario, Written};
+use crate::body::craft::{Craft, Spacecraft};
+use crate::body::{Body, Model};
+use crate::document::{Document, Fault, ScenarioError};
+
+impl Written {
+    /// Makes the body of what describes it, with modes that are in files, whose paths begin at a directory. Of another scenario,
+    /// what was read from the same files is taken over, and the same body.
+    pub(super) fn assemble(
+        &mut self,
+        document: &Document,
+        parent: Option<&Scenario>,
+        directory: &Path,
+    ) -> Result<Model, ScenarioError> {
+        let refused = |fault: Fault| document.inconsistent(&fault);
+        let key = self.body_key();
+        match (&mut self.body, self.spacecraft.clone()) {
+            (_, None) if !self.appendage.is_empty() => {
+                let why = "is clamped to the hub of a `[spacecraft]`, and there is none";
+                Err(refused(Fault::new("appendage", why)))
+            }
+            (None, None) => Err(document.missing("body")),
+            (Some(_), Some(_)) => {
+                Err(refused(Fault::new("spacecraft", "is itself a body: leave out `body`")))
+            }
+            (Some(body), None) => alone(body, parent, directory).map_err(|fault| refused(fault.within(&key))),
+            (None, Some(spacecraft)) => self.craft(&spacecraft, parent, directory).map_err(refused),
+        }
+    }
+
+    /// A spacecraft, whose wheels are locked in the hub as it is written, and turn freely.
+    fn craft(
+        &mut self,
+        spacecraft: &Spacecraft,
+        parent: Option<&Scenario>,
+        directory: &Path,
+    ) -> Result<Model, Fault> {
+        for (index, appendage) in self.appendage.iter_mut().enumerate() {
+            let others = parent.and_then(|parent| parent.appendage.get(index));
+            let read = appendage.read_modes(directory, others);
+            read.map_err(|fault| fault.within(&format!("appendage[{index}]")))?;
+        }
+        let angles = self.start_angles()?;
+        let rotors = match self.actuator.wheels() {
+            Some((wheels, key)) => wheels.rotors().map_err(|fault| fault.within(&key))?,
+            None => Vec::new(),
+        };
+        Ok(Model::Craft(Arc::new(Craft::assemble(spacecraft, &self.appendage, &angles, &rotors)?)))
+    }
+}
+
+/// A body that is described in one table.
+fn alone(body: &mut Body, parent: Option<&Scenario>, directory: &Path) -> Result<Model, Fault> {
+    let other = parent.and_then(|parent| parent.body.as_ref());
+    body.locate(directory);
+    body.read(other)?;
+    match parent.filter(|_| other == Some(&*body)) {
+        Some(parent) => Ok(parent.model.clone()),
+        None => body.assemble(),
+    }
+}

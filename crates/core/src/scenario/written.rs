@@ -1,0 +1,172 @@
+//! The scenario as a file writes it.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use toml::{Table, value::Datetime};
+
+use super::{Log, Reference, epoch};
+use crate::actuator::Assigned;
+use crate::adaptation::Adaptation;
+use crate::body::craft::{Appendage, Spacecraft};
+use crate::body::{Body, Drift};
+use crate::disturbance::Disturbance;
+use crate::environment::Environment;
+use crate::estimator::Estimator;
+use crate::law::{Law, Target};
+use crate::manoeuvre::Manoeuvre;
+use crate::parts::Parts;
+use crate::sensor::Sensor;
+use crate::time::{Instant, Span};
+use crate::uncertain::{Correlated, Distribution};
+
+/// A scenario as it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename = "Scenario")]
+#[schemars(description = "A scenario.")]
+pub struct Written {
+    /// Name of the study; default: the name of its file.
+    #[serde(default)]
+    pub name: String,
+    /// Description of the study.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub about: String,
+    /// Seed of all random numbers.
+    #[serde(default)]
+    pub seed: u64,
+    /// Simulated time (s).
+    pub duration: Span,
+    /// Date and time of the start; a log counts its time from here.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "epoch::read")]
+    #[schemars(with = "Option<String>")]
+    pub epoch: Option<Datetime>,
+    /// The controlled body, unless it is a `spacecraft`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Body")]
+    pub body: Option<Body>,
+    /// The hub of a controlled spacecraft, which is built from its parts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacecraft: Option<Spacecraft>,
+    /// Appendages clamped to the hub of the spacecraft.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub appendage: Vec<Appendage>,
+    /// Drift of the natural frequencies; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<Drift>,
+    /// The sensor, or an array of several.
+    #[serde(default)]
+    pub sensor: Parts<Sensor>,
+    /// The estimator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimator: Option<Estimator>,
+    /// The adaptation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<Adaptation>,
+    /// The planned manoeuvre.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<Manoeuvre>,
+    /// The control law. Only a scenario with a manoeuvre can omit it.
+    #[serde(default)]
+    pub law: Law,
+    /// The actuator, which executes the commanded torque, or an array of several.
+    #[serde(default)]
+    pub actuator: Parts<Assigned>,
+    /// Disturbance torques and forces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub disturbance: Vec<Disturbance>,
+    /// Environment of a body with three axes; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub environment: Option<Environment>,
+    /// Contents of a full log.
+    #[serde(default)]
+    pub log: Log,
+    /// Target attitudes of a body with three axes, in the order of their times; before the first one, the target is the
+    /// inertial axes. A law `phase_plane` may have targets of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub target: Vec<Target>,
+    /// Reference values for the metrics.
+    #[serde(default, skip_serializing_if = "Reference::is_empty")]
+    pub reference: Reference,
+    /// Distributions of keys from which a campaign draws a value for each run.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub uncertain: BTreeMap<String, Distribution>,
+    /// Correlated keys of `uncertain`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub correlated: Vec<Correlated>,
+}
+
+impl Written {
+    /// How many axes the body has.
+    pub fn axis_count(&self) -> usize {
+        self.body.as_ref().map_or(3, Body::axis_count)
+    }
+
+    /// The kind of its body.
+    pub fn body_kind(&self) -> &'static str {
+        self.body.as_ref().map_or("spacecraft", Body::kind)
+    }
+
+    /// The key of its body.
+    pub fn body_key(&self) -> String {
+        self.body.as_ref().map_or_else(|| "spacecraft".to_owned(), |body| format!("body.{}", body.kind()))
+    }
+
+    /// The attitudes that a body with three axes shall turn to.
+    pub fn targets(&self) -> &[Target] {
+        match &self.law {
+            Law::PhasePlane(law) if !law.targets.is_empty() => &law.targets,
+            _ => &self.target,
+        }
+    }
+
+    /// When the last target begins that does so before an instant; the start without one.
+    pub fn last_target(&self, before: Instant) -> Instant {
+        let begins = self.targets().iter().rev().map(Target::begins);
+        begins.into_iter().find(|from| *from < before).unwrap_or(Instant::START)
+    }
+
+    /// The key of the law about an axis.
+    pub fn law_key(&self, axis: usize) -> String {
+        match &self.law {
+            Law::PerAxis(laws) => {
+                format!("law.per_axis.{}.{}", crate::attitude::AXES[axis], laws.about(axis).kind())
+            }
+            law => format!("law.{}", law.kind()),
+        }
+    }
+
+    /// The scenario with all its defaults, as a table.
+    pub fn to_table(&self) -> Table {
+        // A scenario holds nothing that TOML cannot express.
+        Table::try_from(self).unwrap_or_default()
+    }
+
+    /// The scenario with all its defaults, as TOML.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(&self.to_table()).unwrap_or_default()
+    }
+
+    /// Period at which a full log holds the motion.
+    pub fn log_period(&self) -> Span {
+        self.log.period_for(self.duration)
+    }
+
+    /// Takes the modes of three axes into itself, where they have keys, out of their files.
+    pub(crate) fn forget_files(&mut self) {
+        if let Some(Body::Spatial(spatial)) = &mut self.body {
+            spatial.modes.forget_file();
+        }
+        self.appendage.iter_mut().for_each(Appendage::forget_file);
+    }
+
+    /// The date of the start in nanoseconds since 1970 UTC; 0 without one.
+    pub fn epoch_ns(&self) -> u64 {
+        self.epoch.as_ref().and_then(epoch::nanoseconds_since_1970).unwrap_or(0)
+    }
+
+    /// Whether the torque is more than the switchings of a law.
+    pub fn tells_torque(&self) -> bool {
+        !self.law.switches() || !self.disturbance.is_empty() || !self.actuator.is_ideal()
+    }
+}
