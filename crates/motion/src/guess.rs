@@ -15,6 +15,8 @@ const TICKS: f64 = 1e15;
 const LONGEST: f64 = 9_000.0;
 /// Below this angle (rad) a turn is a polynomial of order 5, exact to rounding.
 const TINY: f64 = 3e-3;
+/// No turn that polishes a guess is longer, in radians of the fastest mode.
+pub const FARTHEST_TURN: f64 = 0.75;
 /// Most turns that polish a guess.
 const ROUNDS: usize = 3;
 
@@ -42,6 +44,8 @@ pub struct Departure<R> {
     pub moment: R,
     /// The highest frequency of a mode (rad/s).
     pub fastest: R,
+    /// In how long that mode turns by [`FARTHEST_TURN`] (s).
+    pub longest: R,
 }
 
 /// A level of the angle that is watched.
@@ -188,11 +192,13 @@ pub fn locate<R: Real, const LEVELS: usize>(
         mode.turn(sincos(mode.frequency * t));
     }
     let mut change = step(level, derivatives(from, t, modes));
-    // No turn by more than the polynomials take.
-    let most = zero.of(0.75) / from.fastest;
     let mut goes_on = zero.le(one);
     for _ in 0..ROUNDS {
-        change = R::select(change.lt(-most), -most, R::select(most.lt(change), most, change));
+        // No turn by more than the polynomials take, which is rare.
+        let most = from.longest;
+        if !change.abs().le(most).all() {
+            change = R::select(change.lt(-most), -most, R::select(most.lt(change), most, change));
+        }
         // Where a guess is polished already, nothing turns, whatever the lanes beside it do.
         let next = t + R::select(goes_on, change, zero);
         let turned = next - t;

@@ -20,8 +20,10 @@ use crate::record::{self, Command, Course, Record, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
+/// Registers in the place of one number: what has to wait for one goes on in the other.
+const REGISTERS: usize = 2;
 /// Runs that share the lanes of one flight, one after the other.
-const RUNS: usize = 64;
+const RUNS: usize = 128;
 /// Longer runs (s) go alone: nothing is told of a flight before its end.
 const LONGEST: f64 = 2e5;
 
@@ -39,7 +41,7 @@ impl Batch for Side {
 
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
         let mut runs = Runs::new(jobs);
-        processor.run::<1, _>(&mut runs);
+        processor.run::<REGISTERS, _>(&mut runs);
         runs.found
     }
 }

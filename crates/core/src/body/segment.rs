@@ -7,7 +7,7 @@ use super::mode::Flow;
 use super::{Drive, Planar};
 use crate::guard::Guard;
 use crate::motion::crossing::{Approach, Trip, first_root};
-use crate::motion::guess::{self, Departure, Level, Oscillator};
+use crate::motion::guess::{self, Departure, FARTHEST_TURN, Level, Oscillator};
 use crate::motion::stretch::{Expansion, REACH};
 use crate::motion::{Phase, Sensed, State};
 use crate::numerics::polynomial::TERMS;
@@ -228,7 +228,8 @@ impl Segment {
             displacement: swing.from.displacement,
             quadrature: swing.from.quadrature,
         }));
-        let from = Departure { angle: self.angle, rate: self.rate, moment: self.moment, fastest: *fastest };
+        let (fastest, longest) = (*fastest, FARTHEST_TURN / *fastest);
+        let from = Departure { angle: self.angle, rate: self.rate, moment: self.moment, fastest, longest };
         let level = |guard: &Guard| Level { angle: guard.level, towards: guard.side.sign() };
         let found = match guards {
             [one] => guess::locate(&from, &[level(one)], modes),

@@ -24,35 +24,24 @@ impl<R: Real> Clock<R> {
     pub fn of_ticks(ticks: R) -> Self {
         let whole = (ticks / ticks.of(FEMTOSECONDS)).round();
         let part = ticks - whole * FEMTOSECONDS;
-        let below = part.lt(ticks.of(0.0));
-        Self {
-            whole: R::select(below, whole - 1.0, whole),
-            part: R::select(below, part + FEMTOSECONDS, part),
-        }
+        let borrow = one(part.lt(ticks.of(0.0)), part);
+        Self { whole: whole - borrow, part: part + borrow * FEMTOSECONDS }
     }
 
     /// The instant a span later.
     #[inline(always)]
     pub fn plus(self, span: Self) -> Self {
         let part = self.part + span.part;
-        let carries = part.of(FEMTOSECONDS).le(part);
-        let whole = self.whole + span.whole;
-        Self {
-            whole: R::select(carries, whole + 1.0, whole),
-            part: R::select(carries, part - FEMTOSECONDS, part),
-        }
+        let carry = one(part.of(FEMTOSECONDS).le(part), part);
+        Self { whole: (self.whole + span.whole) + carry, part: part - carry * FEMTOSECONDS }
     }
 
     /// The span since an instant that is not later.
     #[inline(always)]
     pub fn since(self, earlier: Self) -> Self {
         let part = self.part - earlier.part;
-        let borrows = part.lt(part.of(0.0));
-        let whole = self.whole - earlier.whole;
-        Self {
-            whole: R::select(borrows, whole - 1.0, whole),
-            part: R::select(borrows, part + FEMTOSECONDS, part),
-        }
+        let borrow = one(part.lt(part.of(0.0)), part);
+        Self { whole: (self.whole - earlier.whole) - borrow, part: part + borrow * FEMTOSECONDS }
     }
 
     /// In seconds, as a span or an instant rounds them.
@@ -87,6 +76,12 @@ impl<R: Real> Clock<R> {
     pub fn with_lane(self, lane: usize, (whole, part): (u64, u64)) -> Self {
         Self { whole: self.whole.with_lane(lane, whole as f64), part: self.part.with_lane(lane, part as f64) }
     }
+}
+
+/// 1 where it is so, else 0. Products with it are exact, and no branch is guessed where one number has two of them to select.
+#[inline(always)]
+fn one<R: Real>(is: R::Mask, kind: R) -> R {
+    R::select(is, kind.of(1.0), kind.of(0.0))
 }
 
 /// The femtoseconds nearest to a time (s) that is not negative, of two the later one.

@@ -12,8 +12,8 @@ mod look;
 
 use super::clock::{Clock, nearest_ticks};
 use super::crew::{Crew, Place, Sight};
-use super::track::Track;
-use crate::lanes::{Mask, Real};
+use super::track::{self, Track};
+use crate::lanes::{Four, Mask, Real};
 use crate::motion::guess::{Departure, Found, Level, Oscillator, locate};
 use crate::numerics::trig::sincos;
 
@@ -25,6 +25,15 @@ const NEVER: f64 = 1e17;
 const SHORT: f64 = 9_000.0;
 /// What is written of a lane beside its modes.
 const ROWS: usize = 6;
+
+/// A number in the mirror, if there is one.
+#[inline(always)]
+fn seen<R: Real>(mirror: Option<R>, number: R) -> R {
+    match mirror {
+        Some(mirror) => mirror * number,
+        None => number,
+    }
+}
 
 /// Runs side by side.
 pub struct Flight<R: Real> {
@@ -39,15 +48,19 @@ pub struct Flight<R: Real> {
     moved: Vec<Oscillator<R>>,
     excitabilities: Vec<R>,
     fastest: R,
+    longest: R,
     edge: R,
     back: R,
     strong: R,
     weak: R,
     k_t: R,
     band: R,
-    /// When the push began.
+    /// When the push began, and how long it lasted (s).
     pushed: Clock<R>,
+    lasted: R,
     tracks: Vec<Track<R>>,
+    /// What follows those of one run side by side.
+    four: Four,
     /// Whether any run has windows.
     watches: bool,
     /// When the envelope was followed last, its integral, and when and after how long windows close.
@@ -105,12 +118,14 @@ impl<R: Real> Flight<R> {
             let other = Level { angle: -self.edge, towards: -towards };
             self.guarded(crew, place, moment, &[Level { angle: level, towards }, other])
         };
-        self.arrive(crew, place, moment, span);
+        if place == Place::Push {
+            self.lasted = span.1;
+        }
+        // Seen in the mirror, what reaches the left boundary reaches the right one.
+        let mirror = if place == Place::Coast { Some(R::select(right, one, -one)) } else { None };
+        self.arrive(crew, place, moment, span, mirror);
         if C::TAKES_BACK && !self.active[0] {
             return;
-        }
-        if place == Place::Coast {
-            self.mirror(R::select(right, one, -one));
         }
         self.tell(
             crew,
@@ -122,16 +137,10 @@ impl<R: Real> Flight<R> {
         );
     }
 
-    /// Seen in the mirror, what reaches the left boundary reaches the right one.
+    /// The envelope in the mirror.
     #[inline(always)]
     fn mirror(&mut self, mirror: R) {
         self.side = mirror * self.side;
-        self.angle = mirror * self.angle;
-        self.rate = mirror * self.rate;
-        for index in 0..self.modes.len() {
-            self.totals[index] = mirror * self.totals[index];
-            self.modes[index].quadrature = mirror * self.modes[index].quadrature;
-        }
         for index in 0..self.tracks.len() {
             let track = &mut self.tracks[index];
             track.equilibrium = mirror * track.equilibrium;
@@ -145,7 +154,7 @@ impl<R: Real> Flight<R> {
     /// The brake, which lasts as long as the law says.
     #[inline(always)]
     fn brake<C: Crew>(&mut self, crew: &mut C) -> (Clock<R>, R) {
-        let nearest = nearest_ticks(self.k_t * self.now.since(self.pushed).seconds());
+        let nearest = nearest_ticks(self.k_t * self.lasted);
         // So long a brake is for a run alone.
         let fits = nearest.lt(nearest.of(SHORT * 1e15));
         if !fits.all() {
@@ -169,10 +178,13 @@ impl<R: Real> Flight<R> {
     #[inline(always)]
     fn depart(&mut self, moment: R) {
         for index in 0..self.modes.len() {
-            let mode = &mut self.modes[index];
-            mode.equilibrium = self.excitabilities[index] * moment;
-            mode.displacement = self.totals[index] - mode.equilibrium;
-            self.moved[index] = *mode;
+            let Oscillator { frequency, quadrature, .. } = self.modes[index];
+            let equilibrium = self.excitabilities[index] * moment;
+            let displacement = self.totals[index] - equilibrium;
+            // Number by number: a copy of the whole would wait for what was just written.
+            self.modes[index].equilibrium = equilibrium;
+            self.modes[index].displacement = displacement;
+            self.moved[index] = Oscillator { frequency, equilibrium, displacement, quadrature };
         }
         for track in &mut self.tracks {
             track.command(moment);
@@ -189,7 +201,8 @@ impl<R: Real> Flight<R> {
         levels: &[Level<R>; LEVELS],
     ) -> ((Clock<R>, R), R::Mask) {
         let (zero, one) = (moment.of(0.0), moment.of(1.0));
-        let from = Departure { angle: self.angle, rate: self.rate, moment, fastest: self.fastest };
+        let (fastest, longest) = (self.fastest, self.longest);
+        let from = Departure { angle: self.angle, rate: self.rate, moment, fastest, longest };
         let found: Found<R> = match &mut self.moved[..] {
             // So many modes, which is usual, stay in registers.
             [first, second] => {
@@ -205,7 +218,8 @@ impl<R: Real> Flight<R> {
             return ((Clock::of_ticks(found.ticks), found.after), found.first);
         }
         // Lanes without a run stay where they are.
-        for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
+        for index in 0..self.modes.len() {
+            let (moved, mode) = (&mut self.moved[index], self.modes[index]);
             moved.displacement = R::select(certain, moved.displacement, mode.displacement);
             moved.quadrature = R::select(certain, moved.quadrature, mode.quadrature);
         }
@@ -236,7 +250,8 @@ impl<R: Real> Flight<R> {
             if place == Place::Coast {
                 first = first.with_lane(lane, if found.right == (side > 0.0) { 1.0 } else { -1.0 });
             }
-            for (moved, [x, y]) in self.moved.iter_mut().zip(&found.modes) {
+            for index in 0..found.modes.len() {
+                let (moved, [x, y]) = (&mut self.moved[index], found.modes[index]);
                 moved.equilibrium = moved.equilibrium.with_lane(lane, 0.0);
                 moved.displacement = moved.displacement.with_lane(lane, side * x);
                 moved.quadrature = moved.quadrature.with_lane(lane, side * y);
@@ -246,9 +261,16 @@ impl<R: Real> Flight<R> {
     }
 
     /// Ends the motion that departed last, such a span after its departure: windows close on the way, and runs
-    /// that end do so.
+    /// that end do so. What comes of it is seen in the mirror, if there is one.
     #[inline(always)]
-    fn arrive<C: Crew>(&mut self, crew: &mut C, place: Place, moment: R, (span, h): (Clock<R>, R)) {
+    fn arrive<C: Crew>(
+        &mut self,
+        crew: &mut C,
+        place: Place,
+        moment: R,
+        (span, h): (Clock<R>, R),
+        mirror: Option<R>,
+    ) {
         let zero = h.of(0.0);
         let until = self.now.plus(span);
         let ends = !until.not_after(self.end);
@@ -257,18 +279,26 @@ impl<R: Real> Flight<R> {
             self.hand_back(crew, place);
             return;
         }
+        // Where no run ends, it takes as long as was found.
+        let lasts = if ends.any() { None } else { Some(h) };
         if crew.looks() {
-            let span = until.since(self.now).seconds();
+            let span = match lasts {
+                Some(span) => span,
+                None => until.since(self.now).seconds(),
+            };
             self.stray(crew, place, moment, span, until);
         }
-        self.follow(crew, until);
+        self.follow(crew, until, lasts);
         self.now = until;
-        self.angle = self.angle + h * (self.rate + h.of(0.5) * moment * h);
-        self.rate = self.rate + moment * h;
+        self.angle = seen(mirror, self.angle + h * (self.rate + h.of(0.5) * moment * h));
+        self.rate = seen(mirror, self.rate + moment * h);
         for index in 0..self.modes.len() {
             let moved = self.moved[index];
-            self.totals[index] = moved.equilibrium + moved.displacement;
-            self.modes[index].quadrature = moved.quadrature;
+            self.totals[index] = seen(mirror, moved.equilibrium + moved.displacement);
+            self.modes[index].quadrature = seen(mirror, moved.quadrature);
+        }
+        if let Some(mirror) = mirror {
+            self.mirror(mirror);
         }
         if ends.any() {
             let ended = R::select(ends, h.of(1.0), zero);
@@ -282,9 +312,10 @@ impl<R: Real> Flight<R> {
         }
     }
 
-    /// Follows the envelope to an instant of each lane, by the windows that close on the way.
+    /// Follows the envelope to an instant of each lane, by the windows that close on the way. It was followed last so many
+    /// seconds before, if that is known.
     #[inline(always)]
-    fn follow<C: Crew>(&mut self, crew: &mut C, until: Clock<R>) {
+    fn follow<C: Crew>(&mut self, crew: &mut C, until: Clock<R>, mut whole: Option<R>) {
         if !self.watches {
             return;
         }
@@ -293,15 +324,15 @@ impl<R: Real> Flight<R> {
         loop {
             let due = goes_on & self.closes.not_after(until);
             let at = Clock::select(due, self.closes, until);
-            let (time, span) = (at.seconds(), at.since(self.seen).seconds());
-            for index in 0..self.tracks.len() {
-                let mut advanced = self.tracks[index];
-                let integral = advanced.advance(time, span);
-                self.integral = self.integral + R::select(goes_on, integral, zero);
-                // As a rule all go on.
-                let is_whole = goes_on.all();
-                let before = &mut self.tracks[index];
-                *before = if is_whole { advanced } else { Track::select(goes_on, &advanced, before) };
+            let time = at.seconds();
+            let span = match whole.take() {
+                Some(whole) if !due.any() => whole,
+                _ => at.since(self.seen).seconds(),
+            };
+            if R::LANES == 1 && self.tracks.len() > 1 {
+                self.integral = track::follow(self.four, &mut self.tracks, time, span, self.integral);
+            } else {
+                self.follow_each(goes_on, time, span);
             }
             self.seen = Clock::select(goes_on, at, self.seen);
             if !due.any() {
@@ -311,6 +342,21 @@ impl<R: Real> Flight<R> {
             self.integral = R::select(due, zero, self.integral);
             self.closes = Clock::select(due, self.closes.plus(self.window), self.closes);
             goes_on = due;
+        }
+    }
+
+    /// Follows the modes of the envelope one after the other, in the lanes that go on.
+    #[inline(always)]
+    fn follow_each(&mut self, goes_on: R::Mask, time: R, span: R) {
+        let zero = time.of(0.0);
+        for index in 0..self.tracks.len() {
+            let mut advanced = self.tracks[index];
+            let integral = advanced.advance(time, span);
+            self.integral = self.integral + R::select(goes_on, integral, zero);
+            // As a rule all go on.
+            let is_whole = goes_on.all();
+            let before = &mut self.tracks[index];
+            *before = if is_whole { advanced } else { Track::select(goes_on, &advanced, before) };
         }
     }
 

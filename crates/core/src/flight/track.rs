@@ -3,9 +3,12 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
-use crate::lanes::Real;
+use crate::lanes::{Four, Real, Work};
 use crate::numerics::swing_integral::undamped;
 use crate::numerics::trig::sincos;
+
+/// Phasors that stand side by side.
+const SIDE: usize = 4;
 
 /// One mode's phasor.
 #[derive(Copy, Clone, Debug)]
@@ -57,5 +60,70 @@ impl<R: Real> Track<R> {
         }
         one.equilibrium = R::select(mask, yes.equilibrium, no.equilibrium);
         one
+    }
+}
+
+/// Follows the modes of one run to a time (s), over a span (s), side by side; adds the integrals of their envelopes to one.
+#[inline(always)]
+pub fn follow<R: Real>(four: Four, tracks: &mut [Track<R>], time: R, span: R, mut integral: R) -> R {
+    for some in tracks.chunks_mut(SIDE) {
+        let count = some.len();
+        let each = four.run(Beside { tracks: some, time: time.lane(0), span: span.lane(0) });
+        for of in &each[..count] {
+            integral = integral + *of;
+        }
+    }
+    integral
+}
+
+/// At most four modes of one run, which advance to a time (s), over a span (s).
+struct Beside<'a, R> {
+    tracks: &'a mut [Track<R>],
+    time: f64,
+    span: f64,
+}
+
+impl<R: Real> Work for Beside<'_, R> {
+    type Output = [f64; SIDE];
+
+    #[inline(always)]
+    fn run<K: Real>(self, kind: K) -> [f64; SIDE] {
+        let last = self.tracks.len() - 1;
+        // Where there are fewer, the last one fills the lanes.
+        macro_rules! load {
+            ($($part:tt)+) => {{
+                let mut each = [0.0; SIDE];
+                for lane in 0..SIDE {
+                    each[lane] = self.tracks[lane.min(last)].$($part)+.lane(0);
+                }
+                kind.load(&each)
+            }};
+        }
+        let mut all = Track {
+            frequency: load!(frequency),
+            excitability: load!(excitability),
+            frame: [load!(frame[0]), load!(frame[1])],
+            axis: [load!(axis[0]), load!(axis[1])],
+            equilibrium: load!(equilibrium),
+            deviation: [load!(deviation[0]), load!(deviation[1])],
+        };
+        let integral = all.advance(kind.of(self.time), kind.of(self.span));
+        macro_rules! store {
+            ($($part:tt)+) => {{
+                let mut each = [0.0; SIDE];
+                all.$($part)+.store(&mut each);
+                for lane in 0..=last {
+                    self.tracks[lane].$($part)+ = self.tracks[lane].$($part)+.of(each[lane]);
+                }
+            }};
+        }
+        for part in 0..2 {
+            store!(frame[part]);
+            store!(axis[part]);
+            store!(deviation[part]);
+        }
+        let mut integrals = [0.0; SIDE];
+        integral.store(&mut integrals);
+        integrals
     }
 }

@@ -12,9 +12,9 @@ use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
 
 /// Who has the one run.
-struct Alone<'a, R> {
+struct Alone<'a> {
     run: &'a mut Simulation,
-    record: &'a mut R,
+    record: &'a mut dyn Record,
     setup: Setup,
     /// Whether the flight has not begun.
     waits: bool,
@@ -43,7 +43,7 @@ impl Simulation {
         let (failed, rest) = (None, Rest::default());
         let mut crew =
             Alone { run: self, record, setup, waits: true, listens, band, stopped: false, failed, rest };
-        Processor::run_alone(&mut crew);
+        crew.fly();
         let Alone { failed, rest, .. } = crew;
         self.land(&rest, record)?;
         failed.map_or(Ok(()), Err)
@@ -81,7 +81,13 @@ impl Simulation {
     }
 }
 
-impl<R: Record> Alone<'_, R> {
+impl Alone<'_> {
+    /// Makes the flight: one function for all records, optimised as this crate is.
+    #[inline(never)]
+    fn fly(&mut self) {
+        Processor::run_alone(self);
+    }
+
     /// Keeps why the run cannot go on.
     fn keep<E: Into<SimulationError>>(&mut self, result: Result<(), E>) {
         if let Err(error) = result {
@@ -111,7 +117,7 @@ impl<R: Record> Alone<'_, R> {
     }
 }
 
-impl<R: Record> Work for &mut Alone<'_, R> {
+impl Work for &mut Alone<'_> {
     type Output = ();
 
     #[allow(clippy::inline_always, reason = "a function of its own would lack the processor's instructions")]
@@ -121,7 +127,7 @@ impl<R: Record> Work for &mut Alone<'_, R> {
     }
 }
 
-impl<R: Record> Crew for Alone<'_, R> {
+impl Crew for Alone<'_> {
     const TAKES_BACK: bool = true;
 
     fn listens(&self) -> bool {
@@ -141,7 +147,7 @@ impl<R: Record> Crew for Alone<'_, R> {
         let horizon = instant(self.setup.end).since(instant(from.at));
         let guards = self.setup.guards(place, from.side);
         let Plant::Planar(plant) = &mut self.run.plant else { return None };
-        let trip = plant.trip(&guards, horizon, self.record);
+        let trip = plant.trip(&guards, horizon, &mut self.record);
         let (at, guard) = match trip {
             Ok(trip) => trip?,
             Err(error) => {
@@ -175,7 +181,7 @@ impl<R: Record> Crew for Alone<'_, R> {
         if let (Some(learned), Some(search)) = (learned, monitor.search()) {
             run.laws.tune(search.tunes().0, learned);
         }
-        let told = run.telling.window(now, &closed, self.record);
+        let told = run.telling.window(now, &closed, &mut self.record);
         self.keep(told);
         learned.unwrap_or(gain)
     }
@@ -183,7 +189,7 @@ impl<R: Record> Crew for Alone<'_, R> {
     fn strays(&mut self, _: usize, place: Place, from: &Sight, until: (u64, u64)) {
         self.run.set_off(from, self.setup.torque(place, from.side));
         let Plant::Planar(plant) = &self.run.plant else { return };
-        let told = plant.tell_course(instant(until), &self.run.exerted, self.record);
+        let told = plant.tell_course(instant(until), &self.run.exerted, &mut self.record);
         self.keep(told);
     }
 

@@ -99,14 +99,18 @@ impl<S: Simd, const N: usize> Real for Lanes<S, N> {
     fn load(self, from: &[f64]) -> Self {
         let all = S::as_simd_f64s(&from[..Self::LANES]).0;
         let mut lanes = self;
-        lanes.registers.copy_from_slice(all);
+        for index in 0..N {
+            lanes.registers[index] = all[index];
+        }
         lanes
     }
 
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
         let all = S::as_mut_simd_f64s(&mut to[..Self::LANES]).0;
-        all.copy_from_slice(&self.registers);
+        for index in 0..N {
+            all[index] = self.registers[index];
+        }
     }
 
     #[inline(always)]

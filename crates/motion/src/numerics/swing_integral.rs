@@ -23,12 +23,12 @@ pub fn undamped<R: Real>(centre: R, [from, to]: [[R; 2]; 2], frequency: R, h: R)
         swept = circle.alone();
     }
     if !below.all() {
-        let once = circle.landen::<true>();
-        swept = R::select(below, swept, once.landen::<false>().after());
-        let below = circle.modulus.lt(angle.of(MIDDLE));
-        if !below.all() {
-            swept = R::select(below, swept, once.landen::<true>().landen::<false>().after());
+        let mut once = circle.landen::<true>();
+        let is_wide = angle.of(MIDDLE).le(circle.modulus);
+        if is_wide.any() {
+            once = Circle::select(is_wide, &once.landen::<true>(), &once);
         }
+        swept = R::select(below, swept, once.landen::<false>().after());
         if !circle.modulus.lt(angle.of(LARGE)).all() {
             for lane in 0..R::LANES {
                 if circle.modulus.lane(lane) >= LARGE {

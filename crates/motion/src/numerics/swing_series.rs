@@ -151,6 +151,24 @@ impl<R: Real> Circle<R> {
         }
     }
 
+    /// One or the other, of the same motion.
+    #[inline(always)]
+    #[must_use]
+    pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        let mut one = *yes;
+        one.modulus = R::select(mask, yes.modulus, no.modulus);
+        for end in 0..2 {
+            for part in 0..2 {
+                one.ends[end][part] = R::select(mask, yes.ends[end][part], no.ends[end][part]);
+            }
+        }
+        one.angle = R::select(mask, yes.angle, no.angle);
+        one.length = R::select(mask, yes.length, no.length);
+        one.inverse = R::select(mask, yes.inverse, no.inverse);
+        one.sum = R::select(mask, yes.sum, no.sum);
+        one
+    }
+
     /// The integral over the angle, for a modulus below [`SMALL`], before any step.
     #[inline(always)]
     pub fn alone(&self) -> R {

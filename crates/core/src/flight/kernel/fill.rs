@@ -7,8 +7,8 @@ use super::{Flight, MOST, NEVER, ROWS};
 use crate::flight::clock::Clock;
 use crate::flight::crew::{Crew, Setup, Sight};
 use crate::flight::track::Track;
-use crate::lanes::Real;
-use crate::motion::guess::Oscillator;
+use crate::lanes::{Four, Real};
+use crate::motion::guess::{FARTHEST_TURN, Oscillator};
 
 impl<R: Real> Flight<R> {
     /// Lanes without runs, of bodies and envelopes with so many modes.
@@ -36,6 +36,7 @@ impl<R: Real> Flight<R> {
             moved: Vec::with_capacity(modes),
             excitabilities: Vec::with_capacity(modes),
             fastest: one,
+            longest: one,
             edge: one,
             back: one,
             strong: one,
@@ -43,7 +44,9 @@ impl<R: Real> Flight<R> {
             k_t: zero,
             band: one,
             pushed: start,
+            lasted: zero,
             tracks: Vec::with_capacity(tracks),
+            four: Four::best(),
             watches: false,
             seen: start,
             integral: zero,
@@ -109,6 +112,7 @@ impl<R: Real> Flight<R> {
             put(&mut self.totals[index], x);
         }
         put(&mut self.fastest, fastest);
+        put(&mut self.longest, FARTHEST_TURN / fastest);
         for (track, of) in self.tracks.iter_mut().zip(&setup.tracks) {
             let [frequency, k, x, y] = *of;
             put(&mut track.frequency, frequency);
