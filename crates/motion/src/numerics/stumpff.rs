@@ -4,7 +4,7 @@
 /// c_1 to c_5 at the square of an angle (rad²).
 pub fn stumpff(square: f64) -> [f64; 5] {
     if square < 10.0 {
-        let (c4, c5) = (series(square, 4), series(square, 5));
+        let (c4, c5) = (series::<4>(square), series::<5>(square));
         let (c2, c3) = (0.5 - square * c4, 1.0 / 6.0 - square * c5);
         return [1.0 - square * c3, c2, c3, c4, c5];
     }
@@ -15,12 +15,17 @@ pub fn stumpff(square: f64) -> [f64; 5] {
     [c1, c2, c3, (0.5 - c2) / square, (1.0 / 6.0 - c3) / square]
 }
 
-/// The series of c_k below 10, where 20 terms are exact to rounding, and five of small angles.
-fn series(square: f64, k: u32) -> f64 {
-    let terms = if square < 1e-2 { 5 } else { 20 };
-    let term = |j: u32| f64::from((k + 2 * j - 1) * (k + 2 * j));
-    let sum = (1..terms).rev().fold(1.0, |sum, j| 1.0 - square / term(j) * sum);
-    sum / (1..=k).map(f64::from).product::<f64>()
+/// The series of c_K below 10, where 20 terms are exact to rounding, and five of small angles.
+fn series<const K: u32>(square: f64) -> f64 {
+    let sum = if square < 1e-2 { sum::<K, 5>(square) } else { sum::<K, 20>(square) };
+    sum / (1..=K).map(f64::from).product::<f64>()
+}
+
+/// So many terms of the series, for a first term of 1. Their numbers are constants: few of them are no loop.
+#[inline]
+fn sum<const K: u32, const TERMS: u32>(square: f64) -> f64 {
+    let term = |j: u32| f64::from((K + 2 * j - 1) * (K + 2 * j));
+    (1..TERMS).rev().fold(1.0, |sum, j| 1.0 - square / term(j) * sum)
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ pub(super) struct Facing {
 
 impl Facing {
     /// Finds the turns of a step of `h` seconds from this attitude at the rates of the mean axes at the nodes.
+    #[inline(always)]
     pub fn find(&mut self, from: &Quaternion<f64>, means: &[Vector; 3], h: f64) {
         let rates = means.map(|mean| mean * 0.5);
         let fastest = means.iter().map(Vector::norm_squared).fold(0.0, f64::max);
@@ -42,6 +43,7 @@ impl Facing {
     }
 
     /// Where the axes face at a node.
+    #[inline(always)]
     pub fn at(&self, from: &Quaternion<f64>, node: usize, h: f64) -> Quaternion<f64> {
         let [a, b, c] = weights(&MATRIX[node], h);
         from + self.turns[0] * a + self.turns[1] * b + self.turns[2] * c
@@ -54,7 +56,7 @@ pub(super) fn inertial(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
 }
 
 /// Q o (0, w), of half a rate.
-#[inline]
+#[inline(always)]
 fn spin(attitude: &Quaternion<f64>, half: &Vector) -> Quaternion<f64> {
     let (q, v) = (attitude, half);
     Quaternion::new(

@@ -211,18 +211,11 @@ impl Turning {
 
     /// Begins a new motion at the instant seen last, under what acts from now on; rotors in bearings have to `settle` then.
     pub fn depart(&mut self, acting: &Acting) {
-        let bent = self
-            .here
-            .modes
-            .iter()
-            .zip(&self.model.modes)
-            .fold(Vector::zeros(), |sum, ([q, ..], mode)| sum + mode.rotation * *q);
-        for (index, rotor) in acting.rotors.iter().enumerate().skip(self.acting.rotors.len()) {
-            self.here.momentum += Bend::new(bent).forward(&(rotor.axis * rotor.momentum));
-            if index < self.bearings.len() {
-                self.slips[index] = self.first_slip(index, &rotor.axis, rotor.momentum);
-                self.here.spins[index].sums.x = rotor.momentum;
-            }
+        let before = self.acting.rotors.len();
+        let plain = self.bearings.is_empty() && self.driving.is_none() && acting.rotors.len() == before;
+        let stored = plain.then(|| self.acting.rotors(self.now).0);
+        if acting.rotors.len() > before {
+            self.take_on(&acting.rotors, before);
         }
         self.ahead = None;
         self.move_on();
@@ -233,7 +226,11 @@ impl Turning {
         self.departed.copy_from(&self.here);
         self.grid.copy_from(&self.here);
         (self.reached, self.now) = (0.0, 0.0);
-        self.look();
+        // The same state with the same momentum in the rotors was looked at on arrival.
+        let bits = |of: Vector| of.data.0[0].map(f64::to_bits);
+        if stored.is_none_or(|stored| bits(stored) != bits(self.acting.rotors(0.0).0)) {
+            self.look();
+        }
     }
 
     /// Brings the body to `t` seconds after the departure, which was so long after the start of the run (s), as long as it

@@ -12,7 +12,7 @@ use super::facing::{Facing, inertial};
 use super::nodes::{Guess, Nodes, Passes};
 use super::shape::Sums;
 use super::state::State;
-use super::step::{Beside, Memory, Stage, Step, answer, means, weights};
+use super::step::{Beside, Memory, Stage, Step, weights};
 use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::{NODES, WEIGHTS, exact_sum};
 
@@ -59,17 +59,17 @@ impl Step<'_> {
         let lanes = self.model.lanes;
         lanes.run(Guess { step: self, state, start: &stage, modes, nodes });
         let speed = fastest.max(self.h * forced);
-        let mut stages = nodes.stages();
         let mut facing = Facing::default();
         if self.around.is_some() {
-            facing.find(&state.attitude, &means(&stages), self.h);
+            facing.find(&state.attitude, &nodes.means(), self.h);
         }
-        let passes = if special {
-            self.one_by_one(state, (&mut stages, &mut facing), (modes, beside), speed)
+        let (stages, passes) = if special {
+            let mut stages = nodes.stages();
+            let passes = self.one_by_one(state, (&mut stages, &mut facing), (modes, beside), speed);
+            (stages, passes)
         } else {
             let passes = lanes.run(Passes { step: self, state, modes, nodes, facing: &mut facing, speed });
-            stages = nodes.stages();
-            passes
+            (nodes.stages(), passes)
         };
         self.end(state, (&stages, &facing), modes, &beside.spun);
         passes
@@ -148,15 +148,16 @@ impl Step<'_> {
             *attitude *= 1.0 - 0.5 * excess;
         }
         let loud = self.is_loud();
+        let sum = |of: &[Vector2<f64>; 3], by: &[f64; 4]| of[0] * by[0] + of[1] * by[1] + of[2] * by[2];
         for ((memory, response), mode) in modes.iter().zip(self.responses).zip(states) {
-            let mut end = Vector2::from(memory.known.map(|of| of[3]));
-            end += Vector2::from(answer(&response.of_rate, &memory.g, 3));
+            let by = &response.end;
+            let mut end = Vector2::new(memory.known[0][3], memory.known[1][3]);
+            end += sum(&by.of_rate, &memory.g);
             if loud {
-                end += Vector2::from(answer(&response.of_force, &memory.s, 3));
+                end += sum(&by.of_force, &memory.s);
             }
             // What was left out moves on with the mode, with what the rounded transition makes too long.
-            let [a, b, c, d] = response.free.map(|entry| entry[3]);
-            let left = Vector2::new(a * mode[2] + b * mode[3], c * mode[2] + d * mode[3]);
+            let left = by.free[0] * mode[2] + by.free[1] * mode[3];
             let (end, left) = exact_sum(end, left - end * response.excess);
             *mode = [end.x, end.y, left.x, left.y];
         }

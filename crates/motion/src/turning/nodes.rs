@@ -52,7 +52,8 @@ impl Nodes {
         [self.stage(0), self.stage(1), self.stage(2)]
     }
 
-    fn means(&self) -> [Vector; 3] {
+    /// The rates of the mean axes.
+    pub fn means(&self) -> [Vector; 3] {
         [vector(&self.mean, 0), vector(&self.mean, 1), vector(&self.mean, 2)]
     }
 }
@@ -156,7 +157,11 @@ impl Work for Passes<'_> {
         let (mut before, mut passes) = (0.0, 0);
         while passes < PASSES {
             passes += 1;
-            let shapes = shapes(kind, step, modes);
+            let shapes = if step.levers.is_empty() {
+                shapes::<R, false>(kind, step, modes)
+            } else {
+                shapes::<R, true>(kind, step, modes)
+            };
             let (felt, mut change) = turn(kind, step, (state, &*facing), &shapes, nodes);
             change.forced = feel(kind, step, &felt, modes);
             change.stretched = size_of(&shapes.changed);
@@ -191,15 +196,17 @@ fn size_of<R: Real>(of: &[R; 6]) -> f64 {
     most(xx * xx + yy * yy + zz * zz + (yz * yz + zx * zx + xy * xy) * 2.0)
 }
 
-/// How the modes are at the nodes.
+/// How the modes are at the nodes; with what they add to the torque where forces have levers.
 #[inline(always)]
-fn shapes<R: Real>(kind: R, step: &Step<'_>, modes: &mut [Memory]) -> Shapes<R> {
+fn shapes<R: Real, const LEVERED: bool>(kind: R, step: &Step<'_>, modes: &mut [Memory]) -> Shapes<R> {
     let zero = kind.of(0.0);
     let none = Vectors { x: zero, y: zero, z: zero };
     let (mut bent, mut elastic, mut changed, mut levered) = (none, none, [zero; 6], none);
     let (loud, stretches) = (step.is_loud(), step.model.stretches);
-    for index in 0..modes.len() {
-        let (memory, response, of) = (&mut modes[index], &step.responses[index], &step.model.modes[index]);
+    let count = modes.len();
+    let (responses, constants) = (&step.responses[..count], &step.model.modes[..count]);
+    for index in 0..count {
+        let (memory, response, of) = (&mut modes[index], &responses[index], &constants[index]);
         let (mut q, mut p) = (kind.load(&memory.known[0]), kind.load(&memory.known[1]));
         for node in 0..3 {
             q = q + kind.load(&response.of_rate[0][node]) * memory.g[node];
@@ -220,7 +227,7 @@ fn shapes<R: Real>(kind: R, step: &Step<'_>, modes: &mut [Memory]) -> Shapes<R> 
                 changed[entry] = changed[entry] + q * of.moments[entry];
             }
         }
-        if index < step.levers.len() {
+        if LEVERED && index < step.levers.len() {
             levered = levered.with(&step.levers[index], q);
         }
     }
@@ -326,8 +333,10 @@ fn feel<R: Real>(kind: R, step: &Step<'_>, felt: &Felt<R>, modes: &mut [Memory])
     let (stretches, loud) = (step.model.stretches, step.is_loud());
     let more = loud && (step.around.is_some() || step.model.beside.is_some());
     let mut change = kind.of(0.0);
-    for index in 0..modes.len() {
-        let (memory, of) = (&mut modes[index], &step.model.modes[index]);
+    let count = modes.len();
+    let constants = &step.model.modes[..count];
+    for index in 0..count {
+        let (memory, of) = (&mut modes[index], &constants[index]);
         let g = felt.turning.along(&of.rotation);
         g.store(&mut memory.g);
         if more {

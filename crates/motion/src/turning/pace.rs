@@ -123,7 +123,7 @@ impl Pace {
         let drifts = |h: f64| match pose.amplitudes {
             Some(amplitudes) => {
                 let most = if h > self.resolving { DRIFT } else { RESOLVED_DRIFT };
-                self.drift(h, pose, amplitudes) > most
+                self.drifts(h, pose, amplitudes, most)
             }
             None => h > self.resolving,
         };
@@ -134,16 +134,18 @@ impl Pace {
         level
     }
 
-    /// How fast the attitude drifts at most for the sake of modes that steps of `h` seconds do not resolve (rad/s).
-    fn drift(&self, h: f64, pose: Pose<'_>, amplitudes: &[Amplitude]) -> f64 {
+    /// Whether the attitude may drift faster than so (rad/s) for the sake of modes that steps of `h` seconds do not resolve.
+    fn drifts(&self, h: f64, pose: Pose<'_>, amplitudes: &[Amplitude], most: f64) -> bool {
         let resolved = h <= self.resolving;
         let lost = |(of, amplitude): (&Turns, &Amplitude)| {
             let square = of.frequency * h * of.frequency * h;
             let turned = if resolved { of.turned * amplitude.most } else { of.unresolved * amplitude.swings };
             turned * (LOST * square * square * square).min(1.0)
         };
-        let lost = self.modes.iter().zip(amplitudes).map(lost).sum::<f64>();
-        (pose.carried + pose.acceleration * h) * lost
+        let by = pose.carried + pose.acceleration * h;
+        // The last mode, mostly the fastest, is often too much alone: no sum of what is not negative is less than a part of it.
+        let alone = self.modes.last().zip(amplitudes.last()).is_some_and(|last| by * lost(last) > most);
+        alone || by * self.modes.iter().zip(amplitudes).map(lost).sum::<f64>() > most
     }
 
     /// This level, or the first beyond it whose steps follow what shakes the body at a frequency (rad/s).

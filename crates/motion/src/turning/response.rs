@@ -4,6 +4,8 @@
 //! c = (0, 1/W): g is the rate that momentum gives the mode, s what forces it. A function of A is a + b B with
 //! B = A/W + zeta, B² = zeta² - 1: such pairs are complex numbers below critical damping.
 
+use nalgebra::Vector2;
+
 use crate::numerics::gauss_legendre::{NODES, PARABOLAS};
 use crate::numerics::phasor::Phasor;
 use crate::numerics::phi;
@@ -24,6 +26,19 @@ pub struct Response {
     pub of_force: [[[f64; 4]; 3]; 2],
     /// To an s that stays 1.
     pub of_constant: [[f64; 4]; 2],
+    /// Of (q, P/W) at the end alone: to q and P/W, to g and to s at the nodes.
+    pub end: End,
+}
+
+/// What (q, P/W) come to at the end of a step, side by side.
+#[derive(Clone, Debug, Default)]
+pub struct End {
+    /// To q, and to P/W.
+    pub free: [Vector2<f64>; 2],
+    /// To g for a unit at each of the nodes (s).
+    pub of_rate: [Vector2<f64>; 3],
+    /// To s (s², s).
+    pub of_force: [Vector2<f64>; 3],
 }
 
 impl Response {
@@ -35,6 +50,7 @@ impl Response {
             of_rate: [[[0.0; 4]; 3]; 2],
             of_force: [[[0.0; 4]; 3]; 2],
             of_constant: [[0.0; 4]; 2],
+            end: End::default(),
         };
         for (stage, part) in NODES.into_iter().chain([1.0]).enumerate() {
             let phis = phis(frequency * part * h, damping);
@@ -55,6 +71,14 @@ impl Response {
             response.of_constant[0][stage] = moments[0][1] / frequency;
             response.of_constant[1][stage] = moments[0][3] / frequency;
         }
+        let [a, b, c, d] = response.free.map(|entry| entry[3]);
+        let ends =
+            |of: &[[[f64; 4]; 3]; 2]| [0, 1, 2].map(|node| Vector2::new(of[0][node][3], of[1][node][3]));
+        response.end = End {
+            free: [Vector2::new(a, c), Vector2::new(b, d)],
+            of_rate: ends(&response.of_rate),
+            of_force: ends(&response.of_force),
+        };
         if damping == 0.0 {
             let (cos, sin) = (response.free[0][3], response.free[1][3]);
             // cos² + sin² - 1 to twice the digits.

@@ -31,6 +31,7 @@ impl Change {
     }
 
     /// The largest change, as a part of what changes.
+    #[inline(always)]
     pub fn most(&self, h: f64, size: f64, speed: f64) -> f64 {
         let mut most = self.spun.max(0.5 * h * libm::sqrt(self.mean));
         if size > 0.0 {
@@ -45,6 +46,7 @@ impl Change {
 
 impl Step<'_> {
     /// Whether the next pass would change nothing that counts: by the rate of the last two, or by what this one changed.
+    #[inline(always)]
     pub(super) fn settles(&self, change: &Change, size: f64, speed: f64, before: f64) -> bool {
         let most = change.most(self.h, size, speed);
         most <= SETTLED || most * most <= SETTLED * before || self.leaves(change, size, speed) <= SETTLED
@@ -53,6 +55,7 @@ impl Step<'_> {
     /// A bound of what the next pass changes, as a part of what changes, where nothing but modes, momentum and a constant torque
     /// take part; none otherwise. Every pass begins with the rates, momenta and forces of the last, whose errors are about what
     /// that changed.
+    #[inline(always)]
     pub(super) fn leaves(&self, change: &Change, size: f64, speed: f64) -> f64 {
         let plain = self.around.is_none()
             && self.driven.is_none()

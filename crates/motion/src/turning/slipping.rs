@@ -6,7 +6,8 @@
 
 use super::bearing::{Borne, Slip, Spin};
 use super::flow::Turning;
-use super::model::{Surroundings, tensor};
+use super::model::{Rotor, Surroundings, tensor};
+use super::rotation::Bend;
 use super::state::Seen;
 use crate::attitude::Vector;
 use nalgebra::Matrix3;
@@ -44,6 +45,23 @@ impl Turning {
     /// Acceleration of the hub (rad/s²) at the instant seen last, if rotors slip so.
     pub(super) fn acceleration(&self, slips: &[Slip], around: Option<(&dyn Surroundings, f64)>) -> Vector {
         self.accelerated(slips, around).hub
+    }
+
+    /// Rotors that were not there before bring their momenta with them.
+    pub(super) fn take_on(&mut self, rotors: &[Rotor], before: usize) {
+        let bent = self
+            .here
+            .modes
+            .iter()
+            .zip(&self.model.modes)
+            .fold(Vector::zeros(), |sum, ([q, ..], mode)| sum + mode.rotation * *q);
+        for (index, rotor) in rotors.iter().enumerate().skip(before) {
+            self.here.momentum += Bend::new(bent).forward(&(rotor.axis * rotor.momentum));
+            if index < self.bearings.len() {
+                self.slips[index] = self.first_slip(index, &rotor.axis, rotor.momentum);
+                self.here.spins[index].sums.x = rotor.momentum;
+            }
+        }
     }
 
     /// Decides about the rotors at rest, under what acts since the departure just now.

@@ -103,6 +103,27 @@ fn energy(turning: &Turning) -> f64 {
     turning.seen().rotational + turning.energies().sum::<f64>()
 }
 
+/// A departure is looked at where it changes what is seen: rotors with another momentum leave the body another rate.
+#[test]
+fn a_jump_of_the_rotors_momenta_is_seen_at_once() {
+    let craft = craft().stiff().undamped();
+    let mut turning = craft.turning(TUMBLE);
+    let depart = |turning: &mut Turning, momenta: [f64; 4]| {
+        turning.depart(&Acting { rotors: rotors(momenta, [0.0; 4]), ..Acting::default() });
+    };
+    depart(&mut turning, SPUN);
+    go(&mut turning, 0.7);
+    let before = turning.seen().clone();
+    depart(&mut turning, SPUN);
+    assert_eq!(*turning.seen(), before);
+    let jump = 0.3;
+    depart(&mut turning, [SPUN[0] + jump, SPUN[1], SPUN[2], SPUN[3]]);
+    let seen = turning.seen();
+    let change =
+        craft.body.inertia.try_inverse().expect("an inertia") * rotors(SPUN, [0.0; 4])[0].axis * -jump;
+    assert!((seen.rigid - before.rigid - change).norm() < 1e-15 && seen.momentum == before.momentum);
+}
+
 #[test]
 fn pulses_from_rest() {
     let craft = craft().stiff();
