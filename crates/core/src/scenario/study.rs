@@ -4,7 +4,8 @@ use nalgebra::{Cholesky, Matrix3};
 
 use super::{Drives, Scenario};
 use crate::actuator::{
-    Actuate, Actuator, Allocation, Firing, Group, Member, Nozzle, Opposes, Setting, Several, Task, Torquers,
+    Actuate, Actuator, Allocation, Axes, Firing, Group, Member, Nozzle, Opposes, Setting, Several, Task,
+    Torquers,
 };
 use crate::attitude::{Vector, beyond, tensor};
 use crate::body::craft::{Moving, Rotor};
@@ -62,6 +63,8 @@ pub struct Study {
     pub unloading: Option<[[Group; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
+    /// The axes of control moment gyros with their gimbals at angle 0.
+    pub gimbals: Vec<Axes>,
     /// The bearings of wheels with friction or imbalance.
     pub bearings: Vec<Bearing>,
     /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.
@@ -179,6 +182,14 @@ impl Study {
                 };
                 let bearings = wheels.bearings((body, flexible));
                 self.bearings = bearings.map_err(|fault| fault.within(&of))?;
+            }
+        }
+        if let Some((gyros, of)) = scenario.actuator.control_moment_gyros() {
+            self.gimbals = gyros.axes().map_err(|fault| fault.within(&of))?;
+            if scenario.body.flexible().is_none() {
+                let why = "are for a `[spacecraft]`, which needs no appendages: the modes of a `[body.spatial]` are pushed by \
+                           torques that are constant for a while, and gimbals turn theirs";
+                return Err(Fault::new(of, why));
             }
         }
         self.around = surroundings(scenario, body)?;
@@ -303,6 +314,7 @@ impl Study {
                 let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
                 Box::new(wheels.start(allocation, &settings).read_by(tachometer))
             }
+            (Actuator::ControlMomentGyros(gyros), ..) => Box::new(gyros.start(&self.gimbals, &settings)),
             (Actuator::Magnetorquers(torquers), ..) => Box::new(torquers.start(&settings)),
             (Actuator::Own(own), ..) => own.start(&settings),
             (kind, ..) => Box::new(Torquers::new(kind, settings)),
