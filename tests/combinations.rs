@@ -69,12 +69,17 @@ const ESTIMATORS: [Kind; 10] = [
     ("adaptive", "A", "adaptive = {}"),
 ];
 
-const ACTUATORS: [Kind; 13] = [
+const ACTUATORS: [Kind; 14] = [
     ("ideal", "", "\"ideal\""),
     ("hold", "", "{ hold = { period = 0.2 } }"),
     ("thrusters", "", "{ thrusters = { torque = 0.05, period = 0.2 } }"),
     ("wheel", "", "{ wheel = { gain = 1.0, limit = 0.05 } }"),
     ("wheels", "", "{ wheels = { arrangement = \"pyramid\", inertia = 0.01, torque = 0.05 } }"),
+    (
+        "control_moment_gyros",
+        "",
+        "{ control_moment_gyros = { arrangement = \"pyramid\", momentum = 1.0, rate_limit = 1.0, period = 0.2 } }",
+    ),
     ("magnetorquers", "", "{ magnetorquers = { moment = 10.0 } }"),
     (
         "jets",

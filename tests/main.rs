@@ -44,6 +44,7 @@ mod foreign;
 mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
+mod gimbals;
 mod habits;
 mod help;
 mod jets;

@@ -20,6 +20,7 @@ macro_rules! shipped {
 /// Name and text of each.
 pub const EXAMPLES: &[(&str, &str)] = shipped![
     "adaptive-bandwidth",
+    "agile-observer",
     "attitude-hold",
     "canted-jets",
     "detumble-and-point",

@@ -15,6 +15,7 @@ mod extra;
 mod failing;
 mod frequency;
 mod gain;
+mod gimbals;
 mod lock;
 mod magnetorquers;
 mod modes;

@@ -6,8 +6,9 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    Accelerations, AttitudeEstimate, Bearings, ChannelState, Cycle, DrivesMotion, Log, Magnetorquers, Orbit,
-    Position, Record, RecordError, Sample, SpatialMotion, TrackedMode, Tracking, Wheels,
+    Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, Cycle, DrivesMotion, Log,
+    Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialMotion, TrackedMode, Tracking,
+    Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
@@ -28,6 +29,8 @@ pub struct Cycles {
     pub attitude: Vec<(f64, AttitudeEstimate)>,
     /// The wheels, at each period of the log.
     pub wheels: Vec<(f64, Wheels)>,
+    /// Control moment gyros, at each period of the log.
+    pub gimbals: Vec<(f64, ControlMomentGyros)>,
     /// Where the body is on its orbit, at each period of the log.
     pub orbit: Vec<(f64, Orbit)>,
     /// Magnetic moments, at each period of the log.
@@ -83,6 +86,7 @@ impl Record for Cycles {
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
             Sample::SpatialMotion(SpatialMotion {
                 wheels,
+                gimbals,
                 orbit,
                 magnetorquers,
                 position,
@@ -92,6 +96,7 @@ impl Record for Cycles {
             }) => {
                 let t = now.seconds();
                 self.wheels.extend(wheels.clone().map(|wheels| (t, wheels)));
+                self.gimbals.extend(gimbals.iter().map(|gimbals| (t, gimbals.clone())));
                 self.orbit.extend(orbit.clone().map(|orbit| (t, orbit)));
                 self.magnetorquers.extend(magnetorquers.clone().map(|moments| (t, moments)));
                 self.position.extend(position.iter().map(|position| (t, position.clone())));

@@ -9,7 +9,8 @@ use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
     accelerations, angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra,
-    frequency, gain, magnetorquers, modes, orbit, outputs, phase_plane, pointing, torque, wheel, wheels,
+    frequency, gain, gimbals, magnetorquers, modes, orbit, outputs, phase_plane, pointing, torque, wheel,
+    wheels,
 };
 
 /// A figure.
@@ -45,6 +46,8 @@ pub enum What {
     Damping,
     /// Speed and momentum of the flywheel, or speed and torque of each wheel, with limits
     Wheel,
+    /// Control moment gyros: gimbal angles and rates, singularity measure, momentum
+    Gimbals,
     /// Three axes: magnetic moments, and the momentum of the wheels or the rate
     Magnetorquers,
     /// Three axes: readings of the accelerometers
@@ -100,6 +103,7 @@ impl What {
             }
             Self::Wheel => wheel::rotor(story).is_some() && !spatial || wheels::of(story).is_some(),
             Self::Orbit => spatial && orbit::of(story),
+            Self::Gimbals => gimbals::of(story),
             Self::Magnetorquers => magnetorquers::of(story),
             Self::Drives => story.scenario.study.drives.is_some(),
             Self::Accelerations => accelerations::of(story),
@@ -137,6 +141,7 @@ impl What {
             Self::Wheel if wheels::of(story).is_some() => wheels::figure(story, cycles),
             Self::Wheel => wheel::figure(story, motion),
             Self::Orbit => orbit::figure(story, cycles),
+            Self::Gimbals => gimbals::figure(story, cycles),
             Self::Magnetorquers => magnetorquers::figure(story, cycles),
             Self::Drives => drives::figure(story, cycles),
             Self::Accelerations => accelerations::figure(story, cycles),

@@ -8,7 +8,8 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 
 use super::{
-    Actuator, Ideal, Jets, Magnetorquers, Share, Thrusters, Unloading, Unloads, Wheel, Wheels, ZeroOrderHold,
+    Actuator, ControlMomentGyros, Ideal, Jets, Magnetorquers, Share, Thrusters, Unloading, Unloads, Wheel,
+    Wheels, ZeroOrderHold,
 };
 use crate::axes::Axis;
 
@@ -53,7 +54,7 @@ macro_rules! keys {
             /// Its share of the demand about these axes; default: 1. The shares of all actuators about an axis must sum to 1.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             share: Option<Share>,
-            /// For `jets` or `magnetorquers`: how they unload the `wheels` of the list. They then execute no demand.
+            /// For `jets` or `magnetorquers`: how they unload the `wheels` or `control_moment_gyros` of the list. They then execute no demand.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             unloads: Option<Box<Unloads>>,
         }
@@ -90,6 +91,8 @@ keys! {
     wheel: Wheel(Wheel),
     /// Reaction wheels about axes of their own.
     wheels: Wheels(Wheels),
+    /// Control moment gyros of a spacecraft.
+    control_moment_gyros: ControlMomentGyros(ControlMomentGyros),
     /// Thrusters at points of a spatial body.
     jets: Jets(Jets),
     /// Magnetorquers of a spatial body in the field of its planet.

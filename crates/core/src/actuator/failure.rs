@@ -31,6 +31,9 @@ macro_rules! kinds {
                 /// Wheel that fails, counted from 1; default: all.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub wheel: Option<NonZeroU32>,
+                /// Gimbal of `control_moment_gyros` that fails, counted from 1; default: all.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub gimbal: Option<NonZeroU32>,
                 /// Thruster of `jets` that fails; default: all.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub thruster: Option<String>,
@@ -40,7 +43,8 @@ macro_rules! kinds {
             impl $name {
                 fn lasting(&self) -> Lasting<'_> {
                     let outage = Outage { from: self.from, to: self.to };
-                    Lasting { outage, about: self.about, wheel: self.wheel, thruster: self.thruster.as_deref() }
+                    let (about, wheel, gimbal) = (self.about, self.wheel, self.gimbal);
+                    Lasting { outage, about, wheel, gimbal, thruster: self.thruster.as_deref() }
                 }
             }
         )+
@@ -57,14 +61,14 @@ kinds! {
     }
     /// A constant output, whatever the command.
     Stuck {
-        /// The output: a torque (N m); for magnetorquers a moment (A m²), for jets a fraction of their thrust; default: the output
+        /// The output: a torque (N m); for magnetorquers a moment (A m²), for gimbals a rate (rad/s), for jets a fraction of their thrust; default: the output
         /// when the failure begins.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at: Option<Finite>,
     }
     /// An error added to the commanded output.
     Added {
-        /// Constant part: a torque (N m); for magnetorquers a moment (A m²), for jets a thrust (N).
+        /// Constant part: a torque (N m); for magnetorquers a moment (A m²), for gimbals a rate (rad/s), for jets a thrust (N).
         #[serde(default)]
         constant: Finite,
         /// Sine torques.
@@ -96,6 +100,8 @@ pub struct Lasting<'a> {
     pub about: Option<Axis>,
     /// The wheel, from 1.
     pub wheel: Option<NonZeroU32>,
+    /// The gimbal, from 1.
+    pub gimbal: Option<NonZeroU32>,
     /// The thruster.
     pub thruster: Option<&'a str>,
 }
@@ -107,6 +113,8 @@ pub(super) enum Parts<'a> {
     Axes(usize),
     /// So many wheels.
     Wheels(usize),
+    /// So many gimbals.
+    Gimbals(usize),
     /// Thrusters of these names.
     Thrusters(&'a [String]),
 }
@@ -139,15 +147,16 @@ impl Failure {
 
     /// What of it does not fit an actuator of these parts, which `turns` the body by torques or not: a key, and why.
     pub(super) fn fault(&self, parts: Parts<'_>, turns: bool) -> Option<Fault> {
-        let Lasting { outage, about, wheel, thruster } = self.lasting();
+        let Lasting { outage, about, wheel, gimbal, thruster } = self.lasting();
         if let Some(fault) = outage.disorder() {
             return Some(fault);
         }
         let at = |key: &str, why: &str| Some(Fault::new(format!("{}.{key}", self.kind()), why));
-        let (axes, wheels, names): (usize, usize, &[String]) = match parts {
-            Parts::Axes(axes) => (axes, 0, &[]),
-            Parts::Wheels(wheels) => (0, wheels, &[]),
-            Parts::Thrusters(names) => (0, 0, names),
+        let (axes, wheels, gimbals, names): (usize, usize, usize, &[String]) = match parts {
+            Parts::Axes(axes) => (axes, 0, 0, &[]),
+            Parts::Wheels(wheels) => (0, wheels, 0, &[]),
+            Parts::Gimbals(gimbals) => (0, 0, gimbals, &[]),
+            Parts::Thrusters(names) => (0, 0, 0, names),
         };
         if about.is_some() && axes < 3 {
             return at(
@@ -160,6 +169,11 @@ impl Failure {
             let none = "applies only to `[actuator.wheels]`, and this actuator has no wheels";
             return at("wheel", if wheels == 0 { none } else { &why });
         }
+        if let Some(number) = gimbal.filter(|gimbal| gimbal.get() as usize > gimbals) {
+            let why = format!("must be one of {gimbals} gimbals, counted from 1, got {number}");
+            let none = "applies only to `[actuator.control_moment_gyros]`, and this actuator has no gimbals";
+            return at("gimbal", if gimbals == 0 { none } else { &why });
+        }
         if let Some(name) = thruster.filter(|name| !names.iter().any(|known| known == name)) {
             let known: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
             let why = format!("must be one of the thrusters, {}, got `{name}`", known.join(", "));
@@ -167,7 +181,7 @@ impl Failure {
             return at("thruster", if names.is_empty() { none } else { &why });
         }
         if (axes == 0 || !turns) && !self.sines().is_empty() {
-            let why = "apply only to a torque on the body: wheels, jets and magnetorquers can only add a constant; a `[[disturbance]]` can have sines";
+            let why = "apply only to a torque on the body: wheels, gimbals, jets and magnetorquers can only add a constant; a `[[disturbance]]` can have sines";
             return at("sines", why);
         }
         if let Parts::Thrusters(_) = parts {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::failure;
-use super::{Actuator, Assigned, Jets, Magnetorquers, Share, Unloads, Wheel, Wheels};
+use super::{Actuator, Assigned, ControlMomentGyros, Jets, Magnetorquers, Share, Unloads, Wheel, Wheels};
 use crate::document::Fault;
 use crate::parts::Parts;
 
@@ -48,6 +48,7 @@ impl Member<'_> {
         let parts = match &*self.kind {
             Actuator::Jets(_) => failure::Parts::Thrusters(&names),
             Actuator::Wheels(wheels) => failure::Parts::Wheels(wheels.count()),
+            Actuator::ControlMomentGyros(gyros) => failure::Parts::Gimbals(gyros.count()),
             _ => failure::Parts::Axes(axes),
         };
         let sines = !matches!(&*self.kind, Actuator::Magnetorquers(_));
@@ -120,6 +121,11 @@ impl Parts<Assigned> {
     /// The reaction wheels, and their key.
     pub fn wheels(&self) -> Option<(&Wheels, String)> {
         self.first(|kind| if let Actuator::Wheels(wheels) = kind { Some(wheels) } else { None })
+    }
+
+    /// The control moment gyros, and their key.
+    pub fn control_moment_gyros(&self) -> Option<(&ControlMomentGyros, String)> {
+        self.first(|kind| if let Actuator::ControlMomentGyros(gyros) = kind { Some(gyros) } else { None })
     }
 
     /// The jets, laws act by them or not, and their key.

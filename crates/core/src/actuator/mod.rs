@@ -3,8 +3,10 @@
 mod allocated;
 mod allocation;
 mod assigned;
+mod control_moment_gyros;
 mod failure;
 mod friction;
+mod gimbals;
 mod hold;
 mod ideal;
 mod imbalance;
@@ -18,6 +20,7 @@ mod pulse_width;
 mod pulsing;
 mod several;
 mod spinning;
+mod steering;
 mod thrusters;
 mod torquers;
 mod unloading;
@@ -36,14 +39,16 @@ use crate::body::Wrench;
 use crate::motion::turning::Turned;
 use crate::own::{Halt, Own};
 use crate::quantity::{Share, Time};
-use crate::record::{self, WheelMotion};
+use crate::record::{self, Steered, WheelMotion};
 use crate::time::{Instant, Span};
 
 pub use allocated::Allocated;
 pub use allocation::{Allocation, Choice};
 pub use assigned::Assigned;
+pub use control_moment_gyros::{ControlMomentGyros, GimbalArrangement};
 pub use failure::{Failure, Lasting};
 pub use friction::Friction;
+pub use gimbals::Gimbals;
 pub use hold::ZeroOrderHold;
 pub use ideal::Ideal;
 pub use imbalance::{Harmonic, Imbalance};
@@ -56,6 +61,7 @@ pub use pulse_width::PulseWidth;
 pub use pulsing::{Pulse, Pulsing};
 pub use several::Several;
 pub use spinning::Spinning;
+pub use steering::{Axes, NullMotion, Robustness, Steering};
 pub use thrusters::Thrusters;
 pub use torquers::{AxisActuate, Setting, Torquers};
 pub use unloading::{Unloading, Unloads};
@@ -76,6 +82,8 @@ pub enum Actuator {
     Wheel(Wheel),
     /// Reaction wheels about axes of their own.
     Wheels(Wheels),
+    /// Control moment gyros of a spacecraft.
+    ControlMomentGyros(ControlMomentGyros),
     /// Thrusters at points of a spatial body.
     Jets(Jets),
     /// Magnetorquers of a spatial body in the field of its planet.
@@ -170,6 +178,16 @@ pub trait Actuate: fmt::Debug + Send + Sync {
         Vec::new()
     }
 
+    /// Control moment gyros, if it consists of them.
+    fn gimbals(&self, _now: Instant) -> Option<record::ControlMomentGyros> {
+        None
+    }
+
+    /// What control moment gyros did since the start.
+    fn steered(&self) -> Option<Steered> {
+        None
+    }
+
     /// The magnetic moments that it holds, of torquers.
     fn magnetic(&self) -> Option<record::Magnetorquers> {
         None
@@ -262,6 +280,7 @@ impl Actuator {
             Self::Thrusters(_) => "thrusters",
             Self::Wheel(_) => "wheel",
             Self::Wheels(_) => "wheels",
+            Self::ControlMomentGyros(_) => "control_moment_gyros",
             Self::Jets(_) => "jets",
             Self::Magnetorquers(_) => "magnetorquers",
             Self::Own(_) => "own",
@@ -276,6 +295,7 @@ impl Actuator {
             Self::Thrusters(thrusters) => &thrusters.faults,
             Self::Wheel(wheel) => &wheel.faults,
             Self::Wheels(wheels) => &wheels.faults,
+            Self::ControlMomentGyros(gyros) => &gyros.faults,
             Self::Jets(jets) => &jets.faults,
             Self::Magnetorquers(torquers) => &torquers.faults,
             Self::Own(_) => &[],
@@ -294,22 +314,28 @@ impl Actuator {
 
     fn timing(&self) -> (Option<Span>, Option<Time>) {
         match self {
-            Self::Ideal(_) | Self::Wheel(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => {
-                (None, None)
-            }
+            Self::Ideal(_)
+            | Self::Wheel(_)
+            | Self::Wheels(_)
+            | Self::ControlMomentGyros(_)
+            | Self::Magnetorquers(_)
+            | Self::Own(_) => (None, None),
             Self::Hold(hold) => (Some(hold.period), hold.phase),
             Self::Thrusters(thrusters) => (Some(thrusters.period), thrusters.phase),
             Self::Jets(jets) => (jets.period, jets.phase),
         }
     }
 
-    /// The actuator of a single axis at work in a setting. Jets, torquers, wheels of three axes and one from outside act about all axes,
-    /// and are not asked.
+    /// The actuator of a single axis at work in a setting. Jets, torquers, wheels of three axes, control moment gyros and one from
+    /// outside act about all axes, and are not asked.
     pub fn about_an_axis(&self, setting: &Setting) -> Box<dyn AxisActuate> {
         match self {
-            Self::Ideal(_) | Self::Jets(_) | Self::Wheels(_) | Self::Magnetorquers(_) | Self::Own(_) => {
-                Box::new(ideal::Executing::new(setting))
-            }
+            Self::Ideal(_)
+            | Self::Jets(_)
+            | Self::Wheels(_)
+            | Self::ControlMomentGyros(_)
+            | Self::Magnetorquers(_)
+            | Self::Own(_) => Box::new(ideal::Executing::new(setting)),
             Self::Hold(hold) => Box::new(hold.start(setting)),
             Self::Thrusters(thrusters) => Box::new(thrusters.start(setting)),
             Self::Wheel(wheel) => Box::new(wheel.start(setting)),

@@ -1,4 +1,4 @@
-//! Several actuators: each executes its share of what is demanded about each axis, or unloads the wheels beside it.
+//! Several actuators: each executes its share of what is demanded about each axis, or unloads the wheels or gyros beside it.
 
 use super::unloading::Unloader;
 use super::{Actuate, Actuator, Cycle, Demand, Pulse, Task};
@@ -14,8 +14,8 @@ use crate::time::Instant;
 pub struct Several {
     /// Each with its shares, in the order of the scenario.
     executing: Vec<(Box<dyn Actuate>, [f64; 3])>,
-    /// Which of them are wheels that can be unloaded.
-    wheels: Option<usize>,
+    /// Which of them keep momentum; the first can be unloaded.
+    keepers: Vec<usize>,
     unloader: Option<Unloader>,
     /// What laws demand, about so many axes.
     demands: Vec<Demand>,
@@ -36,15 +36,15 @@ impl Several {
     pub fn new(axes: usize, members: Vec<(&Actuator, &Task, Box<dyn Actuate>)>) -> Self {
         let mut several = Self {
             executing: Vec::with_capacity(members.len()),
-            wheels: None,
+            keepers: Vec::new(),
             unloader: None,
             demands: vec![Demand::Torque(0.0); axes],
         };
         for (kind, task, actuator) in members {
             match task {
                 Task::Executes(shares) => {
-                    if let Actuator::Wheels(_) = kind {
-                        several.wheels = Some(several.executing.len());
+                    if let Actuator::Wheels(_) | Actuator::ControlMomentGyros(_) = kind {
+                        several.keepers.push(several.executing.len());
                     }
                     several.executing.push((actuator, *shares));
                 }
@@ -74,10 +74,10 @@ impl Several {
         actuator.command(now, &own[..self.demands.len()], rigid);
     }
 
-    /// Makes the wheels hold against a torque from the next command on.
+    /// Makes what keeps momentum hold against a torque from the next command on.
     fn hold(&mut self, torque: Vector) {
-        if let Some(index) = self.wheels {
-            self.executing[index].0.hold_against(torque);
+        if let Some(index) = self.keepers.first() {
+            self.executing[*index].0.hold_against(torque);
         }
     }
 }
@@ -106,7 +106,7 @@ impl Actuate for Several {
         let stored = Vector::from(self.stored(now));
         let held = self.unloader.as_mut().and_then(|of| of.serve(now, rigid, stored, &self.demands));
         self.executing.iter_mut().for_each(|(actuator, _)| actuator.serve(now, rigid));
-        if let (Some(held), Some(index)) = (held, self.wheels) {
+        if let (Some(held), Some(index)) = (held, self.keepers.first().copied()) {
             self.hold(held);
             self.pass_on(index, now, rigid);
         }
@@ -154,6 +154,14 @@ impl Actuate for Several {
         self.each().flat_map(|actuator| actuator.wheels(now, rate)).collect()
     }
 
+    fn gimbals(&self, now: Instant) -> Option<record::ControlMomentGyros> {
+        self.each().find_map(|actuator| actuator.gimbals(now))
+    }
+
+    fn steered(&self) -> Option<record::Steered> {
+        self.each().find_map(Actuate::steered)
+    }
+
     fn magnetic(&self) -> Option<record::Magnetorquers> {
         self.each().find_map(Actuate::magnetic)
     }
@@ -163,7 +171,8 @@ impl Actuate for Several {
     }
 
     fn stored(&self, now: Instant) -> [f64; 3] {
-        self.wheels.map_or([0.0; 3], |index| self.executing[index].0.stored(now))
+        let stored = self.keepers.iter().map(|index| Vector::from(self.executing[*index].0.stored(now)));
+        stored.reduce(|sum, next| sum + next).unwrap_or_default().into()
     }
 
     fn cycle(&self) -> Option<Cycle> {

@@ -118,7 +118,8 @@ impl Unloads {
                 at(key, "must be given with `magnetorquers`".to_owned())
             }
             other => {
-                let why = "is for `jets` or `magnetorquers`, which can unload `wheels`";
+                let why =
+                    "is for `jets` or `magnetorquers`, which can unload `wheels` or `control_moment_gyros`";
                 Some((Fault::new("", format!("{why}, got `{}`", other.kind())), false))
             }
         }

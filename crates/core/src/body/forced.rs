@@ -6,7 +6,7 @@ use std::sync::Arc as Shared;
 use super::mode::Flow;
 use super::spatial::Spatial;
 use crate::attitude::Vector;
-use crate::motion::turning::Rotor;
+use crate::motion::turning::{Gimbal, Rotor};
 use crate::numerics::phasor::Phasor;
 use crate::numerics::polynomial::Series;
 use crate::sine::Sine;
@@ -44,6 +44,8 @@ pub struct Wrench {
     pub levers: Vec<Vector>,
     /// Rotors that store momentum, each with the torque on it.
     pub rotors: Vec<Rotor>,
+    /// Rotors in gimbals, each with its angle now and its rate.
+    pub gimbals: Vec<Gimbal>,
     /// Magnetic moment of torquers, in the body's axes (A m²).
     pub moment: Vector,
     /// Sines of the time in the torque at the hub of a spacecraft, each with its axis.
@@ -55,12 +57,13 @@ pub struct Wrench {
 impl Wrench {
     /// Nothing acts any more; what was allocated stays so.
     pub fn clear(&mut self) {
-        let Self { hub, torque, forces, force, levers, rotors, moment, sines, waveform } = self;
+        let Self { hub, torque, forces, force, levers, rotors, gimbals, moment, sines, waveform } = self;
         *hub = [0.0; 3];
         (*torque, *force, *moment) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
         forces.clear();
         levers.clear();
         rotors.clear();
+        gimbals.clear();
         sines.clear();
         *waveform = None;
     }

@@ -129,6 +129,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(planar::filters(scenario), "/estimators", Full);
         add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
         add(scenario.study.wheels.is_some(), "/wheels", Full);
+        add(!scenario.study.gimbals.is_empty(), "/control_moment_gyros", Full);
         add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);
         add(scenario.sensor.accelerometers().next().is_some(), "/accelerations", Full);
         add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);

@@ -122,6 +122,14 @@ metrics! {
         "Largest total momentum of wheels that are unloaded by magnetorquers";
     MOMENTUM_END = "wheel_momentum_end_nm_s", "N m s",
         "Total momentum of wheels that are unloaded by magnetorquers, at the end of the run";
+    GIMBAL_RATE = "gimbal_rate_peak_rad_s", "rad/s", "Largest rate of a gimbal of the control moment gyros";
+    SINGULARITY = "singularity_min", "",
+        "Smallest singularity measure of the control moment gyros at their commands: 0 where they give no torque in some direction";
+    TORQUE_ERROR = "torque_error_peak_nm", "N m",
+        "Largest difference between the demanded torque and that of the control moment gyros, at their commands";
+    GYRO_MOMENTUM_PEAK = "gyro_momentum_peak_nm_s", "N m s", "Largest total momentum of the control moment gyros";
+    GYRO_MOMENTUM_END = "gyro_momentum_end_nm_s", "N m s",
+        "Total momentum of the control moment gyros at the end of the run";
     NEES_MEAN = "nees_mean", "",
         "Mean over the assessed samples of the filter's normalised estimation error squared, divided by the number of states: 1 if the covariance is consistent";
     NIS_MEAN = "nis_mean", "",

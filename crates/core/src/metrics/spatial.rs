@@ -3,11 +3,12 @@
 use super::goal::{self, Verdict};
 use super::{
     ACCELERATION, BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS,
-    FRICTION_HEAT, FUEL, MOMENTUM_END, MOMENTUM_PEAK, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT,
-    Told, VISIBLE_END, VISIBLE_PEAK, Value, WHEEL_STOPS, ZERO_CROSSINGS,
+    FRICTION_HEAT, FUEL, GIMBAL_RATE, GYRO_MOMENTUM_END, GYRO_MOMENTUM_PEAK, MOMENTUM_END, MOMENTUM_PEAK,
+    POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, SINGULARITY, TORQUE_ERROR, Told, VISIBLE_END,
+    VISIBLE_PEAK, Value, WHEEL_STOPS, ZERO_CROSSINGS,
 };
 use crate::quantity::Positive;
-use crate::record::{Accelerations, Cycle, Sliding, WheelEvent};
+use crate::record::{Accelerations, Cycle, Sliding, Steered, WheelEvent};
 use crate::scenario::{Pointing, Scenario};
 use crate::time::Instant;
 
@@ -45,6 +46,8 @@ pub struct Spatial {
     /// Rigid rate last (rad/s); momentum of the wheels at its largest, and last (N m s).
     rate: f64,
     stored: [f64; 2],
+    /// What control moment gyros did.
+    steered: Option<Steered>,
     /// What is asked of the pointing, the sum of the squared errors that count (rad²), and how many they are.
     asked: Option<Pointing>,
     pointing: (f64, u64),
@@ -88,6 +91,7 @@ impl Spatial {
             ],
             rate: f64::NAN,
             stored: [0.0, f64::NAN],
+            steered: None,
             asked: scenario.reference.pointing.clone(),
             pointing: (0.0, 0),
         }
@@ -119,6 +123,7 @@ impl Spatial {
         self.rate = libm::sqrt(norm(cycle.rigid_rate_rad_s));
         let stored = libm::sqrt(norm(cycle.stored_nm_s));
         self.stored = [self.stored[0].max(stored), stored];
+        self.steered = cycle.steered;
         if self.asked.as_ref().is_some_and(|asked| asked.counts(t)) {
             self.pointing.0 += norm(cycle.error_rad);
             self.pointing.1 += 1;
@@ -183,6 +188,15 @@ impl Spatial {
         let stored =
             [(&MOMENTUM_PEAK, Value::Number(self.stored[0])), (&MOMENTUM_END, Value::Number(self.stored[1]))];
         let stored = stored.into_iter().filter(|_| unload);
+        let steered = self.steered.map(|steered| {
+            [
+                (&GIMBAL_RATE, Value::Number(steered.largest_rate_rad_s)),
+                (&SINGULARITY, Value::Number(steered.least_measure)),
+                (&TORQUE_ERROR, Value::Number(steered.largest_error_nm)),
+                (&GYRO_MOMENTUM_PEAK, Value::Number(self.stored[0])),
+                (&GYRO_MOMENTUM_END, Value::Number(self.stored[1])),
+            ]
+        });
         let mut pointing: Vec<Told> = Vec::new();
         if let Some(asked) = &self.asked {
             // 0/0 of no cycles: no number.
@@ -198,6 +212,7 @@ impl Spatial {
             .chain(shaken)
             .chain(rate)
             .chain(stored)
+            .chain(steered.into_iter().flatten())
             .chain(pointing)
             .chain(self.verdict.finish(self.end))
             .collect()

@@ -37,16 +37,17 @@ pub use mcap::{LogFile, McapLog};
 pub use message::{Attachment, COMMANDS, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;
-pub use spatial::{Cycle, SpatialMotion};
+pub use spatial::{Cycle, SpatialMotion, Steered};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use topics::{
     Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
-    BearingMotion, Bearings, ChannelState, Command, DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope,
-    Estimate, Estimates, FaultEvent, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
-    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit, OrbitAxis,
-    OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary,
-    TOPICS, ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
-    Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
+    BearingMotion, Bearings, ChannelState, Command, ControlMomentGyro, ControlMomentGyros, DriveMotion,
+    DrivenMode, DrivesMotion, Energy, Envelope, Estimate, Estimates, FaultEvent, GoalMotion, Jets, Law,
+    Magnetorquer, Magnetorquers, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate,
+    ModeMotion, Modes, Objective, Orbit, OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing,
+    Position, Rate, Rates, Residual, Sliding, Summary, TOPICS, ThrusterPulse, Thrusters, Torque, Torques,
+    TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelEvent, WheelMotion, Wheels,
+    WindowMean,
 };
 pub use trace::Trace;
 
@@ -278,6 +279,7 @@ trait TakeRow {
                 motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))?;
                 motion.drives.as_ref().map_or(Ok(()), |drives| self.take(now, drives))?;
                 motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take(now, bearings))?;
+                motion.gimbals.as_ref().map_or(Ok(()), |gimbals| self.take(now, gimbals))?;
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
             }
             Sample::Motion(motion) => {

@@ -1,8 +1,8 @@
 //! What is reported of a body with three axes.
 
 use super::{
-    Bearings, DrivesMotion, Energy, Envelope, Jets, Magnetorquers, Orbit, Pointing, Position, Rates, Torques,
-    Vibrations, Wheels,
+    Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Jets, Magnetorquers, Orbit, Pointing,
+    Position, Rates, Torques, Vibrations, Wheels,
 };
 
 /// A cycle of a spatial loop, after its law has decided.
@@ -26,8 +26,21 @@ pub struct Cycle {
     pub error_rad: [f64; 3],
     /// Heat of the friction of wheels since the start (J); not a number without bearings.
     pub friction_heat_j: f64,
-    /// Momentum of the wheels, in the body's axes (N m s).
+    /// Momentum of the wheels and control moment gyros, in the body's axes (N m s).
     pub stored_nm_s: [f64; 3],
+    /// What control moment gyros did since the start.
+    pub steered: Option<Steered>,
+}
+
+/// What control moment gyros did since the start, at the instants at which their gimbal rates change.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Steered {
+    /// The largest gimbal rate (rad/s).
+    pub largest_rate_rad_s: f64,
+    /// The smallest singularity measure.
+    pub least_measure: f64,
+    /// The largest difference between the torque on the body and the demanded one (N m).
+    pub largest_error_nm: f64,
 }
 
 /// The motion of a spatial body at one instant.
@@ -47,7 +60,9 @@ pub struct SpatialMotion {
     pub torques: Option<Torques>,
     /// Wheels about axes of their own.
     pub wheels: Option<Wheels>,
-    /// Their bearings.
+    /// Control moment gyros.
+    pub gimbals: Option<ControlMomentGyros>,
+    /// The bearings of wheels.
     pub bearings: Option<Bearings>,
     /// The drives of its appendages.
     pub drives: Option<DrivesMotion>,

@@ -89,6 +89,9 @@ impl Scenario {
             Objective::TorqueMean if self.actuator.any(|kind| matches!(kind, Actuator::Magnetorquers(_))) => {
                 "is not known for magnetorquers, whose torque changes with the field"
             }
+            Objective::TorqueMean if self.actuator.control_moment_gyros().is_some() => {
+                "is not known for control moment gyros, whose torque changes with the gimbal angles between commands"
+            }
             _ => return None,
         };
         Some((".objective", format!("`{word}` {why}")))

@@ -53,6 +53,9 @@ impl Written {
             let is_alike = |other: &&Member<'_>| other.kind.kind() == member.kind.kind();
             let why = match &*member.kind {
                 Actuator::Wheels(_) => "write all wheels in one `wheels`, by their `axes`",
+                Actuator::ControlMomentGyros(_) => {
+                    "write all of them in one `control_moment_gyros`, by their `gimbal_axes`"
+                }
                 Actuator::Jets(_) => "write all thrusters in one `jets`",
                 Actuator::Magnetorquers(_) => "they act along all three axes: write one `magnetorquers`",
                 Actuator::Wheel(wheel) => {
@@ -154,11 +157,17 @@ fn unloading_fault(actuators: &Parts<Assigned>, members: &[Member<'_>]) -> Optio
     if let Some((fault, within)) = unloads.fault(&member.kind) {
         return Some(fault.within(if within { &member.key } else { &how }));
     }
-    if actuators.wheels().is_none() {
-        return Some(Fault::new(
-            how,
-            "needs `wheels` in the list, whose momentum it takes, and there are none",
-        ));
+    let why = match (actuators.wheels(), actuators.control_moment_gyros()) {
+        (None, None) => {
+            "needs `wheels` or `control_moment_gyros` in the list, whose momentum it takes, and there are none"
+        }
+        (Some(_), Some(_)) => {
+            "must be left out with both `wheels` and `control_moment_gyros`, whose momenta it cannot tell apart"
+        }
+        _ => "",
+    };
+    if !why.is_empty() {
+        return Some(Fault::new(how, why));
     }
     let (second, _) = unloaders.next()?;
     let why = format!("must be left out: `{}` unloads the wheels, and only one can", member.key);

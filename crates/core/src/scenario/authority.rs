@@ -58,6 +58,9 @@ impl Study {
                 let most = self.wheels.as_ref().map_or(f64::INFINITY, |wheels| wheels.most(axis, limit));
                 ([most / inertia; 2], PulseWidth::default(), 0.0)
             }
+            Actuator::ControlMomentGyros(gyros) => {
+                ([gyros.most(&self.gimbals, axis) / inertia; 2], PulseWidth::default(), 0.0)
+            }
             Actuator::Magnetorquers(torquers) => {
                 let field = self.around.as_ref().map_or(0.0, |around| around.sky().field_bound());
                 ([torquers.largest() * field / inertia; 2], PulseWidth::default(), 0.0)

@@ -275,7 +275,8 @@ impl Scenario {
         let limits = self.targets().iter().filter_map(Target::fastest).map(|(_, rate)| rate);
         let around = self.study.around.as_ref().map_or(0.0, Surroundings::frequency);
         let own = body.disturbance.as_ref().map_or(0.0, Periodic::frequency);
-        limits.fold(start, f64::max) + around + own
+        let gimbals = self.actuator.control_moment_gyros().map_or(0.0, |(gyros, _)| gyros.fastest());
+        limits.fold(start, f64::max) + around + own + gimbals
     }
 
     /// How often steps follow the imbalance of wheels, at their speed at the start or their bias (s).

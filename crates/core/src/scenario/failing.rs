@@ -35,10 +35,11 @@ impl Written {
         }
         for member in self.actuator.members() {
             all.extend(member.kind.failures().iter().map(|failure| {
-                let Lasting { outage, about, wheel, thruster } = failure.lasting();
+                let Lasting { outage, about, wheel, gimbal, thruster } = failure.lasting();
                 let about = about.map(|about| AXES[about.index()].to_owned());
                 let of = about
                     .or(wheel.map(|wheel| format!("wheel {wheel}")))
+                    .or(gimbal.map(|gimbal| format!("gimbal {gimbal}")))
                     .or(thruster.map(|thruster| format!("thruster {thruster}")));
                 Failing {
                     part: member.key.clone(),

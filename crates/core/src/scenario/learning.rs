@@ -49,6 +49,11 @@ impl Scenario {
             let why = "needs constant modes, and an appendage that turns changes them";
             return at("", why);
         }
+        if self.actuator.control_moment_gyros().is_some() {
+            let why = "needs torques that are constant between commands, and those of control moment gyros change with the gimbal \
+                       angles";
+            return at("", why);
+        }
         let spatial = self.model.spatial()?;
         let damped = spatial.modes.iter().find(|mode| mode.damping.get() >= 1.0)?;
         let why = format!("must be below 1 for a mode to have an envelope, got {}", damped.damping.get());

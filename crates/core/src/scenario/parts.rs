@@ -75,6 +75,10 @@ impl Written {
                 let why = "are for three axes: use `[actuator.wheel]` for a body with one angle";
                 return refused(&key, why);
             }
+            if let Some((_, key)) = self.actuator.control_moment_gyros() {
+                let why = "turn a body about three axes, and the body has one angle: use `[actuator.wheel]`";
+                return refused(&key, why);
+            }
             let trackers =
                 |sensor: &Sensor| matches!(sensor, Sensor::StarTracker(_)) || sensor.is_of_a_vector();
             if let Some(index) = self.sensor.iter().position(trackers) {
@@ -167,6 +171,11 @@ impl Written {
                         let why = "finds its crossings in closed form, which three axes do not have: give it a `[sensor.sampled]`";
                         return at("", why.to_owned());
                     }
+                    let gyros = self.actuator.control_moment_gyros();
+                    if let Some((_, of)) = gyros.filter(|(gyros, _)| gyros.period.is_none()) {
+                        let why = "must be given with a law `relay`, which holds its torque: gimbals at constant rates turn theirs";
+                        return Some(Fault::new(format!("{of}.period"), why));
+                    }
                 }
                 Law::PhasePlane(law) => {
                     if self.axis_count() == 1 && !law.targets.is_empty() {
@@ -193,6 +202,9 @@ impl Written {
                         Actuator::Wheel(wheel) if wheel.limit.is_some() => None,
                         Actuator::Wheels(wheels) if wheels.torque.is_some() => None,
                         Actuator::Own(own) if own.limit(axis).is_some() => None,
+                        Actuator::ControlMomentGyros(_) => Some(
+                            "needs a largest torque that is constant, and that of control moment gyros changes with their gimbal angles",
+                        ),
                         Actuator::Ideal(_)
                         | Actuator::Hold(_)
                         | Actuator::Wheel(_)

@@ -4,7 +4,8 @@ use nalgebra::{Cholesky, Matrix3};
 
 use super::{Drives, Scenario, Written};
 use crate::actuator::{
-    Actuate, Actuator, Allocation, Firing, Group, Member, Nozzle, Opposes, Setting, Several, Task, Torquers,
+    Actuate, Actuator, Allocation, Axes, Firing, Group, Member, Nozzle, Opposes, Setting, Several, Task,
+    Torquers,
 };
 use crate::attitude::{Vector, beyond, tensor};
 use crate::body::craft::{Moving, Rotor};
@@ -60,6 +61,8 @@ pub struct Study {
     pub unloading: Option<[[Group; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
+    /// The axes of control moment gyros with their gimbals at angle 0.
+    pub gimbals: Vec<Axes>,
     /// The bearings of wheels with friction or imbalance.
     pub bearings: Vec<Bearing>,
     /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.
@@ -180,6 +183,14 @@ impl Study {
                 self.bearings = bearings.map_err(|fault| fault.within(&of))?;
             }
         }
+        if let Some((gyros, of)) = written.actuator.control_moment_gyros() {
+            self.gimbals = gyros.axes().map_err(|fault| fault.within(&of))?;
+            if model.flexible().is_none() {
+                let why = "are for a `[spacecraft]`, which needs no appendages: the modes of a `[body.spatial]` are pushed by \
+                           torques that are constant for a while, and gimbals turn theirs";
+                return Err(Fault::new(of, why));
+            }
+        }
         self.around = surroundings(written, model, body)?;
         self.drives = written.drives(model)?;
         for (index, disturbance) in written.disturbance.iter().enumerate() {
@@ -297,6 +308,7 @@ impl Study {
                 let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
                 Box::new(wheels.start(allocation, &settings).read_by(tachometer))
             }
+            (Actuator::ControlMomentGyros(gyros), ..) => Box::new(gyros.start(&self.gimbals, &settings)),
             (Actuator::Magnetorquers(torquers), ..) => Box::new(torquers.start(&settings)),
             (Actuator::Own(own), ..) => own.start(&settings),
             (kind, ..) => Box::new(Torquers::new(kind, settings)),

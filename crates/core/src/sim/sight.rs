@@ -98,6 +98,11 @@ impl Simulation {
             let count = (self.beliefs.len() > 1).then_some(wheels);
             fields.push(state(if count.is_some() { "wheel_speeds" } else { "wheel_speed" }, "rad/s", count));
         }
+        if let Some(gimbals) = actuator.gimbals(self.now) {
+            let count = Some(gimbals.gyros.len());
+            fields.push(state("gimbal_angles", "rad", count));
+            fields.push(state("gimbal_rates", "rad/s", count));
+        }
         let count = (self.beliefs.len() > 1).then_some(3);
         let angle = if count.is_some() { "error" } else { "angle" };
         for group in [Group::Measured, Group::Believed] {
@@ -141,6 +146,10 @@ impl Simulation {
                 row.put(&[0, 1, 2].map(|axis| magnetic[axis] + self.torque(axis, &truth)));
                 let wheels = self.drive.actuator.wheels(now, truth.rate);
                 row.put_all(wheels.iter().map(|wheel| wheel.speed_rad_s));
+                if let Some(gimbals) = self.drive.actuator.gimbals(now) {
+                    row.put_all(gimbals.gyros.iter().map(|gyro| gyro.angle_rad));
+                    row.put_all(gimbals.gyros.iter().map(|gyro| gyro.rate_rad_s));
+                }
             }
         }
         let axes = self.beliefs.len();

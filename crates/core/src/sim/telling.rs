@@ -276,6 +276,7 @@ impl Simulation {
                 elastic_rate_rad_s: elastic.into(),
                 error_rad: error,
                 stored_nm_s: self.drive.actuator.stored(now),
+                steered: self.drive.actuator.steered(),
                 friction_heat_j: plant.friction_heat(),
             };
             record.record(now, Sample::Cycle(&cycle))?;
@@ -379,6 +380,7 @@ impl Simulation {
             position: plant.position(),
             torques,
             wheels: (!wheels.is_empty()).then_some(Wheels { wheels }),
+            gimbals: actuator.gimbals(self.now),
             orbit: plant.orbit(),
             magnetorquers: actuator.magnetic(),
             envelope: self.monitor.as_ref().map(|monitor| monitor.envelope(self.now)),

@@ -2,6 +2,7 @@
 
 use super::bearing::{Slip, Spin, Spun};
 use super::flow::Turning;
+use super::gimbal;
 use super::model::{Surroundings, outward};
 use super::slipping::shapes;
 use crate::attitude::Vector;
@@ -49,11 +50,14 @@ impl Turning {
         spun.at.extend(self.here.spins.iter().map(|spin: &Spin| spin.sums));
         spun.now.resize(spun.at.len(), Vector::zeros());
         torque += borne.feel(&seen.rate, &mut spun);
-        let slipping = if self.bearings.is_empty() {
+        let mut slipping = if self.bearings.is_empty() {
             self.acting.rotors.iter().fold(Vector::zeros(), |sum, rotor| sum + rotor.axis * rotor.torque)
         } else {
             borne.stored(spun.now.iter().map(|now| now.x))
         };
+        if let Some((_, change)) = gimbal::sum(&self.acting.gimbals, self.now) {
+            slipping += change;
+        }
         let mut pushed = Vector::zeros();
         let mut modes = Vec::with_capacity(model.modes.len());
         for (index, mode) in model.modes.iter().enumerate() {

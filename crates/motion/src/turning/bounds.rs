@@ -131,10 +131,15 @@ impl Turning {
             |of: &[f64]| left * modes.iter().zip(of).map(|(mode, p)| mode.rotation.norm() * p).sum::<f64>();
         let h0 = self.seen.momentum.norm() + h * torque[0];
         let h1 = torque[0] + w0 * h0;
+        // Gimbals turn what they have of momentum, again with each derivative.
+        let gimbals = &self.acting.gimbals;
+        let swung = |of: fn(f64) -> f64| -> f64 {
+            gimbals.iter().map(|gimbal| gimbal.momentum * of(gimbal.rate)).map(f64::abs).sum()
+        };
         // First derivatives.
         let u0: Vec<f64> =
             each().map(|((of, rotor), speed)| rotor.torque.abs() + of.coulomb + of.viscous * speed).collect();
-        let g1 = h1 + u0.iter().sum::<f64>();
+        let g1 = h1 + u0.iter().sum::<f64>() + swung(|rate| rate);
         let given = |index: usize| self.acting.forces.get(index).map_or(0.0, |force| force.abs());
         let f0: Vec<f64> = (0..count)
             .map(|of| given(of) + size(of) * (0.5 * w0 * w0 + tide) + own(of, 0) + beside(of, q1))
@@ -150,7 +155,7 @@ impl Turning {
         let h2 = torque[1] + w1 * h0 + w0 * h1;
         let u1: Vec<f64> =
             each().zip(&u0).map(|(((of, _), _), u)| of.viscous * (u / of.inertia + w1)).collect();
-        let g2 = h2 + u1.iter().sum::<f64>();
+        let g2 = h2 + u1.iter().sum::<f64>() + swung(|rate| rate * rate);
         let f1: Vec<f64> =
             (0..count).map(|of| size(of) * (w0 * w1 + tide * slow) + own(of, 1) + beside(of, &q2)).collect();
         let p2: Vec<f64> = (0..count).map(|of| square(of) * q1[of] + damped(of) * q2[of] + f1[of]).collect();
@@ -160,7 +165,7 @@ impl Turning {
         let q3: Vec<f64> = (0..count).map(|of| p2[of] + modes[of].rotation.norm() * turning_2).collect();
         // Third ones.
         let u2 = each().zip(&u1).map(|(((of, _), _), u)| of.viscous * (u / of.inertia + w2)).sum::<f64>();
-        let g3 = torque[2] + w2 * h0 + 2.0 * w1 * h1 + w0 * h2 + u2;
+        let g3 = torque[2] + w2 * h0 + 2.0 * w1 * h1 + w0 * h2 + u2 + swung(|rate| rate * rate * rate);
         let f2 =
             |of: usize| size(of) * (w1 * w1 + w0 * w2 + tide * slow * slow) + own(of, 2) + beside(of, &q3);
         let p3: Vec<f64> = (0..count).map(|of| square(of) * q2[of] + damped(of) * q3[of] + f2(of)).collect();

@@ -9,6 +9,7 @@ mod level;
 use super::bearing::{Bearing, Borne, Slip, Spin};
 use super::common::{Common, Known, Regular};
 use super::driven::Driving;
+use super::gimbal::{self, Gimbal, Swung};
 use super::method::Work;
 use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
 use super::pace::{Amplitude, Pace, Pose};
@@ -74,6 +75,8 @@ pub struct Acting {
     pub push: Vector,
     /// The rotors. One that was not there before brings its momentum with it.
     pub rotors: Vec<Rotor>,
+    /// Rotors in gimbals; the same holds of them.
+    pub gimbals: Vec<Gimbal>,
 }
 
 /// What the motion took so far.
@@ -125,6 +128,7 @@ impl Acting {
             levers: &self.levers,
             rotors: if is_borne { (Vector::zeros(), Vector::zeros()) } else { self.rotors(t) },
             borne: is_borne.then_some(borne),
+            swung: Swung::over(&self.gimbals, t, h),
             around: around.map(|(around, since)| (around, since + t)),
             driven: driving.map(|driving| (driving, t)),
         }
@@ -217,12 +221,16 @@ impl Turning {
         if acting.rotors.len() > before {
             self.take_on(&acting.rotors, before);
         }
+        for gimbal in acting.gimbals.iter().skip(self.acting.gimbals.len()) {
+            self.here.momentum += Bend::new(bent).forward(&gimbal.at(0.0).0);
+        }
         self.ahead = None;
         self.move_on();
         (self.acting.torque, self.acting.push) = (acting.torque, acting.push);
         self.acting.forces.clone_from(&acting.forces);
         self.acting.levers.clone_from(&acting.levers);
         self.acting.rotors.clone_from(&acting.rotors);
+        self.acting.gimbals.clone_from(&acting.gimbals);
         self.departed.copy_from(&self.here);
         self.grid.copy_from(&self.here);
         (self.reached, self.now) = (0.0, 0.0);
@@ -348,6 +356,7 @@ impl Turning {
             stored += borne.stored(self.here.spins.iter().map(|spin| spin.sums.x));
             locked += borne.locked();
         }
+        gimbal::sum(&self.acting.gimbals, self.now).iter().for_each(|(swung, _)| stored += swung);
         match &self.driving {
             Some(driving) => driving.look(self.now, &self.here, &stored, &mut self.seen),
             None => self.seen.look(&self.model, &self.here, &stored, &locked),

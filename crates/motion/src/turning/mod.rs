@@ -8,6 +8,8 @@
 //! q' = P + phi' Gt,   P' = -W² q - D q' + 1/2 [w' J1_i w] + f.
 //! ```
 //!
+//! What rotors in gimbals have of momentum is part of sum a h, a known function of time (`gimbal.rs`).
+//!
 //! `method.rs` has the method: Gauss-Legendre of order 6 in mean axes, which keeps |H| and |Q|, with the modes as exact
 //! oscillators (\[HairerLubichWanner06\], \[Likins70\]). Steps lie on a grid that depends on the departure alone, and what is
 //! seen between is one shorter step beside it, so that looking changes nothing.
@@ -23,6 +25,7 @@ mod facing;
 mod feel;
 mod flow;
 mod free;
+mod gimbal;
 mod heated;
 mod method;
 mod model;
@@ -47,6 +50,7 @@ pub use common::Common;
 pub use driven::{Angles, Driven, Driving, Panel, PanelMode};
 pub use flow::{Acting, Effort, Turning};
 pub use free::{Free, Held};
+pub use gimbal::Gimbal;
 pub use heated::Heated;
 pub use model::{Flexible, FreeMode, Rotor, Surroundings};
 pub use pace::SHAKE;

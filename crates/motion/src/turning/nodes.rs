@@ -74,7 +74,10 @@ impl Work for Guess<'_> {
     fn run<R: Real>(self, kind: R) {
         let Self { step, state, start, modes, nodes } = self;
         // It grows as the torque and the rotors have it: most of what a first pass would find.
-        let grows = if step.driven.is_some() { Vector::zeros() } else { start.push - step.rotors.1 };
+        let mut grows = if step.driven.is_some() { Vector::zeros() } else { start.push - step.rotors.1 };
+        if let Some(swung) = step.swung.as_ref().filter(|_| step.driven.is_none()) {
+            grows -= swung.start.1;
+        }
         let times = times(kind, step.h);
         for index in 0..modes.len() {
             let (memory, response) = (&mut modes[index], &step.responses[index]);
@@ -248,7 +251,10 @@ fn turn<R: Real>(
     let bend = Bends::new(kind, shapes.bent);
     let times = times(kind, h);
     let (rotors, change) = &step.rotors;
-    let free = bend.back(momentum) - Vectors::of(kind, rotors).with(change, times);
+    let mut free = bend.back(momentum) - Vectors::of(kind, rotors).with(change, times);
+    if let Some(swung) = &step.swung {
+        free = free - Vectors::load(kind, &swung.nodes);
+    }
     let (turning, rigid, rate) = if model.stretches {
         let (turning, rate) = model.rates_of(kind, free, shapes.elastic, &shapes.changed);
         (turning, turning.through(&model.inverse), rate)

@@ -107,6 +107,9 @@ impl Step<'_> {
         let bend = Bend::new(shape.bent);
         let (rotors, change) = &self.rotors;
         let mut free = bend.back(momentum) - (rotors + change * t);
+        if let Some(swung) = &self.swung {
+            free -= swung.stage(stage);
+        }
         let mut locked = None;
         if let Some(borne) = &self.borne {
             free -= borne.stored(beside.spun.at.iter().map(|at| at.x));

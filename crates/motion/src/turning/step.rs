@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 
 use super::bearing::{Borne, Spun};
 use super::driven::{Driving, Scratch};
+use super::gimbal::Swung;
 use super::model::{Model, Surroundings};
 use super::response::Response;
 use super::state::State;
@@ -34,6 +35,8 @@ pub(super) struct Step<'a> {
     pub rotors: (Vector, Vector),
     /// Rotors in bearings, which are not among them; their momenta are parts of the state.
     pub borne: Option<Borne<'a>>,
+    /// Rotors in gimbals.
+    pub swung: Option<Swung>,
     /// The surroundings, and the time since the start of the run (s).
     pub around: Option<(&'a dyn Surroundings, f64)>,
     /// Drives that turn appendages, and the time since the departure (s).
@@ -88,7 +91,8 @@ pub(super) struct Felt {
 impl Step<'_> {
     /// What the momentum is measured by (N m s): sums of rotors' momenta are no more exact than a part of these.
     pub(super) fn size(&self, state: &State) -> f64 {
-        state.momentum.norm() + self.h * self.torque.norm() + ROTORS * self.rotors.0.norm()
+        let swung = self.swung.as_ref().map_or(0.0, |swung| swung.start.0.norm());
+        state.momentum.norm() + self.h * self.torque.norm() + ROTORS * (self.rotors.0.norm() + swung)
     }
 
     /// Keeps q and P of a mode, where drives turn what the others make of them.

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x4, Quaternion};
 
+mod gimbals;
 mod steps;
 
 use super::pace::Pace;

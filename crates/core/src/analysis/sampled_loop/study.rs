@@ -56,6 +56,7 @@ impl Loop {
                 Actuator::Hold(_)
                 | Actuator::Thrusters(_)
                 | Actuator::Wheels(_)
+                | Actuator::ControlMomentGyros(_)
                 | Actuator::Magnetorquers(_)
                 | Actuator::Jets(_)
                 | Actuator::Own(_),

@@ -111,6 +111,26 @@ rows! {
         /// Torque of its motor (N m).
         torque_nm: f64,
     }
+    /// A control moment gyro.
+    ControlMomentGyro {
+        /// Gimbal angle (rad).
+        angle_rad: f64,
+        /// Gimbal rate (rad/s).
+        rate_rad_s: f64,
+    }
+    /// Control moment gyros of a spacecraft.
+    ControlMomentGyros = "/control_moment_gyros" {
+        /// Each, in the order of the scenario.
+        gyros: Vec<ControlMomentGyro>,
+        /// Angular momentum of their rotors along the body's x (N m s).
+        momentum_x_nm_s: f64,
+        /// The same along y (N m s).
+        momentum_y_nm_s: f64,
+        /// The same along z (N m s).
+        momentum_z_nm_s: f64,
+        /// Singularity measure: 0 where the gimbals give no torque in some direction.
+        singularity: f64,
+    }
     /// What an accelerometer measures along one of its axes.
     Acceleration {
         /// Reading (m/s²).

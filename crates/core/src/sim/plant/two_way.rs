@@ -237,12 +237,13 @@ impl TwoWay {
             around.hold(wrench.moment);
         }
         self.outside.sines.clone_from(&wrench.sines);
-        let Acting { torque, forces, levers, rotors, push: accelerated } = &mut self.acting;
+        let Acting { torque, forces, levers, rotors, gimbals, push: accelerated } = &mut self.acting;
         levers.clone_from(&wrench.levers);
         let moving = self.moving.as_ref();
         *accelerated = moving.map_or_else(Vector::zeros, |(moving, _)| moving.acceleration(&wrench.force));
         *torque = push + hub;
         rotors.clone_from(&wrench.rotors);
+        gimbals.clone_from(&wrench.gimbals);
         // The motion gives modes their part of the torque on the hub: what jets and torques elsewhere give differs from it.
         let given = wrench.forces.iter().copied().chain(std::iter::repeat(0.0));
         let beyond = self.hub.iter().zip(&self.acts).zip(given);

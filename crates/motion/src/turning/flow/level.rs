@@ -4,6 +4,7 @@ use super::{BESIDE, Turning};
 use crate::attitude::Vector;
 use crate::turning::Surroundings;
 use crate::turning::common::Regular;
+use crate::turning::gimbal;
 use crate::turning::model::outward;
 use crate::turning::pace::{Amplitude, Pose};
 
@@ -11,13 +12,18 @@ impl Turning {
     /// The level of the next step.
     pub(super) fn level(&mut self, around: Option<(&dyn Surroundings, f64)>) -> usize {
         let (exerted, slow) = around.map_or((0.0, 0.0), |(around, _)| (around.bound(), around.frequency()));
-        let slow = slow + self.driving.as_ref().map_or(0.0, |driving| driving.angles.fastest());
-        let (mut rotors, change) = self.acting.rotors(self.reached);
+        let mut slow = slow + self.driving.as_ref().map_or(0.0, |driving| driving.angles.fastest());
+        let (mut rotors, mut change) = self.acting.rotors(self.reached);
         if !self.bearings.is_empty() {
             rotors = self.borne_by(&self.slips).stored(self.grid.spins.iter().map(|spin| spin.sums.x));
         }
-        // What wheels in bearings, warmth and forces do to modes and place is not estimated: steps resolve all modes.
+        let gimbals = gimbal::fastest(&self.acting.gimbals);
+        if let Some((swung, by)) = gimbal::sum(&self.acting.gimbals, self.reached) {
+            (rotors, change, slow) = (rotors + swung, change + by, slow + gimbals);
+        }
+        // What wheels in bearings, gimbals, warmth and forces do to modes and place is not estimated: steps resolve all modes.
         let known = self.bearings.is_empty()
+            && gimbals == 0.0
             && self.driving.is_none()
             && self.acting.levers.is_empty()
             && self.acting.push == Vector::zeros()

@@ -1,0 +1,66 @@
+//! Figure `gimbals` of a spacecraft with control moment gyros: gimbal angles, gimbal rates with their limits, the singularity
+//! measure, and the momentum of the rotors.
+
+use flexsc_core::quantity::Positive;
+use flexsc_core::record::ControlMomentGyros;
+use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+
+use super::spatial::Cycles;
+use super::story::Story;
+use super::{time, title};
+
+/// Colours of gimbals, again from the first after the last.
+const COLOURS: [plotters::style::RGBColor; 5] =
+    [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
+
+/// Whether a scenario has control moment gyros.
+pub fn of(story: &Story) -> bool {
+    !story.scenario.study.gimbals.is_empty()
+}
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let line = |of: &dyn Fn(&ControlMomentGyros) -> f64| -> Vec<Point> {
+        cycles.gimbals.iter().map(|(time, row)| (*time, of(row))).collect()
+    };
+    let named = |lines: Vec<(String, Vec<Point>)>| -> Vec<Layer> {
+        let layer = |(index, (name, points)): (usize, (String, Vec<Point>))| {
+            Layer::new(&name, COLOURS[index % COLOURS.len()], Shape::Line(1.2), points)
+        };
+        lines.into_iter().enumerate().map(layer).collect()
+    };
+    let each = |of: fn(&flexsc_core::record::ControlMomentGyro) -> f64| {
+        let gimbal = |index: usize| (format!("gimbal {}", index + 1), line(&|row| of(&row.gyros[index])));
+        named((0..story.scenario.study.gimbals.len()).map(gimbal).collect())
+    };
+    let values = |layers: &[Layer]| -> Vec<f64> {
+        layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value).collect()
+    };
+    let x = time(0.0..story.end);
+    let around = |name: &str, unit: &'static str, layers: Vec<Layer>| {
+        Panel::new(x.unnamed(), Axis::around(name, unit, values(&layers)), layers)
+    };
+    let limit = story.scenario.actuator.control_moment_gyros();
+    let limit = limit.and_then(|(gyros, _)| gyros.rate_limit).map(Positive::get);
+    let limits = limit.into_iter().flat_map(|limit| [("limits", limit), ("", -limit)]);
+    let mut rates: Vec<Layer> = limits
+        .map(|(name, height)| {
+            Layer::new(name, colour::GREY, Shape::Dashes, vec![(0.0, height), (story.end, height)])
+        })
+        .collect();
+    rates.extend(each(|gyro| gyro.rate_rad_s));
+    let measure = Layer::new("", colour::BLUE, Shape::Line(1.2), line(&|row| row.singularity));
+    let along: [(&str, fn(&ControlMomentGyros) -> f64); 3] = [
+        ("x", |row| row.momentum_x_nm_s),
+        ("y", |row| row.momentum_y_nm_s),
+        ("z", |row| row.momentum_z_nm_s),
+    ];
+    let momentum = named(along.map(|(axis, of)| (axis.to_owned(), line(&of))).into());
+    let measured = values(std::slice::from_ref(&measure));
+    let panels = vec![
+        around("gimbal angle", "rad", each(|gyro| gyro.angle_rad)),
+        around("gimbal rate", "rad/s", rates),
+        Panel::new(x.unnamed(), Axis::from_zero("singularity measure", "", measured), vec![measure]),
+        Panel { x: x.clone(), ..around("momentum", "N m s", momentum) },
+    ];
+    Figure { title: title(story, "control moment gyros"), panels, panel_height: 180 }
+}

@@ -1,0 +1,248 @@
+//! Control moment gyros at work: gimbal rates that are held from command to command, and the angles that they come to.
+//!
+//! While a gimbal turns at a constant rate, its angle and with it the momentum of its rotor are known functions of time: the motion
+//! evaluates them at its stages. The drives know the angles exactly, those of failed gimbals too; nobody knows of a failure.
+
+use super::control_moment_gyros::ControlMomentGyros;
+use super::failure::Failing;
+use super::steering::{self, Axes, Robustness};
+use super::{Actuate, Demand, Setting};
+use crate::attitude::Vector;
+use crate::body::Wrench;
+use crate::motion::turning::Gimbal;
+use crate::quantity::Positive;
+use crate::record::{self, Steered};
+use crate::time::{Instant, Span};
+
+/// The control moment gyros of a body.
+#[derive(Clone, Debug)]
+pub struct Gimbals {
+    axes: Vec<Axes>,
+    /// Of each rotor (N m s).
+    momentum: f64,
+    /// Largest rate (rad/s).
+    limit: f64,
+    robust: Option<Robustness>,
+    /// Preferred angles (rad), and the gain towards them (1/s).
+    preferred: Option<(Vec<f64>, f64)>,
+    settings: Vec<Setting>,
+    /// The torque on the body that laws ask for, and one of others that they hold against (N m).
+    wanted: Vector,
+    against: Vector,
+    /// Angles (rad) since an instant, and the rates from there on (rad/s).
+    since: Instant,
+    angles: Vec<f64>,
+    rates: Vec<f64>,
+    /// The rates that the drives are to give, and their failures.
+    commanded: Vec<f64>,
+    failing: Vec<Option<Failing>>,
+    /// When the rates are updated next without a command, and how often.
+    updates: Option<(Instant, Span)>,
+    steered: Steered,
+}
+
+impl ControlMomentGyros {
+    /// The control moment gyros before their first command, on a body of these settings.
+    pub fn start(&self, axes: &[Axes], settings: &[Setting]) -> Gimbals {
+        let (angles, count) = (self.starts(), axes.len());
+        let least_measure = steering::measure(&steering::columns(axes, &angles));
+        Gimbals {
+            axes: axes.to_vec(),
+            momentum: self.momentum.get(),
+            limit: self.rate_limit.map_or(f64::INFINITY, Positive::get),
+            robust: self.weight(),
+            preferred: self.preferred(),
+            settings: settings.to_vec(),
+            wanted: Vector::zeros(),
+            against: Vector::zeros(),
+            since: Instant::START,
+            angles,
+            rates: vec![0.0; count],
+            commanded: vec![0.0; count],
+            failing: (0..count).map(|gyro| self.failing(gyro)).collect(),
+            updates: self.period.map(|period| (Instant::START + period, period)),
+            steered: Steered { largest_rate_rad_s: 0.0, least_measure, largest_error_nm: 0.0 },
+        }
+    }
+}
+
+impl Gimbals {
+    fn elapsed(&self, now: Instant) -> f64 {
+        now.since(self.since).seconds()
+    }
+
+    fn angles_at(&self, now: Instant) -> Vec<f64> {
+        let seconds = self.elapsed(now);
+        self.angles.iter().zip(&self.rates).map(|(angle, rate)| angle + rate * seconds).collect()
+    }
+
+    /// Angles go on to now.
+    fn turn(&mut self, now: Instant) {
+        self.angles = self.angles_at(now);
+        self.since = now;
+    }
+
+    /// The torque on the body of gimbals at these rates, with the columns of their angles (N m).
+    fn given(&self, columns: &[Vector], rates: &[f64]) -> Vector {
+        columns.iter().zip(rates).fold(Vector::zeros(), |sum, (column, rate)| sum + column * *rate)
+            * -self.momentum
+    }
+
+    /// The rates that give the body what is wanted, as far as the limit lets them.
+    fn steer(&self, columns: &[Vector], now: Instant) -> Vec<f64> {
+        let wanted = (self.against - self.wanted) / self.momentum;
+        let mut rates = steering::rates(columns, self.robust.as_ref(), &wanted, now.seconds());
+        let largest = rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
+        if largest > self.limit {
+            rates.iter_mut().for_each(|rate| *rate *= self.limit / largest);
+        }
+        if let Some((preferred, gain)) = &self.preferred {
+            let towards: Vec<f64> =
+                preferred.iter().zip(&self.angles).map(|(to, angle)| gain * (to - angle)).collect();
+            let more = steering::cancelling(columns, &towards);
+            // The torque comes first: null motion takes what the limit leaves.
+            let part = |(rate, more): (&f64, &f64)| {
+                let room = self.limit - libm::copysign(1.0, *more) * rate;
+                if more.abs() > room { room.max(0.0) / more.abs() } else { 1.0 }
+            };
+            let part = rates.iter().zip(&more).map(part).fold(1.0, f64::min);
+            rates.iter_mut().zip(more).for_each(|(rate, more)| *rate += part * more);
+        }
+        rates
+    }
+
+    /// The drives give what they are to give, as far as their failures let them.
+    fn drive(&mut self) {
+        for (rate, (commanded, failing)) in
+            self.rates.iter_mut().zip(self.commanded.iter().zip(&self.failing))
+        {
+            *rate = failing.as_ref().map_or(*commanded, |failing| failing.of(*commanded));
+        }
+    }
+
+    /// The rates follow what is wanted and the angles, as they are now.
+    fn update(&mut self, now: Instant) {
+        let columns = steering::columns(&self.axes, &self.angles);
+        self.commanded = self.steer(&columns, now);
+        self.drive();
+        self.see(&columns);
+    }
+
+    /// What the gimbals do from now on counts.
+    fn see(&mut self, columns: &[Vector]) {
+        let error = self.given(columns, &self.rates) - (self.wanted - self.against);
+        let Steered { largest_rate_rad_s, least_measure, largest_error_nm } = &mut self.steered;
+        *largest_rate_rad_s = self.rates.iter().map(|rate| rate.abs()).fold(*largest_rate_rad_s, f64::max);
+        *least_measure = least_measure.min(steering::measure(columns));
+        *largest_error_nm = largest_error_nm.max(error.norm());
+    }
+
+    /// Rotors of the body, as they are from now on.
+    fn rotors(&self, now: Instant) -> impl Iterator<Item = Gimbal> {
+        let each = self.axes.iter().zip(self.angles_at(now)).zip(&self.rates);
+        each.map(|((axes, angle), rate)| Gimbal {
+            spin: axes.spin,
+            across: axes.across,
+            momentum: self.momentum,
+            angle,
+            rate: *rate,
+        })
+    }
+}
+
+impl Actuate for Gimbals {
+    fn command(&mut self, now: Instant, demands: &[Demand], _: [f64; 3]) {
+        self.turn(now);
+        for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
+            self.wanted[axis] = match demand {
+                Demand::Torque(torque) => *torque,
+                Demand::Change(change) => change * setting.inertia / setting.cycle.map_or(1.0, Span::seconds),
+                Demand::Moment(_) => 0.0,
+            };
+        }
+        self.update(now);
+    }
+
+    fn hold_against(&mut self, torque: Vector) {
+        self.against = torque;
+    }
+
+    fn due(&self) -> Option<Instant> {
+        let failing = self.failing.iter().flatten().filter_map(Failing::due);
+        failing.chain(self.updates.map(|(next, _)| next)).min()
+    }
+
+    /// Failures begin and end; rates are updated.
+    fn serve(&mut self, now: Instant, _: [f64; 3]) {
+        let mut any = false;
+        for (failing, commanded) in self.failing.iter_mut().zip(&self.commanded) {
+            any |= failing.as_mut().is_some_and(|failing| failing.serve(now, *commanded));
+        }
+        let due = self.updates.filter(|(next, _)| *next <= now);
+        if let Some((next, period)) = due {
+            self.updates = Some((next + period, period));
+        }
+        if due.is_some() {
+            self.turn(now);
+            self.update(now);
+        } else if any {
+            self.turn(now);
+            self.drive();
+            self.see(&steering::columns(&self.axes, &self.angles));
+        }
+    }
+
+    fn exert(&self, now: Instant, onto: &mut Wrench) {
+        onto.gimbals.extend(self.rotors(now));
+    }
+
+    fn asked(&self, axis: usize) -> f64 {
+        self.wanted[axis]
+    }
+
+    /// When the rates changed last.
+    fn torque(&self, axis: usize) -> f64 {
+        self.given(&steering::columns(&self.axes, &self.angles), &self.rates)[axis]
+    }
+
+    fn applied(&self, now: Instant, axis: usize, _: [f64; 2]) -> f64 {
+        self.given(&steering::columns(&self.axes, &self.angles_at(now)), &self.rates)[axis]
+    }
+
+    /// As if no gimbal failed.
+    fn moment(&self, axis: usize) -> f64 {
+        let columns = steering::columns(&self.axes, &self.angles);
+        self.given(&columns, &self.commanded)[axis] / self.settings[axis].inertia
+    }
+
+    fn gimbals(&self, now: Instant) -> Option<record::ControlMomentGyros> {
+        let angles = self.angles_at(now);
+        let [x, y, z] = self.stored(now);
+        Some(record::ControlMomentGyros {
+            singularity: steering::measure(&steering::columns(&self.axes, &angles)),
+            momentum_x_nm_s: x,
+            momentum_y_nm_s: y,
+            momentum_z_nm_s: z,
+            gyros: angles
+                .into_iter()
+                .zip(&self.rates)
+                .map(|(angle_rad, rate)| record::ControlMomentGyro { angle_rad, rate_rad_s: *rate })
+                .collect(),
+        })
+    }
+
+    fn steered(&self) -> Option<Steered> {
+        Some(self.steered)
+    }
+
+    fn stored(&self, now: Instant) -> [f64; 3] {
+        self.rotors(now).fold(Vector::zeros(), |sum, rotor| sum + rotor.at(0.0).0).into()
+    }
+
+    fn copy(&self) -> Box<dyn Actuate> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,217 @@
+//! Control moment gyros: their steering against numpy, limits, failures, and singular angles.
+
+use super::*;
+
+fn start(keys: &str) -> Gimbals {
+    let text = format!("arrangement = \"pyramid\"\nmomentum = 15.0\n{keys}");
+    let gyros: ControlMomentGyros = crate::document::from_text(&text).unwrap();
+    let setting = |axis| Setting {
+        axis,
+        inertia: 100.0,
+        planned_inertia: 100.0,
+        rate: 0.0,
+        cycle: Some(Span::from_seconds(0.1)),
+        waveform: None,
+        share: 1.0,
+    };
+    gyros.start(&gyros.axes().unwrap(), &[0, 1, 2].map(setting))
+}
+
+fn at(seconds: f64) -> Instant {
+    Instant::START + Span::from_seconds(seconds)
+}
+
+fn ask(gimbals: &mut Gimbals, now: Instant, torque: [f64; 3]) {
+    gimbals.command(now, &torque.map(Demand::Torque), [0.0; 3]);
+}
+
+fn applied(gimbals: &Gimbals, now: Instant) -> Vector {
+    Vector::from_fn(|axis, _| gimbals.applied(now, axis, [0.0; 2]))
+}
+
+#[track_caller]
+fn assert_near(found: &[f64], exact: [f64; 4]) {
+    for (found, exact) in found.iter().zip(exact) {
+        assert!((found - exact).abs() < 1e-13, "{found} {exact}");
+    }
+}
+
+const PINV: [f64; 4] =
+    [-0.009349141950470142, -0.02481092697800475, -0.06377975399654681, 0.01807774420097417];
+const MEASURE: f64 = 1.0766153543531032;
+const ROBUST: [f64; 4] =
+    [0.1130976971218693, -0.056545230395430746, -0.10656330684802393, -0.03665637066559981];
+const NULL: [f64; 4] =
+    [0.16140742798757168, -0.11707490226411993, 0.002353839873293649, -0.06890176965680123];
+const ANGLES: &str = "angles = [0.2, -0.4, 0.1, 0.7]";
+const TORQUE: [f64; 3] = [0.5, -0.25, 1.0];
+
+/// numpy.linalg.pinv(A) @ (-T/h), with A = ACROSS cos d - SPIN sin d by columns, and sqrt(det(A A')).
+#[test]
+fn the_pseudo_inverse_is_that_of_numpy() {
+    let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
+    ask(&mut gimbals, at(0.0), TORQUE);
+    assert_near(&gimbals.rates, PINV);
+    assert!((applied(&gimbals, at(0.0)) - Vector::from(TORQUE)).norm() < 1e-14);
+    let row = gimbals.gimbals(at(0.0)).unwrap();
+    assert!((row.singularity - MEASURE).abs() < 1e-14, "{}", row.singularity);
+    // Far from singular angles the robust rule gives nearly the same.
+    let mut robust = start(ANGLES);
+    ask(&mut robust, at(0.0), TORQUE);
+    for (robust, exact) in robust.rates.iter().zip(&gimbals.rates) {
+        assert!((robust - exact).abs() < 1e-6 && robust != exact, "{robust} {exact}");
+    }
+}
+
+/// A' (A A' + w E)^-1 (-T/h) at 0.3 s, by numpy.linalg.solve.
+#[test]
+fn near_singular_angles_the_robust_rates_are_those_of_numpy() {
+    let angles = "angles = [-1.4, 0.1, 1.5, -0.05]";
+    let mut gimbals = start(angles);
+    ask(&mut gimbals, at(0.0), [0.0; 3]);
+    assert_eq!(gimbals.rates, [0.0; 4]);
+    ask(&mut gimbals, at(0.3), TORQUE);
+    assert_near(&gimbals.rates, ROBUST);
+    let mut other = start(&format!("{angles}\nrobust = {{ dither = 0.0 }}"));
+    ask(&mut other, at(0.3), TORQUE);
+    assert!(other.rates.iter().zip(ROBUST).any(|(rate, with)| (rate - with).abs() > 1e-4));
+}
+
+#[test]
+fn the_torque_is_the_rate_of_the_momentum_while_gimbals_turn() {
+    let mut gimbals = start(ANGLES);
+    ask(&mut gimbals, at(0.0), [5.0, -2.5, 10.0]);
+    let stored = |t: f64| Vector::from(gimbals.stored(at(t)));
+    for t in [0.3, 0.9] {
+        // A difference of order 4.
+        let step = 1e-3;
+        let near = (stored(t + step) - stored(t - step)) * (8.0 / (12.0 * step));
+        let far = (stored(t + 2.0 * step) - stored(t - 2.0 * step)) / (12.0 * step);
+        assert!((applied(&gimbals, at(t)) + near - far).norm() < 1e-9, "{t}");
+    }
+    assert!((applied(&gimbals, at(0.9)) - applied(&gimbals, at(0.0))).norm() > 1.0);
+    let mut wrench = Wrench::default();
+    gimbals.exert(at(0.9), &mut wrench);
+    let sum = wrench.gimbals.iter().map(|of| of.at(0.0)).fold(Vector::zeros(), |sum, of| sum + of.1);
+    assert!((applied(&gimbals, at(0.9)) + sum).norm() < 1e-13);
+}
+
+#[test]
+fn a_torque_that_is_too_large_keeps_its_axis() {
+    let mut gimbals = start(&format!("rate_limit = 0.02\nsteering = \"pseudo_inverse\"\n{ANGLES}"));
+    ask(&mut gimbals, at(0.0), TORQUE);
+    let largest = gimbals.rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
+    let given = applied(&gimbals, at(0.0));
+    assert!((largest - 0.02).abs() < 1e-16);
+    assert!(
+        given.cross(&Vector::from(TORQUE)).norm() < 1e-14 && given.norm() < 0.9 * Vector::from(TORQUE).norm()
+    );
+    let steered = gimbals.steered().unwrap();
+    assert!((steered.largest_rate_rad_s - 0.02).abs() < 1e-16);
+    assert!((steered.largest_error_nm - (given - Vector::from(TORQUE)).norm()).abs() < 1e-14);
+    // What they hold against is part of what they give.
+    let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
+    gimbals.hold_against(Vector::new(0.1, 0.2, -0.3));
+    ask(&mut gimbals, at(0.0), TORQUE);
+    let given = applied(&gimbals, at(0.0));
+    assert!((given - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
+}
+
+/// Gimbals under a constant torque along -x, so that their momentum along x grows, updated each 0.05 s for so many: the largest
+/// momentum along x, for each unit of a rotor's, and the largest rate.
+fn driven(keys: &str, updates: u32) -> (f64, f64) {
+    let mut gimbals = start(&format!("rate_limit = 2.0\nperiod = 0.05\n{keys}"));
+    ask(&mut gimbals, at(0.0), [-1.5, 0.0, 0.0]);
+    let mut most = 0.0_f64;
+    for step in 1..updates {
+        let now = at(0.05 * f64::from(step));
+        assert_eq!(gimbals.due(), Some(now));
+        gimbals.serve(now, [0.0; 3]);
+        most = most.max(gimbals.stored(now)[0] / 15.0);
+    }
+    (most, gimbals.steered().unwrap().largest_rate_rad_s)
+}
+
+/// From angles of 0 the momentum along x ends at angles of -90, 0, 90 and 0 degrees, an elliptic singularity within the envelope:
+/// 2 cos(cant) = 1.155 of 2 + 2 cos(cant) = 3.155. No null motion leaves it.
+#[test]
+fn the_robust_rule_passes_a_singularity_at_which_the_pseudo_inverse_stays() {
+    let (stays, saturated) = driven("steering = \"pseudo_inverse\"", 400);
+    assert!((stays - 1.1547).abs() < 1e-3, "{stays}");
+    assert!(saturated > 1.99, "{saturated}");
+    let (passes, _) = driven("", 1200);
+    assert!(passes > 3.15, "{passes}");
+    // Without its varying part the weight alone locks the gimbals.
+    let (locked, slow) = driven("robust = { dither = 0.0 }", 1200);
+    assert!(locked < 1.16 && slow < 1.9, "{locked} {slow}");
+}
+
+#[test]
+fn null_motion_gives_no_torque_and_goes_where_it_shall() {
+    let keys = "steering = \"pseudo_inverse\"\nnull_motion = { angles = [0.5, -0.6, 0.2, 1.1], gain = 1.0 }";
+    let mut gimbals = start(&format!("{keys}\n{ANGLES}"));
+    ask(&mut gimbals, at(0.0), [0.0; 3]);
+    assert_near(&gimbals.rates, NULL);
+    assert!(applied(&gimbals, at(0.0)).norm() < 1e-14);
+    // The torque comes first, and what is left of the limit is null motion.
+    let mut gimbals = start(&format!("{keys}\nrate_limit = 0.08\n{ANGLES}"));
+    ask(&mut gimbals, at(0.0), TORQUE);
+    assert!((applied(&gimbals, at(0.0)) - Vector::from(TORQUE)).norm() < 1e-13);
+    let largest = gimbals.rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
+    assert!((largest - 0.08).abs() < 1e-15, "{largest}");
+}
+
+#[test]
+fn a_gimbal_that_fails_stands_still_and_nobody_knows() {
+    let faults = "faults = [{ dead = { gimbal = 2, from = 1.0, to = 2.0 } }]";
+    let mut gimbals = start(&format!("{faults}\nsteering = \"pseudo_inverse\"\n{ANGLES}"));
+    ask(&mut gimbals, at(0.0), TORQUE);
+    assert_eq!(gimbals.due(), Some(at(1.0)));
+    gimbals.serve(at(1.0), [0.0; 3]);
+    assert_eq!(gimbals.rates[1], 0.0);
+    assert!(gimbals.rates[0] != 0.0);
+    let believed = [0, 1, 2].map(|axis| gimbals.moment(axis) * 100.0);
+    let given = applied(&gimbals, at(1.0));
+    assert!((given - Vector::from(believed)).norm() > 0.1);
+    let held = gimbals.angles_at(at(1.9))[1];
+    assert_eq!(held, gimbals.angles_at(at(1.0))[1]);
+    gimbals.serve(at(2.0), [0.0; 3]);
+    assert_eq!(gimbals.rates[1], gimbals.commanded[1]);
+}
+
+#[test]
+fn axes_that_are_given_make_the_same_pyramid() {
+    let (sin, cos) = libm::sincos(0.9);
+    let text = format!(
+        "momentum = 1.0\ngimbal_axes = [[{sin}, 0, {cos}], [0, {sin}, {cos}], [-{sin}, 0, {cos}], [0, -{sin}, {cos}]]\n\
+         spin_axes = [[0, 2, 0], [-1, 0, 0], [0, -1, 0], [1, 0, 0]]"
+    );
+    let given: ControlMomentGyros = crate::document::from_text(&text).unwrap();
+    let named: ControlMomentGyros =
+        crate::document::from_text("momentum = 1.0\narrangement = \"pyramid\"\ncant = 0.9").unwrap();
+    for (given, named) in given.axes().unwrap().iter().zip(named.axes().unwrap()) {
+        assert!((given.spin - named.spin).norm() < 1e-15 && (given.across - named.across).norm() < 1e-15);
+    }
+}
+
+#[test]
+fn keys_that_do_not_fit_are_refused() {
+    let cases = [
+        ("gimbal_axes = [[1,0,0],[0,1,0]]\nspin_axes = [[0,1,0],[1,0,0]]", "gimbal_axes"),
+        ("gimbal_axes = [[1,0,0],[0,1,0],[0,0,1]]\nspin_axes = [[0,1,0],[1,0,0]]", "spin_axes"),
+        ("gimbal_axes = [[1,0,0],[0,1,0],[0,0,1]]\nspin_axes = [[0,1,0],[1,0,0],[1,0,1]]", "spin_axes[2]"),
+        ("gimbal_axes = [[0,0,1],[0,0,-2],[0,0,1]]\nspin_axes = [[0,1,0],[1,0,0],[1,1,0]]", "gimbal_axes"),
+        ("arrangement = \"pyramid\"\ncant = 0.0", "cant"),
+        ("arrangement = \"pyramid\"\nspin_axes = [[1,0,0]]", "spin_axes"),
+        ("arrangement = \"pyramid\"\nangles = [0.0]", "angles"),
+        ("arrangement = \"pyramid\"\nnull_motion = { angles = [0.0], gain = 1.0 }", "null_motion.angles"),
+        ("arrangement = \"pyramid\"\nrobust = { dither = 0.5 }", "robust.dither"),
+        ("arrangement = \"pyramid\"\nrobust = {}\nsteering = \"pseudo_inverse\"", "robust"),
+    ];
+    for (keys, key) in cases {
+        let gyros: ControlMomentGyros =
+            crate::document::from_text(&format!("momentum = 1.0\n{keys}")).unwrap();
+        let fault = gyros.axes().unwrap_err();
+        assert_eq!(fault.key, key, "{}", fault.why);
+    }
+}

@@ -1,0 +1,149 @@
+//! Steering of control moment gyros: gimbal rates whose torque on the body is the one that is wanted.
+//!
+//! With unit vectors t_i across the spin axes, the columns of A, rotors of momentum h give the torque -h A d' at gimbal rates d'.
+//! The rates are A' (A A' + P)^-1 u, u being what is wanted for each unit of h. P = 0 is the pseudo-inverse; a weight that grows
+//! towards singular angles keeps the rates finite there (\[Nakamura86\]), and parts of it beside the diagonal that vary with time
+//! move gimbals out of angles at which the wanted torque is along the singular direction (\[Wie01\]).
+
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::attitude::Vector;
+use crate::quantity::{Finite, NonNegative, Positive};
+
+/// How the demanded torque becomes gimbal rates.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Steering {
+    /// Smallest sum of squared gimbal rates that gives the torque, by the pseudo-inverse: the rates grow without limit towards
+    /// singular angles.
+    PseudoInverse,
+    /// The same with a weight on the rates that grows towards singular angles, where the torque then differs from the demanded one.
+    #[default]
+    SingularityRobust,
+}
+
+/// The weight P = w (1 + E) of `singularity_robust` steering, with w = weight exp(-decay m²) and the singularity measure m.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Robustness {
+    /// The weight at singular angles; default: 0.01.
+    #[serde(default = "weight")]
+    pub weight: Positive,
+    /// Decay of the weight with the square of the singularity measure; default: 10.
+    #[serde(default = "decay")]
+    pub decay: NonNegative,
+    /// Amplitude of the elements of E beside its diagonal, below 0.5; default: 0.1.
+    #[serde(default = "dither")]
+    pub dither: NonNegative,
+    /// Angular frequency of these elements (rad/s), whose phases are 0, 90 and 180 degrees; default: pi/2.
+    #[serde(default = "frequency")]
+    pub frequency: Positive,
+}
+
+fn weight() -> Positive {
+    Positive::new(0.01).unwrap_or(Positive::ONE)
+}
+
+fn decay() -> NonNegative {
+    NonNegative::new(10.0).unwrap_or_default()
+}
+
+fn dither() -> NonNegative {
+    NonNegative::new(0.1).unwrap_or_default()
+}
+
+fn frequency() -> Positive {
+    Positive::new(std::f64::consts::FRAC_PI_2).unwrap_or(Positive::ONE)
+}
+
+impl Default for Robustness {
+    fn default() -> Self {
+        Self { weight: weight(), decay: decay(), dither: dither(), frequency: frequency() }
+    }
+}
+
+/// Null motion: gimbal rates whose torques cancel each other, towards preferred gimbal angles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NullMotion {
+    /// Preferred angle of each gimbal (rad).
+    pub angles: Vec<Finite>,
+    /// Gain with which the gimbals turn towards them, as far as no torque results (1/s).
+    pub gain: Positive,
+}
+
+/// At a smaller determinant of A A' the angles are singular to rounding: the pseudo-inverse then is that of a matrix with [`LEAST`]
+/// added, and there is no null motion.
+const SINGULAR: f64 = 1e-12;
+
+/// See [`SINGULAR`].
+const LEAST: f64 = 1e-9;
+
+/// The axes of a control moment gyro, unit vectors of the body.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Axes {
+    /// The direction of its momentum with the gimbal at angle 0.
+    pub spin: Vector,
+    /// The direction towards which the gimbal turns it from there.
+    pub across: Vector,
+}
+
+impl Axes {
+    /// The direction in which the momentum changes with the gimbal at an angle (rad).
+    fn column(&self, angle: f64) -> Vector {
+        let (sin, cos) = libm::sincos(angle);
+        self.across * cos - self.spin * sin
+    }
+}
+
+/// The columns of A with gimbals at these angles (rad).
+pub fn columns(axes: &[Axes], angles: &[f64]) -> Vec<Vector> {
+    axes.iter().zip(angles).map(|(axes, angle)| axes.column(*angle)).collect()
+}
+
+/// A A'.
+fn gram(columns: &[Vector]) -> Matrix3<f64> {
+    columns.iter().fold(Matrix3::zeros(), |sum, column| sum + column * column.transpose())
+}
+
+/// The singularity measure, sqrt(det(A A')): 0 where the gimbals give no torque in some direction.
+pub fn measure(columns: &[Vector]) -> f64 {
+    libm::sqrt(gram(columns).determinant().max(0.0))
+}
+
+/// A' (A A')^-1 u: the least rates that come to u.
+fn least(columns: &[Vector], gram: &Matrix3<f64>, wanted: &Vector) -> Vec<f64> {
+    let singular = gram.determinant() < SINGULAR;
+    let whole = if singular { gram + Matrix3::from_diagonal_element(LEAST) } else { *gram };
+    through(columns, &whole, wanted)
+}
+
+/// A' M^-1 u; nothing of a matrix without an inverse.
+fn through(columns: &[Vector], matrix: &Matrix3<f64>, wanted: &Vector) -> Vec<f64> {
+    let solved = matrix.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * wanted);
+    columns.iter().map(|column| column.dot(&solved)).collect()
+}
+
+/// Gimbal rates (rad/s) that come to A d' = `wanted`, by the rule: `t` seconds after the start.
+pub fn rates(columns: &[Vector], robust: Option<&Robustness>, wanted: &Vector, t: f64) -> Vec<f64> {
+    let gram = gram(columns);
+    let Some(robust) = robust else { return least(columns, &gram, wanted) };
+    let weight = robust.weight.get() * libm::exp(-robust.decay.get() * gram.determinant().max(0.0));
+    let (sin, cos) = libm::sincos(robust.frequency.get() * t);
+    let [a, b, c] = [sin, cos, -sin].map(|part| robust.dither.get() * part);
+    let whole = gram + Matrix3::new(1.0, c, b, c, 1.0, a, b, a, 1.0) * weight;
+    through(columns, &whole, wanted)
+}
+
+/// What of these rates turns nothing but gimbals: without A' (A A')^-1 A d'; nothing at singular angles.
+pub fn cancelling(columns: &[Vector], rates: &[f64]) -> Vec<f64> {
+    let gram = gram(columns);
+    if gram.determinant() < SINGULAR {
+        return vec![0.0; rates.len()];
+    }
+    let sum = columns.iter().zip(rates).fold(Vector::zeros(), |sum, (column, rate)| sum + column * *rate);
+    let turning = through(columns, &gram, &sum);
+    rates.iter().zip(turning).map(|(rate, turning)| rate - turning).collect()
+}

@@ -1,0 +1,125 @@
+//! Rotors in gimbals: balances of momentum and energy over a long run, and the same body by the other ways of taking a step.
+
+use nalgebra::Quaternion;
+
+use super::super::{Acting, Bearing, Gimbal, Rotor, Turning};
+use super::{TUMBLE, apart, craft, energy, go};
+use crate::attitude::Vector;
+
+/// Four gimbals about the normals of a pyramid's faces.
+fn gimbals(angles: [f64; 4], rates: [f64; 4]) -> Vec<Gimbal> {
+    let (sin, cos) = libm::sincos(0.955);
+    let faces = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+    let gimbal = |k: usize| {
+        let [x, y] = faces[k];
+        Gimbal {
+            spin: Vector::new(-y, x, 0.0),
+            across: Vector::new(-cos * x, -cos * y, sin),
+            momentum: 6.0,
+            angle: angles[k],
+            rate: rates[k],
+        }
+    };
+    (0..4).map(gimbal).collect()
+}
+
+/// Gimbal rates of a stretch of a run (rad/s).
+fn rates(stretch: u32) -> [f64; 4] {
+    [0.0, 1.0, 2.0, 3.0].map(|k| 0.7 * libm::sin(1.3 * f64::from(stretch) + 2.1 * k))
+}
+
+/// The angular momentum in space (N m s).
+fn in_space(turning: &Turning) -> Vector {
+    let seen = turning.seen();
+    (seen.attitude * Quaternion::from_imag(seen.momentum) * seen.attitude.conjugate()).vector().into_owned()
+}
+
+/// A run in stretches of 7 s, of which each may be looked at first.
+fn run(mut turning: Turning, stretches: u32, mut look: impl FnMut(&mut Turning, &[Gimbal], f64)) -> Turning {
+    let mut angles = [0.2, -0.5, 1.1, 0.0];
+    for stretch in 0..stretches {
+        let rates = rates(stretch);
+        let now = gimbals(angles, rates);
+        turning.depart(&Acting { gimbals: now.clone(), ..Acting::default() });
+        look(&mut turning, &now, 7.0);
+        go(&mut turning, 7.0);
+        angles.iter_mut().zip(rates).for_each(|(angle, rate)| *angle += rate * 7.0);
+    }
+    turning
+}
+
+#[test]
+fn momentum_is_kept_over_a_long_run() {
+    let mut before = None;
+    let turning = run(craft().undamped().turning(TUMBLE), 300, |turning, _, _| {
+        before.get_or_insert_with(|| in_space(turning));
+    });
+    let (before, after) = (before.expect("a start"), in_space(&turning));
+    assert!((after - before).norm() < 1e-12 * before.norm(), "{:e}", (after - before).norm() / before.norm());
+}
+
+/// The motor of a gimbal works against w x h about the gimbal's axis: -h d' (w . t).
+#[test]
+fn the_motors_of_gimbals_give_the_energy() {
+    let (mut work, mut first) = (0.0, None);
+    let turning = run(craft().undamped().turning(TUMBLE), 12, |turning, gimbals, length| {
+        first.get_or_insert_with(|| energy(turning));
+        let cells = 700;
+        let h = length / f64::from(cells);
+        for cell in 0..cells {
+            for (node, weight) in super::NODES.iter().zip(super::WEIGHTS) {
+                let t = (f64::from(cell) + node) * h;
+                go(turning, t);
+                let rate = turning.seen().rate;
+                let power: f64 = gimbals.iter().map(|gimbal| -gimbal.at(t).1.dot(&rate)).sum();
+                work += weight * h * power;
+            }
+        }
+    });
+    let gained = energy(&turning) - first.expect("a start");
+    assert!(gained.abs() > 1e-2, "{gained}");
+    assert!((gained - work).abs() < 1e-9 * gained.abs().max(1.0), "{gained} {work}");
+}
+
+#[test]
+fn a_gimbal_at_rest_is_a_rotor() {
+    let mut both = [craft().turning(TUMBLE), craft().turning(TUMBLE)];
+    let still = gimbals([0.3, 0.1, -0.4, 2.0], [0.0; 4]);
+    let rotor = |gimbal: &Gimbal| {
+        let (momentum, _) = gimbal.at(0.0);
+        Rotor { axis: momentum / gimbal.momentum, momentum: gimbal.momentum, torque: 0.0 }
+    };
+    let rotors = still.iter().map(rotor).collect();
+    both[0].depart(&Acting { gimbals: still, ..Acting::default() });
+    both[1].depart(&Acting { rotors, ..Acting::default() });
+    for turning in &mut both {
+        go(turning, 50.0);
+    }
+    let [a, b] = [both[0].seen(), both[1].seen()];
+    assert!(apart(&a.attitude, &b.attitude) < 1e-12 && (a.rate - b.rate).norm() < 1e-13);
+}
+
+/// A rotor in a bearing makes steps go through their stages one by one.
+#[test]
+fn both_ways_of_taking_a_step_agree() {
+    let mut both = [craft().turning(TUMBLE), craft().turning(TUMBLE)];
+    both[1].bear(vec![Bearing { inertia: 0.04, ..Bearing::default() }]);
+    let rotors = vec![Rotor { axis: Vector::z(), momentum: 2.0, torque: 0.01 }];
+    let gimbals = gimbals([0.3, 0.1, -0.4, 2.0], [0.4, -0.3, 0.9, 0.0]);
+    for turning in &mut both {
+        turning.depart(&Acting { gimbals: gimbals.clone(), rotors: rotors.clone(), ..Acting::default() });
+        go(turning, 30.0);
+    }
+    let [a, b] = [both[0].seen(), both[1].seen()];
+    assert!(apart(&a.attitude, &b.attitude) < 1e-11, "{:e}", apart(&a.attitude, &b.attitude));
+    // The rate at an instant changes as the equations say.
+    let told = both[0].accelerations(None).hub;
+    let rate = |t: f64, turning: &mut Turning| {
+        go(turning, t);
+        turning.seen().rate
+    };
+    let step = 1e-3;
+    let near = (rate(30.0 + step, &mut both[0]) - rate(30.0 - step, &mut both[0])) * (8.0 / (12.0 * step));
+    let far = (rate(30.0 + 2.0 * step, &mut both[0]) - rate(30.0 - 2.0 * step, &mut both[0])) / (12.0 * step);
+    assert!((told - near + far).norm() < 1e-8, "{told} {near}");
+}

@@ -1,0 +1,254 @@
+//! Control moment gyros: against an oracle of point masses and Euler's equations, with other parts, what is refused, and the
+//! scenario that ships.
+
+use flexsc_core::Simulation;
+use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::scenario::Scenario;
+use flexsc_core::time::{Instant, Span};
+
+use crate::drawing::Drawing;
+use crate::util::{Dir, SCENARIOS};
+
+const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
+
+fn text(path: &str) -> String {
+    std::fs::read_to_string(path).expect("a file")
+}
+
+fn parsed(text: &str) -> Scenario {
+    Scenario::parse("gimbals.toml", text).expect("a scenario")
+}
+
+/// The shipped scenario with some of its words changed.
+fn changed(change: &[(&str, &str)]) -> String {
+    change.iter().fold(text(&format!("{SCENARIOS}/agile-observer.toml")), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    })
+}
+
+fn flown(scenario: &Scenario, detail: Detail) -> (Metrics, Trace) {
+    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(detail));
+    Simulation::new(scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
+    (gather.finish(scenario), trace)
+}
+
+fn numbers(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
+    let rows = trace.topic(topic).and_then(|rows: &Columns| rows.numbers(name));
+    rows.unwrap_or_else(|| panic!("{topic} {name}")).to_vec()
+}
+
+/// A number of each row within the rows.
+fn within(trace: &Trace, topic: &str, rows: &str, name: &str) -> Vec<f64> {
+    let of = trace.topic(topic).unwrap_or_else(|| panic!("no {topic}"));
+    let Some(Column::Rows(_, inner)) = of.get(rows) else { panic!("{rows}") };
+    inner.numbers(name).unwrap_or_else(|| panic!("{name}")).to_vec()
+}
+
+fn golden(name: &str) -> Vec<Vec<f64>> {
+    let cells = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    text(&format!("{GOLDEN}/{name}.csv")).lines().map(cells).collect()
+}
+
+/// The largest differences from rows of t, Q, w and |H|.
+fn off(trace: &Trace, rows: &[Vec<f64>]) -> [f64; 3] {
+    let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| numbers(trace, "/pointing", name));
+    let rates = within(trace, "/rates", "axes", "rate_rad_s");
+    let momentum = numbers(trace, "/energy", "momentum_nm_s");
+    assert_eq!(attitude[0].len(), rows.len());
+    let mut worst = [0.0_f64; 3];
+    for (at, row) in rows.iter().enumerate() {
+        let off = [
+            (0..4).map(|k| (attitude[k][at] - row[1 + k]).abs()).fold(0.0, f64::max),
+            (0..3).map(|k| (rates[3 * at + k] - row[5 + k]).abs()).fold(0.0, f64::max),
+            (momentum[at] - row[8]).abs(),
+        ];
+        worst.iter_mut().zip(off).for_each(|(most, off)| *most = most.max(off));
+    }
+    worst
+}
+
+/// The kinetic energy of point masses moves the same way as gimbals turn: `golden/gimbals_oracle.py`. What the body gains of energy
+/// is the work of the gimbals' motors.
+#[test]
+fn a_flexible_body_turns_as_the_oracle_says() {
+    let (_, trace) = flown(&parsed(&text(&format!("{GOLDEN}/gimbals.toml"))), Detail::Full);
+    let rows = golden("gimbals");
+    let worst = off(&trace, &rows);
+    assert!(worst[0] < 1e-11 && worst[1] < 1e-11 && worst[2] < 1e-12, "{worst:?}");
+    let [elastic, rotational] = ["elastic_j", "rotational_j"].map(|name| numbers(&trace, "/energy", name));
+    for (at, row) in rows.iter().enumerate() {
+        let gained = elastic[at] + rotational[at] - elastic[0] - rotational[0];
+        assert!((elastic[at] - row[9]).abs() < 1e-11, "{at}");
+        assert!((gained - row[11] + row[12]).abs() < 1e-11, "{at}: {gained}");
+    }
+    assert!(rows[80][11] > 0.4);
+}
+
+/// Euler's equations of the hub alone.
+#[test]
+fn a_rigid_body_turns_as_the_oracle_says() {
+    let text = text(&format!("{GOLDEN}/gimbals.toml"));
+    let rigid = text.split("[[appendage]]").next().expect("the hub");
+    let (_, trace) = flown(&parsed(rigid), Detail::Full);
+    let worst = off(&trace, &golden("gimbals_rigid"));
+    assert!(worst[0] < 1e-11 && worst[1] < 1e-11 && worst[2] < 1e-12, "{worst:?}");
+}
+
+#[test]
+fn the_shipped_scenario_does_what_its_comment_says() {
+    let (metrics, trace) = flown(&parsed(&changed(&[])), Detail::Full);
+    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "{metrics:?}");
+    let rates = within(&trace, "/control_moment_gyros", "gyros", "rate_rad_s");
+    let largest = rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
+    let told = metrics.number("gimbal_rate_peak_rad_s").expect("a rate");
+    assert!(largest <= told && told <= 1.0, "{largest} {told}");
+    let measure = numbers(&trace, "/control_moment_gyros", "singularity");
+    let least = measure.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!((least - metrics.number("singularity_min").expect("a measure")).abs() < 1e-9, "{least}");
+    // It ends at rest: what the gyros stored during the turn is given back.
+    let momentum = ["x", "y", "z"]
+        .map(|axis| numbers(&trace, "/control_moment_gyros", &format!("momentum_{axis}_nm_s")));
+    let size = |at: usize| momentum.iter().map(|of| of[at] * of[at]).sum::<f64>().sqrt();
+    let last = momentum[0].len() - 1;
+    assert!(size(last) < 0.05, "{}", size(last));
+    let end = metrics.number("gyro_momentum_end_nm_s").expect("a momentum");
+    assert!((size(last) - end).abs() < 1e-3);
+    assert!(metrics.number("gyro_momentum_peak_nm_s").expect("a momentum") > 10.0);
+    assert!(metrics.number("torque_error_peak_nm").expect("a torque") >= 0.0);
+}
+
+#[test]
+fn a_clone_repeats_the_run_to_the_last_bit() {
+    let scenario = parsed(&changed(&[("duration = 120.0", "duration = 40.0")]));
+    let mut first = Simulation::new(&scenario, 0);
+    let mut nothing = Trace::new(Detail::Events);
+    first.run_until(Instant::START + Span::from_seconds(27.3), &mut nothing).expect("a run");
+    let mut second = first.clone();
+    let ends = [&mut first, &mut second].map(|run| {
+        run.run(&mut Trace::new(Detail::Events)).expect("a run");
+        let mut row = vec![0.0; run.fields(&scenario).iter().map(|field| field.width()).sum()];
+        run.look(&mut row).expect("a state");
+        let names: Vec<&str> = run.fields(&scenario).iter().map(|field| field.name).collect();
+        assert!(names.contains(&"gimbal_angles") && names.contains(&"gimbal_rates"));
+        row.iter().map(|value| value.to_bits()).collect::<Vec<_>>()
+    });
+    assert_eq!(ends[0], ends[1]);
+    let mut whole = Simulation::new(&scenario, 0);
+    whole.run(&mut Trace::new(Detail::Full)).expect("a run");
+    let mut row = vec![0.0; ends[0].len()];
+    whole.look(&mut row).expect("a state");
+    assert_eq!(row.iter().map(|value| value.to_bits()).collect::<Vec<_>>(), ends[0]);
+}
+
+const GYROS: &str = "[[actuator]]
+control_moment_gyros = { arrangement = \"pyramid\", momentum = 15.0, rate_limit = 1.0, angles = [-0.5, 0, 0.5, 0] }
+";
+
+const WHEELS: &str = "share = 0.8
+[[actuator]]
+wheels = { arrangement = \"pyramid\", inertia = 0.04, torque = 0.4, speeds = [9, -9, 9, -9], friction = { coulomb = 1e-3 } }
+share = 0.2
+";
+
+const TORQUERS: &str = "[[actuator]]
+magnetorquers = { moment = 400.0 }
+unloads = { above = 1.0, below = 0.5, gain = 0.01, period = 1.0 }
+[environment]
+orbit = { semi_major_axis = 7e6, inclination = 1.0 }
+magnetic_field = {}
+";
+
+/// The shipped scenario with other actuators.
+fn with(actuators: &[&str]) -> String {
+    let text = changed(&[]);
+    let (before, after) = text.split_once("[actuator.control_moment_gyros]").expect("the actuator");
+    let (_, after) = after.split_once("[log]").expect("what follows");
+    format!("{before}{}[log]{after}", actuators.concat())
+}
+
+#[test]
+fn they_share_the_demand_with_wheels_that_stick_and_slip() {
+    let text = with(&[GYROS, WHEELS]).replace("duration = 120.0", "duration = 50.0");
+    let (_, trace) = flown(&parsed(&text), Detail::Full);
+    let momentum = numbers(&trace, "/energy", "momentum_nm_s");
+    let of = |fold: fn(f64, f64) -> f64, from: f64| momentum.iter().copied().fold(from, fold);
+    let spread = of(f64::max, 0.0) - of(f64::min, f64::INFINITY);
+    assert!(momentum[0] > 1.0 && spread < 1e-9, "{spread}");
+    assert!(trace.topic("/wheel_events").is_some_and(|events| events.len() > 0));
+    let turned = numbers(&trace, "/pointing", "roll_rad");
+    assert!((turned[turned.len() - 1] - turned[0]).abs() > 0.1);
+}
+
+#[test]
+fn magnetorquers_unload_them() {
+    let text = with(&[GYROS, TORQUERS]).replace("duration = 120.0", "duration = 300.0");
+    let (metrics, trace) = flown(&parsed(&text), Detail::Full);
+    let [x, y, z] = ["x", "y", "z"]
+        .map(|axis| numbers(&trace, "/control_moment_gyros", &format!("momentum_{axis}_nm_s"))[0]);
+    let start = (x * x + y * y + z * z).sqrt();
+    let end = metrics.number("gyro_momentum_end_nm_s").expect("a momentum");
+    assert!(start > 5.0 && end < 0.9 * start, "{end} of {start}");
+    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_the_reason() {
+    let of_spatial = "duration = 10.0\n[body.spatial]\ninertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]\npoints = [{ name = \"hub\" }]\n\
+        [sensor.sampled]\nperiod = 0.2\n[law.attitude]\nperiod = 0.2\nbandwidth = 0.1\n[actuator.control_moment_gyros]\narrangement = \"pyramid\"\nmomentum = 1.0";
+    let of_one = "duration = 10.0\n[body.planar]\ninertia = 100.0\n[law.pd]\nk_p = 1.0\nk_d = 1.0\nperiod = 0.2\n[actuator.control_moment_gyros]\narrangement = \"pyramid\"\nmomentum = 1.0";
+    let law = "[law.attitude]\nperiod = 0.1                            # s\nbandwidth = 0.5                         # rad/s\ndamping = 0.8";
+    let relay = "[law.relay]\ndead_zone = 5e-4\nhysteresis = 1e-4\nstrong = 4e-3\nweak = 1e-4\nk_t = 0.3";
+    let plane = "[law.phase_plane]\nperiod = 0.1\ndead_zone = 5e-4\nrate_limit = 1e-3\nswitch_on = 1e-4\nswitch_off = 3e-5";
+    let cases = [
+        (of_spatial.to_owned(), "needs no appendages"),
+        (of_one.to_owned(), "the body has one angle"),
+        (changed(&[(law, relay)]), "gimbals at constant rates"),
+        (changed(&[(law, plane)]), "changes with their gimbal angles"),
+        (
+            changed(&[(
+                "momentum = 15.0",
+                "momentum = 15.0\nfaults = [{ dead = { gimbal = 5, from = 1.0 } }]",
+            )]),
+            "must be one of 4 gimbals",
+        ),
+        (
+            changed(&[(
+                "momentum = 15.0",
+                "momentum = 15.0\nfaults = [{ dead = { wheel = 1, from = 1.0 } }]",
+            )]),
+            "has no wheels",
+        ),
+        (with(&[GYROS, GYROS]), "in one `control_moment_gyros`"),
+        (with(&[GYROS, WHEELS, TORQUERS]), "cannot tell apart"),
+    ];
+    for (text, why) in cases {
+        let error = Scenario::parse("gimbals.toml", &text).expect_err(why).to_string();
+        assert!(error.contains(why), "{error}");
+    }
+    // A relay decides at samples, and gimbals follow at a period of their own.
+    let text = changed(&[
+        (law, relay),
+        ("momentum = 15.0", "momentum = 15.0\nperiod = 0.1"),
+        ("duration = 120.0", "duration = 15.0"),
+    ]);
+    let (metrics, _) = flown(&parsed(&text), Detail::Full);
+    assert!(metrics.number("torque_error_peak_nm").expect("a torque") < 1e-2);
+}
+
+#[test]
+fn their_figure_shows_gimbals_and_limits() {
+    let dir = Dir::with(&["agile-observer"]);
+    dir.run("simulate agile-observer.toml --set duration=45").exits(0);
+    dir.run("plot agile-observer.mcap --what gimbals --format svg").exits(0);
+    let drawing = Drawing::at(&dir, "agile-observer-gimbals.svg");
+    drawing.shows(&[
+        "gimbal angle (rad)",
+        "gimbal rate (rad/s)",
+        "singularity measure",
+        "momentum (N m s)",
+        "limits",
+        "gimbal 4",
+    ]);
+}
