@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Failure;
 use super::failure::{Failing, Lasting};
-use super::steering::{self, Axes, NullMotion, Robustness, Steering};
+use super::steering::{self, GyroAxes, NullMotion, Robustness, Steering};
 use crate::attitude::Vector;
 use crate::count::counted;
 use crate::document::Fault;
@@ -98,7 +98,7 @@ impl ControlMomentGyros {
     }
 
     /// The largest torque about an axis alone at the gimbal angles of the start (N m).
-    pub fn most(&self, axes: &[Axes], axis: usize) -> f64 {
+    pub fn most(&self, axes: &[GyroAxes], axis: usize) -> f64 {
         let limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
         let wanted = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
         let rates = steering::rates(&steering::columns(axes, &self.starts()), None, &wanted, 0.0);
@@ -110,7 +110,7 @@ impl ControlMomentGyros {
     ///
     /// # Errors
     /// A key that does not fit the others, and why.
-    pub fn axes(&self) -> Result<Vec<Axes>, Fault> {
+    pub fn axes(&self) -> Result<Vec<GyroAxes>, Fault> {
         let axes = self.directions()?;
         let count = axes.len();
         let each = |key: &str, given: usize| {
@@ -143,7 +143,7 @@ impl ControlMomentGyros {
         Ok(axes)
     }
 
-    fn directions(&self) -> Result<Vec<Axes>, Fault> {
+    fn directions(&self) -> Result<Vec<GyroAxes>, Fault> {
         let Some(GimbalArrangement::Pyramid) = self.arrangement else { return self.given() };
         for (key, axes) in [("gimbal_axes", &self.gimbal_axes), ("spin_axes", &self.spin_axes)] {
             if !axes.is_empty() {
@@ -160,14 +160,14 @@ impl ControlMomentGyros {
         }
         let faces = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
         Ok(faces
-            .map(|[x, y]| Axes {
+            .map(|[x, y]| GyroAxes {
                 spin: Vector::new(-y, x, 0.0),
                 across: Vector::new(-cos * x, -cos * y, sin),
             })
             .to_vec())
     }
 
-    fn given(&self) -> Result<Vec<Axes>, Fault> {
+    fn given(&self) -> Result<Vec<GyroAxes>, Fault> {
         let refused = |key: &str, why: String| Err(Fault::new(key, why));
         if self.cant.is_some() {
             return refused("cant", "applies only to an `arrangement`, and none is given".to_owned());
@@ -197,7 +197,7 @@ impl ControlMomentGyros {
                 return refused(&format!("spin_axes[{index}]"), why);
             }
             let across = gimbal.cross(&spin).normalize();
-            axes.push(Axes { spin: across.cross(&gimbal).normalize(), across });
+            axes.push(GyroAxes { spin: across.cross(&gimbal).normalize(), across });
             gimbals.push(gimbal);
         }
         let apart: f64 = gimbals.iter().map(|gimbal| gimbals[0].cross(gimbal).norm_squared()).sum();

@@ -5,7 +5,7 @@
 
 use super::control_moment_gyros::ControlMomentGyros;
 use super::failure::Failing;
-use super::steering::{self, Axes, Robustness};
+use super::steering::{self, GyroAxes, Robustness};
 use super::{Actuate, Demand, Setting};
 use crate::attitude::Vector;
 use crate::body::Wrench;
@@ -17,7 +17,7 @@ use crate::time::{Instant, Span};
 /// The control moment gyros of a body.
 #[derive(Clone, Debug)]
 pub struct Gimbals {
-    axes: Vec<Axes>,
+    axes: Vec<GyroAxes>,
     /// Of each rotor (N m s).
     momentum: f64,
     /// Largest rate (rad/s).
@@ -43,7 +43,7 @@ pub struct Gimbals {
 
 impl ControlMomentGyros {
     /// The control moment gyros before their first command, on a body of these settings.
-    pub fn start(&self, axes: &[Axes], settings: &[Setting]) -> Gimbals {
+    pub fn start(&self, axes: &[GyroAxes], settings: &[Setting]) -> Gimbals {
         let (angles, count) = (self.starts(), axes.len());
         let least_measure = steering::measure(&steering::columns(axes, &angles));
         Gimbals {

@@ -61,7 +61,7 @@ pub use pulse_width::PulseWidth;
 pub use pulsing::{Pulse, Pulsing};
 pub use several::Several;
 pub use spinning::Spinning;
-pub use steering::{Axes, NullMotion, Robustness, Steering};
+pub use steering::{GyroAxes, NullMotion, Robustness, Steering};
 pub use thrusters::Thrusters;
 pub use torquers::{AxisActuate, Setting, Torquers};
 pub use unloading::{Unloading, Unloads};

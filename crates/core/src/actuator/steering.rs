@@ -83,14 +83,14 @@ const LEAST: f64 = 1e-9;
 
 /// The axes of a control moment gyro, unit vectors of the body.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Axes {
+pub struct GyroAxes {
     /// The direction of its momentum with the gimbal at angle 0.
     pub spin: Vector,
     /// The direction towards which the gimbal turns it from there.
     pub across: Vector,
 }
 
-impl Axes {
+impl GyroAxes {
     /// The direction in which the momentum changes with the gimbal at an angle (rad).
     fn column(&self, angle: f64) -> Vector {
         let (sin, cos) = libm::sincos(angle);
@@ -99,7 +99,7 @@ impl Axes {
 }
 
 /// The columns of A with gimbals at these angles (rad).
-pub fn columns(axes: &[Axes], angles: &[f64]) -> Vec<Vector> {
+pub fn columns(axes: &[GyroAxes], angles: &[f64]) -> Vec<Vector> {
     axes.iter().zip(angles).map(|(axes, angle)| axes.column(*angle)).collect()
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Cholesky, Matrix3};
 
 use super::{Drives, Scenario, Written};
 use crate::actuator::{
-    Actuate, Actuator, Allocation, Axes, Firing, Group, Member, Nozzle, Opposes, Setting, Several, Task,
+    Actuate, Actuator, Allocation, Firing, Group, GyroAxes, Member, Nozzle, Opposes, Setting, Several, Task,
     Torquers,
 };
 use crate::attitude::{Vector, beyond, tensor};
@@ -62,7 +62,7 @@ pub struct Study {
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
     /// The axes of control moment gyros with their gimbals at angle 0.
-    pub gimbals: Vec<Axes>,
+    pub gimbals: Vec<GyroAxes>,
     /// The bearings of wheels with friction or imbalance.
     pub bearings: Vec<Bearing>,
     /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.

@@ -215,14 +215,12 @@ impl Turning {
 
     /// Begins a new motion at the instant seen last, under what acts from now on; rotors in bearings have to `settle` then.
     pub fn depart(&mut self, acting: &Acting) {
-        let before = self.acting.rotors.len();
-        let plain = self.bearings.is_empty() && self.driving.is_none() && acting.rotors.len() == before;
+        let counts = |acting: &Acting| (acting.rotors.len(), acting.gimbals.len());
+        let same = counts(acting) == counts(&self.acting);
+        let plain = same && self.bearings.is_empty() && self.driving.is_none() && acting.gimbals.is_empty();
         let stored = plain.then(|| self.acting.rotors(self.now).0);
-        if acting.rotors.len() > before {
-            self.take_on(&acting.rotors, before);
-        }
-        for gimbal in acting.gimbals.iter().skip(self.acting.gimbals.len()) {
-            self.here.momentum += Bend::new(bent).forward(&gimbal.at(0.0).0);
+        if !same {
+            self.take_on(acting);
         }
         self.ahead = None;
         self.move_on();

@@ -5,8 +5,8 @@
 //! is wrong, which end for a positive definite problem (\[Murty74\]).
 
 use super::bearing::{Borne, Slip, Spin};
-use super::flow::Turning;
-use super::model::{Rotor, Surroundings, tensor};
+use super::flow::{Acting, Turning};
+use super::model::{Surroundings, tensor};
 use super::rotation::Bend;
 use super::state::Seen;
 use crate::attitude::Vector;
@@ -47,20 +47,23 @@ impl Turning {
         self.accelerated(slips, around).hub
     }
 
-    /// Rotors that were not there before bring their momenta with them.
-    pub(super) fn take_on(&mut self, rotors: &[Rotor], before: usize) {
+    /// Rotors and gimbals that were not there before bring their momenta with them.
+    pub(super) fn take_on(&mut self, acting: &Acting) {
         let bent = self
             .here
             .modes
             .iter()
             .zip(&self.model.modes)
             .fold(Vector::zeros(), |sum, ([q, ..], mode)| sum + mode.rotation * *q);
-        for (index, rotor) in rotors.iter().enumerate().skip(before) {
+        for (index, rotor) in acting.rotors.iter().enumerate().skip(self.acting.rotors.len()) {
             self.here.momentum += Bend::new(bent).forward(&(rotor.axis * rotor.momentum));
             if index < self.bearings.len() {
                 self.slips[index] = self.first_slip(index, &rotor.axis, rotor.momentum);
                 self.here.spins[index].sums.x = rotor.momentum;
             }
+        }
+        for gimbal in acting.gimbals.iter().skip(self.acting.gimbals.len()) {
+            self.here.momentum += Bend::new(bent).forward(&gimbal.at(0.0).0);
         }
     }
 
