@@ -245,7 +245,7 @@ fn their_figure_shows_gimbals_and_limits() {
     let drawing = Drawing::at(&dir, "agile-observer-gimbals.svg");
     drawing.shows(&[
         "gimbal angle (rad)",
-        "gimbal rate (rad/s)",
+        "gimbal rate (mrad/s)",
         "singularity measure",
         "momentum (N m s)",
         "limits",

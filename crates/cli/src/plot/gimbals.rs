@@ -49,12 +49,11 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         .collect();
     rates.extend(each(|gyro| gyro.rate_rad_s));
     let measure = Layer::new("", colour::BLUE, Shape::Line(1.2), line(&|row| row.singularity));
-    let along: [(&str, fn(&ControlMomentGyros) -> f64); 3] = [
-        ("x", |row| row.momentum_x_nm_s),
-        ("y", |row| row.momentum_y_nm_s),
-        ("z", |row| row.momentum_z_nm_s),
-    ];
-    let momentum = named(along.map(|(axis, of)| (axis.to_owned(), line(&of))).into());
+    let momentum = named(vec![
+        ("x".to_owned(), line(&|row| row.momentum_x_nm_s)),
+        ("y".to_owned(), line(&|row| row.momentum_y_nm_s)),
+        ("z".to_owned(), line(&|row| row.momentum_z_nm_s)),
+    ]);
     let measured = values(std::slice::from_ref(&measure));
     let panels = vec![
         around("gimbal angle", "rad", each(|gyro| gyro.angle_rad)),

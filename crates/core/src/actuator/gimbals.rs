@@ -94,7 +94,9 @@ impl Gimbals {
         let mut rates = steering::rates(columns, self.robust.as_ref(), &wanted, now.seconds());
         let largest = rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
         if largest > self.limit {
-            rates.iter_mut().for_each(|rate| *rate *= self.limit / largest);
+            for rate in &mut rates {
+                *rate *= self.limit / largest;
+            }
         }
         if let Some((preferred, gain)) = &self.preferred {
             let towards: Vec<f64> =

@@ -49,15 +49,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     if scenario.study.wheels.is_some() {
         motion.push(Panel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }
-    if !scenario.study.gimbals.is_empty() {
-        let of = |gyro: usize| {
-            line(format!("/control_moment_gyros.gyros[{gyro}].angle_rad"), format!("gimbal {}", gyro + 1))
-        };
-        let angles = (0..scenario.study.gimbals.len().min(MOST_LINES)).map(of).collect();
-        motion.push(Panel::plot("gimbals", "Angles of the gimbals (rad)", angles));
-        let measure = vec![line("/control_moment_gyros.singularity", "measure")];
-        motion.push(Panel::plot("singularity", "Singularity measure of the gimbals", measure));
-    }
+    motion.extend(gimbals(scenario));
     if scenario.study.moving.is_some() {
         let along = ["x", "y", "z"].map(|axis| line(format!("/position.{axis}_m"), axis));
         motion.push(Panel::plot("position", "Position (m)", along.into()));
@@ -113,6 +105,22 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         elastic.push(Panel::states("trusted", "Observers", channels("trusted")));
     }
     together(scenario, motion, elastic)
+}
+
+/// The panels of control moment gyros, if there are any.
+fn gimbals(scenario: &Scenario) -> Vec<Panel> {
+    if scenario.study.gimbals.is_empty() {
+        return Vec::new();
+    }
+    let of = |gyro: usize| {
+        line(format!("/control_moment_gyros.gyros[{gyro}].angle_rad"), format!("gimbal {}", gyro + 1))
+    };
+    let angles = (0..scenario.study.gimbals.len().min(MOST_LINES)).map(of).collect();
+    let measure = vec![line("/control_moment_gyros.singularity", "measure")];
+    vec![
+        Panel::plot("gimbals", "Angles of the gimbals (rad)", angles),
+        Panel::plot("singularity", "Singularity measure of the gimbals", measure),
+    ]
 }
 
 /// The tabs, with the panels of the motion and of the modes.

@@ -171,11 +171,6 @@ impl Written {
                         let why = "finds its crossings in closed form, which three axes do not have: give it a `[sensor.sampled]`";
                         return at("", why.to_owned());
                     }
-                    let gyros = self.actuator.control_moment_gyros();
-                    if let Some((_, of)) = gyros.filter(|(gyros, _)| gyros.period.is_none()) {
-                        let why = "must be given with a law `relay`, which holds its torque: gimbals at constant rates turn theirs";
-                        return Some(Fault::new(format!("{of}.period"), why));
-                    }
                 }
                 Law::PhasePlane(law) => {
                     if self.axis_count() == 1 && !law.targets.is_empty() {
@@ -261,6 +256,12 @@ impl Written {
         {
             let why = "need the field of `[environment.magnetic_field]`, and there is none";
             return Some(Fault::new(key, why));
+        }
+        let gyros = self.actuator.control_moment_gyros().filter(|(gyros, _)| gyros.period.is_none());
+        let holds = |axis: usize| matches!(self.law.about(axis), Law::Relay(_));
+        if let Some((_, of)) = gyros.filter(|_| (0..self.axis_count()).any(holds)) {
+            let why = "must be given with a law `relay`, which holds its torque: gimbals at constant rates turn theirs";
+            return Some(Fault::new(format!("{of}.period"), why));
         }
         let acting = self.actuator.members().into_iter().find(|member| {
             matches!(&*member.kind, Actuator::Jets(_)) && matches!(member.task, Task::Executes(_))

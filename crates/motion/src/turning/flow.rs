@@ -354,7 +354,9 @@ impl Turning {
             stored += borne.stored(self.here.spins.iter().map(|spin| spin.sums.x));
             locked += borne.locked();
         }
-        gimbal::sum(&self.acting.gimbals, self.now).iter().for_each(|(swung, _)| stored += swung);
+        if let Some((swung, _)) = gimbal::sum(&self.acting.gimbals, self.now) {
+            stored += swung;
+        }
         match &self.driving {
             Some(driving) => driving.look(self.now, &self.here, &stored, &mut self.seen),
             None => self.seen.look(&self.model, &self.here, &stored, &locked),

@@ -55,6 +55,7 @@ __all__ = [
     "Common",
     "Compensation",
     "Complementary",
+    "ControlMomentGyros",
     "Correlated",
     "Cosine",
     "DampingGuards",
@@ -111,6 +112,7 @@ __all__ = [
     "NamedPoint",
     "Normal",
     "Notch",
+    "NullMotion",
     "ObserverForm",
     "Open",
     "Output",
@@ -135,6 +137,7 @@ __all__ = [
     "RelativeUniform",
     "Relay",
     "RigidRate",
+    "Robustness",
     "Rotor",
     "Rows",
     "Sampled",
@@ -285,11 +288,13 @@ class Added(Part):
     """Axis that fails, on a body with three; default: all."""
     wheel: int | None = None
     """Wheel that fails, counted from 1; default: all."""
+    gimbal: int | None = None
+    """Gimbal of `control_moment_gyros` that fails, counted from 1; default: all."""
     thruster: str | None = None
     """Thruster of `jets` that fails; default: all."""
     constant: float | None = None
-    """Constant part: a torque (N m); for magnetorquers a moment (A m²), for jets a thrust (N). Default:
-    0.0.
+    """Constant part: a torque (N m); for magnetorquers a moment (A m²), for gimbals a rate (rad/s), for
+    jets a thrust (N). Default: 0.0.
     """
     sines: Sequence[Sine] | None = None
     """Sine torques."""
@@ -371,6 +376,7 @@ class Assigned(Part):
         "thrusters",
         "wheel",
         "wheels",
+        "control_moment_gyros",
         "jets",
         "magnetorquers",
     )
@@ -387,6 +393,8 @@ class Assigned(Part):
     """A flywheel on a motor with back-EMF."""
     wheels: Wheels | None = None
     """Reaction wheels about axes of their own."""
+    control_moment_gyros: ControlMomentGyros | None = None
+    """Control moment gyros of a spacecraft."""
     jets: Jets | None = None
     """Thrusters at points of a spatial body."""
     magnetorquers: Magnetorquers | None = None
@@ -398,7 +406,8 @@ class Assigned(Part):
     sum to 1.
     """
     unloads: Unloads | None = None
-    """For `jets` or `magnetorquers`: how they unload the `wheels` of the list. They then execute no demand.
+    """For `jets` or `magnetorquers`: how they unload the `wheels` or `control_moment_gyros` of the list.
+    They then execute no demand.
     """
 
 
@@ -627,6 +636,46 @@ class Complementary(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class ControlMomentGyros(Part):
+    """Control moment gyros of a spacecraft."""
+
+    _tag: ClassVar[str | None] = "control_moment_gyros"
+
+    momentum: float
+    """Angular momentum of each rotor, which is constant (N m s)."""
+    arrangement: Literal["pyramid"] | None = None
+    """Arrangement; default: given by `gimbal_axes` and `spin_axes`."""
+    cant: float | None = None
+    """For a pyramid: angle of each gimbal axis from z (rad); default: 0.9553 rad (54.74 degrees), with
+    about equal momentum in all directions.
+    """
+    gimbal_axes: Rows | None = None
+    """Gimbal axis of each in the body's axes, of any length."""
+    spin_axes: Rows | None = None
+    """Direction of the momentum of each with its gimbal at angle 0, of any length, at right angles to its
+    gimbal axis.
+    """
+    angles: Vector | None = None
+    """Gimbal angles at the start (rad); default: 0."""
+    rate_limit: float | None = None
+    """Largest gimbal rate (rad/s); no limit by default. If a demanded torque exceeds it, all rates are
+    scaled down, and the torque keeps its axis.
+    """
+    period: float | None = None
+    """Time between updates of the gimbal rates, beside those at the law's commands (s); default: at these
+    alone.
+    """
+    steering: Literal["pseudo_inverse", "singularity_robust"] | None = None
+    """How the demanded torque becomes gimbal rates. Default: "singularity_robust"."""
+    robust: Robustness | None = None
+    """The weight of `singularity_robust` steering."""
+    null_motion: NullMotion | None = None
+    """Null motion towards preferred gimbal angles; none by default."""
+    faults: Sequence[Failure] | None = None
+    """Intervals in which gimbals fail."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Correlated(Part):
     """Correlated keys of `[uncertain]`. Each key is drawn from a standard normal number; the matrix
     correlates these numbers, and each key keeps its own distribution. For normal distributions these are
@@ -679,6 +728,8 @@ class Dead(Part):
     """Axis that fails, on a body with three; default: all."""
     wheel: int | None = None
     """Wheel that fails, counted from 1; default: all."""
+    gimbal: int | None = None
+    """Gimbal of `control_moment_gyros` that fails, counted from 1; default: all."""
     thruster: str | None = None
     """Thruster of `jets` that fails; default: all."""
 
@@ -1462,6 +1513,16 @@ class Notch(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class NullMotion(Part):
+    """Null motion: gimbal rates whose torques cancel each other, towards preferred gimbal angles."""
+
+    angles: Vector
+    """Preferred angle of each gimbal (rad)."""
+    gain: float
+    """Gain with which the gimbals turn towards them, as far as no torque results (1/s)."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Open(Part):
     """No law: the default of a scenario with a manoeuvre."""
 
@@ -1842,6 +1903,24 @@ class RigidRate(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Robustness(Part):
+    """The weight P = w (1 + E) of `singularity_robust` steering, with w = weight exp(-decay m²) and the
+    singularity measure m.
+    """
+
+    weight: float | None = None
+    """The weight at singular angles; default: 0.01. Default: 0.01."""
+    decay: float | None = None
+    """Decay of the weight with the square of the singularity measure; default: 10. Default: 10.0."""
+    dither: float | None = None
+    """Amplitude of the elements of E beside its diagonal, below 0.5; default: 0.1. Default: 0.1."""
+    frequency: float | None = None
+    """Angular frequency of these elements (rad/s), whose phases are 0, 90 and 180 degrees; default: pi/2.
+    Default: 1.5707963267948966.
+    """
+
+
+@dataclass(frozen=True, kw_only=True)
 class Rotor(Part):
     """A wheel that stores momentum."""
 
@@ -1895,6 +1974,8 @@ class Scaled(Part):
     """Axis that fails, on a body with three; default: all."""
     wheel: int | None = None
     """Wheel that fails, counted from 1; default: all."""
+    gimbal: int | None = None
+    """Gimbal of `control_moment_gyros` that fails, counted from 1; default: all."""
     thruster: str | None = None
     """Thruster of `jets` that fails; default: all."""
 
@@ -2199,11 +2280,13 @@ class StuckFailure(Part):
     """Axis that fails, on a body with three; default: all."""
     wheel: int | None = None
     """Wheel that fails, counted from 1; default: all."""
+    gimbal: int | None = None
+    """Gimbal of `control_moment_gyros` that fails, counted from 1; default: all."""
     thruster: str | None = None
     """Thruster of `jets` that fails; default: all."""
     at: float | None = None
-    """The output: a torque (N m); for magnetorquers a moment (A m²), for jets a fraction of their thrust;
-    default: the output when the failure begins.
+    """The output: a torque (N m); for magnetorquers a moment (A m²), for gimbals a rate (rad/s), for jets a
+    fraction of their thrust; default: the output when the failure begins.
     """
 
 
@@ -2595,7 +2678,7 @@ class Zvdd(Part):
     """Indices of the modes."""
 
 
-Actuator: TypeAlias = Ideal | Hold | Thrusters | Wheel | Wheels | Jets | Magnetorquers
+Actuator: TypeAlias = Ideal | Hold | Thrusters | Wheel | Wheels | ControlMomentGyros | Jets | Magnetorquers
 """The kinds of actuator. On a body with three axes, an actuator for one angle acts about each of them."""
 Adaptation: TypeAlias = RandomSearch
 """The kinds of adaptation."""

@@ -123,9 +123,8 @@ fn driven(keys: &str, updates: u32) -> (f64, f64) {
     let mut gimbals = start(&format!("rate_limit = 2.0\nperiod = 0.05\n{keys}"));
     ask(&mut gimbals, at(0.0), [-1.5, 0.0, 0.0]);
     let mut most = 0.0_f64;
-    for step in 1..updates {
-        let now = at(0.05 * f64::from(step));
-        assert_eq!(gimbals.due(), Some(now));
+    for _ in 1..updates {
+        let now = gimbals.due().expect("an update");
         gimbals.serve(now, [0.0; 3]);
         most = most.max(gimbals.stored(now)[0] / 15.0);
     }
