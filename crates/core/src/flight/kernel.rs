@@ -14,8 +14,8 @@ use super::clock::{Clock, nearest_ticks};
 use super::crew::{Crew, Place, Sight};
 use super::track::Track;
 use crate::lanes::{Mask, Real};
+use crate::motion::damping::Damping;
 use crate::motion::guess::{Departure, Found, Level, Oscillator, locate};
-use crate::numerics::trig::sincos;
 
 /// Most lanes.
 pub const MOST: usize = 16;
@@ -27,7 +27,7 @@ const SHORT: f64 = 9_000.0;
 const ROWS: usize = 6;
 
 /// Runs side by side.
-pub struct Flight<R: Real> {
+pub struct Flight<R: Real, D> {
     now: Clock<R>,
     end: Clock<R>,
     side: R,
@@ -35,8 +35,8 @@ pub struct Flight<R: Real> {
     rate: R,
     /// Displacements from 0; the modes about their equilibria at departure, and at the end of the motion.
     totals: Vec<R>,
-    modes: Vec<Oscillator<R>>,
-    moved: Vec<Oscillator<R>>,
+    modes: Vec<Oscillator<R, D>>,
+    moved: Vec<Oscillator<R, D>>,
     excitabilities: Vec<R>,
     fastest: R,
     edge: R,
@@ -47,7 +47,7 @@ pub struct Flight<R: Real> {
     band: R,
     /// When the push began.
     pushed: Clock<R>,
-    tracks: Vec<Track<R>>,
+    tracks: Vec<Track<R, D>>,
     /// Whether any run has windows.
     watches: bool,
     /// When the envelope was followed last, its integral, and when and after how long windows close.
@@ -62,7 +62,7 @@ pub struct Flight<R: Real> {
     sight: Sight,
 }
 
-impl<R: Real> Flight<R> {
+impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Makes all runs of a crew, of bodies and envelopes with so many modes.
     #[inline(always)]
     pub fn fly<C: Crew>(kind: R, modes: usize, tracks: usize, crew: &mut C) {
@@ -159,8 +159,7 @@ impl<R: Real> Flight<R> {
         let ticks = R::select(fits, nearest, nearest.of(0.0));
         let after = ticks / ticks.of(1e15);
         for index in 0..self.modes.len() {
-            let mode = &mut self.moved[index];
-            mode.turn(sincos(mode.frequency * after));
+            self.moved[index].go(after);
         }
         (Clock::of_ticks(ticks), after)
     }
@@ -192,7 +191,7 @@ impl<R: Real> Flight<R> {
         let from = Departure { angle: self.angle, rate: self.rate, moment, fastest: self.fastest };
         let found: Found<R> = match &mut self.moved[..] {
             // So many modes, which is usual, stay in registers.
-            [first, second] => {
+            [first, second] if !D::IS_DAMPED => {
                 let mut two = [*first, *second];
                 let found = locate(&from, levels, &mut two);
                 [*first, *second] = two;

@@ -1,15 +1,18 @@
-//! The envelope of undamped modes in lanes: what `estimator::envelope` does, to the bit.
+//! The envelope of modes in lanes: what `estimator::envelope` does, to the bit.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
-use crate::lanes::Real;
+use crate::lanes::{Mask, Real};
+use crate::motion::damping::Damping;
+use crate::numerics::decay::exp;
+use crate::numerics::swing_damped::damped;
 use crate::numerics::swing_integral::undamped;
 use crate::numerics::trig::sincos;
 
 /// One mode's phasor.
 #[derive(Copy, Clone, Debug)]
-pub struct Track<R> {
+pub struct Track<R, D> {
     /// Natural frequency (rad/s).
     pub frequency: R,
     /// Static displacement for each unit of moment (s²).
@@ -17,15 +20,19 @@ pub struct Track<R> {
     /// The phasor in the turning frame; the axis of that frame now.
     pub frame: [R; 2],
     pub axis: [R; 2],
-    /// The equilibrium, which is real, and the deviation from it now.
+    /// The equilibrium, whose imaginary part follows from its damping, and the deviation from it now.
     pub equilibrium: R,
     pub deviation: [R; 2],
+    pub damping: D,
 }
 
-impl<R: Real> Track<R> {
+impl<R: Real, D: Damping<R>> Track<R, D> {
     /// Follows the mode to a time (s), over a span (s), and returns the integral of its envelope over it.
     #[inline(always)]
     pub fn advance(&mut self, time: R, span: R) -> R {
+        if D::IS_DAMPED {
+            return self.fade(time, span);
+        }
         let (from, before) = (self.axis, self.deviation);
         let (sin, cos) = sincos(self.frequency * time);
         self.axis = [cos, sin];
@@ -37,13 +44,50 @@ impl<R: Real> Track<R> {
         undamped(self.equilibrium, [before, self.deviation], self.frequency, span)
     }
 
+    /// The same of modes that may be damped.
+    #[inline(always)]
+    fn fade(&mut self, time: R, span: R) -> R {
+        let (from, before, decay) = (self.axis, self.deviation, self.damping.decay(time));
+        let turning = self.damping.turning(self.frequency);
+        let (sin, cos) = sincos(turning * time);
+        let left = exp(-(decay * span));
+        self.axis = [cos, sin];
+        let ([re, im], equilibrium) = (self.frame, self.imaginary(self.equilibrium));
+        let (c, s) = (cos - from[0] * left, sin - from[1] * left);
+        let re = re * left + (self.equilibrium * c - equilibrium * s);
+        let im = im * left + (self.equilibrium * s + equilibrium * c);
+        self.frame = [re, im];
+        self.deviation = [(re * cos + im * sin) - self.equilibrium, (im * cos - re * sin) - equilibrium];
+        let ends = [before, self.deviation];
+        let integral = damped([self.equilibrium, equilibrium], ends, decay, turning, span);
+        let stays = decay.le(decay.of(0.0));
+        if !stays.any() {
+            return integral;
+        }
+        R::select(stays, undamped(self.equilibrium, ends, self.frequency, span), integral)
+    }
+
+    /// The imaginary part of an equilibrium.
+    #[inline(always)]
+    fn imaginary(&self, equilibrium: R) -> R {
+        if D::IS_DAMPED {
+            (self.damping.decay(equilibrium) * equilibrium) / self.damping.turning(self.frequency)
+        } else {
+            equilibrium.of(0.0)
+        }
+    }
+
     /// Takes over a moment that holds from now on.
     #[inline(always)]
     pub fn command(&mut self, moment: R) {
+        let before = self.imaginary(self.equilibrium);
         let equilibrium = self.excitability * moment;
         let shift = self.equilibrium - equilibrium;
         self.equilibrium = equilibrium;
         self.deviation[0] = self.deviation[0] + shift;
+        if D::IS_DAMPED {
+            self.deviation[1] = self.deviation[1] + (before - self.imaginary(equilibrium));
+        }
     }
 
     /// One or the other.
