@@ -64,7 +64,7 @@ const fn lagrange() -> [[f64; PAIRS]; PAIRS] {
 /// Integral over [0, h] of abs(c + W exp(-(s + i w) t)), by c and W at both ends.
 ///
 /// Composite Gauss-Legendre, 12 nodes in panels of 0.4 to 6 radians. A panel beside a zero of Z has a factor of its own for it, whose
-/// moments are in closed form. Error 1e-12 of h times the larger of |c| and |W|.
+/// moments are in closed form. Error 3e-12 of h times the larger of |c| and |W|.
 #[inline(always)]
 pub fn damped<R: Real>(centre: [R; 2], [from, to]: [[R; 2]; 2], decay: R, frequency: R, h: R) -> R {
     let (zero, one) = (h.of(0.0), h.of(1.0));
