@@ -15,6 +15,12 @@ use crate::study::scenario;
 
 /// So many runs: some groups, and what is left.
 const RUNS: u64 = 19;
+/// Five modes with damping.
+const DAMPED: &str = "[{ frequency = 0.44, gain = 0.0213, damping = 0.002, displacement = 2.75e-6 }, \
+                      { frequency = 0.755, gain = 0.0216, damping = 0.002 }, \
+                      { frequency = 1.3, gain = 0.01, damping = 0.003 }, \
+                      { frequency = 2.1, gain = 0.01, damping = 0.004 }, \
+                      { frequency = 3.4, gain = 0.01, damping = 0.005 }]";
 /// After the kink of the ramps.
 const SHORT: (&str, &str) = ("duration", "260.0");
 
@@ -127,14 +133,18 @@ fn what_a_batch_declines_is_simulated_alone() {
 #[test]
 fn rows_depend_on_no_thread_and_no_neighbour() {
     let gains = || Some(Grid::even("law.relay.k_t".to_owned(), 0.28, 0.40, 40));
-    for (name, duration, grid) in [
-        ("wheel-robust-gain", "60.0", None),
-        ("wheel-ekf", "60.0", None),
-        ("relay-fixed", "3000.0", gains()),
-        ("relay-adaptive", "9000.0", gains()),
-        ("relay-no-freeze", "9000.0", gains()),
+    let (minute, short, long) = (("duration", "60.0"), ("duration", "3000.0"), ("duration", "9000.0"));
+    let damped = ("body.planar.modes", DAMPED);
+    for (name, changes, grid) in [
+        ("wheel-robust-gain", &[minute][..], None),
+        ("wheel-ekf", &[minute], None),
+        ("relay-fixed", &[short], gains()),
+        ("relay-adaptive", &[long], gains()),
+        ("relay-no-freeze", &[long], gains()),
+        ("relay-fixed", &[short, damped], gains()),
+        ("relay-adaptive", &[long, damped], gains()),
     ] {
-        let study = Campaign::new(scenario(name, &[("duration", duration)]), "beside", grid);
+        let study = Campaign::new(scenario(name, changes), "beside", grid);
         let study = Arc::new(study.expect("a campaign"));
         assert!(batch::takes(study.scenario()), "{name}");
         let rows = |threads: usize, beside: bool| {

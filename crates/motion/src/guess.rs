@@ -1,4 +1,5 @@
-//! The instant at which a guard trips, of undamped modes: guessed, polished, and certified afterwards.
+//! The instant at which a guard trips, of modes damped below critical damping or not at all: guessed, polished, and certified
+//! afterwards.
 //!
 //! The guess is the rigid parabola. One evaluation there gives four derivatives, whose reverted series makes a step; the modes turn
 //! by it, and a second step ends at the trip. What is found is certain if bounds show, without another evaluation, that nothing
@@ -6,23 +7,22 @@
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
+use crate::damping::{Damping, TINY, Undamped};
 use crate::lanes::{Mask, Real};
-use crate::numerics::trig::{FARTHEST, sincos, sincos_short};
+use crate::numerics::trig::FARTHEST;
 
 /// Femtoseconds in a second.
 const TICKS: f64 = 1e15;
 /// Ticks of longer spans (s) do not fit 64 bits.
 const LONGEST: f64 = 9_000.0;
-/// Below this angle (rad) a turn is a polynomial of order 5, exact to rounding.
-const TINY: f64 = 3e-3;
 /// No turn that polishes a guess is longer, in radians of the fastest mode.
 pub const FARTHEST_TURN: f64 = 0.75;
 /// Most turns that polish a guess.
 const ROUNDS: usize = 3;
 
-/// An undamped mode: its equilibrium, and its deviation from it at one instant.
+/// A mode: its equilibrium, and its deviation from it at one instant.
 #[derive(Copy, Clone, Debug)]
-pub struct Oscillator<R> {
+pub struct Oscillator<R, D = Undamped> {
     /// Natural frequency (rad/s).
     pub frequency: R,
     /// Equilibrium (rad).
@@ -31,6 +31,8 @@ pub struct Oscillator<R> {
     pub displacement: R,
     /// Rate divided by the frequency (rad).
     pub quadrature: R,
+    /// Its damping.
+    pub damping: D,
 }
 
 /// A motion under a constant moment, from its departure on.
@@ -72,13 +74,26 @@ pub struct Found<R: Real> {
     pub seen: [R; 3],
 }
 
-impl<R: Real> Oscillator<R> {
-    /// Turns the deviation by an angle, of which this is sine and cosine.
+impl<R: Real, D: Damping<R>> Oscillator<R, D> {
+    /// Moves on by a time (s).
     #[inline(always)]
-    pub fn turn(&mut self, (sin, cos): (R, R)) {
-        let (x, y) = (self.displacement, self.quadrature);
-        self.displacement = cos * x + sin * y;
-        self.quadrature = cos * y - sin * x;
+    pub fn go(&mut self, t: R) {
+        let deviation = [self.displacement, self.quadrature];
+        [self.displacement, self.quadrature] = self.damping.go(self.frequency, deviation, t);
+    }
+
+    /// The same by at most 3/4 of a radian, forwards or back.
+    #[inline(always)]
+    fn go_short(&mut self, t: R) {
+        let deviation = [self.displacement, self.quadrature];
+        [self.displacement, self.quadrature] = self.damping.go_short(self.frequency, deviation, t);
+    }
+
+    /// The same by less than [`TINY`].
+    #[inline(always)]
+    fn go_tiny(&mut self, t: R) {
+        let deviation = [self.displacement, self.quadrature];
+        [self.displacement, self.quadrature] = self.damping.go_tiny(self.frequency, deviation, t);
     }
 
     /// A bound of the distance from equilibrium, at most 8 % above it: an octagon's.
@@ -90,31 +105,21 @@ impl<R: Real> Oscillator<R> {
     }
 }
 
-/// Sine and cosine of an angle below [`TINY`].
-#[inline(always)]
-fn tiny<R: Real>(x: R) -> (R, R) {
-    let z = x * x;
-    let (sixth, half) = (x.of(1.0 / 6.0), x.of(0.5));
-    let sin = x - x * z * (sixth - z * x.of(1.0 / 120.0));
-    (sin, x.of(1.0) - z * (half - z * x.of(1.0 / 24.0)))
-}
-
 /// The angle and its derivatives `t` seconds after departure, where the modes are.
 #[inline(always)]
-fn derivatives<R: Real>(from: &Departure<R>, t: R, modes: &[Oscillator<R>]) -> [R; 5] {
+fn derivatives<R: Real, D: Damping<R>>(from: &Departure<R>, t: R, modes: &[Oscillator<R, D>]) -> [R; 5] {
     let zero = t.of(0.0);
     let mut angle = from.angle + t * (from.rate + t.of(0.5) * from.moment * t);
     let mut rate = from.rate + from.moment * t;
     let (mut acceleration, mut jerk, mut snap) = (from.moment, zero, zero);
     for mode in modes {
-        let (w, x) = (mode.frequency, mode.displacement);
-        let (square, v) = (w * w, w * mode.quadrature);
-        let a = square * x;
+        let x = mode.displacement;
+        let [v, a, j, s] = mode.damping.derivatives(mode.frequency, [x, mode.quadrature]);
         angle = angle + (mode.equilibrium + x);
         rate = rate + v;
         acceleration = acceleration - a;
-        jerk = jerk - square * v;
-        snap = snap + square * a;
+        jerk = jerk - j;
+        snap = snap + s;
     }
     [angle, rate, acceleration, jerk, snap]
 }
@@ -156,10 +161,10 @@ fn above<R: Real>(x: R) -> R {
 
 /// The first trip of one of the levels, and the modes there. They are given at departure.
 #[inline(always)]
-pub fn locate<R: Real, const LEVELS: usize>(
+pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
     from: &Departure<R>,
     levels: &[Level<R>; LEVELS],
-    modes: &mut [Oscillator<R>],
+    modes: &mut [Oscillator<R, D>],
 ) -> Found<R> {
     let zero = from.angle.of(0.0);
     let one = from.angle.of(1.0);
@@ -169,7 +174,7 @@ pub fn locate<R: Real, const LEVELS: usize>(
         let radius = mode.reach();
         centre = centre + mode.equilibrium;
         reach = reach + radius;
-        curvature = curvature + mode.frequency * mode.frequency * radius;
+        curvature = curvature + mode.damping.stiffness(mode.frequency) * radius;
         angle = angle + (mode.equilibrium + mode.displacement);
         rate = rate + mode.frequency * mode.quadrature;
     }
@@ -189,7 +194,7 @@ pub fn locate<R: Real, const LEVELS: usize>(
     }
     let mut t = guess;
     for mode in modes.iter_mut() {
-        mode.turn(sincos(mode.frequency * t));
+        mode.go(t);
     }
     let mut change = step(level, derivatives(from, t, modes));
     let mut goes_on = zero.le(one);
@@ -204,7 +209,7 @@ pub fn locate<R: Real, const LEVELS: usize>(
         let turned = next - t;
         t = next;
         for mode in modes.iter_mut() {
-            mode.turn(sincos_short(mode.frequency * turned));
+            mode.go_short(turned);
         }
         change = step(level, derivatives(from, t, modes));
         goes_on = zero.of(TINY).lt((from.fastest * change).abs());
@@ -216,7 +221,7 @@ pub fn locate<R: Real, const LEVELS: usize>(
     let after = ticks / zero.of(TICKS);
     let turned = after - t;
     for mode in modes.iter_mut() {
-        mode.turn(tiny(mode.frequency * turned));
+        mode.go_tiny(turned);
     }
     let seen = derivatives(from, after, modes);
     // The trip is polished if nothing but rounding is left.

@@ -12,6 +12,7 @@
 
 pub mod attitude;
 pub mod crossing;
+pub mod damping;
 pub mod guard;
 pub mod guess;
 pub mod lanes;

@@ -7,7 +7,7 @@ use super::{Batch, Job};
 use crate::body::{Input, Segment};
 use crate::estimator::Monitor;
 use crate::flight::{
-    Crew, Flight, MOST, Place, Searched, Setup, Sight, flies, instant, phase, see, setup, watched,
+    Crew, Flight, MOST, Place, Searched, Setup, Sight, flies, instant, is_damped, phase, see, setup, watched,
 };
 use crate::guard::Guard;
 use crate::lanes::{Processor, Real, Work};
@@ -15,6 +15,7 @@ use crate::law::Phase;
 use crate::metrics::{Gather, Metrics};
 use crate::motion::State;
 use crate::motion::crossing::locate;
+use crate::motion::damping::{Damped, Undamped};
 use crate::random::Seed;
 use crate::record::{self, Command, Course, Record, Sample, Trigger};
 use crate::scenario::Scenario;
@@ -78,9 +79,9 @@ impl<'a> Runs<'a> {
         Self { jobs, next: 0, lanes, found, listens: false, looks: false }
     }
 
-    /// How many modes bodies and envelopes have.
-    fn structure(scenario: &Scenario) -> (usize, usize) {
-        (scenario.mode_count(), watched(scenario).len())
+    /// How many modes bodies and envelopes have, and whether any is damped.
+    fn structure(scenario: &Scenario) -> (usize, usize, bool) {
+        (scenario.mode_count(), watched(scenario).len(), is_damped(scenario))
     }
 }
 
@@ -91,8 +92,12 @@ impl Work for &mut Runs<'_> {
     #[inline(always)]
     fn run<R: Real>(self, kind: R) {
         let Some(first) = self.jobs.first() else { return };
-        let (modes, tracks) = Runs::structure(first.scenario);
-        Flight::fly(kind, modes, tracks, self);
+        let (modes, tracks, is_damped) = Runs::structure(first.scenario);
+        if is_damped {
+            Flight::<R, Damped<R>>::fly(kind, modes, tracks, self);
+        } else {
+            Flight::<R, Undamped>::fly(kind, modes, tracks, self);
+        }
     }
 }
 

@@ -10,10 +10,12 @@ use crate::time::Span;
 /// Eps, gamma and the strong and weak torque of the relay study.
 const LAW: [f64; 4] = [5e-4, 1e-4, 4e-5, 1e-6];
 
-fn body(modes: &[(f64, f64)]) -> Planar {
-    let mode = |&(frequency, gain): &(f64, f64)| {
+/// Each mode with its frequency, gain and damping ratio.
+fn body(modes: &[(f64, f64, f64)]) -> Planar {
+    let mode = |&(frequency, gain, ratio): &(f64, f64, f64)| {
         let gain = Finite::new(gain).expect("finite");
-        Mode::at_rest(Frequency::new(frequency).expect("in range"), gain, NonNegative::default())
+        let ratio = NonNegative::new(ratio).expect("in range");
+        Mode::at_rest(Frequency::new(frequency).expect("in range"), gain, ratio)
     };
     Planar { modes: modes.iter().map(mode).collect(), ..Planar::default() }
 }
@@ -65,7 +67,7 @@ impl Seen {
 }
 
 /// So many cycles of the relay law.
-fn study(seen: &mut Seen, modes: &[(f64, f64)], k_t: f64, cycles: usize) {
+fn study(seen: &mut Seen, modes: &[(f64, f64, f64)], k_t: f64, cycles: usize) {
     let [eps, gamma, strong, weak] = LAW;
     let body = body(modes);
     let mut arc = Segment::new(&body);
@@ -98,7 +100,7 @@ fn certain_trips_are_those_of_the_certified_search() {
     let mut seen = Seen::default();
     for index in 0..240 {
         let k_t = 0.28 + 0.12 * f64::from(index) / 240.0;
-        study(&mut seen, &[(0.44, 0.0213), (0.755, 0.0216)], k_t, 60);
+        study(&mut seen, &[(0.44, 0.0213, 0.0), (0.755, 0.0216, 0.0)], k_t, 60);
     }
     assert!(seen.worst < 4e-18, "{:e}", seen.worst);
     assert!(
@@ -108,9 +110,12 @@ fn certain_trips_are_those_of_the_certified_search() {
         seen.arcs
     );
     // One, three and no modes; modes that move much and fast.
-    for modes in
-        [&[(0.44, 0.0213)][..], &[(0.3, 0.02), (0.755, 0.03), (2.2, 0.1)], &[], &[(0.9, 0.2), (5.0, 0.4)]]
-    {
+    for modes in [
+        &[(0.44, 0.0213, 0.0)][..],
+        &[(0.3, 0.02, 0.0), (0.755, 0.03, 0.0), (2.2, 0.1, 0.0)],
+        &[],
+        &[(0.9, 0.2, 0.0), (5.0, 0.4, 0.0)],
+    ] {
         let mut seen = Seen::default();
         study(&mut seen, modes, 0.33, 300);
         assert!(seen.worst < 1e-17 && seen.trips > 50, "{modes:?}: {:e}, {}", seen.worst, seen.trips);
@@ -118,16 +123,61 @@ fn certain_trips_are_those_of_the_certified_search() {
 }
 
 #[test]
+fn so_they_are_of_damped_modes() {
+    let five = |zeta: f64| {
+        [
+            (0.44, 0.0213, zeta),
+            (0.755, 0.0216, zeta),
+            (1.3, 0.01, 2.0 * zeta),
+            (2.1, 0.01, 0.0),
+            (3.4, 0.01, zeta),
+        ]
+    };
+    for (zeta, least) in [(1e-6, 80), (0.002, 80), (0.05, 80), (0.4, 80)] {
+        let mut seen = Seen::default();
+        for index in 0..30 {
+            study(&mut seen, &five(zeta), 0.28 + 0.12 * f64::from(index) / 30.0, 60);
+        }
+        assert!(seen.worst < 1e-17, "{zeta}: {:e}", seen.worst);
+        assert!(
+            seen.arcs == 30 * 120 && seen.certain > seen.arcs * least / 100,
+            "{zeta}: {} of {}",
+            seen.certain,
+            seen.arcs
+        );
+    }
+    let mut seen = Seen::default();
+    study(&mut seen, &[(0.44, 0.0213, 0.01)], 0.33, 300);
+    study(&mut seen, &[(0.44, 0.0213, 0.0), (0.755, 0.0216, 0.99)], 0.33, 300);
+    assert!(seen.worst < 1e-17 && seen.certain > 1000, "{:e}, {}", seen.worst, seen.certain);
+}
+
+#[test]
 fn motions_of_all_kinds_have_no_other_first_trip() {
+    random_motions(15, |_| 0.0);
+}
+
+#[test]
+fn nor_have_damped_ones() {
+    random_motions(16, |draw| 0.97 * draw * draw * draw.abs());
+}
+
+/// Many motions with modes of random damping ratios.
+fn random_motions(seed: u64, ratio: impl Fn(f64) -> f64) {
     // A linear congruential generator: uniform numbers of [-1, 1).
-    let mut bits = 15_u64;
+    let mut bits = seed;
     let mut draw = || {
         bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     };
     let mut seen = Seen::default();
     for _ in 0..40_000 {
-        let body = body(&[(0.3 + 0.2 * draw(), 0.02), (1.0 + 0.5 * draw(), 0.02)]);
+        let frequencies = [0.3 + 0.2 * draw(), 1.0 + 0.5 * draw()];
+        let modes = match ratio(1.0) {
+            0.0 => frequencies.map(|frequency| (frequency, 0.02, 0.0)),
+            _ => frequencies.map(|frequency| (frequency, 0.02, ratio(draw()))),
+        };
+        let body = body(&modes);
         let mut state = body.start();
         (state.rigid_angle, state.rigid_rate) = (1e-3 * draw(), 4e-5 * draw());
         let size = libm::exp(-8.0 + 4.0 * draw()) * 1e-2;

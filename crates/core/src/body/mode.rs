@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::motion::damping::Damped;
 use crate::motion::{Phase, Sensed};
+use crate::numerics::decay::exp;
 use crate::numerics::phasor::Phasor;
 use crate::numerics::trig::sincos_any;
 use crate::quantity::{Finite, Frequency, NonNegative};
@@ -82,8 +84,7 @@ pub struct Flow {
 #[derive(Copy, Clone, Debug)]
 enum Regime {
     Undamped,
-    /// Decay rate and damped frequency.
-    Under(f64, f64),
+    Under(Damped<f64>),
     /// Decay rate, the slower of the two real rates, and half their difference.
     Over(f64, f64, f64),
 }
@@ -95,7 +96,7 @@ impl Flow {
         let regime = if zeta == 0.0 {
             Regime::Undamped
         } else if zeta < 1.0 {
-            Regime::Under(zeta * w, w * libm::sqrt((1.0 - zeta) * (1.0 + zeta)))
+            Regime::Under(Damped::new(w, zeta))
         } else {
             let root = libm::sqrt((zeta - 1.0) * (zeta + 1.0));
             Regime::Over(zeta * w, w / (zeta + root), w * root)
@@ -117,7 +118,7 @@ impl Flow {
     pub fn pole(&self) -> Option<Phasor> {
         match self.regime {
             Regime::Undamped => Some(Phasor { re: 0.0, im: self.frequency }),
-            Regime::Under(decay, damped) => Some(Phasor { re: -decay, im: damped }),
+            Regime::Under(damped) => Some(Phasor { re: -damped.decay, im: damped.frequency }),
             Regime::Over(..) => None,
         }
     }
@@ -151,12 +152,27 @@ impl Flow {
                 let (sin, cos) = sincos_any(self.frequency * h);
                 return [cos, sin, -sin, cos];
             }
-            Regime::Under(decay, damped) => (decay, spiral(decay, damped, h)),
+            Regime::Under(Damped { decay, frequency, .. }) => (decay, spiral(decay, frequency, h)),
             Regime::Over(decay, slow, split) => (decay, creep(slow, split, h)),
         };
         let cross = self.frequency * s;
         [c + decay * s, cross, -cross, c - decay * s]
     }
+
+    /// The same, to the bit as it is in lanes.
+    #[inline]
+    pub fn turn(&self, h: f64) -> [f64; 4] {
+        match &self.regime {
+            Regime::Under(damped) => turn(damped, h),
+            Regime::Undamped | Regime::Over(..) => self.transition(h),
+        }
+    }
+}
+
+/// The transition below critical damping as it is in lanes.
+#[inline(never)]
+fn turn(damped: &Damped<f64>, h: f64) -> [f64; 4] {
+    damped.transition(sincos_any(damped.frequency * h), exp(-(damped.decay * h)))
 }
 
 // With the decay rate d and damped frequency v, the two functions exp(-d h) cos(v h) and exp(-d h) sin(v h) / v make the

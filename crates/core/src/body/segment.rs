@@ -1,17 +1,19 @@
 //! The motion of the planar body under one input, in closed form, with the bounds that certify crossings.
 
+mod guess;
+
 use nalgebra::DVector;
 
 use super::forced::{Forced, Input, Response};
 use super::mode::Flow;
 use super::{Drive, Planar};
 use crate::guard::Guard;
-use crate::motion::crossing::{Approach, Trip, first_root};
-use crate::motion::guess::{self, Departure, FARTHEST_TURN, Level, Oscillator};
+use crate::motion::crossing::{Approach, first_root};
 use crate::motion::stretch::{Expansion, REACH};
 use crate::motion::{Phase, Sensed, State};
 use crate::numerics::polynomial::TERMS;
 use crate::time::Span;
+use guess::Guess;
 
 /// The motion under one input, from the state in which it began.
 #[derive(Clone, Debug)]
@@ -31,15 +33,8 @@ pub struct Segment {
     curvature: f64,
     /// No |x'''| on the segment is larger (rad/s³).
     jerk: f64,
-    /// Room for a guess of the next trip, where no mode is damped.
+    /// Room for a guess of the next trip, where it can be guessed.
     guess: Option<Guess>,
-}
-
-/// The highest frequency (rad/s), and room for the modes on their way.
-#[derive(Clone, Debug)]
-struct Guess {
-    fastest: f64,
-    modes: Vec<Oscillator<f64>>,
 }
 
 /// One mode on a segment: its equilibrium, and the deviation in which the segment began.
@@ -55,11 +50,6 @@ impl Segment {
     pub fn new(body: &Planar) -> Self {
         let swing = |mode| ModeSegment { flow: Flow::new(mode), equilibrium: 0.0, from: Phase::default() };
         let visible = body.drive == Drive::Torque;
-        let undamped = body.modes.iter().all(|mode| mode.damping.get() == 0.0);
-        let guess = || Guess {
-            fastest: body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max),
-            modes: Vec::with_capacity(body.modes.len()),
-        };
         Self {
             mobility: 1.0 / body.commanded_inertia(),
             visible,
@@ -72,7 +62,7 @@ impl Segment {
             reach: 0.0,
             curvature: 0.0,
             jerk: 0.0,
-            guess: (visible && undamped).then(guess),
+            guess: visible.then(|| Guess::new(body)).flatten(),
         }
     }
 
@@ -111,7 +101,7 @@ impl Segment {
         let mut sensed =
             Sensed { angle: state.rigid_angle, rate: state.rigid_rate, acceleration: self.moment };
         for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
-            let [xx, xy, yx, yy] = swing.flow.transition(h);
+            let [xx, xy, yx, yy] = swing.flow.turn(h);
             let Phase { displacement: x, quadrature: y } = swing.from;
             let deviation = xx * x + xy * y;
             phase.displacement = swing.equilibrium + deviation;
@@ -217,44 +207,6 @@ impl Segment {
         sensed
     }
 
-    /// The first trip of one or two guards within a span, as it is guessed, polished and certified without a search; the state
-    /// there is put into `state`. Nothing if it is not certain.
-    pub fn guess(&mut self, guards: &[Guard], horizon: Span, state: &mut State) -> Option<Option<Trip>> {
-        let Guess { fastest, modes } = self.guess.as_mut().filter(|_| self.forced.is_none())?;
-        modes.clear();
-        modes.extend(self.modes.iter().map(|swing| Oscillator {
-            frequency: swing.flow.frequency,
-            equilibrium: swing.equilibrium,
-            displacement: swing.from.displacement,
-            quadrature: swing.from.quadrature,
-        }));
-        let (fastest, longest) = (*fastest, FARTHEST_TURN / *fastest);
-        let from = Departure { angle: self.angle, rate: self.rate, moment: self.moment, fastest, longest };
-        let level = |guard: &Guard| Level { angle: guard.level, towards: guard.side.sign() };
-        let found = match guards {
-            [one] => guess::locate(&from, &[level(one)], modes),
-            [one, other] => guess::locate(&from, &[level(one), level(other)], modes),
-            _ => return None,
-        };
-        if !found.certain {
-            return None;
-        }
-        let after = Span::from_femtoseconds(found.ticks as i64);
-        if after > horizon {
-            return Some(None);
-        }
-        let h = found.after;
-        state.rigid_angle = self.angle + h * (self.rate + 0.5 * self.moment * h);
-        state.rigid_rate = self.rate + self.moment * h;
-        for (mode, phase) in modes.iter().zip(&mut state.modes) {
-            phase.displacement = mode.equilibrium + mode.displacement;
-            phase.quadrature = mode.quadrature;
-        }
-        let [angle, rate, acceleration] = found.seen;
-        let guard = usize::from(!found.first);
-        Some(Some(Trip { after, guard, sight: Sensed { angle, rate, acceleration } }))
-    }
-
     /// A time after departure (s) before which the guard cannot trip: until then the rigid parabola with
     /// all modes at full swing towards the guard stays short of its level.
     pub fn earliest(&self, guard: Guard) -> f64 {
@@ -294,7 +246,7 @@ impl Segment {
     pub fn carry(&self, h: f64, deviation: &mut [f64]) {
         deviation[0] += h * deviation[1];
         for (swing, pair) in self.modes.iter().zip(deviation[2..].chunks_exact_mut(2)) {
-            let [xx, xy, yx, yy] = swing.flow.transition(h);
+            let [xx, xy, yx, yy] = swing.flow.turn(h);
             (pair[0], pair[1]) = (xx * pair[0] + xy * pair[1], yx * pair[0] + yy * pair[1]);
         }
     }

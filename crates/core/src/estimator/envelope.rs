@@ -12,9 +12,10 @@ use serde::{Deserialize, Serialize};
 use crate::body::Mode;
 use crate::body::spatial::SpatialMode;
 use crate::motion::State;
+use crate::numerics::decay::exp;
 use crate::numerics::phasor::{Complex, Phasor, abs, polar};
-use crate::numerics::swing_integral;
 use crate::numerics::trig::sincos_any;
+use crate::numerics::{swing_damped, swing_integral};
 use crate::quantity::Finite;
 use crate::time::{Instant, Span};
 
@@ -122,7 +123,7 @@ impl EnvelopeMonitor {
             let (from, deviation) = (track.axis, track.deviation);
             let (sin, cos) = sincos_any(track.damped * t);
             track.axis = Complex { re: cos, im: sin };
-            let shrink = if track.decay > 0.0 { libm::exp(-track.decay * h) } else { 1.0 };
+            let shrink = if track.decay > 0.0 { exp(-(track.decay * h)) } else { 1.0 };
             match self.form {
                 Form::Dynamic => {
                     track.frame = track.frame * shrink + track.equilibrium * (track.axis - from * shrink);
@@ -169,7 +170,7 @@ impl EnvelopeMonitor {
     }
 
     /// Takes over what was followed elsewhere until an instant: the integral since the window began (rad s), and of each mode the
-    /// phasor in the turning frame, that frame's axis, the equilibrium, which is real, and the deviation from it.
+    /// phasor in the turning frame, that frame's axis, the real part of the equilibrium, and the deviation from it.
     pub fn take_over(&mut self, now: Instant, integral: f64, tracks: &[[f64; 7]]) {
         (self.now, self.integral) = (now, integral);
         for (track, [re, im, cos, sin, equilibrium, x, y]) in
@@ -177,7 +178,7 @@ impl EnvelopeMonitor {
         {
             track.frame = Complex { re, im };
             track.axis = Complex { re: cos, im: sin };
-            track.equilibrium = Complex { re: equilibrium, im: 0.0 };
+            track.equilibrium = track.phasor(equilibrium, 0.0);
             track.deviation = Complex { re: x, im: y };
         }
     }
@@ -225,15 +226,11 @@ impl Track {
     /// Integral of the mode's envelope over the last `h` seconds, in which its deviation was this at first.
     fn integral(&self, from: Phasor, h: f64) -> f64 {
         let Self { equilibrium, deviation, decay, damped, frequency, .. } = *self;
+        let ends = [[from.re, from.im], [deviation.re, deviation.im]];
         if decay > 0.0 {
-            swing_integral::damped(equilibrium, from, decay, damped, h)
+            swing_damped::damped([equilibrium.re, equilibrium.im], ends, decay, damped, h)
         } else {
-            swing_integral::undamped(
-                equilibrium.re,
-                [[from.re, from.im], [deviation.re, deviation.im]],
-                frequency,
-                h,
-            )
+            swing_integral::undamped(equilibrium.re, ends, frequency, h)
         }
     }
 }

@@ -3,15 +3,16 @@
 use crate::guard::Guard;
 use crate::law::Guards;
 
-/// One run at its start, as plain numbers. A mode: frequency, excitability, displacement and quadrature.
+/// One run at its start, as plain numbers. A mode: frequency, excitability, displacement and
+/// quadrature, damping ratio; a track of the envelope: the same, with the phasor's imaginary part in place of the quadrature.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
     /// Rigid angle and rate.
     pub angle: f64,
     pub rate: f64,
     /// Modes of the body, and of the envelope's model.
-    pub modes: Vec<[f64; 4]>,
-    pub tracks: Vec<[f64; 4]>,
+    pub modes: Vec<[f64; 5]>,
+    pub tracks: Vec<[f64; 5]>,
     /// Half the width of the dead zone, and where the brake begins.
     pub edge: f64,
     pub back: f64,
@@ -21,6 +22,8 @@ pub struct Setup {
     pub strong: f64,
     pub weak: f64,
     pub k_t: f64,
+    /// Whether a mode of the body or of the envelope is damped.
+    pub is_damped: bool,
     /// The end, and the length of a window: whole seconds and femtoseconds.
     pub end: (u64, u64),
     pub window: Option<(u64, u64)>,

@@ -14,8 +14,8 @@ use super::clock::{Clock, nearest_ticks};
 use super::crew::{Crew, Place, Sight};
 use super::track::{self, Track};
 use crate::lanes::{Four, Mask, Real};
+use crate::motion::damping::Damping;
 use crate::motion::guess::{Departure, Found, Level, Oscillator, locate};
-use crate::numerics::trig::sincos;
 
 /// Most lanes.
 pub const MOST: usize = 16;
@@ -36,7 +36,7 @@ fn seen<R: Real>(mirror: Option<R>, number: R) -> R {
 }
 
 /// Runs side by side.
-pub struct Flight<R: Real> {
+pub struct Flight<R: Real, D> {
     now: Clock<R>,
     end: Clock<R>,
     side: R,
@@ -44,8 +44,8 @@ pub struct Flight<R: Real> {
     rate: R,
     /// Displacements from 0; the modes about their equilibria at departure, and at the end of the motion.
     totals: Vec<R>,
-    modes: Vec<Oscillator<R>>,
-    moved: Vec<Oscillator<R>>,
+    modes: Vec<Oscillator<R, D>>,
+    moved: Vec<Oscillator<R, D>>,
     excitabilities: Vec<R>,
     fastest: R,
     longest: R,
@@ -58,7 +58,7 @@ pub struct Flight<R: Real> {
     /// When the push began, and how long it lasted (s).
     pushed: Clock<R>,
     lasted: R,
-    tracks: Vec<Track<R>>,
+    tracks: Vec<Track<R, D>>,
     /// What follows those of one run side by side.
     four: Four,
     /// Whether any run has windows.
@@ -75,7 +75,7 @@ pub struct Flight<R: Real> {
     sight: Sight,
 }
 
-impl<R: Real> Flight<R> {
+impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Makes all runs of a crew, of bodies and envelopes with so many modes.
     #[inline(always)]
     pub fn fly<C: Crew>(kind: R, modes: usize, tracks: usize, crew: &mut C) {
@@ -168,8 +168,7 @@ impl<R: Real> Flight<R> {
         let ticks = R::select(fits, nearest, nearest.of(0.0));
         let after = ticks / ticks.of(1e15);
         for index in 0..self.modes.len() {
-            let mode = &mut self.moved[index];
-            mode.turn(sincos(mode.frequency * after));
+            self.moved[index].go(after);
         }
         (Clock::of_ticks(ticks), after)
     }
@@ -178,13 +177,13 @@ impl<R: Real> Flight<R> {
     #[inline(always)]
     fn depart(&mut self, moment: R) {
         for index in 0..self.modes.len() {
-            let Oscillator { frequency, quadrature, .. } = self.modes[index];
+            let Oscillator { frequency, quadrature, damping, .. } = self.modes[index];
             let equilibrium = self.excitabilities[index] * moment;
             let displacement = self.totals[index] - equilibrium;
             // Number by number: a copy of the whole would wait for what was just written.
             self.modes[index].equilibrium = equilibrium;
             self.modes[index].displacement = displacement;
-            self.moved[index] = Oscillator { frequency, equilibrium, displacement, quadrature };
+            self.moved[index] = Oscillator { frequency, equilibrium, displacement, quadrature, damping };
         }
         for track in &mut self.tracks {
             track.command(moment);
@@ -205,7 +204,7 @@ impl<R: Real> Flight<R> {
         let from = Departure { angle: self.angle, rate: self.rate, moment, fastest, longest };
         let found: Found<R> = match &mut self.moved[..] {
             // So many modes, which is usual, stay in registers.
-            [first, second] => {
+            [first, second] if !D::IS_DAMPED => {
                 let mut two = [*first, *second];
                 let found = locate(&from, levels, &mut two);
                 [*first, *second] = two;
@@ -329,7 +328,7 @@ impl<R: Real> Flight<R> {
                 Some(whole) if !due.any() => whole,
                 _ => at.since(self.seen).seconds(),
             };
-            if R::LANES == 1 && self.tracks.len() > 1 {
+            if R::LANES == 1 && !D::IS_DAMPED && self.tracks.len() > 1 {
                 self.integral = track::follow(self.four, &mut self.tracks, time, span, self.integral);
             } else {
                 self.follow_each(goes_on, time, span);

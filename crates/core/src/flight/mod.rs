@@ -1,4 +1,4 @@
-//! Flights: runs of the relay law about a body of undamped modes, with motions, crossings and envelopes in lanes, or one alone.
+//! Flights: runs of the relay law about a body with modes, with motions, crossings and envelopes in lanes, or one alone.
 
 mod clock;
 mod crew;
@@ -9,6 +9,7 @@ use crate::adaptation::Adaptation;
 use crate::body::{Drive, Mode, Planar};
 use crate::estimator::{Estimator, Form};
 use crate::law::{Law, Phase, Relay, Sides};
+use crate::motion::damping::Damped;
 use crate::motion::{self, State};
 use crate::numerics::trig::FARTHEST;
 use crate::scenario::Scenario;
@@ -30,7 +31,8 @@ pub fn watched(scenario: &Scenario) -> &[Mode] {
     envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or_else(own))
 }
 
-/// Whether the law alone moves the body, whose modes are undamped, and nothing but the envelope is estimated.
+/// Whether the law alone moves the body, whose modes are damped below critical damping or not at all, and nothing but the envelope
+/// is estimated. Motions at critical damping and above are no turns, and rare: their runs go one by one.
 fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
     let observes = scenario
         .estimator
@@ -40,9 +42,11 @@ fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
         |adaptation| matches!(adaptation, Adaptation::RandomSearch(search) if search.tunes == "k_t" && search.objective.is_default()),
     );
     let duration = scenario.duration.seconds();
-    let modes = model.modes.iter().chain(watched(scenario));
-    let are_exact =
-        modes.clone().all(|mode| mode.damping.get() == 0.0 && mode.frequency.get() * duration < FARTHEST);
+    let are_exact = model
+        .modes
+        .iter()
+        .chain(watched(scenario))
+        .all(|mode| mode.damping.get() < 1.0 && mode.frequency.get() * duration < FARTHEST);
     let begins = model.start().angle().abs() < law.dead_zone.get();
     let has_band = scenario.promise().band(f64::NAN) > 0.0;
     scenario.is_plain()
@@ -63,25 +67,40 @@ pub fn alone(scenario: &Scenario) -> Option<Setup> {
     modes.all(|mode| mode.gain.get() != 0.0).then(|| setup(scenario, model, law))
 }
 
+/// Whether any mode of a scenario or of its envelope is damped.
+pub fn is_damped(scenario: &Scenario) -> bool {
+    let own = scenario.model.planar().map_or(&[][..], |body| &body.modes);
+    own.iter().chain(watched(scenario)).any(|mode| mode.damping.get() > 0.0)
+}
+
 /// A run at its start.
 pub fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
     let mobility = 1.0 / model.commanded_inertia();
     let of = |mode: &Mode| {
         let phase = mode.start();
-        [mode.frequency.get(), mode.excitability(), phase.displacement, phase.quadrature]
+        let ratio = mode.damping.get();
+        [mode.frequency.get(), mode.excitability(), phase.displacement, phase.quadrature, ratio]
+    };
+    // As the envelope has it.
+    let track = |mode: &Mode| {
+        let [frequency, k, displacement, _, ratio] = of(mode);
+        let damped = Damped::new(frequency, ratio);
+        let imaginary = (mode.rate.get() + damped.decay * displacement) / damped.frequency;
+        [frequency, k, displacement, imaginary, ratio]
     };
     let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
     Setup {
         angle: model.angle.get(),
         rate: model.rate.get(),
         modes: model.modes.iter().map(of).collect(),
-        tracks: watched(scenario).iter().map(of).collect(),
+        tracks: watched(scenario).iter().map(track).collect(),
         edge: law.dead_zone.get(),
         back: law.dead_zone.get() - law.hysteresis.get(),
         torques: [law.strong.get(), law.weak.get()],
         strong: law.strong.get() * mobility,
         weak: law.weak.get() * mobility,
         k_t: law.k_t.get(),
+        is_damped: is_damped(scenario),
         end: (Instant::START + scenario.duration).parts(),
         window: envelope.map(|envelope| (Instant::START + envelope.window).parts()),
     }

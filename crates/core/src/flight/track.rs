@@ -1,9 +1,12 @@
-//! The envelope of undamped modes in lanes: what `estimator::envelope` does, to the bit.
+//! The envelope of modes in lanes: what `estimator::envelope` does, to the bit.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
-use crate::lanes::{Four, Real, Work};
+use crate::lanes::{Four, Mask, Real, Work};
+use crate::motion::damping::{Damping, Undamped};
+use crate::numerics::decay::exp;
+use crate::numerics::swing_damped::damped;
 use crate::numerics::swing_integral::undamped;
 use crate::numerics::trig::sincos;
 
@@ -12,7 +15,7 @@ const SIDE: usize = 4;
 
 /// One mode's phasor.
 #[derive(Copy, Clone, Debug)]
-pub struct Track<R> {
+pub struct Track<R, D> {
     /// Natural frequency (rad/s).
     pub frequency: R,
     /// Static displacement for each unit of moment (s²).
@@ -20,15 +23,19 @@ pub struct Track<R> {
     /// The phasor in the turning frame; the axis of that frame now.
     pub frame: [R; 2],
     pub axis: [R; 2],
-    /// The equilibrium, which is real, and the deviation from it now.
+    /// The equilibrium, whose imaginary part follows from its damping, and the deviation from it now.
     pub equilibrium: R,
     pub deviation: [R; 2],
+    pub damping: D,
 }
 
-impl<R: Real> Track<R> {
+impl<R: Real, D: Damping<R>> Track<R, D> {
     /// Follows the mode to a time (s), over a span (s), and returns the integral of its envelope over it.
     #[inline(always)]
     pub fn advance(&mut self, time: R, span: R) -> R {
+        if D::IS_DAMPED {
+            return self.fade(time, span);
+        }
         let (from, before) = (self.axis, self.deviation);
         let (sin, cos) = sincos(self.frequency * time);
         self.axis = [cos, sin];
@@ -40,13 +47,50 @@ impl<R: Real> Track<R> {
         undamped(self.equilibrium, [before, self.deviation], self.frequency, span)
     }
 
+    /// The same of modes that may be damped.
+    #[inline(always)]
+    fn fade(&mut self, time: R, span: R) -> R {
+        let (from, before, decay) = (self.axis, self.deviation, self.damping.decay(time));
+        let turning = self.damping.turning(self.frequency);
+        let (sin, cos) = sincos(turning * time);
+        let left = exp(-(decay * span));
+        self.axis = [cos, sin];
+        let ([re, im], equilibrium) = (self.frame, self.imaginary(self.equilibrium));
+        let (c, s) = (cos - from[0] * left, sin - from[1] * left);
+        let re = re * left + (self.equilibrium * c - equilibrium * s);
+        let im = im * left + (self.equilibrium * s + equilibrium * c);
+        self.frame = [re, im];
+        self.deviation = [(re * cos + im * sin) - self.equilibrium, (im * cos - re * sin) - equilibrium];
+        let ends = [before, self.deviation];
+        let integral = damped([self.equilibrium, equilibrium], ends, decay, turning, span);
+        let stays = decay.le(decay.of(0.0));
+        if !stays.any() {
+            return integral;
+        }
+        R::select(stays, undamped(self.equilibrium, ends, self.frequency, span), integral)
+    }
+
+    /// The imaginary part of an equilibrium.
+    #[inline(always)]
+    fn imaginary(&self, equilibrium: R) -> R {
+        if D::IS_DAMPED {
+            (self.damping.decay(equilibrium) * equilibrium) / self.damping.turning(self.frequency)
+        } else {
+            equilibrium.of(0.0)
+        }
+    }
+
     /// Takes over a moment that holds from now on.
     #[inline(always)]
     pub fn command(&mut self, moment: R) {
+        let before = self.imaginary(self.equilibrium);
         let equilibrium = self.excitability * moment;
         let shift = self.equilibrium - equilibrium;
         self.equilibrium = equilibrium;
         self.deviation[0] = self.deviation[0] + shift;
+        if D::IS_DAMPED {
+            self.deviation[1] = self.deviation[1] + (before - self.imaginary(equilibrium));
+        }
     }
 
     /// One or the other.
@@ -63,9 +107,16 @@ impl<R: Real> Track<R> {
     }
 }
 
-/// Follows the modes of one run to a time (s), over a span (s), side by side; adds the integrals of their envelopes to one.
+/// Follows the undamped modes of one run to a time (s), over a span (s), side by side; adds the integrals of their envelopes to
+/// one.
 #[inline(always)]
-pub fn follow<R: Real>(four: Four, tracks: &mut [Track<R>], time: R, span: R, mut integral: R) -> R {
+pub fn follow<R: Real, D: Damping<R>>(
+    four: Four,
+    tracks: &mut [Track<R, D>],
+    time: R,
+    span: R,
+    mut integral: R,
+) -> R {
     for some in tracks.chunks_mut(SIDE) {
         let count = some.len();
         let each = four.run(Beside { tracks: some, time: time.lane(0), span: span.lane(0) });
@@ -76,14 +127,14 @@ pub fn follow<R: Real>(four: Four, tracks: &mut [Track<R>], time: R, span: R, mu
     integral
 }
 
-/// At most four modes of one run, which advance to a time (s), over a span (s).
-struct Beside<'a, R> {
-    tracks: &'a mut [Track<R>],
+/// At most four undamped modes of one run, which advance to a time (s), over a span (s).
+struct Beside<'a, R, D> {
+    tracks: &'a mut [Track<R, D>],
     time: f64,
     span: f64,
 }
 
-impl<R: Real> Work for Beside<'_, R> {
+impl<R: Real, D: Damping<R>> Work for Beside<'_, R, D> {
     type Output = [f64; SIDE];
 
     #[inline(always)]
@@ -106,6 +157,7 @@ impl<R: Real> Work for Beside<'_, R> {
             axis: [load!(axis[0]), load!(axis[1])],
             equilibrium: load!(equilibrium),
             deviation: [load!(deviation[0]), load!(deviation[1])],
+            damping: Undamped,
         };
         let integral = all.advance(kind.of(self.time), kind.of(self.span));
         macro_rules! store {

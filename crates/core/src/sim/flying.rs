@@ -8,6 +8,7 @@ use super::{Simulation, SimulationError};
 use crate::flight::{Crew, Flight, Place, Rest, Searched, Setup, Sight, instant, phase, see};
 use crate::lanes::{Processor, Real, Work};
 use crate::law::Command;
+use crate::motion::damping::{Damped, Undamped};
 use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
 
@@ -123,7 +124,12 @@ impl Work for &mut Alone<'_> {
     #[allow(clippy::inline_always, reason = "a function of its own would lack the processor's instructions")]
     #[inline(always)]
     fn run<K: Real>(self, kind: K) {
-        Flight::fly(kind, self.setup.modes.len(), self.setup.tracks.len(), self);
+        let (modes, tracks) = (self.setup.modes.len(), self.setup.tracks.len());
+        if self.setup.is_damped {
+            Flight::<K, Damped<K>>::fly(kind, modes, tracks, self);
+        } else {
+            Flight::<K, Undamped>::fly(kind, modes, tracks, self);
+        }
     }
 }
 

@@ -189,6 +189,24 @@ mod tests {
     }
 
     #[test]
+    fn so_do_those_of_damped_modes() {
+        let one = "[{ frequency = 0.44, gain = 0.0213, damping = 0.01 }]";
+        let three = "[{ frequency = 0.44, gain = 0.0213, damping = 0.002, displacement = 2.75e-6 }, \
+                     { frequency = 0.755, gain = 0.0216 }, { frequency = 3.4, gain = 0.01, damping = 0.4 }]";
+        let other = "{ window = 500.0, modes = [{ frequency = 0.5, gain = 0.02, damping = 0.01 }] }";
+        for name in ["relay-fixed", "relay-adaptive"] {
+            for modes in [one, three] {
+                let scenario = shipped(name, &[("body.planar.modes", modes)]);
+                assert!(Simulation::new(&scenario, 0).quick.flight.is_some(), "{name} {modes}");
+                compare(&scenario, &format!("{name} {modes}"));
+            }
+        }
+        let scenario = shipped("relay-fixed", &[("estimator.envelope", other)]);
+        assert!(Simulation::new(&scenario, 0).quick.flight.is_some());
+        compare(&scenario, "a model of its own");
+    }
+
+    #[test]
     fn so_do_those_that_cannot_fly() {
         let damped =
             "[{ frequency = 0.44, gain = 0.0213, damping = 0.01 }, { frequency = 0.755, gain = 0.0 }]";
@@ -197,6 +215,7 @@ mod tests {
             &[("body.planar.modes", damped)],
             &[("body.planar.modes", damped), ("estimator.envelope.form", "trigonometric")],
             &[("estimator.envelope.form", "truth")],
+            &[("body.planar.modes", "[{ frequency = 0.44, gain = 0.0213, damping = 1.0 }]")],
         ] {
             let scenario = shipped("relay-fixed", changes);
             assert!(Simulation::new(&scenario, 0).quick.flight.is_none(), "{changes:?}");

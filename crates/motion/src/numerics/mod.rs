@@ -1,6 +1,7 @@
 //! Numbers: special functions, quadrature, integration, roots. Nothing here knows a spacecraft.
 
 pub mod biquad;
+pub mod decay;
 pub mod delay_margin;
 pub mod elliptic;
 pub mod exponential;
@@ -14,6 +15,7 @@ pub mod polynomials;
 pub mod quadrature;
 pub mod simplex;
 pub mod stumpff;
+pub mod swing_damped;
 pub mod swing_integral;
 pub mod swing_series;
 pub mod trig;

@@ -9,6 +9,11 @@ use crate::campaign::{Campaign, Run};
 use crate::lanes::Processor;
 use crate::metrics::Selection;
 
+/// Five modes with damping.
+const FIVE: &str = "{ frequency = 0.44, gain = 0.0213, damping = 0.002, displacement = 2.75e-6 },
+    { frequency = 0.755, gain = 0.0216, damping = 0.002 }, { frequency = 1.3, gain = 0.01, damping = 0.003 },
+    { frequency = 2.1, gain = 0.01, damping = 0.004 }, { frequency = 3.4, gain = 0.01, damping = 0.005 }";
+
 fn shipped(name: &str, changes: &[(&str, String)]) -> Scenario {
     let path = format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let mut document = crate::Document::load(Path::new(&path)).expect("shipped");
@@ -72,11 +77,38 @@ fn shipped_scenarios_and_others_come_to_the_same() {
         "{ frequency = 0.44, gain = 0.02 }",
         "{ frequency = 0.3, gain = 0.02, rate = 1e-6 }, { frequency = 0.8, gain = 0.03 }, { frequency = 2.2, gain = 0.1 }",
         "{ frequency = 0.9, gain = 0.2 }, { frequency = 5.0, gain = 0.4 }",
+        "{ frequency = 0.44, gain = 0.02, damping = 0.01 }",
+        "{ frequency = 0.3, gain = 0.02, rate = 1e-6, damping = 0.3 }, { frequency = 0.8, gain = 0.03 }",
+        FIVE,
     ];
     for modes in modes {
-        for rest in ["", "[estimator.envelope]\nwindow = 77.0\n", "[reference]\nband = 5.1e-4\n"] {
+        let other = "[estimator.envelope]\nwindow = 77.0\nmodes = [{ frequency = 0.5, gain = 0.02, damping = 0.02 }]\n";
+        for rest in ["", "[estimator.envelope]\nwindow = 77.0\n", "[reference]\nband = 5.1e-4\n", other] {
             let scenarios = vec![text(modes, rest); 3];
             compare(&scenarios, 0);
+        }
+    }
+}
+
+#[test]
+fn runs_of_damped_modes_come_to_the_same() {
+    for name in ["relay-fixed", "relay-adaptive", "relay-no-freeze"] {
+        for modes in ["{ frequency = 0.44, gain = 0.0213, damping = 0.01 }", FIVE] {
+            let of = |index: u32| {
+                let k_t = 0.28 + 0.12 * f64::from(index) / 19.0;
+                let modes = format!("[{modes}]");
+                let duration = "6000.0".to_owned();
+                shipped(
+                    name,
+                    &[
+                        ("body.planar.modes", modes),
+                        ("law.relay.k_t", k_t.to_string()),
+                        ("duration", duration),
+                    ],
+                )
+            };
+            let scenarios: Vec<Scenario> = (0..19).map(of).collect();
+            compare(&scenarios, 19);
         }
     }
 }

@@ -8,15 +8,18 @@ use crate::flight::clock::Clock;
 use crate::flight::crew::{Crew, Setup, Sight};
 use crate::flight::track::Track;
 use crate::lanes::{Four, Real};
+use crate::motion::damping::Damping;
 use crate::motion::guess::{FARTHEST_TURN, Oscillator};
 
-impl<R: Real> Flight<R> {
+impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Lanes without runs, of bodies and envelopes with so many modes.
     #[inline(always)]
     pub(super) fn new(kind: R, modes: usize, tracks: usize) -> Self {
         let (zero, one) = (kind.of(0.0), kind.of(1.0));
         let (start, never) = (Clock { whole: zero, part: zero }, Clock { whole: kind.of(NEVER), part: zero });
-        let still = Oscillator { frequency: one, equilibrium: zero, displacement: zero, quadrature: zero };
+        let damping = D::none(kind);
+        let still =
+            Oscillator { frequency: one, equilibrium: zero, displacement: zero, quadrature: zero, damping };
         let track = Track {
             frequency: one,
             excitability: zero,
@@ -24,6 +27,7 @@ impl<R: Real> Flight<R> {
             axis: [one, zero],
             equilibrium: zero,
             deviation: [zero; 2],
+            damping,
         };
         let mut flight = Self {
             now: start,
@@ -104,17 +108,20 @@ impl<R: Real> Flight<R> {
         put(&mut self.band, band);
         put(&mut self.integral, 0.0);
         let mut fastest = 0.0_f64;
-        for (index, [frequency, k, x, y]) in setup.modes.iter().copied().enumerate() {
+        for (index, [frequency, k, x, y, ratio]) in setup.modes.iter().copied().enumerate() {
             fastest = fastest.max(frequency);
             put(&mut self.modes[index].frequency, frequency);
             put(&mut self.modes[index].quadrature, y);
             put(&mut self.excitabilities[index], k);
             put(&mut self.totals[index], x);
+            let damping = &mut self.modes[index].damping;
+            *damping = damping.with_lane(lane, frequency, ratio);
         }
         put(&mut self.fastest, fastest);
         put(&mut self.longest, FARTHEST_TURN / fastest);
         for (track, of) in self.tracks.iter_mut().zip(&setup.tracks) {
-            let [frequency, k, x, y] = *of;
+            let [frequency, k, x, y, ratio] = *of;
+            track.damping = track.damping.with_lane(lane, frequency, ratio);
             put(&mut track.frequency, frequency);
             put(&mut track.excitability, k);
             put(&mut track.equilibrium, 0.0);

@@ -7,8 +7,9 @@ use super::Flight;
 use crate::flight::clock::Clock;
 use crate::flight::crew::{Crew, Place, Rest};
 use crate::lanes::{Mask, Real};
+use crate::motion::damping::Damping;
 
-impl<R: Real> Flight<R> {
+impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Where bounds do not keep the angle within the band on the motion that ends, the crew has to see for itself.
     #[inline(always)]
     pub(super) fn stray<C: Crew>(&mut self, crew: &mut C, place: Place, moment: R, span: R, until: Clock<R>) {

@@ -1,0 +1,106 @@
+//! The first trip of a guard on a segment as it is guessed, polished and certified without a search.
+
+use super::Segment;
+use crate::body::Planar;
+use crate::guard::Guard;
+use crate::motion::crossing::Trip;
+use crate::motion::damping::{Damped, Damping, Undamped};
+use crate::motion::guess::{self, Departure, FARTHEST_TURN, Found, Level, Oscillator};
+use crate::motion::{Sensed, State};
+use crate::time::Span;
+
+/// The highest frequency (rad/s), and room for the modes on their way.
+#[derive(Clone, Debug)]
+pub struct Guess {
+    fastest: f64,
+    modes: Modes,
+}
+
+#[derive(Clone, Debug)]
+enum Modes {
+    Undamped(Vec<Oscillator<f64>>),
+    Damped(Vec<Oscillator<f64, Damped<f64>>>),
+}
+
+impl Guess {
+    /// Room for a body's modes; none where one is damped critically or more.
+    pub fn new(body: &Planar) -> Option<Self> {
+        let mode = |(frequency, _): (f64, f64)| oscillator(frequency, Undamped);
+        let damped = |(frequency, ratio): (f64, f64)| oscillator(frequency, Damped::new(frequency, ratio));
+        let all = || body.modes.iter().map(|mode| (mode.frequency.get(), mode.damping.get()));
+        let highest = all().map(|(_, ratio)| ratio).fold(0.0, f64::max);
+        let modes = if highest == 0.0 {
+            Modes::Undamped(all().map(mode).collect())
+        } else {
+            Modes::Damped(all().map(damped).collect())
+        };
+        let fastest = all().map(|(frequency, _)| frequency).fold(0.0, f64::max);
+        (highest < 1.0).then_some(Self { fastest, modes })
+    }
+}
+
+fn oscillator<D>(frequency: f64, damping: D) -> Oscillator<f64, D> {
+    Oscillator { frequency, equilibrium: 0.0, displacement: 0.0, quadrature: 0.0, damping }
+}
+
+impl Segment {
+    /// The first trip of one or two guards within a span, as it is guessed, polished and certified without a search; the state
+    /// there is put into `state`. Nothing if it is not certain.
+    pub fn guess(&mut self, guards: &[Guard], horizon: Span, state: &mut State) -> Option<Option<Trip>> {
+        if self.forced.is_some() {
+            return None;
+        }
+        let mut guess = self.guess.take()?;
+        let fastest = guess.fastest;
+        let trip = match &mut guess.modes {
+            Modes::Undamped(modes) => self.polish(fastest, modes, guards, horizon, state),
+            Modes::Damped(modes) => self.polish(fastest, modes, guards, horizon, state),
+        };
+        self.guess = Some(guess);
+        trip
+    }
+
+    fn polish<D: Damping<f64>>(
+        &self,
+        fastest: f64,
+        modes: &mut [Oscillator<f64, D>],
+        guards: &[Guard],
+        horizon: Span,
+        state: &mut State,
+    ) -> Option<Option<Trip>> {
+        for (mode, swing) in modes.iter_mut().zip(&self.modes) {
+            mode.equilibrium = swing.equilibrium;
+            (mode.displacement, mode.quadrature) = (swing.from.displacement, swing.from.quadrature);
+        }
+        let from = Departure {
+            angle: self.angle,
+            rate: self.rate,
+            moment: self.moment,
+            fastest,
+            longest: FARTHEST_TURN / fastest,
+        };
+        let level = |guard: &Guard| Level { angle: guard.level, towards: guard.side.sign() };
+        let found: Found<f64> = match guards {
+            [one] => guess::locate(&from, &[level(one)], modes),
+            [one, other] => guess::locate(&from, &[level(one), level(other)], modes),
+            _ => return None,
+        };
+        if !found.certain {
+            return None;
+        }
+        let after = Span::from_femtoseconds(found.ticks as i64);
+        if after > horizon {
+            return Some(None);
+        }
+        let h = found.after;
+        state.rigid_angle = self.angle + h * (self.rate + 0.5 * self.moment * h);
+        state.rigid_rate = self.rate + self.moment * h;
+        for (mode, phase) in modes.iter().zip(&mut state.modes) {
+            phase.displacement = mode.equilibrium + mode.displacement;
+            phase.quadrature = mode.quadrature;
+        }
+        let [angle, rate, acceleration] = found.seen;
+        let guard = usize::from(!found.first);
+        Some(Some(Trip { after, guard, sight: Sensed { angle, rate, acceleration } }))
+    }
+}
