@@ -1,5 +1,6 @@
 //! Relay runs side by side: flights in lanes, windows' ends and metrics one by one.
 
+mod damped;
 #[cfg(test)]
 mod tests;
 
@@ -15,14 +16,13 @@ use crate::law::Phase;
 use crate::metrics::{Gather, Metrics};
 use crate::motion::State;
 use crate::motion::crossing::locate;
-use crate::motion::damping::{Damped, Undamped};
+use crate::motion::damping::Undamped;
 use crate::random::Seed;
 use crate::record::{self, Command, Course, Record, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
+use damped::DampedRuns;
 
-/// Registers in the place of one number: what has to wait for one goes on in the other.
-const REGISTERS: usize = 2;
 /// Runs that share the lanes of one flight, one after the other.
 const RUNS: usize = 128;
 /// Longer runs (s) go alone: nothing is told of a flight before its end.
@@ -42,7 +42,11 @@ impl Batch for Side {
 
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
         let mut runs = Runs::new(jobs);
-        processor.run::<REGISTERS, _>(&mut runs);
+        if jobs.first().is_some_and(|job| is_damped(job.scenario)) {
+            processor.run::<1, _>(DampedRuns(&mut runs));
+        } else {
+            processor.run::<1, _>(&mut runs);
+        }
         runs.found
     }
 }
@@ -92,12 +96,8 @@ impl Work for &mut Runs<'_> {
     #[inline(always)]
     fn run<R: Real>(self, kind: R) {
         let Some(first) = self.jobs.first() else { return };
-        let (modes, tracks, is_damped) = Runs::structure(first.scenario);
-        if is_damped {
-            Flight::<R, Damped<R>>::fly(kind, modes, tracks, self);
-        } else {
-            Flight::<R, Undamped>::fly(kind, modes, tracks, self);
-        }
+        let (modes, tracks, _) = Runs::structure(first.scenario);
+        Flight::<R, Undamped>::fly(kind, modes, tracks, self);
     }
 }
 

@@ -3,12 +3,14 @@
 //! What it comes to, and what it tells, is to the bit what the loop of plain runs comes to, which takes the run over at the last
 //! departure before its end.
 
+mod damped;
+
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
 use crate::flight::{Crew, Flight, Place, Rest, Searched, Setup, Sight, instant, phase, see};
 use crate::lanes::{Processor, Real, Work};
 use crate::law::Command;
-use crate::motion::damping::{Damped, Undamped};
+use crate::motion::damping::Undamped;
 use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
 
@@ -86,7 +88,11 @@ impl Alone<'_> {
     /// Makes the flight: one function for all records, optimised as this crate is.
     #[inline(never)]
     fn fly(&mut self) {
-        Processor::run_alone(self);
+        if self.setup.is_damped {
+            damped::fly(self);
+        } else {
+            Processor::run_alone(self);
+        }
     }
 
     /// Keeps why the run cannot go on.
@@ -125,11 +131,7 @@ impl Work for &mut Alone<'_> {
     #[inline(always)]
     fn run<K: Real>(self, kind: K) {
         let (modes, tracks) = (self.setup.modes.len(), self.setup.tracks.len());
-        if self.setup.is_damped {
-            Flight::<K, Damped<K>>::fly(kind, modes, tracks, self);
-        } else {
-            Flight::<K, Undamped>::fly(kind, modes, tracks, self);
-        }
+        Flight::<K, Undamped>::fly(kind, modes, tracks, self);
     }
 }
 
