@@ -27,8 +27,12 @@ pub fn flies(scenario: &Scenario) -> Option<(&Planar, &Relay)> {
 /// The modes of the envelope's model; none without one.
 pub fn watched(scenario: &Scenario) -> &[Mode] {
     let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
-    let own = || scenario.model.planar().map_or(&[][..], |body| &body.modes);
-    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or_else(own))
+    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or_else(|| own(scenario)))
+}
+
+/// The modes of the body.
+fn own(scenario: &Scenario) -> &[Mode] {
+    scenario.model.planar().map_or(&[], |body| &body.modes)
 }
 
 /// Whether the law alone moves the body, whose modes are damped below critical damping or not at all, and nothing but the envelope
@@ -69,8 +73,7 @@ pub fn alone(scenario: &Scenario) -> Option<Setup> {
 
 /// Whether any mode of a scenario or of its envelope is damped.
 pub fn is_damped(scenario: &Scenario) -> bool {
-    let own = scenario.model.planar().map_or(&[][..], |body| &body.modes);
-    own.iter().chain(watched(scenario)).any(|mode| mode.damping.get() > 0.0)
+    own(scenario).iter().chain(watched(scenario)).any(|mode| mode.damping.get() > 0.0)
 }
 
 /// A run at its start.

@@ -91,7 +91,7 @@ impl Spatial {
             ],
             rate: f64::NAN,
             stored: [0.0, f64::NAN],
-            steered: None,
+            steered: (!scenario.study.gimbals.is_empty()).then(Steered::unknown),
             asked: scenario.reference.pointing.clone(),
             pointing: (0.0, 0),
         }

@@ -43,6 +43,13 @@ pub struct Steered {
     pub largest_error_nm: f64,
 }
 
+impl Steered {
+    /// Before the first command.
+    pub fn unknown() -> Self {
+        Self { largest_rate_rad_s: f64::NAN, least_measure: f64::NAN, largest_error_nm: f64::NAN }
+    }
+}
+
 /// The motion of a spatial body at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpatialMotion {

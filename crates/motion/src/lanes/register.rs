@@ -1,5 +1,7 @@
 //! Numbers in the lanes of registers.
 
+#![allow(clippy::manual_memcpy, reason = "so few numbers are loaded one by one: a copy would be a call")]
+
 use std::fmt::{self, Debug, Formatter};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
