@@ -12,7 +12,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use flexsc_core::batch::{Job, simulate_on};
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
 use flexsc_core::{Scenario, Simulation};
@@ -46,8 +46,8 @@ fn gains() -> impl Iterator<Item = f64> {
     (0..RUNS).map(|index| 0.28 + 0.12 * index as f64 / (RUNS - 1) as f64)
 }
 
-fn even(text: &str) -> Vec<Run> {
-    let run = |k_t| Run { number: 0, scenario: scenario(text, k_t), drawn: Vec::new() };
+fn even(text: &str) -> Vec<CampaignRun> {
+    let run = |k_t| CampaignRun { number: 0, scenario: scenario(text, k_t), drawn: Vec::new() };
     gains().map(run).collect()
 }
 
@@ -80,10 +80,10 @@ fn main() {
         ("five damped modes, 40 window means", &damped_windows),
     ];
     let (none, all) = (Selection::of::<&str>([]).expect("no names"), Selection::ALL);
-    let many: Vec<Vec<Run>> = texts.iter().map(|(_, text)| even(text)).collect();
-    let one: Vec<Run> = texts
+    let many: Vec<Vec<CampaignRun>> = texts.iter().map(|(_, text)| even(text)).collect();
+    let one: Vec<CampaignRun> = texts
         .iter()
-        .map(|(_, text)| Run { number: 0, scenario: scenario(text, 0.3389), drawn: Vec::new() })
+        .map(|(_, text)| CampaignRun { number: 0, scenario: scenario(text, 0.3389), drawn: Vec::new() })
         .collect();
     let mut kinds = Kinds(Vec::new());
     kinds.add(

@@ -9,15 +9,15 @@ use std::io::Cursor;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use flexsc_core::analysis::sampled_loop::{Held, Loop, Scaling, Window, map};
+use flexsc_core::analysis::sampled_loop::{DiscreteBody, Loop, Scaling, SettlingWindow, map};
 use flexsc_core::batch::{Job, simulate_on};
-use flexsc_core::campaign::{Campaign, Run};
-use flexsc_core::estimator::kalman::{FrequencyTracking, Prediction, Setting};
+use flexsc_core::campaign::{Campaign, CampaignRun};
+use flexsc_core::estimator::kalman::{FrequencyTracking, KalmanSetting, Prediction};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::random::Seed;
 use flexsc_core::record::{Detail, McapLog, Record, RunEnd, Trace};
-use flexsc_core::structure::{Hub, Structure};
+use flexsc_core::structure::{HubState, Structure};
 use flexsc_core::{Scenario, Simulation};
 use nalgebra::DMatrix;
 use reference::{EVENTS, WINDOWS};
@@ -61,7 +61,7 @@ fn run(c: &mut Criterion) {
         });
     });
     group.bench_function("40 window means", |b| b.iter(|| simulate(black_box(&windows), &mut ())));
-    let run = Run { number: 0, scenario: windows.clone(), drawn: Vec::new() };
+    let run = CampaignRun { number: 0, scenario: windows.clone(), drawn: Vec::new() };
     group.bench_function("windows and metrics", |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
     group.bench_function("windows, metrics, log", |b| {
         b.iter(|| {
@@ -89,9 +89,9 @@ fn lanes(c: &mut Criterion) {
     group.bench_function("yardstick", |b| {
         b.iter(|| gains.iter().map(|k_t| reference::exact(black_box(*k_t), 20_000.0).0).sum::<u32>());
     });
-    let runs: Vec<Run> = scenarios
+    let runs: Vec<CampaignRun> = scenarios
         .iter()
-        .map(|scenario| Run { number: 0, scenario: scenario.clone(), drawn: Vec::new() })
+        .map(|scenario| CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() })
         .collect();
     group.bench_function("one by one", |b| {
         b.iter(|| runs.iter().map(|run| Campaign::simulate(run, ()).expect("a run")).collect::<Vec<_>>());
@@ -122,8 +122,13 @@ fn filters(c: &mut Criterion) {
     let mut group = c.benchmark_group("filter");
     for (name, prediction) in [("ekf step", Prediction::Extended), ("ukf step", Prediction::Unscented)] {
         let body = scenario(MODES).model;
-        let setting =
-            Setting { body: &body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise: None };
+        let setting = KalmanSetting {
+            body: &body,
+            back_emf: (1e-4, true),
+            period: 0.3,
+            angle_noise: 1e-5,
+            rate_noise: None,
+        };
         let draws = &mut Seed { scenario: 0, run: 0 }.stream("prior");
         let mut filter = FrequencyTracking::default().filter(&setting, prediction, draws);
         let mut sample = 0.0;
@@ -139,7 +144,7 @@ fn filters(c: &mut Criterion) {
         ("run of 600 s, mode known", include_str!("../scenarios/wheel-scheduled-gain.toml")),
         ("run of 600 s, extended filter", include_str!("../scenarios/wheel-ekf.toml")),
     ] {
-        let run = Run { number: 0, scenario: scenario(text), drawn: Vec::new() };
+        let run = CampaignRun { number: 0, scenario: scenario(text), drawn: Vec::new() };
         group.bench_function(name, |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
     }
     group.finish();
@@ -150,7 +155,7 @@ fn log(c: &mut Criterion) {
     // 2000 s at 0.01 s: 200 000 instants with four messages each.
     let text = format!("{EVENTS}{WINDOWS}[log]\nperiod = 0.01\n").replace("20000.0", "2000.0");
     let full = scenario(&text);
-    let run = Run { number: 0, scenario: full.clone(), drawn: Vec::new() };
+    let run = CampaignRun { number: 0, scenario: full.clone(), drawn: Vec::new() };
     group.sample_size(10).throughput(Throughput::Elements(4 * 200_000));
     group.bench_function("dense MCAP", |b| {
         b.iter(|| {
@@ -185,7 +190,7 @@ fn structure(c: &mut Criterion) {
     for order in [100, 1000] {
         let structure = chain(order);
         group.bench_with_input(BenchmarkId::from_parameter(order), &structure, |b, structure| {
-            b.iter(|| black_box(structure).modes(Hub::Free, &[]).expect("modes"));
+            b.iter(|| black_box(structure).modes(HubState::Free, &[]).expect("modes"));
         });
     }
     group.finish();
@@ -196,16 +201,16 @@ const WHEEL: &str = include_str!("../scenarios/wheel-fast-mode.toml");
 
 fn sampled_loop(c: &mut Criterion) {
     let mut group = c.benchmark_group("sampled loop");
-    let window = Window { band: 0.003, horizon: 400.0 };
+    let window = SettlingWindow { band: 0.003, horizon: 400.0 };
     let looped = |text: &str| Loop::of(&scenario(text)).expect("a loop").0;
     let (linear, shaped) = (looped(WHEEL), looped(&WHEEL.replace("back_emf", "dead_zone = 1e-3\nback_emf")));
     let ratios = [1.0; 4];
     group.bench_function("400 s", |b| {
-        b.iter(|| Held::new(black_box(&linear), &ratios).closed(0.0).settle(window));
+        b.iter(|| DiscreteBody::new(black_box(&linear), &ratios).closed(0.0).settle(window));
     });
-    let held = Held::new(&linear, &ratios);
+    let held = DiscreteBody::new(&linear, &ratios);
     group.bench_function("400 s, another gain", |b| b.iter(|| held.closed(black_box(1.2)).settle(window)));
-    let held = Held::new(&shaped, &ratios);
+    let held = DiscreteBody::new(&shaped, &ratios);
     group.bench_function("400 s, shaped command", |b| b.iter(|| held.closed(black_box(0.0)).settle(window)));
     group.bench_function("spectral radius", |b| b.iter(|| held.closed(black_box(0.0)).spectral_radius()));
     group.sample_size(10).measurement_time(Duration::from_secs(10));

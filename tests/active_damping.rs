@@ -2,7 +2,7 @@
 //!
 //! The limits are trends of many seeds: a run of relays beyond its first pulses hangs on each draw of the gyro's noise.
 
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
@@ -14,7 +14,7 @@ use crate::util::{Dir, table};
 fn twelve(name: &str, set: &[(&str, &str)]) -> Vec<Metrics> {
     let scenario = scenario(name, set);
     let run = |number| {
-        let run = Run { number, scenario: scenario.clone(), drawn: Vec::new() };
+        let run = CampaignRun { number, scenario: scenario.clone(), drawn: Vec::new() };
         Campaign::simulate(&run, ()).expect("a run")
     };
     (0..12).map(run).collect()

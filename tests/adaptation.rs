@@ -1,7 +1,7 @@
 //! The random search against an independent one: draw for draw, and over many seeds.
 
 use flexsc_core::Simulation;
-use flexsc_core::adaptation::{Adaptation, Decision, Search, Step};
+use flexsc_core::adaptation::{Adaptation, Decision, SearchState, SearchStep};
 use flexsc_core::campaign::Campaign;
 use flexsc_core::time::{Instant, Span};
 
@@ -28,7 +28,7 @@ fn search_freezes_where_an_independent_one_does() {
         let Some(Adaptation::RandomSearch(constants)) = scenario.written.adaptation.take() else {
             panic!("no search")
         };
-        let mut search = Search::new(constants, 0.31);
+        let mut search = SearchState::new(constants, 0.31);
         let mut draws = SplitMix(seed);
         let mut simulation = Simulation::new(&scenario, 0);
         let mut last = None;
@@ -41,7 +41,7 @@ fn search_freezes_where_an_independent_one_does() {
                 last = Some((now, step));
             }
         }
-        let Some((at, Step { decision: Decision::Freeze, gain, .. })) = last else {
+        let Some((at, SearchStep { decision: Decision::Freeze, gain, .. })) = last else {
             panic!("seed {seed}: not frozen: {last:?}")
         };
         assert_eq!(at.seconds(), frozen_at, "seed {seed}");

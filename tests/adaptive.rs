@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use flexsc_core::analysis::identification::Trial;
 use flexsc_core::estimator::adaptive::{
-    Gradient, Observer, Oscillator, Phase, Pulse, Recurrence, Tracker, merged,
+    Gradient, ModelOscillator, ModelPhase, Observer, Pulse, Recurrence, Tracker, merged,
 };
 use flexsc_core::quantity::{Finite, Frequency, NonNegative};
 use flexsc_core::random::{Seed, Stream};
@@ -30,16 +30,16 @@ fn mode(at: f64, influence: &[f64], bounds: Option<[f64; 2]>) -> Tracker {
 
 /// A channel of a spacecraft: exact modes, of which each input excites every one.
 struct Channel {
-    modes: Vec<(Oscillator, Vec<f64>)>,
+    modes: Vec<(ModelOscillator, Vec<f64>)>,
     rigid: Vec<f64>,
     rate: f64,
-    phases: Vec<Phase>,
+    phases: Vec<ModelPhase>,
 }
 
 impl Channel {
     /// Modes by their frequency (Hz) and influences.
     fn new(modes: &[(f64, Vec<f64>)], rigid: &[f64]) -> Self {
-        let of = |hertz: f64| Oscillator { frequency: 2.0 * PI * hertz, damping: 0.005 };
+        let of = |hertz: f64| ModelOscillator { frequency: 2.0 * PI * hertz, damping: 0.005 };
         Self {
             modes: modes.iter().map(|(hertz, influence)| (of(*hertz), influence.clone())).collect(),
             rigid: rigid.to_vec(),

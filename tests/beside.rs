@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::batch::{self, Job};
-use flexsc_core::campaign::{Campaign, Grid, Outcome, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun, Grid, RunOutcome};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
 
@@ -24,7 +24,7 @@ const DAMPED: &str = "[{ frequency = 0.44, gain = 0.0213, damping = 0.002, displ
 /// After the kink of the ramps.
 const SHORT: (&str, &str) = ("duration", "260.0");
 
-fn runs(scenario: &Scenario) -> Vec<Run> {
+fn runs(scenario: &Scenario) -> Vec<CampaignRun> {
     let study = Campaign::new(scenario.clone(), "beside", None).expect("a campaign");
     (0..RUNS).map(|number| study.run(number).expect("a run")).collect()
 }
@@ -149,15 +149,14 @@ fn rows_depend_on_no_thread_and_no_neighbour() {
         assert!(batch::takes(study.scenario()), "{name}");
         let rows = |threads: usize, beside: bool| {
             let mut rows = Vec::new();
-            let work = |run: &Run| Ok(Campaign::simulate(run, ())?);
-            let tell =
-                |outcome: Option<Outcome>| -> Result<(), Infallible> {
-                    // All but how long it took.
-                    rows.extend(outcome.map(|Outcome { number, drawn, metrics, .. }| {
-                        format!("{number} {drawn:?} {metrics:?}")
-                    }));
-                    Ok(())
-                };
+            let work = |run: &CampaignRun| Ok(Campaign::simulate(run, ())?);
+            let tell = |outcome: Option<RunOutcome>| -> Result<(), Infallible> {
+                // All but how long it took.
+                rows.extend(outcome.map(|RunOutcome { number, drawn, metrics, .. }| {
+                    format!("{number} {drawn:?} {metrics:?}")
+                }));
+                Ok(())
+            };
             let Ok(()) = if beside {
                 study.each_beside(3..40, threads, &Selection::ALL, work, tell)
             } else {
@@ -191,9 +190,9 @@ fn a_metric_does_not_depend_on_which_others_are_wanted() {
         let study = Arc::new(study);
         let told = |selection: &Selection| -> Vec<Vec<(&'static str, String)>> {
             let wanted = selection.clone();
-            let work = move |run: &Run| Ok(Campaign::simulate_for(run, &wanted, ())?);
+            let work = move |run: &CampaignRun| Ok(Campaign::simulate_for(run, &wanted, ())?);
             let mut rows = Vec::new();
-            let tell = |outcome: Option<Outcome>| -> Result<(), Infallible> {
+            let tell = |outcome: Option<RunOutcome>| -> Result<(), Infallible> {
                 rows.extend(outcome.map(|outcome| {
                     let metrics = outcome.metrics.expect("a run").0.into_iter();
                     metrics.map(|(meaning, value)| (meaning.name, format!("{value:?}"))).collect::<Vec<_>>()

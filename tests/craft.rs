@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use flexsc_core::attitude::Vector;
-use flexsc_core::body::craft::{Craft, Rotor};
+use flexsc_core::body::craft::{Craft, HubRotor};
 use flexsc_core::{Document, Scenario, ScenarioError};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, matrix, vector};
 
@@ -49,13 +49,13 @@ pub fn craft(scenario: &Scenario) -> &Craft {
 }
 
 /// The four wheels of the oracle, a pyramid of 35 degrees.
-fn wheels() -> Vec<Rotor> {
+fn wheels() -> Vec<HubRotor> {
     let cant = 35_f64.to_radians();
     let axis = |degrees: f64| {
         let around = degrees.to_radians();
         vector![cant.cos() * around.cos(), cant.cos() * around.sin(), cant.sin()]
     };
-    [45.0, 135.0, 225.0, 315.0].map(|at| Rotor { axis: axis(at), spin_inertia: 0.04 }).to_vec()
+    [45.0, 135.0, 225.0, 315.0].map(|at| HubRotor { axis: axis(at), spin_inertia: 0.04 }).to_vec()
 }
 
 /// The reference spacecraft with wheels that turn freely.

@@ -4,7 +4,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::attitude::Vector;
-use flexsc_core::body::craft::{Craft, Rotor};
+use flexsc_core::body::craft::{Craft, HubRotor};
 
 use crate::craft::{CRAFT, ONE, craft, golden, near, reference, three};
 use crate::util::Dir;
@@ -144,7 +144,7 @@ fn impossible_spacecraft_are_refused() {
 fn rotors_are_part_of_the_hub() {
     let scenario = reference(&[]).expect("valid");
     let hub = scenario.spacecraft.as_ref().expect("a hub");
-    let heavy = [Rotor { axis: Vector::z(), spin_inertia: 400.0 }];
+    let heavy = [HubRotor { axis: Vector::z(), spin_inertia: 400.0 }];
     let fault = Craft::assemble(hub, &scenario.appendage, &[0.0; 2], &heavy).expect_err("impossible");
     assert_eq!(fault.key, "spacecraft.inertia");
 }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use flexsc_core::actuator::PulseTiming;
 use flexsc_core::analysis::damping::{Decay, PulsedDamping};
-use flexsc_core::estimator::adaptive::{Oscillator, Phase};
+use flexsc_core::estimator::adaptive::{ModelOscillator, ModelPhase};
 use flexsc_core::numerics::delay_margin::delay_margin;
 
 use crate::study::close;
@@ -26,11 +26,11 @@ fn amplitudes(
     hertz: f64,
     damping: f64,
     acceleration: f64,
-    start: Phase,
+    start: ModelPhase,
     late: usize,
     count: usize,
 ) -> Vec<f64> {
-    let of = Oscillator { frequency: TURN * hertz, damping };
+    let of = ModelOscillator { frequency: TURN * hertz, damping };
     let (transition, push) = (of.transition(CYCLE), of.pulse(CYCLE, 0.0).0);
     let (mut phase, mut queue) = (start, vec![0.0; late]);
     let sample = |_| {
@@ -128,7 +128,7 @@ fn delayed_feedback_is_stable_up_to_a_gain() {
 fn delayed(frequency: f64, delay: f64, damping: f64, gain: f64, time: f64) -> f64 {
     let steps = 1000_usize;
     let step = delay / steps as f64;
-    let of = Oscillator { frequency, damping };
+    let of = ModelOscillator { frequency, damping };
     let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
     let mut past = vec![0.0; steps];
     let (mut phase, mut late) = ([1.0, 0.0], 0.0);
@@ -187,10 +187,10 @@ fn a_relay_brings_a_mode_to_rest() {
 #[test]
 fn a_threshold_saves_thrust_as_foreseen() {
     // The relay that reads all the time, 0.2 Hz: steps of 1 ms.
-    let of = Oscillator { frequency: 0.2 * TURN, damping: 0.0 };
+    let of = ModelOscillator { frequency: 0.2 * TURN, damping: 0.0 };
     let step = 1e-3;
     let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
-    let (mut phase, mut thrust, mut time): (Phase, f64, f64) = ([1e-3, 0.0], 0.0, 0.0);
+    let (mut phase, mut thrust, mut time): (ModelPhase, f64, f64) = ([1e-3, 0.0], 0.0, 0.0);
     while phase[0].hypot(phase[1]) > 1.001e-4 {
         let fires = phase[0].abs() > 1e-4;
         let now = if fires { -4.6e-5 * phase[0].signum() } else { 0.0 };
@@ -248,10 +248,10 @@ fn a_delayed_relay_ends_in_a_limit_cycle() {
         close(border.limit_cycle(acceleration), foreseen, 2e-3);
         close(border.frequency, TURN * swing, 1e-3);
         // Steps of 1 ms: the relay reads all the time.
-        let of = Oscillator { frequency: TURN * hertz, damping: 0.005 };
+        let of = ModelOscillator { frequency: TURN * hertz, damping: 0.005 };
         let (step, count) = (1e-3, 200_000);
         let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
-        let (mut phase, mut past): (Phase, Vec<f64>) = ([5e-5, 0.0], vec![0.0; 200]);
+        let (mut phase, mut past): (ModelPhase, Vec<f64>) = ([5e-5, 0.0], vec![0.0; 200]);
         let (mut largest, mut crossings) = (0.0_f64, Vec::new());
         for index in 0..count {
             let now = std::mem::replace(&mut past[index % 200], -acceleration * phase[0].signum());

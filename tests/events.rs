@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use flexsc_core::belief::Belief;
-use flexsc_core::body::{Input, Planar, Segment};
+use flexsc_core::body::{ForcedInput, Planar, Segment};
 use flexsc_core::guard::Guard;
 use flexsc_core::law::{Cause, Command, Goal};
 use flexsc_core::motion::State;
@@ -50,7 +50,7 @@ fn no_crossing_is_missed() {
     for trial in 0..1500 {
         let (body, state) = random_body(&mut stream);
         let mut segment = Segment::new(&body);
-        segment.depart(&state, &Input::constant(3e-6 * stream.normal()));
+        segment.depart(&state, &ForcedInput::constant(3e-6 * stream.normal()));
         let start = state.angle();
         let mut away = || 3e-4 * stream.uniform();
         let mut guards = [Guard::at_least(start + away()), Guard::at_most(start - away())];
@@ -96,7 +96,7 @@ fn a_tangent_touch_is_found() {
     let body = scenario.one_angle().expect("one angle");
     let mut segment = Segment::new(body);
     let state = body.start();
-    segment.depart(&state, &Input::constant(-1e-6));
+    segment.depart(&state, &ForcedInput::constant(-1e-6));
     let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
     let mut there = state.clone();
     let horizon = Span::from_seconds(100.0);
@@ -115,7 +115,7 @@ fn a_guard_that_holds_trips_at_once() {
     let body = scenario.one_angle().expect("one angle");
     let mut segment = Segment::new(body);
     let state = body.start();
-    segment.depart(&state, &Input::constant(0.0));
+    segment.depart(&state, &ForcedInput::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
     let trip = locate(&segment, &guards, Span::from_seconds(1.0), &mut there, || Ok::<_, Infallible>(()));
@@ -130,7 +130,7 @@ fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     let body = scenario.one_angle().expect("one angle");
     let mut segment = Segment::new(body);
     let state = body.start();
-    segment.depart(&state, &Input::constant(0.0));
+    segment.depart(&state, &ForcedInput::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];
     let trip = locate(&segment, &guards, Span::from_seconds(1e6), &mut there, || Ok::<_, Infallible>(()));

@@ -1,7 +1,7 @@
 //! Metrics are those of the motion, not of a log: the same bits whatever looks on, and the numbers of independent computations.
 
 use flexsc_core::Scenario;
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Column, Detail, Record, Trace};
 
@@ -17,7 +17,7 @@ fn word(metrics: &Metrics, name: &str) -> String {
 }
 
 fn beside(scenario: &Scenario, record: impl Record) -> Metrics {
-    let run = Run { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
+    let run = CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
     Campaign::simulate(&run, record).expect("a run")
 }
 

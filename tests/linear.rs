@@ -1,7 +1,7 @@
 //! The linear flow against 66-digit arithmetic: `tests/golden/linear`, Taylor series of the matrix exponential from node to
 //! node and strides certified to 1e-55, without eigenvalues. The law is that of the relay study, on each axis.
 
-use flexsc_core::motion::linear::{Form, Linear};
+use flexsc_core::motion::linear::{LinearFlow, StateForm};
 use nalgebra::DVector;
 
 use crate::plants::{
@@ -10,7 +10,14 @@ use crate::plants::{
 };
 
 /// Flies a plant against its files: the first 20 switchings to 1e-12 s, all to `bound`.
-fn agrees(name: &str, form: Form, start: &DVector<f64>, inertias: &[f64], k_t: f64, bound: f64) -> Flight {
+fn agrees(
+    name: &str,
+    form: StateForm,
+    start: &DVector<f64>,
+    inertias: &[f64],
+    k_t: f64,
+    bound: f64,
+) -> Flight {
     let events = golden(&format!("{name}_events"));
     let states = match std::fs::exists(format!(
         "{}/../../tests/golden/linear/{name}_states.csv",
@@ -58,7 +65,7 @@ fn damping_that_couples_the_modes() {
 #[test]
 fn three_axes_with_momentum_bias() {
     let form = three_axes(1.1e-3, 20.0).form().expect("a plant");
-    let flow = Linear::new(form.clone()).expect("a flow");
+    let flow = LinearFlow::new(form.clone()).expect("a flow");
     assert!(flow.condition() < 1.01, "{}", flow.condition());
     agrees("c_three", form, &three_start(), &INERTIAS, 0.31, 5e-11);
 }
@@ -66,7 +73,7 @@ fn three_axes_with_momentum_bias() {
 /// Filters that read the rigid angle itself would lose three digits.
 #[test]
 fn filters_between_sensor_and_law() {
-    let flow = Linear::new(filters(2e-4).form()).expect("a flow");
+    let flow = LinearFlow::new(filters(2e-4).form()).expect("a flow");
     assert!(flow.condition() < 10.0, "{}", flow.condition());
     let flight = agrees("d_filters_31", filters(2e-4).form(), &filters_start(), &[1.0], 0.31, 1e-11);
     assert!(flight.evaluations < 4.0, "{}", flight.evaluations);
@@ -90,7 +97,7 @@ fn a_disturbance_in_resonance_costs_few_evaluations() {
 fn rates_that_nothing_damps() {
     let form = three_axes(0.0, 0.0).form().expect("a plant");
     assert_eq!(form.carried.nrows(), 3);
-    let flow = Linear::new(form).expect("a flow");
+    let flow = LinearFlow::new(form).expect("a flow");
     assert_eq!(flow.poles().iter().filter(|pole| pole.norm_sqr() < 1e-28).count(), 3);
     assert!(flow.condition() < 1.01, "{}", flow.condition());
     let form = three_axes(0.0, 20.0).form().expect("a plant");

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use flexsc_core::guard::Guard;
 use flexsc_core::motion::crossing::locate;
-use flexsc_core::motion::linear::{Level, Linear, Seen, Segment, System};
+use flexsc_core::motion::linear::{GuardLevel, LinearFlow, LinearSegment, LinearSight, System};
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 
@@ -14,10 +14,10 @@ use crate::plants::{Counted, dashpot, filters, forced, golden, off, three_axes, 
 
 /// An angle at a time (s) after rest under a constant input, from a state.
 fn value(system: &System, start: &DVector<f64>, input: f64, at: f64) -> f64 {
-    let flow = Arc::new(Linear::new(system.form()).expect("a flow"));
-    let mut segment = Segment::new(Arc::clone(&flow));
+    let flow = Arc::new(LinearFlow::new(system.form()).expect("a flow"));
+    let mut segment = LinearSegment::new(Arc::clone(&flow));
     segment.depart(&flow.modal(start), &[input]);
-    let mut seen = Seen::default();
+    let mut seen = LinearSight::default();
     segment.at(at, &mut seen);
     // The state that arrives tells the same.
     let mut state = flow.modal(start);
@@ -91,12 +91,12 @@ fn a_touch_is_found_and_none_is_invented() {
         let number = |index: usize| row[index].parse::<f64>().expect("a number");
         let (d, level, horizon) = (number(1), number(2), Span::from_seconds(number(10)));
         let system = if row[0].parse::<u32>().expect("an index") % 2 == 0 { wheel(2e-4) } else { dashpot() };
-        let flow = Arc::new(Linear::new(system.form()).expect("a flow"));
-        let mut segment = Segment::new(Arc::clone(&flow));
+        let flow = Arc::new(LinearFlow::new(system.form()).expect("a flow"));
+        let mut segment = LinearSegment::new(Arc::clone(&flow));
         segment.depart(&flow.modal(&DVector::from_fn(6, |i, _| number(4 + i))), &[number(3)]);
-        let guards = [Level { output: 0, guard: Guard::at_least(level) }];
+        let guards = [GuardLevel { output: 0, guard: Guard::at_least(level) }];
         let count = Cell::new(0);
-        let trip = locate(&Counted(&segment, &count), &guards, horizon, &mut Seen::default(), || {
+        let trip = locate(&Counted(&segment, &count), &guards, horizon, &mut LinearSight::default(), || {
             Ok::<_, Infallible>(())
         });
         let trip = trip.expect("not stopped");
@@ -147,19 +147,19 @@ fn bounds_are_never_exceeded() {
         cascade().form(),
     ];
     for (plant, form) in forms.into_iter().enumerate() {
-        let flow = Arc::new(Linear::new(form.clone()).expect("a flow"));
-        let mut segment = Segment::new(Arc::clone(&flow));
+        let flow = Arc::new(LinearFlow::new(form.clone()).expect("a flow"));
+        let mut segment = LinearSegment::new(Arc::clone(&flow));
         let (order, inputs) = (form.split[0].ncols(), form.input.ncols());
         let mut nearest = 0.0_f64;
         for _ in 0..60 {
             let state = DVector::from_fn(order, |_, _| 1e-5 * draw());
             let input: Vec<f64> = (0..inputs).map(|_| 1e-5 * draw()).collect();
             segment.depart(&flow.modal(&state), &input);
-            let (mut now, mut then) = (Seen::default(), Seen::default());
+            let (mut now, mut then) = (LinearSight::default(), LinearSight::default());
             let from = 800.0 * draw().abs();
             segment.at(from, &mut now);
             let span = now.window.min(40.0);
-            let mut before: Option<Seen> = None;
+            let mut before: Option<LinearSight> = None;
             for step in 0..=400 {
                 segment.at(from + span * f64::from(step) / 400.0, &mut then);
                 for (j, sensed) in then.outputs.iter().enumerate() {
@@ -217,10 +217,10 @@ fn waveforms_as_more_states() {
             start.extend([2e-6, -3e-7, 4e-8, -5e-9]);
             driven(&plain, &DMatrix::from_fn(4, 4, |i, j| f64::from(u8::from(j == i + 1))))
         };
-        let flow = Arc::new(Linear::new(system.form()).expect("a flow"));
-        let mut segment = Segment::new(Arc::clone(&flow));
+        let flow = Arc::new(LinearFlow::new(system.form()).expect("a flow"));
+        let mut segment = LinearSegment::new(Arc::clone(&flow));
         segment.depart(&flow.modal(&start), &[0.0]);
-        let mut seen = Seen::default();
+        let mut seen = LinearSight::default();
         segment.at(h, &mut seen);
         let sensed = seen.outputs[0];
         let (value, bound) = if harmonic.is_some() {

@@ -3,7 +3,7 @@
 //! Golden numbers: tests/golden/loop_oracle.py, NumPy and SciPy.
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::sampled_loop::{Gains, Held, Loop, Scaling, Window, map};
+use flexsc_core::analysis::sampled_loop::{DiscreteBody, Gains, Loop, Scaling, SettlingWindow, map};
 use flexsc_core::law::Differentiation;
 
 use crate::study::close;
@@ -27,15 +27,15 @@ period = 0.3
 differentiation = "raw"
 "#;
 
-pub const WINDOW: Window = Window { band: 0.003, horizon: 2000.0 };
+pub const WINDOW: SettlingWindow = SettlingWindow { band: 0.003, horizon: 2000.0 };
 pub const GAINS: Gains = Gains { low: -2.0, high: 6.0, step: 0.05 };
 
 pub fn fitted() -> Loop {
     Loop::of(&Scenario::parse("fitted.toml", FITTED).expect("valid")).expect("a loop").0
 }
 
-pub fn at(of: &Loop, frequency: f64) -> Held<'_> {
-    Held::new(of, &of.ratios(frequency, Scaling::All))
+pub fn at(of: &Loop, frequency: f64) -> DiscreteBody<'_> {
+    DiscreteBody::new(of, &of.ratios(frequency, Scaling::All))
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn settling_times() {
         (0.1, 1.2, 600.0, 586.8, None),
         (0.1, 1.2, 2000.0, 807.0, None),
     ] {
-        let settling = at(&of, frequency).closed(gain).settle(Window { horizon, ..WINDOW });
+        let settling = at(&of, frequency).closed(gain).settle(SettlingWindow { horizon, ..WINDOW });
         let (time, crossing) = (settling.time_s.expect("settled"), settling.crossing_s.expect("settled"));
         assert!((time - sample).abs() < 1e-9, "{frequency}, {gain}: {time}");
         assert!((0.0..0.3).contains(&(crossing - time)), "{time} {crossing}");
@@ -113,10 +113,10 @@ fn settling_times() {
     }
     // What is not settled at the horizon is not settled.
     let closed = at(&of, 0.05).closed(0.0);
-    assert_eq!(closed.settle(Window { horizon: 1521.6, ..WINDOW }).time_s, None);
-    assert!(closed.settle(Window { horizon: 1521.9, ..WINDOW }).time_s.is_some());
-    assert_eq!(closed.settle(Window { band: 0.07, ..WINDOW }).time_s, Some(0.0));
-    assert_eq!(closed.settle(Window { band: 0.07, ..WINDOW }).crossing_s, Some(0.0));
+    assert_eq!(closed.settle(SettlingWindow { horizon: 1521.6, ..WINDOW }).time_s, None);
+    assert!(closed.settle(SettlingWindow { horizon: 1521.9, ..WINDOW }).time_s.is_some());
+    assert_eq!(closed.settle(SettlingWindow { band: 0.07, ..WINDOW }).time_s, Some(0.0));
+    assert_eq!(closed.settle(SettlingWindow { band: 0.07, ..WINDOW }).crossing_s, Some(0.0));
 }
 
 #[test]
@@ -167,23 +167,23 @@ fn delays() {
     // One period late is the same, whether the loop says so or the state holds the command.
     let late = |delay: f64| Loop { delay, ..of.clone() };
     let one = late(0.3);
-    let closed = Held::new(&one, &[1.0; 4]).closed(0.5);
+    let closed = DiscreteBody::new(&one, &[1.0; 4]).closed(0.5);
     assert_eq!(closed.free.nrows(), 12);
-    let (x, y) = (closed.angles(50), Held::new(&of, &[1.0; 4]).closed(0.5).angles(50));
+    let (x, y) = (closed.angles(50), DiscreteBody::new(&of, &[1.0; 4]).closed(0.5).angles(50));
     assert_eq!(x[1].to_bits(), x[0].to_bits());
     assert!((x[1] - y[1]).abs() > 1e-6);
     // A part of a period: so close to none, or to a whole one, it is nearly that.
     for (delay, like) in [(1e-6, &y), (0.3 - 1e-6, &x), (0.3 + 1e-6, &x)] {
         let late = late(delay);
-        let angles = Held::new(&late, &[1.0; 4]).closed(0.5).angles(50);
+        let angles = DiscreteBody::new(&late, &[1.0; 4]).closed(0.5).angles(50);
         assert!(angles.iter().zip(like.iter()).all(|(a, b)| (a - b).abs() < 1e-7), "{delay}");
     }
     // Halved periods with every second sample: a delay of half a period, by hand.
     let half = late(0.15);
     let fine = late(0.0);
     let fine = Loop { period: 0.15, ..fine };
-    let step = Held::new(&fine, &[1.0; 4]).closed(0.0);
-    let x = Held::new(&half, &[1.0; 4]).closed(0.0).angles(40);
+    let step = DiscreteBody::new(&fine, &[1.0; 4]).closed(0.0);
+    let x = DiscreteBody::new(&half, &[1.0; 4]).closed(0.0).angles(40);
     let mut state = step.start.clone();
     let (mut last, mut u) = ((&step.angle * &state).x, 0.0);
     for angle in x {
@@ -212,7 +212,7 @@ fn the_lower_edge_of_stability() {
 /// The longest period, on a grid of 0.05 s, up to which every loop is stable.
 fn longest(of: &Loop, frequency: f64, scaling: Scaling) -> f64 {
     let periods: Vec<f64> = (1..60).map(|n| 0.05 * f64::from(n)).collect();
-    let cells = map(of, &[frequency], &periods, scaling, |_| 0.0, Window { horizon: 1.0, ..WINDOW });
+    let cells = map(of, &[frequency], &periods, scaling, |_| 0.0, SettlingWindow { horizon: 1.0, ..WINDOW });
     let stable = cells.iter().take_while(|cell| cell.spectral_radius < 1.0).count();
     periods[stable.saturating_sub(1)]
 }
@@ -244,7 +244,7 @@ fn a_band_of_frequencies_can_be_unstable() {
         .step_by(5)
         .filter(|n| {
             let ratios = of.ratios(1e-3 * f64::from(*n), Scaling::First);
-            Held::new(&of, &ratios).closed(0.0).spectral_radius() >= 1.0
+            DiscreteBody::new(&of, &ratios).closed(0.0).spectral_radius() >= 1.0
         })
         .collect();
     assert_eq!(unstable, (70..=155).step_by(5).collect::<Vec<_>>());
@@ -254,7 +254,7 @@ fn a_band_of_frequencies_can_be_unstable() {
 fn a_map_is_its_cells() {
     let of = fitted();
     let (frequencies, periods) = ([0.1, 0.2, 0.3], [0.1, 0.3, 3.0, 0.7]);
-    let window = Window { horizon: 400.0, ..WINDOW };
+    let window = SettlingWindow { horizon: 400.0, ..WINDOW };
     let gain = |frequency: f64| 4.0 * frequency;
     let cells = map(&of, &frequencies, &periods, Scaling::First, gain, window);
     assert_eq!(cells.len(), 12);
@@ -262,7 +262,7 @@ fn a_map_is_its_cells() {
         let (frequency, period) = (frequencies[index / 4], periods[index % 4]);
         assert_eq!((cell.frequency_rad_s, cell.period_s), (frequency, period));
         let one = Loop { period, ..of.clone() };
-        let closed = Held::new(&one, &[frequency / 0.3, 1.0, 1.0, 1.0]).closed(4.0 * frequency);
+        let closed = DiscreteBody::new(&one, &[frequency / 0.3, 1.0, 1.0, 1.0]).closed(4.0 * frequency);
         assert_eq!(cell.spectral_radius.to_bits(), closed.spectral_radius().to_bits());
         assert_eq!(cell.settling_s, closed.settle(window).time_s);
     }

@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use flexsc_core::manoeuvre::Residual;
+use flexsc_core::manoeuvre::FinalResidual;
 
 use crate::spacecraft::{
     FREQUENCIES, INERTIA, PARTICIPATIONS, body, plan, quarter_turn, report, scenario, text, with,
@@ -358,7 +358,7 @@ fn a_harmonic_in_resonance_with_a_mode() {
 
 #[test]
 fn a_single_harmonic_of_a_tuned_time() {
-    let worst = |residuals: &[Residual]| residuals[0].nominal;
+    let worst = |residuals: &[FinalResidual]| residuals[0].nominal;
     for kind in ["sine", "cosine"] {
         let scenario = quarter_turn(&format!("{kind} = {{}}"));
         let tuned = report(&scenario).tuned;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use flexsc_core::adaptation::{Adapt, Decision, Learn, Objective, Step};
+use flexsc_core::adaptation::{Adapt, Decision, Learn, Objective, SearchStep};
 use flexsc_core::own::Own;
 use flexsc_core::random::Seed;
 use flexsc_core::record::{Column, Detail, Trace};
@@ -45,9 +45,9 @@ impl Adapt for Stairs {
 }
 
 impl Learn for Climbing {
-    fn learn(&mut self, _: Instant, _: f64) -> Option<Step> {
+    fn learn(&mut self, _: Instant, _: f64) -> Option<SearchStep> {
         self.1 += self.0.step;
-        Some(Step { decision: Decision::Keep, change: 0.0, draw: 1.0, gain: self.1, settled: 0 })
+        Some(SearchStep { decision: Decision::Keep, change: 0.0, draw: 1.0, gain: self.1, settled: 0 })
     }
 
     fn copy(&self) -> Box<dyn Learn> {

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use flexsc_core::campaign::{Column, Directory};
+use flexsc_core::campaign::{ColumnCells, Directory};
 
 use crate::util::{Dir, UNCERTAIN, table};
 
 /// All columns of a directory but the time that runs took, with their names.
-pub fn rows(path: &Path) -> Vec<(String, Column)> {
+pub fn rows(path: &Path) -> Vec<(String, ColumnCells)> {
     let directory = Directory::open(path).expect("a campaign");
     assert!(directory.missing().expect("read").is_empty());
     let fields = directory.work().fields().iter().filter(|field| field.name != "seconds");
@@ -37,11 +37,11 @@ fn a_campaign_is_a_directory_of_parts() {
     for (name, column) in rows(&dir.path("out")) {
         let texts: Vec<&str> = csv.iter().map(|row| row[&name].as_str()).collect();
         match column {
-            Column::Words(words) => {
+            ColumnCells::Words(words) => {
                 let words: Vec<&str> = words.iter().map(|word| word.as_deref().unwrap_or("")).collect();
                 assert_eq!(words, texts, "{name}");
             }
-            Column::Lists(lists) => {
+            ColumnCells::Lists(lists) => {
                 let lists: Vec<_> =
                     lists.into_iter().map(|list| serde_json::json!(list).to_string()).collect();
                 assert_eq!(lists, texts, "{name}");
@@ -125,7 +125,7 @@ fn a_run_that_fails_is_a_row() {
     let dir = Dir::holding("u.toml", wide);
     let ran = dir.run("simulate u.toml --runs 20 -o out").exits(1);
     let (runs, columns) = (numbers(&dir.path("out"), "run"), rows(&dir.path("out")));
-    let Some((_, Column::Words(errors))) = columns.last() else { panic!("no errors") };
+    let Some((_, ColumnCells::Words(errors))) = columns.last() else { panic!("no errors") };
     let failed: Vec<usize> = (0..20).filter(|row| errors[*row].is_some()).collect();
     assert!(runs.len() == 20 && failed.len() > 1 && failed.len() < 19);
     ran.says(&[&format!("{} of 20 runs failed; the first: run {}:", failed.len(), failed[0])]);

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use flexsc_core::guard::Guard;
 use flexsc_core::motion::crossing::{Approach, locate};
-use flexsc_core::motion::linear::{Form, Level, Linear, Modal, SecondOrder, Seen, Segment, System};
+use flexsc_core::motion::linear::{
+    GuardLevel, LinearFlow, LinearSegment, LinearSight, Modal, SecondOrder, StateForm, System,
+};
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 
@@ -67,37 +69,37 @@ impl Relay {
 }
 
 /// A segment that counts how often it is evaluated.
-pub struct Counted<'a>(pub &'a Segment, pub &'a Cell<u32>);
+pub struct Counted<'a>(pub &'a LinearSegment, pub &'a Cell<u32>);
 
 impl Approach for Counted<'_> {
-    type Guard = Level;
-    type State = Seen;
+    type Guard = GuardLevel;
+    type State = LinearSight;
     type Sensed = ();
 
-    fn begin(&self, seen: &mut Seen) {
+    fn begin(&self, seen: &mut LinearSight) {
         self.1.set(self.1.get() + 1);
         self.0.begin(seen);
     }
-    fn go(&self, h: f64, seen: &mut Seen) {
+    fn go(&self, h: f64, seen: &mut LinearSight) {
         self.1.set(self.1.get() + 1);
         self.0.go(h, seen);
     }
-    fn is_finite(seen: &Seen, (): ()) -> bool {
-        Segment::is_finite(seen, ())
+    fn is_finite(seen: &LinearSight, (): ()) -> bool {
+        LinearSegment::is_finite(seen, ())
     }
-    fn holds(guard: Level, seen: &Seen, (): ()) -> bool {
-        Segment::holds(guard, seen, ())
+    fn holds(guard: GuardLevel, seen: &LinearSight, (): ()) -> bool {
+        LinearSegment::holds(guard, seen, ())
     }
-    fn window(seen: &Seen) -> f64 {
-        Segment::window(seen)
+    fn window(seen: &LinearSight) -> f64 {
+        LinearSegment::window(seen)
     }
-    fn earliest(&self, guard: Level, horizon: Span, seen: &Seen) -> f64 {
+    fn earliest(&self, guard: GuardLevel, horizon: Span, seen: &LinearSight) -> f64 {
         self.0.earliest(guard, horizon, seen)
     }
-    fn stride(&self, guard: Level, seen: &Seen, (): ()) -> f64 {
+    fn stride(&self, guard: GuardLevel, seen: &LinearSight, (): ()) -> f64 {
         self.0.stride(guard, seen, ())
     }
-    fn is_clear(&self, guard: Level, seen: &Seen, (): (), time: f64) -> bool {
+    fn is_clear(&self, guard: GuardLevel, seen: &LinearSight, (): (), time: f64) -> bool {
         self.0.is_clear(guard, seen, (), time)
     }
 }
@@ -111,25 +113,25 @@ pub struct Flight {
 
 /// Flies a plant whose outputs are the axes and whose inputs are moments times these inertias.
 pub fn fly(
-    form: Form,
+    form: StateForm,
     start: &DVector<f64>,
     inertias: &[f64],
     k_t: f64,
     times: &[f64],
     count: usize,
 ) -> Flight {
-    let flow = Arc::new(Linear::new(form).expect("a flow"));
+    let flow = Arc::new(LinearFlow::new(form).expect("a flow"));
     let mut here: Modal = flow.modal(start);
-    let mut segment = Segment::new(Arc::clone(&flow));
+    let mut segment = LinearSegment::new(Arc::clone(&flow));
     let mut relays: Vec<Relay> = inertias.iter().map(|_| Relay::new()).collect();
-    let (mut now, mut seen, counter) = (Instant::START, Seen::default(), Cell::new(0));
+    let (mut now, mut seen, counter) = (Instant::START, LinearSight::default(), Cell::new(0));
     let (mut arcs, mut flight) = (0, Flight { switchings: Vec::new(), evaluations: 0.0, states: Vec::new() });
     while flight.switchings.len() < count || flight.states.len() < times.len() {
         let input: Vec<f64> = relays.iter().zip(inertias).map(|(relay, j)| j * relay.moment).collect();
         segment.depart(&here, &input);
         let end = relays.iter().filter_map(|relay| relay.until).min();
         let horizon = end.map_or(Span::from_seconds(1e4), |end| end.since(now));
-        let guards: Vec<(Level, usize)> = relays
+        let guards: Vec<(GuardLevel, usize)> = relays
             .iter()
             .enumerate()
             .flat_map(|(output, relay)| {
@@ -137,10 +139,10 @@ pub fn fly(
                     .guards
                     .iter()
                     .enumerate()
-                    .map(move |(index, guard)| (Level { output, guard: *guard }, index))
+                    .map(move |(index, guard)| (GuardLevel { output, guard: *guard }, index))
             })
             .collect();
-        let levels: Vec<Level> = guards.iter().map(|(level, _)| *level).collect();
+        let levels: Vec<GuardLevel> = guards.iter().map(|(level, _)| *level).collect();
         arcs += u32::from(!levels.is_empty());
         let trip = if levels.is_empty() {
             None

@@ -3,7 +3,7 @@
 //! The exact numbers come from an independent integration of the generalised coordinates (SciPy's DOP853, rtol 1e-12) and,
 //! for the PD law and the exact chain, of the closed loop and of Lagrange's equations in absolute angles.
 
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Columns, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
@@ -198,22 +198,23 @@ fn a_campaign_plans_for_the_body_as_it_is_written() {
     let study =
         Campaign::new(scenario("rotation-robust", &set), "rotation-robust", None).expect("a campaign");
     let nominal = study.scenario().plan.as_ref().expect("a plan").coefficients.clone();
-    let runs: Vec<Run> = (0..4).map(|number| study.run(number).expect("a run")).collect();
+    let runs: Vec<CampaignRun> = (0..4).map(|number| study.run(number).expect("a run")).collect();
     for run in &runs {
         assert_eq!(run.scenario.plan.as_ref().expect("a plan").coefficients, nominal);
         assert_ne!(run.scenario.model, study.scenario().model);
         // The scenario that its log holds is the same run.
         let again = Scenario::parse("log", &run.scenario.self_contained().to_toml()).expect("valid");
-        let again = Run { number: run.number, scenario: again, drawn: Vec::new() };
+        let again = CampaignRun { number: run.number, scenario: again, drawn: Vec::new() };
         assert_eq!(
             Campaign::simulate(run, ()).expect("a run").to_json(),
             Campaign::simulate(&again, ()).expect("a run").to_json()
         );
     }
-    let residual = |run: &Run| match Campaign::simulate(run, ()).expect("a run").get("output_residuals") {
-        Some(residuals) => residuals.numbers()[3],
-        other => panic!("{other:?}"),
-    };
+    let residual =
+        |run: &CampaignRun| match Campaign::simulate(run, ()).expect("a run").get("output_residuals") {
+            Some(residuals) => residuals.numbers()[3],
+            other => panic!("{other:?}"),
+        };
     let exact = numbers(&metrics(study.scenario().clone()), "output_residuals")[3];
     // Frequencies that are 3 to 10 % off leave more than those that the plan knows.
     assert!(runs.iter().map(residual).sum::<f64>() / 4.0 > 1.2 * exact);

@@ -3,7 +3,7 @@
 //! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
 
 use flexsc_core::attitude::Vector;
-use flexsc_core::body::spatial::{Elastic, Rigid, Spatial, SpatialState, Turn};
+use flexsc_core::body::spatial::{Elastic, Rigid, RigidTurn, Spatial, SpatialState};
 use flexsc_core::quantity::Finite;
 use flexsc_core::{Document, Scenario};
 
@@ -105,7 +105,7 @@ fn momentum_and_energy_last() {
     ] {
         let rigid = Rigid::new(body(of));
         let mut turn = SpatialState::start(body(of), &rigid).turn;
-        let inertial = |turn: &Turn| {
+        let inertial = |turn: &RigidTurn| {
             let (v, momentum) = (turn.attitude.vector().into_owned(), Rigid::momentum(turn));
             let across = v.cross(&momentum);
             momentum + (across * turn.attitude.w + v.cross(&across)) * 2.0

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use flexsc_core::law::Command;
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::time::{Instant, Span};
-use flexsc_core::{Field, Occasion, Scenario, Simulation};
+use flexsc_core::{LookField, Occasion, Scenario, Simulation};
 
 use crate::util::SCENARIOS;
 
@@ -40,7 +40,7 @@ fn flown(name: &str, seconds: f64) -> Scenario {
 
 /// The row of a simulation, to the bit.
 fn row(simulation: &mut Simulation, scenario: &Scenario) -> Vec<u64> {
-    let mut row = vec![0.0; simulation.fields(scenario).iter().map(Field::width).sum()];
+    let mut row = vec![0.0; simulation.fields(scenario).iter().map(LookField::width).sum()];
     simulation.look(&mut row).expect("finite numbers");
     row.into_iter().map(f64::to_bits).collect()
 }
@@ -82,12 +82,12 @@ fn what_a_law_would_command_may_come_from_outside() {
     let fields = Simulation::new(&scenario, 0).fields(&scenario);
     let place = |name: &str| -> usize {
         let found = fields.iter().position(|field| field.name == name).expect("a field");
-        fields[..found].iter().map(Field::width).sum()
+        fields[..found].iter().map(LookField::width).sum()
     };
     let (attitude, rate) = (place("attitude"), place("rate"));
     let mut whole = Simulation::new(&scenario, 0);
     let mut steered = Simulation::new(&scenario, 0);
-    let mut row = vec![0.0; fields.iter().map(Field::width).sum()];
+    let mut row = vec![0.0; fields.iter().map(LookField::width).sum()];
     for second in 1..=60 {
         steered.open(&mut ()).expect("a start");
         steered.look(&mut row).expect("numbers");

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use flexsc_core::body::{Body, Planar};
-use flexsc_core::campaign::{Campaign, Grid, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun, Grid};
 use flexsc_core::record::Detail;
 use flexsc_core::{Document, Scenario};
 
@@ -342,7 +342,7 @@ fn modes_are_solved_once_and_kept_in_the_log() {
     let error = study(Some(damping)).expect_err("solved again").to_string();
     assert!(error.contains("`body.matrices.mass` cannot be used") && error.contains("m.csv"), "{error}");
     // What the log holds repeats alone, to the same bytes.
-    let run = Run { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
+    let run = CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
     let toml = Campaign::provenance(&run, Detail::Events).toml;
     let again = Scenario::from_document(&Document::parse("log", toml).expect("TOML")).expect("valid");
     assert_eq!(again.model, scenario.model);

@@ -1,6 +1,6 @@
 //! Shipped scenarios run by the engine itself, and their metrics.
 
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::{Column, Trace};
 use flexsc_core::{Document, Scenario};
@@ -17,7 +17,7 @@ pub fn scenario(name: &str, set: &[(&str, &str)]) -> Scenario {
 
 /// The metrics of a run.
 pub fn metrics(scenario: Scenario) -> Metrics {
-    Campaign::simulate(&Run { number: 0, scenario, drawn: Vec::new() }, ()).expect("a run")
+    Campaign::simulate(&CampaignRun { number: 0, scenario, drawn: Vec::new() }, ()).expect("a run")
 }
 
 /// A metric that is a list.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::{Vector, rotation};
 use flexsc_core::estimator::attitude::{
-    Filter, Fix, GyroNoise, History, KnownMode, KnownModes, Measured, Swinging,
+    AttitudeFilterState, AttitudeMeasurement, FilterHistory, Fix, GyroNoise, KnownMode, KnownModes, Swinging,
 };
 use flexsc_core::metrics::{Gather, Metrics, Value};
 use flexsc_core::record::{Detail, Trace};
@@ -46,9 +46,9 @@ fn modes_in_the_filter_are_those_of_the_oracle() {
     let (read, noise) = (rows(READ), GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 });
     let off = Vector::new(1e-3, -5e-4, 8e-4);
     let prior = Quaternion::new(0.8, 0.36, -0.48, 0.0) * rotation(&off);
-    let mut filter = Filter::new(prior, Vector::zeros(), [1e-3, 1e-5]);
+    let mut filter = AttitudeFilterState::new(prior, Vector::zeros(), [1e-3, 1e-5]);
     filter.swinging = Some(Box::new(Swinging::new(Arc::new(known()), &filter.covariance)));
-    let mut history = History::new(Instant::START, filter, noise, Span::from_seconds(0.5));
+    let mut history = FilterHistory::new(Instant::START, filter, noise, Span::from_seconds(0.5));
     let at = |k: usize, more: f64| Instant::START + Span::from_seconds(0.25 * k as f64 + more);
     let three = |of: &[f64]| Vector::new(of[0], of[1], of[2]);
     let tracker = Matrix3::from_diagonal(&Vector::new(2.4e-5, 2.4e-5, 1.5e-4).map(|noise| noise * noise));
@@ -60,7 +60,7 @@ fn modes_in_the_filter_are_those_of_the_oracle() {
             let z = &read[k - 2][7..11];
             let fix = Fix {
                 exposed: at(k - 2, 0.0),
-                measured: Measured::Attitude(Quaternion::new(z[0], z[1], z[2], z[3])),
+                measured: AttitudeMeasurement::Attitude(Quaternion::new(z[0], z[1], z[2], z[3])),
                 noise: tracker,
                 gain: None,
                 sensor: 1,

@@ -2,7 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{
-    Doubt, Gains, Goal, Loop, Scaling, Search, Window, midpoints, regions, robust,
+    Doubt, Gains, Loop, RobustGoal, RobustSearch, Scaling, SettlingWindow, midpoints, regions, robust,
 };
 
 use crate::loops::{FITTED, GAINS, WINDOW, at, fitted};
@@ -41,12 +41,12 @@ fn the_region_of_the_extra_gain() {
 fn robust_gains() {
     let of = fitted();
     let part = 0.05;
-    let search = Search {
+    let search = RobustSearch {
         gains: Gains { step: 0.1, ..GAINS },
         scaling: Scaling::All,
-        window: Window { horizon: 600.0, ..WINDOW },
+        window: SettlingWindow { horizon: 600.0, ..WINDOW },
         doubt: Doubt { frequency: part, modal_gain: part, authority: part, delay: 0.3 },
-        goal: Goal::Settling,
+        goal: RobustGoal::Settling,
         quantile: 1.0,
         margin: 1e-4,
     };
@@ -84,7 +84,7 @@ fn robust_gains() {
         assert!(ours <= robust.settling_without_s.unwrap_or(f64::INFINITY));
     }
     // No loop is that quick.
-    assert_eq!(robust(&of, &[0.2], Search { margin: 0.5, ..search })[0].gain, None);
+    assert_eq!(robust(&of, &[0.2], RobustSearch { margin: 0.5, ..search })[0].gain, None);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Waveforms: the exact response of a mode against fine quadrature of its definition.
 
 use flexsc_core::numerics::phasor::Phasor;
-use flexsc_core::waveform::{Shape, Term, Waveform};
+use flexsc_core::waveform::{Term, TermShape, Waveform};
 
 /// The integral of exp(pole (to - t)) u(t), and of (to - t) u(t), by Gauss's rule of three nodes on many panels between
 /// the breaks.
@@ -28,12 +28,12 @@ fn quadrature(waveform: &Waveform, pole: Phasor, from: f64, to: f64) -> (Phasor,
     (driven, travel)
 }
 
-fn term(from: f64, to: f64, shape: Shape) -> Waveform {
+fn term(from: f64, to: f64, shape: TermShape) -> Waveform {
     Waveform { terms: vec![Term { from, to, shape }] }
 }
 
 fn harmonic(frequency: f64) -> Waveform {
-    term(0.0, 12.0, Shape::Harmonic { frequency, cosine: 0.7, sine: -1.3 })
+    term(0.0, 12.0, TermShape::Harmonic { frequency, cosine: 0.7, sine: -1.3 })
 }
 
 /// The response of these poles over these intervals must be that of the definition.
@@ -62,7 +62,7 @@ fn harmonics_far_from_resonance_near_it_and_at_it() {
     }
     // At resonance, after whole periods: (sin wt - wt cos wt)/(2 w²).
     let w = std::f64::consts::PI;
-    let sine = term(0.0, 12.0, Shape::Harmonic { frequency: w, cosine: 0.0, sine: 1.0 });
+    let sine = term(0.0, 12.0, TermShape::Harmonic { frequency: w, cosine: 0.0, sine: 1.0 });
     let z = sine.response(Phasor::new(0.0, w), 0.0, 12.0);
     assert!((z.im / w + 12.0 / (2.0 * w)).abs() < 1e-13 && z.re.abs() < 1e-12, "{z}");
 }
@@ -81,8 +81,8 @@ fn polynomials_to_degree_11() {
             c = next;
         }
         // Their powers cancel by as many digits as the largest has.
-        check(&format!("degree {degree}"), &term(0.0, 12.0, Shape::Polynomial(c.clone())), 1e2);
-        check(&format!("degree {degree}, later"), &term(2.5, 9.0, Shape::Polynomial(c)), 1e2);
+        check(&format!("degree {degree}"), &term(0.0, 12.0, TermShape::Polynomial(c.clone())), 1e2);
+        check(&format!("degree {degree}, later"), &term(2.5, 9.0, TermShape::Polynomial(c)), 1e2);
     }
 }
 
@@ -92,7 +92,7 @@ fn exponentials_with_polynomials() {
         for coefficients in
             [vec![Phasor::new(0.4, -1.0)], vec![Phasor::new(1.0, 0.2), Phasor::new(-0.1, 0.05)]]
         {
-            let shape = Shape::Exponential { pole: Phasor::new(re, im), coefficients };
+            let shape = TermShape::Exponential { pole: Phasor::new(re, im), coefficients };
             check(&format!("exponential {re} {im}"), &term(0.5, 11.0, shape), 1e2);
         }
     }
@@ -101,7 +101,7 @@ fn exponentials_with_polynomials() {
 #[test]
 fn sums_shifts_and_breaks() {
     let mut waveform = harmonic(2.0);
-    waveform.terms.extend(term(3.0, 5.0, Shape::Polynomial(vec![1.0, -0.5])).terms);
+    waveform.terms.extend(term(3.0, 5.0, TermShape::Polynomial(vec![1.0, -0.5])).terms);
     check("sum", &waveform, 30.0);
     assert_eq!(waveform.breaks(), [0.0, 3.0, 5.0, 12.0]);
     let later = waveform.shifted(1.5, -2.0);

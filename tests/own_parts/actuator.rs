@@ -1,6 +1,6 @@
 //! An actuator from outside: a servo that gives torques in whole steps up to a limit, about each axis.
 
-use flexsc_core::actuator::{Actuate, Demand, Effector, Setting};
+use flexsc_core::actuator::{Actuate, Demand, Effector, TorquerSetting};
 use flexsc_core::body::Wrench;
 use flexsc_core::time::Instant;
 
@@ -16,7 +16,7 @@ pub struct Servo {
 struct Turning(Servo, [[f64; 2]; 3], Vec<f64>);
 
 impl Effector for Servo {
-    fn start(&self, settings: &[Setting]) -> Box<dyn Actuate> {
+    fn start(&self, settings: &[TorquerSetting]) -> Box<dyn Actuate> {
         Box::new(Turning(*self, [[0.0; 2]; 3], settings.iter().map(|setting| setting.inertia).collect()))
     }
 

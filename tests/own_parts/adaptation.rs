@@ -2,7 +2,7 @@
 
 use std::io;
 
-use flexsc_core::adaptation::{Adapt, Decision, Learn, Step};
+use flexsc_core::adaptation::{Adapt, Decision, Learn, SearchStep};
 use flexsc_core::own::Halt;
 use flexsc_core::random::Seed;
 use flexsc_core::time::Instant;
@@ -29,9 +29,9 @@ impl Adapt for Climber {
 }
 
 impl Learn for Climbing {
-    fn learn(&mut self, _: Instant, _: f64) -> Option<Step> {
+    fn learn(&mut self, _: Instant, _: f64) -> Option<SearchStep> {
         self.1 += self.0.step;
-        Some(Step { decision: Decision::Keep, change: 0.0, draw: 1.0, gain: self.1, settled: 0 })
+        Some(SearchStep { decision: Decision::Keep, change: 0.0, draw: 1.0, gain: self.1, settled: 0 })
     }
 
     fn halted(&self) -> Option<Halt> {

@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::campaign::{Campaign, Directory, Outcome, Run, RunError, Sampling};
+use flexsc_core::campaign::{Campaign, CampaignRun, Directory, RunError, RunOutcome, Sampling};
 use flexsc_core::count::counted;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
@@ -108,7 +108,7 @@ pub struct Told {
 pub fn run(
     study: &Arc<Campaign>,
     job: &Job<'_>,
-    work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+    work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
 ) -> Result<(), Failure> {
     let began = WallInstant::now();
     let _writing = stop::writing();
@@ -147,7 +147,7 @@ pub fn run(
 fn table(
     study: &Arc<Campaign>,
     job: &Job<'_>,
-    work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+    work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
 ) -> Result<Told, Failure> {
     let runs = job.range.end - job.range.start;
     let mut table = None;
@@ -210,7 +210,7 @@ fn interruption(at: u64) -> Failure {
 }
 
 /// The outcome of a run, unless its log stopped it.
-fn accepted(outcome: Outcome) -> Result<Outcome, Failure> {
+fn accepted(outcome: RunOutcome) -> Result<RunOutcome, Failure> {
     match outcome.metrics {
         Err(RunError::Simulation(SimulationError::Record(RecordError::Io(source)))) => {
             Err(Failure::write(Path::new(&format!("the log of run {}", outcome.number)))(source))
@@ -250,7 +250,7 @@ struct Telling<'a> {
 }
 
 impl Telling<'_> {
-    fn tell(&mut self, outcome: Option<Outcome>) -> Result<(), Failure> {
+    fn tell(&mut self, outcome: Option<RunOutcome>) -> Result<(), Failure> {
         if let Some(table) = &mut self.table {
             table.flush_in_time()?;
         }
@@ -265,7 +265,7 @@ impl Telling<'_> {
             table.row(self.study, &outcome)?;
         }
         if self.job.json {
-            let Outcome { number, drawn, metrics, .. } = &outcome;
+            let RunOutcome { number, drawn, metrics, .. } = &outcome;
             print_lines(&[object(self.study, *number, drawn, metrics.as_ref())])?;
         }
         match outcome.metrics {

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use clap::ValueEnum;
-use flexsc_core::campaign::{Column, Commanded, Run, Work};
+use flexsc_core::campaign::{CampaignRun, ColumnCells, Commanded, Work};
 use flexsc_core::record::{Detail, Log};
 use flexsc_core::time::Instant;
-use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour};
 
 use crate::logged;
 use crate::plot::{self, What};
@@ -15,7 +15,7 @@ use crate::plot::{self, What};
 ///
 /// # Errors
 /// A run that fails.
-pub fn log_of(run: &Run, commanded: &Commanded, until: Instant) -> Result<Log, String> {
+pub fn log_of(run: &CampaignRun, commanded: &Commanded, until: Instant) -> Result<Log, String> {
     logged::of_run(run, commanded, until, Path::new(&run.scenario.name), Detail::Events)
         .map_err(|failure| failure.to_string())
 }
@@ -44,7 +44,7 @@ pub fn of_log(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
 /// A figure or a metric that the campaign does not have.
 pub fn of_columns(
     work: &Work,
-    column: &dyn Fn(&str) -> Option<Column>,
+    column: &dyn Fn(&str) -> Option<ColumnCells>,
     kind: Option<&str>,
     metrics: &[String],
 ) -> Result<Vec<Named>, String> {
@@ -66,13 +66,13 @@ pub fn modes(frequencies: &[f64], weights: &[f64], (name, unit): (&str, &'static
     if frequencies.is_empty() {
         return None;
     }
-    let x = Axis::decades("natural frequency", "rad/s", frequencies.iter().copied());
-    let y = Axis::from_zero(name, unit, weights.iter().copied());
+    let x = FigureAxis::decades("natural frequency", "rad/s", frequencies.iter().copied());
+    let y = FigureAxis::from_zero(name, unit, weights.iter().copied());
     let points: Vec<_> = frequencies.iter().copied().zip(weights.iter().copied()).collect();
     let stems = points.iter().flat_map(|(w, height)| [(*w, 0.0), (*w, *height), (f64::NAN, f64::NAN)]);
     let layers = vec![
-        Layer::new("", colour::GREY, Shape::Line(1.0), stems.collect()),
-        Layer::new("", colour::BLUE, Shape::Disc, points),
+        Layer::new("", colour::GREY, LayerShape::Line(1.0), stems.collect()),
+        Layer::new("", colour::BLUE, LayerShape::Disc, points),
     ];
     let title = format!("{} elastic modes", frequencies.len());
     Some(Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 160 })

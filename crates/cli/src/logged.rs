@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use flexsc_core::campaign::{Campaign, Commanded, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun, Commanded};
 use flexsc_core::record::{Detail, Log, McapLog, RunEnd};
 use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, SimulationError};
@@ -20,7 +20,7 @@ pub fn logged(scenario: Scenario, path: &Path, detail: Detail) -> Result<Log, Fa
 
 /// The log of a run under these commands, up to an instant, in this detail.
 pub fn of_run(
-    run: &Run,
+    run: &CampaignRun,
     commanded: &Commanded,
     until: Instant,
     path: &Path,
@@ -31,7 +31,7 @@ pub fn of_run(
 }
 
 fn bytes(
-    run: &Run,
+    run: &CampaignRun,
     commanded: &Commanded,
     until: Instant,
     detail: Detail,

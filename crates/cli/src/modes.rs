@@ -6,8 +6,8 @@ use std::io::Write;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::influence::Influences;
-use flexsc_core::analysis::modal::Modal;
-use flexsc_core::analysis::parts::Parts;
+use flexsc_core::analysis::modal::ModalColumns;
+use flexsc_core::analysis::parts::ModalParts;
 use flexsc_core::attitude::AXES;
 use flexsc_core::body::{Axes, Drive};
 use flexsc_core::count::counted;
@@ -26,7 +26,7 @@ const WEIGHTS: usize = 12;
 struct Planar {
     /// Name of the scenario.
     name: String,
-    modal: Modal,
+    modal: ModalColumns,
 }
 
 /// The modes of a spatial body, and what its actuator does to them.
@@ -42,7 +42,7 @@ struct Spatial {
 pub fn results(scenario: &Scenario) -> Box<dyn Results> {
     let name = scenario.name.clone();
     if let Some(craft) = scenario.model.craft() {
-        let (parts, jets) = (Parts::of(scenario, craft), scenario.study.fired);
+        let (parts, jets) = (ModalParts::of(scenario, craft), scenario.study.fired);
         return Box::new(spacecraft::Spacecraft { name, parts, jets });
     }
     match scenario.model.axes() {
@@ -50,7 +50,7 @@ pub fn results(scenario: &Scenario) -> Box<dyn Results> {
             let (modes, jets) = (Influences::of(scenario, body), scenario.study.fired);
             Box::new(Spatial { name, modes, jets })
         }
-        Axes::One(body) => Box::new(Planar { name, modal: Modal::of(body) }),
+        Axes::One(body) => Box::new(Planar { name, modal: ModalColumns::of(body) }),
     }
 }
 

@@ -1,6 +1,6 @@
 //! A scenario's sampled loop, and what counts as settled in it: what `tune` and `map` share.
 
-use flexsc_core::analysis::sampled_loop::{Loop, Scaling, Window};
+use flexsc_core::analysis::sampled_loop::{Loop, Scaling, SettlingWindow};
 use flexsc_core::document::Fault;
 use flexsc_core::law::Pd;
 use flexsc_core::{Scenario, ScenarioError};
@@ -37,7 +37,7 @@ impl Settled {
         self.consent.to(&cost.map_err(|why| Failure::Arguments(format!("--{why}")))?)
     }
 
-    pub fn window(&self, of: &Loop, name: &str) -> Result<Window, Failure> {
+    pub fn window(&self, of: &Loop, name: &str) -> Result<SettlingWindow, Failure> {
         positive("--horizon", self.horizon)?;
         if let Some(band) = self.band {
             positive("--band", band)?;

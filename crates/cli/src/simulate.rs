@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::campaign::{Campaign, Design, Directory, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun, Directory, PointDesign};
 use flexsc_core::metrics::Selection;
 use flexsc_core::record::{Detail, RecordError};
 use flexsc_core::scenario::{Cost, MOST_RUNS};
@@ -156,10 +156,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 impl Args {
     /// The points of the campaign.
-    fn design(&self, uncertain: bool) -> Result<Design, Failure> {
-        let Some(Runs { range, part }) = &self.runs else { return Ok(Design::default()) };
+    fn design(&self, uncertain: bool) -> Result<PointDesign, Failure> {
+        let Some(Runs { range, part }) = &self.runs else { return Ok(PointDesign::default()) };
         let whole = (!part).then(|| range.end.div_ceil(self.options.replicas));
-        let design = self.options.complete(Design::default(), uncertain, self.options.points().or(whole))?;
+        let design =
+            self.options.complete(PointDesign::default(), uncertain, self.options.points().or(whole))?;
         match design.runs() {
             Some(all) if range.end > all => {
                 Err(Failure::Arguments(format!("--runs: --sample has points for only {all} runs")))
@@ -232,14 +233,14 @@ fn several(
 }
 
 /// The scenario itself as a run: no key of it is drawn.
-pub fn itself(study: &Campaign) -> Run {
-    Run { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() }
+pub fn itself(study: &Campaign) -> CampaignRun {
+    CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() }
 }
 
 /// Makes one run, with its log.
 fn single(
     study: &Campaign,
-    run: &Run,
+    run: &CampaignRun,
     args: &Args,
     (path, detail): (PathBuf, Option<Detail>),
 ) -> Result<(), Failure> {

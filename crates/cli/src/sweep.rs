@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::Scenario;
-use flexsc_core::campaign::{Block, Campaign, Design, Span};
+use flexsc_core::campaign::{Campaign, DesignBlock, KeyRange, PointDesign};
 use flexsc_core::count::counted;
 use flexsc_core::record::Detail;
 
@@ -107,7 +107,7 @@ impl Args {
     }
 
     /// The points, and how many they are.
-    fn design(&self, uncertain: bool) -> Result<(Design, u64), Failure> {
+    fn design(&self, uncertain: bool) -> Result<(PointDesign, u64), Failure> {
         let mut blocks = Vec::new();
         if let Some(path) = &self.points {
             blocks.push(points::read(path)?);
@@ -116,9 +116,11 @@ impl Args {
         for Varied { key, values } in &self.vary {
             let key = key.clone();
             match *values {
-                Values::Even { first, last, count } => blocks.push(Block::Even { key, first, last, count }),
-                Values::List(ref values) => blocks.push(Block::List { key, values: values.clone() }),
-                Values::Range { from, to } => ranges.push(Span { key, from, to }),
+                Values::Even { first, last, count } => {
+                    blocks.push(DesignBlock::Even { key, first, last, count })
+                }
+                Values::List(ref values) => blocks.push(DesignBlock::List { key, values: values.clone() }),
+                Values::Range { from, to } => ranges.push(KeyRange { key, from, to }),
             }
         }
         if let Some(range) = ranges.first() {
@@ -126,7 +128,7 @@ impl Args {
                 let why = "is a range, from which --sample takes points, such as --sample sobol:1024";
                 return Err(Failure::Arguments(format!("--vary {}: {why}", range.key)));
             };
-            blocks.push(Block::Sample { sampling: self.options.sampling(), count, ranges });
+            blocks.push(DesignBlock::Sample { sampling: self.options.sampling(), count, ranges });
         }
         let too_many = || {
             let why = format!("a sweep has at most {MOST_VALUES} combinations of values");
@@ -134,7 +136,7 @@ impl Args {
         };
         let points = blocks.iter().try_fold(1_u64, |points, block| points.checked_mul(block.count()));
         let points = points.ok_or_else(too_many)?;
-        let design = self.options.complete(Design::of(blocks), uncertain, Some(points))?;
+        let design = self.options.complete(PointDesign::of(blocks), uncertain, Some(points))?;
         let runs = points.checked_mul(self.options.replicas).filter(|runs| *runs <= u64::from(MOST_VALUES));
         let runs = runs.ok_or_else(too_many)?;
         if let Some(problem) = design.problem(usize::from(uncertain)) {

@@ -5,7 +5,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use flexsc_core::campaign::{Campaign, Outcome};
+use flexsc_core::campaign::{Campaign, RunOutcome};
 use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::whole::Partial;
 
@@ -60,7 +60,7 @@ impl Table {
         Ok(())
     }
 
-    pub fn row(&mut self, study: &Campaign, outcome: &Outcome) -> Result<(), Failure> {
+    pub fn row(&mut self, study: &Campaign, outcome: &RunOutcome) -> Result<(), Failure> {
         let mut cells = vec![outcome.number.to_string(), study.scenario().seed.to_string()];
         cells.extend(outcome.drawn.iter().map(ToString::to_string));
         match &outcome.metrics {

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
-use flexsc_core::campaign::{Directory, ERROR, Kind, SECONDS};
+use flexsc_core::campaign::{ColumnKind, Directory, ERROR, SECONDS};
 use flexsc_core::count::counted;
 use flexsc_core::metrics::goal;
 use indicatif::{HumanDuration, MultiProgress, ProgressBar, ProgressStyle};
@@ -93,7 +93,8 @@ fn metrics(args: &Args, directory: &Directory) -> Result<Vec<(String, Running)>,
     let work = directory.work();
     let numeric = |name: &str| {
         work.fields().iter().any(|field| {
-            let counts = matches!(field.kind, Kind::Integers | Kind::Numbers) || goal::NAMES.contains(&name);
+            let counts = matches!(field.kind, ColumnKind::Integers | ColumnKind::Numbers)
+                || goal::NAMES.contains(&name);
             field.name == name && counts
         })
     };

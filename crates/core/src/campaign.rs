@@ -29,12 +29,12 @@ use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
 
 pub use commanded::Commanded;
-pub use design::{Block, Design, MOST_NUMBERS, MOST_POINTS, Span};
+pub use design::{DesignBlock, KeyRange, MOST_NUMBERS, MOST_POINTS, PointDesign};
 pub use directory::{Directory, MANIFEST};
 pub use error::DirectoryError;
 pub use manifest::Manifest;
 pub use parquet::parquet_is_built_in;
-pub use rows::{Column, ERROR, Field, Kind, RUN, Rows, SECONDS, SEED};
+pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, Rows, SECONDS, SEED};
 pub use sampling::Sampling;
 pub use summary::Summary;
 pub use work::Work;
@@ -56,7 +56,7 @@ pub struct Campaign {
     scenario: Scenario,
     table: Table,
     origin: String,
-    design: Design,
+    design: PointDesign,
 }
 
 /// One key that takes these values. Run i of a campaign over one grid has value i; over several, their combinations are
@@ -78,7 +78,7 @@ impl Grid {
 
 /// One run of a campaign: its scenario with the drawn keys set.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub struct CampaignRun {
     /// The number of the run.
     pub number: u64,
     /// What is simulated.
@@ -89,7 +89,7 @@ pub struct Run {
 
 /// What a run came to.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// The number of the run.
     pub number: u64,
     /// The value of each key that varies.
@@ -107,11 +107,11 @@ impl Campaign {
         origin: &str,
         grids: impl IntoIterator<Item = Grid>,
     ) -> Result<Self, ScenarioError> {
-        Self::of(scenario, origin, Design::of(grids.into_iter().map(Block::from)))
+        Self::of(scenario, origin, PointDesign::of(grids.into_iter().map(DesignBlock::from)))
     }
 
     /// The campaign of a scenario over its `[uncertain]` keys and the points of a design.
-    pub fn of(mut scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
+    pub fn of(mut scenario: Scenario, origin: &str, design: PointDesign) -> Result<Self, ScenarioError> {
         scenario.written.forget_files();
         // Parts of a program's own have no text: runs take them over.
         let mut table = scenario.table_beside_own_parts();
@@ -160,20 +160,20 @@ impl Campaign {
         &self.scenario
     }
 
-    /// The keys that vary from run to run, in the order of [`Run::drawn`].
+    /// The keys that vary from run to run, in the order of [`CampaignRun::drawn`].
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         let designed = self.design.keys().into_iter();
         designed.chain(self.scenario.uncertain.keys().map(String::as_str))
     }
 
     /// A run, with its keys drawn. It is the same whichever runs are made beside it.
-    pub fn run(&self, number: u64) -> Result<Run, ScenarioError> {
+    pub fn run(&self, number: u64) -> Result<CampaignRun, ScenarioError> {
         let drawn = self.draw(number);
         if drawn.is_empty() {
             let mut scenario = self.scenario.clone();
             scenario.written.uncertain.clear();
             scenario.written.correlated.clear();
-            return Ok(Run { number, scenario, drawn });
+            return Ok(CampaignRun { number, scenario, drawn });
         }
         let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
         if self.plans_first() {
@@ -184,11 +184,11 @@ impl Campaign {
         }
         // A plan's body is more than numbers.
         let scenario = if self.plans_first() { self.scenario_with(&keys)? } else { self.drawn_with(&keys)? };
-        Ok(Run { number, scenario, drawn })
+        Ok(CampaignRun { number, scenario, drawn })
     }
 
     /// A run of which nothing but some metrics is wanted: without a monitor of the envelope that only others need.
-    fn run_for(&self, number: u64, selection: &Selection) -> Result<Run, ScenarioError> {
+    fn run_for(&self, number: u64, selection: &Selection) -> Result<CampaignRun, ScenarioError> {
         let mut run = self.run(number)?;
         let monitored =
             run.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
@@ -205,13 +205,13 @@ impl Campaign {
     }
 
     /// Simulates a run and gathers its metrics, beside another record.
-    pub fn simulate(run: &Run, record: impl Record) -> Result<Metrics, SimulationError> {
+    pub fn simulate(run: &CampaignRun, record: impl Record) -> Result<Metrics, SimulationError> {
         Self::simulate_for(run, &Selection::ALL, record)
     }
 
     /// The same, for some of the metrics.
     pub fn simulate_for(
-        run: &Run,
+        run: &CampaignRun,
         selection: &Selection,
         record: impl Record,
     ) -> Result<Metrics, SimulationError> {
@@ -229,8 +229,8 @@ impl Campaign {
         &self,
         number: u64,
         selection: &Selection,
-        work: impl Fn(&Run) -> Result<Metrics, RunError>,
-    ) -> Outcome {
+        work: impl Fn(&CampaignRun) -> Result<Metrics, RunError>,
+    ) -> RunOutcome {
         let began = WallInstant::now();
         let (drawn, metrics) = match self.run_for(number, selection) {
             Ok(run) => {
@@ -239,16 +239,16 @@ impl Campaign {
             }
             Err(error) => (self.draw(number), Err(error.into())),
         };
-        Outcome { number, drawn, metrics, seconds: began.elapsed().as_secs_f64() }
+        RunOutcome { number, drawn, metrics, seconds: began.elapsed().as_secs_f64() }
     }
 
     /// The points of the campaign.
-    pub fn design(&self) -> &Design {
+    pub fn design(&self) -> &PointDesign {
         &self.design
     }
 
     /// The provenance in the log of a run in this detail, with a layout for viewers.
-    pub fn provenance(run: &Run, detail: Detail) -> Provenance {
+    pub fn provenance(run: &CampaignRun, detail: Detail) -> Provenance {
         let layout = Layout::of(&run.scenario).of_detail(detail).to_json();
         Provenance {
             scenario: run.scenario.name.clone(),

@@ -74,4 +74,4 @@ pub use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quanti
 
 pub use document::{Document, LONGEST, Mistake, ScenarioError, nearest};
 pub use scenario::Scenario;
-pub use sim::{Field, Group, Occasion, Simulation, SimulationError};
+pub use sim::{LookField, LookGroup, Occasion, Simulation, SimulationError};

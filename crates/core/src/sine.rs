@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Finite, Positive};
-use crate::waveform::{Shape, Term};
+use crate::waveform::{Term, TermShape};
 
 /// amplitude sin(frequency t + phase), t from the start of the run.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,7 +29,7 @@ impl Sine {
     pub fn term(&self, from: f64, to: f64) -> Term {
         let (amplitude, frequency) = (self.amplitude.get(), self.frequency.get());
         let (sin, cos) = libm::sincos(frequency * from + self.phase.get());
-        let shape = Shape::Harmonic { frequency, cosine: amplitude * sin, sine: amplitude * cos };
+        let shape = TermShape::Harmonic { frequency, cosine: amplitude * sin, sine: amplitude * cos };
         Term { from, to, shape }
     }
 }

@@ -1,6 +1,6 @@
 //! Statistics of a campaign: mean, standard deviation and quantiles of every metric.
 
-use crate::metrics::{Meaning, Metrics, Told, Value, goal};
+use crate::metrics::{Meaning, MetricValue, Metrics, Value, goal};
 
 /// The quantiles that are reported.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -35,7 +35,7 @@ impl Gathered {
     /// Adds a run.
     pub fn add(&mut self, run: &Metrics) {
         if self.runs == 0 {
-            let counts = |(meaning, value): &Told| match value {
+            let counts = |(meaning, value): &MetricValue| match value {
                 Value::Count(_) | Value::Number(_) => true,
                 Value::Word(_) => goal::NAMES.contains(&meaning.name),
                 Value::Numbers(_) | Value::Quantities(_) => false,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// An axis.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub struct FigureAxis {
     /// What is along it; empty for an axis that another panel names.
     pub name: String,
     /// Unit of its values; empty for a ratio.
@@ -56,7 +56,7 @@ const DIRECTIONS: [&str; 6] = ["roll", "pitch", "yaw", "x", "y", "z"];
 /// Prefixes, from the smallest.
 const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
 
-impl Axis {
+impl FigureAxis {
     /// An axis that shows exactly this range.
     pub fn exact(name: &str, unit: &'static str, range: Range<f64>) -> Self {
         let size = range.start.abs().max(range.end.abs());
@@ -112,7 +112,7 @@ impl Axis {
         axes
     }
 
-    /// Where a value lies, in the numbers of [`Axis::extent`]; not finite if it has no place.
+    /// Where a value lies, in the numbers of [`FigureAxis::extent`]; not finite if it has no place.
     pub fn place(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value,
@@ -242,50 +242,50 @@ pub fn round_to_nice(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn texts(axis: &Axis, most: u32) -> Vec<String> {
+    fn texts(axis: &FigureAxis, most: u32) -> Vec<String> {
         let ticks = axis.ticks(most);
         ticks.at.iter().map(|at| ticks.text(*at)).collect()
     }
 
     #[test]
     fn numbers_are_short() {
-        let angle = Axis::exact("angle x", "rad", -6.2e-4..6.2e-4);
+        let angle = FigureAxis::exact("angle x", "rad", -6.2e-4..6.2e-4);
         assert_eq!(angle.label(), "angle x (µrad)");
         assert_eq!(texts(&angle, 7), ["−600", "−400", "−200", "0", "200", "400", "600"]);
-        let time = Axis::exact("time", "s", 0.0..20_000.0);
+        let time = FigureAxis::exact("time", "s", 0.0..20_000.0);
         assert_eq!(time.label(), "time (ks)");
         assert_eq!(texts(&time, 4), ["0", "5", "10", "15", "20"]);
-        let short = Axis::exact("time", "s", 0.0..3.0);
+        let short = FigureAxis::exact("time", "s", 0.0..3.0);
         assert_eq!(texts(&short, 4), ["0", "1", "2", "3"]);
-        let late = Axis::exact("time", "s", 19_900.0..20_000.0);
+        let late = FigureAxis::exact("time", "s", 19_900.0..20_000.0);
         assert_eq!(late.label(), "time (s)");
         assert_eq!(texts(&late, 2), ["19900", "19950", "20000"]);
-        let gain = Axis::exact("k_t", "", 0.305..0.325);
+        let gain = FigureAxis::exact("k_t", "", 0.305..0.325);
         assert_eq!(gain.label(), "k_t");
         assert_eq!(texts(&gain, 5), ["0.305", "0.310", "0.315", "0.320", "0.325"]);
-        let turn = Axis::exact("angle", "rad", -0.1..1.67);
+        let turn = FigureAxis::exact("angle", "rad", -0.1..1.67);
         assert_eq!(
             (turn.label().as_str(), texts(&turn, 4)),
             ("angle (rad)", ["0", "0.5", "1.0", "1.5"].map(str::to_owned).to_vec())
         );
-        let propellant = |most: f64| Axis::exact("propellant", "kg", 0.0..most);
+        let propellant = |most: f64| FigureAxis::exact("propellant", "kg", 0.0..most);
         assert_eq!(propellant(0.19).label(), "propellant (g)");
         assert_eq!(texts(&propellant(0.19), 4), ["0", "50", "100", "150"]);
         assert_eq!(propellant(3.7).label(), "propellant (kg)");
         assert_eq!(texts(&propellant(3.7), 4), ["0", "1", "2", "3"]);
         assert_eq!(propellant(4200.0).label(), "propellant (t)");
         // Two ticks at least.
-        assert_eq!(texts(&Axis::exact("x", "m", -45.0..45.0), 4), ["−40", "−20", "0", "20", "40"]);
-        let huge = Axis::exact("", "", -2e9..2e9);
+        assert_eq!(texts(&FigureAxis::exact("x", "m", -45.0..45.0), 4), ["−40", "−20", "0", "20", "40"]);
+        let huge = FigureAxis::exact("", "", -2e9..2e9);
         assert_eq!(texts(&huge, 2), ["−2.0e9", "0", "2.0e9"]);
     }
 
     #[test]
     fn axes_one_below_the_other_have_one_prefix() {
-        let axis = |most: f64, unit| Axis::exact("angle", unit, -most..most);
+        let axis = |most: f64, unit| FigureAxis::exact("angle", unit, -most..most);
         let stacked =
-            Axis::stacked(&[axis(3e-3, "rad"), axis(2e-5, "rad"), axis(1e-6, "rad"), axis(1e-5, "m")]);
-        let labels: Vec<String> = stacked.iter().map(Axis::label).collect();
+            FigureAxis::stacked(&[axis(3e-3, "rad"), axis(2e-5, "rad"), axis(1e-6, "rad"), axis(1e-5, "m")]);
+        let labels: Vec<String> = stacked.iter().map(FigureAxis::label).collect();
         // The third is too small for the first, but not for the second.
         assert_eq!(labels, ["angle (mrad)", "angle (mrad)", "angle (µrad)", "angle (µm)"]);
         assert_eq!(texts(&stacked[1], 3), ["−0.02", "0", "0.02"]);
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn decades_are_whole_and_at_most_eight() {
-        let residual = Axis::decades("phi4 left", "rad", [3e-5, 0.0, f64::NAN, 4e-2]);
+        let residual = FigureAxis::decades("phi4 left", "rad", [3e-5, 0.0, f64::NAN, 4e-2]);
         assert_eq!(residual.label(), "phi4 left (rad)");
         assert_eq!(texts(&residual, 8), ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"]);
         assert_eq!(texts(&residual, 2), ["10⁻¹", "10⁻³", "10⁻⁵"]);
@@ -302,10 +302,10 @@ mod tests {
         assert!((extent.start + 5.0).abs() < 1e-12 && (extent.end + 1.0).abs() < 1e-12);
         assert!((residual.place(1e-3) + 3.0).abs() < 1e-12);
         assert!(!residual.place(0.0).is_finite() && !residual.place(-1.0).is_finite());
-        let deep = Axis::decades("x", "m", [1e-17, 2e3]).extent();
+        let deep = FigureAxis::decades("x", "m", [1e-17, 2e3]).extent();
         assert!((deep.start + 4.0).abs() < 1e-12 && (deep.end - 4.0).abs() < 1e-12);
         for values in [vec![], vec![0.0], vec![1.0], vec![1e300], vec![-3.0, f64::NAN]] {
-            let extent = Axis::decades("x", "m", values.clone()).extent();
+            let extent = FigureAxis::decades("x", "m", values.clone()).extent();
             assert!((extent.end - extent.start - 1.0).abs() < 1e-9, "{values:?}: {extent:?}");
         }
     }
@@ -313,7 +313,7 @@ mod tests {
     #[test]
     fn any_values_make_an_axis() {
         for values in [vec![], vec![f64::NAN], vec![0.0], vec![3.0, 3.0], vec![-1e300, 1e300]] {
-            let axis = Axis::around("x", "m", values.clone());
+            let axis = FigureAxis::around("x", "m", values.clone());
             assert!(axis.range.start < axis.range.end, "{values:?}");
             assert!(axis.ticks(5).at.len() <= 7, "{values:?}");
         }

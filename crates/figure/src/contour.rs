@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::line::Point;
 
 /// A field on a grid.
-pub struct Field {
+pub struct ScalarField {
     /// Abscissae of the columns, which grow.
     pub x: Vec<f64>,
     /// Ordinates of the rows, which grow.
@@ -22,7 +22,7 @@ pub struct Ring {
     border: Vec<bool>,
 }
 
-impl Field {
+impl ScalarField {
     /// The curves around all that is at least as high as a level: straight between the edges of the grid's cells. What is no
     /// number counts as infinitely high.
     pub fn rings(&self, level: f64) -> Vec<Ring> {
@@ -131,10 +131,10 @@ impl Ring {
 mod tests {
     use super::*;
 
-    fn field(values: impl Fn(f64, f64) -> f64) -> Field {
+    fn field(values: impl Fn(f64, f64) -> f64) -> ScalarField {
         let axis: Vec<f64> = (0..=40).map(|i| f64::from(i) / 10.0 - 2.0).collect();
         let values = axis.iter().flat_map(|x| axis.iter().map(|y| values(*x, *y)).collect::<Vec<_>>());
-        Field { values: values.collect(), x: axis.clone(), y: axis.clone() }
+        ScalarField { values: values.collect(), x: axis.clone(), y: axis.clone() }
     }
 
     #[test]
@@ -173,7 +173,7 @@ mod tests {
         let broken = field(|x, _| if x > 1.0 { f64::NAN } else { x });
         let area = broken.rings(1.5)[0].area();
         assert!((area - 0.9 * 4.0).abs() < 0.41, "{area}");
-        let single = Field { x: vec![1.0], y: vec![2.0], values: vec![3.0] };
+        let single = ScalarField { x: vec![1.0], y: vec![2.0], values: vec![3.0] };
         assert_eq!(single.rings(1.0).len(), 1);
     }
 }

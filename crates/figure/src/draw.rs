@@ -11,7 +11,7 @@ use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, WHITE};
 use crate::area::polygons;
 use crate::line::{Point, Window, pieces, straighten, thin};
 use crate::svg::{Area, Error, UNITS, at, text};
-use crate::{Axis, Figure, Layer, Panel, Shape, bar, colour};
+use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour};
 
 /// Width of a figure whose panels are as high as they say (px).
 const WIDTH: u32 = 800;
@@ -164,7 +164,7 @@ impl Plot {
     }
 }
 
-fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &Axis), layout: Layout) -> Result<(), Error> {
+fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout) -> Result<(), Error> {
     let plot = Plot {
         window: Window { x: panel.x.extent(), y: panel.y.extent() },
         top: layout.legend(panel),
@@ -176,14 +176,14 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &Axis), layout: Layout) -> R
         let points: Vec<Point> =
             layer.points.iter().map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
         match layer.shape {
-            Shape::Line(_) | Shape::Dashes => {
+            LayerShape::Line(_) | LayerShape::Dashes => {
                 for piece in pieces(&points, &plot.window) {
                     let piece =
                         thin(&piece, &plot.window, 2 * plot.across).into_iter().map(|p| plot.place(p));
                     draw_line(area, layer, straighten(&piece.collect::<Vec<_>>()))?;
                 }
             }
-            Shape::Area(_) => {
+            LayerShape::Area(_) => {
                 for polygon in polygons(&points, &plot.window, plot.across) {
                     let corners: Vec<_> = polygon.into_iter().map(|p| plot.place(p)).collect();
                     area.draw(&Polygon::new(straighten(&corners), layer.style()))?;
@@ -200,7 +200,7 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &Axis), layout: Layout) -> R
 }
 
 /// Draws the grid, the numbers and the names of the axes.
-fn draw_axes(area: &Area<'_>, (across, up): (&Axis, &Axis), plot: &Plot) -> Result<(), Error> {
+fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &Plot) -> Result<(), Error> {
     let Window { x, y } = &plot.window;
     let corner = plot.place((x.start, y.start));
     let opposite = plot.place((x.end, y.end));
@@ -233,7 +233,7 @@ fn draw_axes(area: &Area<'_>, (across, up): (&Axis, &Axis), plot: &Plot) -> Resu
 }
 
 fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<(), Error> {
-    if layer.shape == Shape::Dashes {
+    if layer.shape == LayerShape::Dashes {
         area.draw(&DashedPathElement::new(points, 5 * UNITS, 4 * UNITS, layer.style()))
     } else {
         area.draw(&PathElement::new(points, layer.style()))
@@ -246,8 +246,8 @@ fn draw_legend(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Err
         let middle = LEGEND / 2 + 1 + ROW * row;
         let (from, to) = (at(left, middle), at(left + 18, middle));
         match layer.shape {
-            Shape::Line(_) | Shape::Dashes => draw_line(area, layer, vec![from, to])?,
-            Shape::Area(_) => {
+            LayerShape::Line(_) | LayerShape::Dashes => draw_line(area, layer, vec![from, to])?,
+            LayerShape::Area(_) => {
                 let [low, high] = [middle + 5, middle - 5];
                 let corners = [at(left, low), at(left + 18, low), at(left + 18, high), at(left, high)];
                 area.draw(&Polygon::new(corners, layer.style()))?;
@@ -261,11 +261,11 @@ fn draw_legend(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Err
 
 fn draw_mark(area: &Area<'_>, layer: &Layer, (x, y): (i32, i32)) -> Result<(), Error> {
     let corners: &[(i32, i32)] = match layer.shape {
-        Shape::Triangle => &[(0, -42), (38, 26), (-38, 26)],
-        Shape::Square => &[(-29, -29), (29, -29), (29, 29), (-29, 29)],
-        Shape::Diamond => &[(0, -44), (44, 0), (0, 44), (-44, 0)],
-        Shape::Dot => return area.draw(&Circle::new((x, y), 16, layer.style())),
-        Shape::Ring => return area.draw(&Circle::new((x, y), 38, stroke(layer.colour, 1.2))),
+        LayerShape::Triangle => &[(0, -42), (38, 26), (-38, 26)],
+        LayerShape::Square => &[(-29, -29), (29, -29), (29, 29), (-29, 29)],
+        LayerShape::Diamond => &[(0, -44), (44, 0), (0, 44), (-44, 0)],
+        LayerShape::Dot => return area.draw(&Circle::new((x, y), 16, layer.style())),
+        LayerShape::Ring => return area.draw(&Circle::new((x, y), 38, stroke(layer.colour, 1.2))),
         _ => return area.draw(&Circle::new((x, y), 32, layer.style())),
     };
     let corners: Vec<_> = corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
@@ -275,9 +275,9 @@ fn draw_mark(area: &Area<'_>, layer: &Layer, (x, y): (i32, i32)) -> Result<(), E
 impl Layer {
     fn style(&self) -> ShapeStyle {
         match self.shape {
-            Shape::Line(width) => stroke(self.colour, width),
-            Shape::Dashes => stroke(self.colour, 1.0),
-            Shape::Area(opacity) => self.colour.mix(opacity).filled(),
+            LayerShape::Line(width) => stroke(self.colour, width),
+            LayerShape::Dashes => stroke(self.colour, 1.0),
+            LayerShape::Area(opacity) => self.colour.mix(opacity).filled(),
             _ => self.colour.filled(),
         }
     }

@@ -17,9 +17,9 @@ mod style;
 mod svg;
 
 pub use area::band;
-pub use axis::{Axis, Scale, Ticks, name_and_unit, round_to_nice};
+pub use axis::{FigureAxis, Scale, Ticks, name_and_unit, round_to_nice};
 pub use bar::Bar;
-pub use contour::{Field, Ring};
+pub use contour::{Ring, ScalarField};
 #[cfg(feature = "png")]
 pub use image::Renderer;
 pub use line::{Point, Window, steps};
@@ -63,9 +63,9 @@ pub type Named = (String, Figure);
 /// A panel.
 pub struct Panel {
     /// Axis to the right.
-    pub x: Axis,
+    pub x: FigureAxis,
     /// Axis upwards.
-    pub y: Axis,
+    pub y: FigureAxis,
     /// What is drawn, the lowest first.
     pub layers: Vec<Layer>,
     /// What the colours of a map stand for.
@@ -80,14 +80,14 @@ pub struct Layer {
     /// Colour.
     pub colour: RGBColor,
     /// Shape.
-    pub shape: Shape,
+    pub shape: LayerShape,
     /// Where; a point that is not finite is a gap.
     pub points: Vec<Point>,
 }
 
 /// The shape of a layer.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum LayerShape {
     /// A line of this width in pixels.
     Line(f64),
     /// A dashed line.
@@ -115,8 +115,8 @@ impl Figure {
     }
 
     /// The vertical axes of the panels as they are drawn: those of one unit have one prefix.
-    pub fn upward(&self) -> Vec<Axis> {
-        Axis::stacked(self.panels.iter().map(|panel| &panel.y))
+    pub fn upward(&self) -> Vec<FigureAxis> {
+        FigureAxis::stacked(self.panels.iter().map(|panel| &panel.y))
     }
 
     /// The figure as SVG, laid out for a style but in pixels of its own: [`Style::sized`] gives it its size.
@@ -127,14 +127,14 @@ impl Figure {
 
 impl Panel {
     /// A panel of layers.
-    pub fn new(x: Axis, y: Axis, layers: Vec<Layer>) -> Self {
+    pub fn new(x: FigureAxis, y: FigureAxis, layers: Vec<Layer>) -> Self {
         Self { x, y, layers, bar: None }
     }
 }
 
 impl Layer {
     /// A layer.
-    pub fn new(name: &str, colour: RGBColor, shape: Shape, points: Vec<Point>) -> Self {
+    pub fn new(name: &str, colour: RGBColor, shape: LayerShape, points: Vec<Point>) -> Self {
         Self { name: name.to_owned(), colour, shape, points }
     }
 }

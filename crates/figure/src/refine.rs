@@ -1,8 +1,8 @@
 //! A field on a finer grid: between its values by monotone cubics, which are smooth and never beyond the values beside them.
 
-use crate::contour::Field;
+use crate::contour::ScalarField;
 
-impl Field {
+impl ScalarField {
     /// The field with so many steps in each of the grid's.
     #[must_use]
     pub fn refined(&self, steps: usize) -> Self {
@@ -60,10 +60,10 @@ mod tests {
     fn a_finer_field_has_the_same_values_and_none_beyond() {
         let values: Vec<f64> =
             (0..5).flat_map(|i| (0..4).map(move |j| f64::from((i * 7 + j * 3) % 5) - f64::from(i))).collect();
-        let field = Field { x: vec![0.0, 1.0, 2.0, 4.0, 5.0], y: vec![0.0, 0.5, 1.0, 2.0], values };
+        let field = ScalarField { x: vec![0.0, 1.0, 2.0, 4.0, 5.0], y: vec![0.0, 0.5, 1.0, 2.0], values };
         let fine = field.refined(4);
         assert_eq!((fine.x.len(), fine.y.len(), fine.values.len()), (17, 13, 17 * 13));
-        let at = |field: &Field, i: usize, j: usize| field.values[i * field.y.len() + j];
+        let at = |field: &ScalarField, i: usize, j: usize| field.values[i * field.y.len() + j];
         for i in 0..5 {
             for j in 0..4 {
                 assert_eq!(at(&fine, 4 * i, 4 * j), at(&field, i, j));
@@ -85,7 +85,7 @@ mod tests {
         let axis: Vec<f64> = (0..12).map(f64::from).collect();
         let values = axis.iter().flat_map(|x| axis.iter().map(move |y| x * x + 3.0 * y)).collect();
         // At the ends slopes are one-sided.
-        let fine = Field { x: axis.clone(), y: axis.clone(), values }.refined(5);
+        let fine = ScalarField { x: axis.clone(), y: axis.clone(), values }.refined(5);
         for (i, x) in fine.x.iter().enumerate().filter(|(_, x)| **x > 1.0 && **x < 10.0) {
             for (j, y) in fine.y.iter().enumerate() {
                 let off = fine.values[i * fine.y.len() + j] - (x * x + 3.0 * y);
@@ -93,8 +93,9 @@ mod tests {
             }
         }
         let broken =
-            Field { x: vec![0.0, 1.0, 2.0], y: vec![0.0], values: vec![1.0, f64::INFINITY, 2.0] }.refined(2);
+            ScalarField { x: vec![0.0, 1.0, 2.0], y: vec![0.0], values: vec![1.0, f64::INFINITY, 2.0] }
+                .refined(2);
         assert_eq!(broken.values, [1.0, f64::INFINITY, f64::INFINITY, 2.0, 2.0]);
-        assert_eq!(Field { x: vec![1.0], y: vec![2.0], values: vec![3.0] }.refined(9).values, [3.0]);
+        assert_eq!(ScalarField { x: vec![1.0], y: vec![2.0], values: vec![3.0] }.refined(9).values, [3.0]);
     }
 }

@@ -22,7 +22,7 @@ const ROUNDS: usize = 3;
 
 /// A mode: its equilibrium, and its deviation from it at one instant.
 #[derive(Copy, Clone, Debug)]
-pub struct Oscillator<R, D = Undamped> {
+pub struct GuessOscillator<R, D = Undamped> {
     /// Natural frequency (rad/s).
     pub frequency: R,
     /// Equilibrium (rad).
@@ -52,7 +52,7 @@ pub struct Departure<R> {
 
 /// A level of the angle that is watched.
 #[derive(Copy, Clone, Debug)]
-pub struct Level<R> {
+pub struct GuessLevel<R> {
     /// The angle (rad).
     pub angle: R,
     /// 1 if it is reached from below, -1 from above.
@@ -61,7 +61,7 @@ pub struct Level<R> {
 
 /// What is found.
 #[derive(Copy, Clone, Debug)]
-pub struct Found<R: Real> {
+pub struct GuessedTrip<R: Real> {
     /// Whether it is certain to be the first trip.
     pub certain: R::Mask,
     /// Whether it is the first level that is reached, of two.
@@ -74,7 +74,7 @@ pub struct Found<R: Real> {
     pub seen: [R; 3],
 }
 
-impl<R: Real, D: Damping<R>> Oscillator<R, D> {
+impl<R: Real, D: Damping<R>> GuessOscillator<R, D> {
     /// Moves on by a time (s).
     #[inline(always)]
     pub fn go(&mut self, t: R) {
@@ -107,7 +107,7 @@ impl<R: Real, D: Damping<R>> Oscillator<R, D> {
 
 /// The angle and its derivatives `t` seconds after departure, where the modes are.
 #[inline(always)]
-fn derivatives<R: Real, D: Damping<R>>(from: &Departure<R>, t: R, modes: &[Oscillator<R, D>]) -> [R; 5] {
+fn derivatives<R: Real, D: Damping<R>>(from: &Departure<R>, t: R, modes: &[GuessOscillator<R, D>]) -> [R; 5] {
     let zero = t.of(0.0);
     let mut angle = from.angle + t * (from.rate + t.of(0.5) * from.moment * t);
     let mut rate = from.rate + from.moment * t;
@@ -163,9 +163,9 @@ fn above<R: Real>(x: R) -> R {
 #[inline(always)]
 pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
     from: &Departure<R>,
-    levels: &[Level<R>; LEVELS],
-    modes: &mut [Oscillator<R, D>],
-) -> Found<R> {
+    levels: &[GuessLevel<R>; LEVELS],
+    modes: &mut [GuessOscillator<R, D>],
+) -> GuessedTrip<R> {
     let zero = from.angle.of(0.0);
     let one = from.angle.of(1.0);
     let (mut centre, mut reach, mut curvature) = (zero, zero, from.moment.abs());
@@ -251,5 +251,5 @@ pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
         let bound = zero.lt(gap) & zero.lt(gap * curvature - (speed + half) * until);
         certain = certain & (rigid | bound | (is_it & until.le(zero)));
     }
-    Found { certain, first, ticks, after, seen: [seen[0], seen[1], seen[2]] }
+    GuessedTrip { certain, first, ticks, after, seen: [seen[0], seen[1], seen[2]] }
 }

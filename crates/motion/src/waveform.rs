@@ -20,12 +20,12 @@ pub struct Term {
     /// When it ends (s).
     pub to: f64,
     /// What it is in between.
-    pub shape: Shape,
+    pub shape: TermShape,
 }
 
 /// The shape of a term, in the time t - from since it began.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum TermShape {
     /// sum c\[n\] (t - from)^n.
     Polynomial(Vec<f64>),
     /// cosine cos(frequency (t - from)) + sine sin(frequency (t - from)).
@@ -61,9 +61,9 @@ impl Waveform {
     /// The largest frequency of a term (rad/s).
     pub fn fastest(&self) -> f64 {
         let frequency = |term: &Term| match &term.shape {
-            Shape::Polynomial(c) => (c.len() as f64 - 1.0).max(0.0) / (term.to - term.from),
-            Shape::Harmonic { frequency, .. } => frequency.abs(),
-            Shape::Exponential { pole, .. } => crate::numerics::phasor::abs(*pole),
+            TermShape::Polynomial(c) => (c.len() as f64 - 1.0).max(0.0) / (term.to - term.from),
+            TermShape::Harmonic { frequency, .. } => frequency.abs(),
+            TermShape::Exponential { pole, .. } => crate::numerics::phasor::abs(*pole),
         };
         self.terms.iter().map(frequency).fold(0.0, f64::max)
     }
@@ -84,11 +84,11 @@ impl Waveform {
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
         self.terms.iter().all(|term| match &term.shape {
-            Shape::Polynomial(c) => c.iter().all(|c| c.is_finite()),
-            Shape::Harmonic { frequency, cosine, sine } => {
+            TermShape::Polynomial(c) => c.iter().all(|c| c.is_finite()),
+            TermShape::Harmonic { frequency, cosine, sine } => {
                 frequency.is_finite() && cosine.is_finite() && sine.is_finite()
             }
-            Shape::Exponential { pole, coefficients } => {
+            TermShape::Exponential { pole, coefficients } => {
                 coefficients.iter().chain([pole]).all(|c| c.re.is_finite() && c.im.is_finite())
             }
         })
@@ -136,11 +136,13 @@ impl Waveform {
             from: term.from + delay,
             to: term.to + delay,
             shape: match &term.shape {
-                Shape::Polynomial(c) => Shape::Polynomial(c.iter().map(|c| c * factor).collect()),
-                Shape::Harmonic { frequency, cosine, sine } => {
-                    Shape::Harmonic { frequency: *frequency, cosine: cosine * factor, sine: sine * factor }
-                }
-                Shape::Exponential { pole, coefficients } => Shape::Exponential {
+                TermShape::Polynomial(c) => TermShape::Polynomial(c.iter().map(|c| c * factor).collect()),
+                TermShape::Harmonic { frequency, cosine, sine } => TermShape::Harmonic {
+                    frequency: *frequency,
+                    cosine: cosine * factor,
+                    sine: sine * factor,
+                },
+                TermShape::Exponential { pole, coefficients } => TermShape::Exponential {
                     pole: *pole,
                     coefficients: coefficients.iter().map(|c| c * factor).collect(),
                 },
@@ -155,12 +157,12 @@ impl Term {
     pub fn value(&self, t: f64) -> f64 {
         let t = t - self.from;
         match &self.shape {
-            Shape::Polynomial(c) => c.iter().rev().fold(0.0, |sum, c| sum * t + c),
-            Shape::Harmonic { frequency, cosine, sine } => {
+            TermShape::Polynomial(c) => c.iter().rev().fold(0.0, |sum, c| sum * t + c),
+            TermShape::Harmonic { frequency, cosine, sine } => {
                 let (s, c) = libm::sincos(frequency * t);
                 cosine * c + sine * s
             }
-            Shape::Exponential { pole, coefficients } => {
+            TermShape::Exponential { pole, coefficients } => {
                 let sum = coefficients.iter().rev().fold(Phasor::default(), |sum, c| sum * t + c);
                 (exp(pole * t) * sum).re
             }
@@ -180,7 +182,7 @@ impl Term {
             exp(own * h) * sum
         };
         let (own, coefficients) = self.about(start);
-        let driven = if matches!(self.shape, Shape::Polynomial(_)) {
+        let driven = if matches!(self.shape, TermShape::Polynomial(_)) {
             part(own, coefficients)
         } else {
             // The real part of the shape is half the sum of it and its conjugate.
@@ -200,7 +202,7 @@ impl Term {
             // Integrals of t^n exp(z t) and of (1 - t) t^n exp(z t) from 0 to 1.
             let z = own * h;
             let (whole, left) = match (n, &self.shape) {
-                (_, Shape::Polynomial(_)) => {
+                (_, TermShape::Polynomial(_)) => {
                     let n = n as f64;
                     (Phasor::new(1.0 / (n + 1.0), 0.0), Phasor::new(1.0 / ((n + 1.0) * (n + 2.0)), 0.0))
                 }
@@ -224,11 +226,11 @@ impl Term {
     fn about(&self, origin: f64) -> (Phasor, Vec<Phasor>) {
         let since = origin - self.from;
         let (pole, coefficients) = match &self.shape {
-            Shape::Polynomial(c) => (Phasor::default(), c.iter().map(|c| Phasor::new(*c, 0.0)).collect()),
-            Shape::Harmonic { frequency, cosine, sine } => {
+            TermShape::Polynomial(c) => (Phasor::default(), c.iter().map(|c| Phasor::new(*c, 0.0)).collect()),
+            TermShape::Harmonic { frequency, cosine, sine } => {
                 (Complex { re: 0.0, im: *frequency }, vec![Complex { re: *cosine, im: -sine }])
             }
-            Shape::Exponential { pole, coefficients } => (*pole, coefficients.clone()),
+            TermShape::Exponential { pole, coefficients } => (*pole, coefficients.clone()),
         };
         if since == 0.0 {
             return (pole, coefficients);

@@ -6,7 +6,7 @@ use minijinja::Environment;
 use minijinja::value::{Serde, Value};
 use serde::Deserialize;
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour, name_and_unit};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour, name_and_unit};
 
 /// A chart as a template gives it.
 #[derive(Deserialize)]
@@ -48,9 +48,9 @@ impl Chart {
         let layer = |(index, line): (usize, &Line)| {
             let (colour, upper) = (colours[index % colours.len()], points(&line.x, &line.y));
             let (shape, points) = match &line.lower {
-                Some(lower) => (Shape::Area(0.35), band(&points(&line.x, lower), &upper)),
-                None if line.marks => (Shape::Disc, upper),
-                None => (Shape::Line(1.2), upper),
+                Some(lower) => (LayerShape::Area(0.35), band(&points(&line.x, lower), &upper)),
+                None if line.marks => (LayerShape::Disc, upper),
+                None => (LayerShape::Line(1.2), upper),
             };
             Layer::new(&line.name, colour, shape, points)
         };
@@ -63,8 +63,8 @@ impl Chart {
             .fold((f64::INFINITY, f64::NEG_INFINITY), ends);
         let (name, unit) =
             if self.unit.is_empty() { (self.y.clone(), "") } else { name_and_unit(&self.y, &self.unit) };
-        let y = Axis::around(&name, unit, all().map(|point| point.1));
-        let x = Axis::exact(&self.x, "", low..high);
+        let y = FigureAxis::around(&name, unit, all().map(|point| point.1));
+        let x = FigureAxis::exact(&self.x, "", low..high);
         Figure { title: self.title.clone(), panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 }

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, Column, Design, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest, Rows, Run,
-    SECONDS, Sampling, Work as Whole,
+    Campaign, CampaignRun, ColumnCells, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest,
+    PointDesign, Rows, SECONDS, Sampling, Work as Whole,
 };
 use flexsc_core::metrics::Selection;
 use flexsc_core::statistics::{QUANTILES, Statistics};
@@ -45,17 +45,17 @@ fn summary(statistics: Statistics) -> Summary {
 }
 
 /// A column as numpy has it: integers where none is missing, numbers with NaN, words with empty ones, lists of arrays.
-fn array(py: Python<'_>, column: Column) -> PyResult<Bound<'_, PyAny>> {
+fn array(py: Python<'_>, column: ColumnCells) -> PyResult<Bound<'_, PyAny>> {
     match column {
-        Column::Integers(cells) => match cells.iter().copied().collect::<Option<Vec<i64>>>() {
+        ColumnCells::Integers(cells) => match cells.iter().copied().collect::<Option<Vec<i64>>>() {
             Some(integers) => Ok(integers.into_pyarray(py).into_any()),
-            None => Ok(Column::Integers(cells).numbers().into_pyarray(py).into_any()),
+            None => Ok(ColumnCells::Integers(cells).numbers().into_pyarray(py).into_any()),
         },
-        Column::Numbers(cells) => Ok(cells.into_pyarray(py).into_any()),
-        Column::Words(cells) => {
+        ColumnCells::Numbers(cells) => Ok(cells.into_pyarray(py).into_any()),
+        ColumnCells::Words(cells) => {
             Ok(PyList::new(py, cells.into_iter().map(Option::unwrap_or_default))?.into_any())
         }
-        Column::Lists(cells) => {
+        ColumnCells::Lists(cells) => {
             let lists = cells.into_iter().map(|cell| cell.unwrap_or_default().into_pyarray(py));
             Ok(PyList::new(py, lists)?.into_any())
         }
@@ -99,11 +99,11 @@ impl Work {
         let (_, draws) =
             known.ok_or_else(|| wrong(format!("sample must be one of {names}, got {sampling:?}")))?;
         let hypercube = if draws == Sampling::LatinHypercube { runs.1.div_ceil(replicas.max(1)) } else { 0 };
-        let design = Design {
+        let design = PointDesign {
             draws,
             hypercube,
             replicas,
-            ..Design::of(grids.into_iter().map(|(key, values)| Grid { key, values }.into()))
+            ..PointDesign::of(grids.into_iter().map(|(key, values)| Grid { key, values }.into()))
         };
         let selection = metrics.map_or(Ok(Selection::ALL), Selection::of).map_err(wrong)?;
         let campaign =
@@ -185,7 +185,7 @@ impl Work {
         let work = self.0.clone();
         let (rows, statistics) = aside(py, move |stop| {
             let is_own = work.campaign.scenario().has_own_parts();
-            let simulate = move |run: &Run, selection: &Selection, stop| {
+            let simulate = move |run: &CampaignRun, selection: &Selection, stop| {
                 known_thread(is_own, || Campaign::simulate_for(run, selection, stop))
             };
             let rows = work.make_by(runs.0..runs.1, jobs, stop, simulate)?;
@@ -220,7 +220,7 @@ pub fn campaign_statistics(
     columns: HashMap<String, Bound<'_, PyAny>>,
     rows: usize,
 ) -> PyResult<Vec<Summary>> {
-    let columns: HashMap<String, Column> =
+    let columns: HashMap<String, ColumnCells> =
         columns.iter().map(|(name, given)| Ok((name.clone(), column(given)?))).collect::<PyResult<_>>()?;
     let work = work.0.clone();
     let told = aside(py, move |_| {

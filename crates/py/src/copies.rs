@@ -5,7 +5,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 
 use flexsc_core::campaign::{Campaign, Commanded, RunError};
 use flexsc_core::record::Record;
-use flexsc_core::{Field, Simulation};
+use flexsc_core::{LookField, Simulation};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -71,7 +71,7 @@ impl Flight {
 pub struct Simulators {
     campaign: Arc<Campaign>,
     flights: Vec<Flight>,
-    fields: Vec<Field>,
+    fields: Vec<LookField>,
     width: usize,
     pool: Arc<ThreadPool>,
     keeps: bool,
@@ -133,7 +133,7 @@ impl Simulators {
         let mut simulators = Self {
             campaign: Arc::new(campaign),
             flights: runs.into_iter().map(flight).collect(),
-            width: fields.iter().map(Field::width).sum(),
+            width: fields.iter().map(LookField::width).sum(),
             fields,
             pool: Arc::new(pool),
             keeps,

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use flexsc_cli::figures;
 use flexsc_core::analysis::influence::Influences;
-use flexsc_core::analysis::modal::Modal;
+use flexsc_core::analysis::modal::ModalColumns;
 use flexsc_core::body::Axes;
-use flexsc_core::campaign::Column;
-use flexsc_figure::{Axis, Layer, Named, Panel, RGBColor, Scale, Shape};
+use flexsc_core::campaign::ColumnCells;
+use flexsc_figure::{FigureAxis, Layer, LayerShape, Named, Panel, RGBColor, Scale};
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -56,7 +56,7 @@ impl Figure {
     }
 }
 
-fn panel<'py>(py: Python<'py>, panel: &Panel, y: &Axis) -> PyResult<Bound<'py, PyDict>> {
+fn panel<'py>(py: Python<'py>, panel: &Panel, y: &FigureAxis) -> PyResult<Bound<'py, PyDict>> {
     let told = PyDict::new(py);
     told.set_item("x", axis(py, &panel.x)?)?;
     told.set_item("y", axis(py, y)?)?;
@@ -69,7 +69,7 @@ fn panel<'py>(py: Python<'py>, panel: &Panel, y: &Axis) -> PyResult<Bound<'py, P
     Ok(told)
 }
 
-fn axis<'py>(py: Python<'py>, axis: &Axis) -> PyResult<Bound<'py, PyDict>> {
+fn axis<'py>(py: Python<'py>, axis: &FigureAxis) -> PyResult<Bound<'py, PyDict>> {
     let told = PyDict::new(py);
     told.set_item("label", axis.label())?;
     told.set_item("unit", axis.unit)?;
@@ -82,15 +82,15 @@ fn axis<'py>(py: Python<'py>, axis: &Axis) -> PyResult<Bound<'py, PyDict>> {
 
 fn layer<'py>(py: Python<'py>, layer: &Layer) -> PyResult<Bound<'py, PyDict>> {
     let (shape, size) = match layer.shape {
-        Shape::Line(width) => ("line", width),
-        Shape::Dashes => ("dashes", 1.0),
-        Shape::Area(opacity) => ("area", opacity),
-        Shape::Disc => ("disc", 1.0),
-        Shape::Dot => ("dot", 1.0),
-        Shape::Ring => ("ring", 1.0),
-        Shape::Triangle => ("triangle", 1.0),
-        Shape::Square => ("square", 1.0),
-        Shape::Diamond => ("diamond", 1.0),
+        LayerShape::Line(width) => ("line", width),
+        LayerShape::Dashes => ("dashes", 1.0),
+        LayerShape::Area(opacity) => ("area", opacity),
+        LayerShape::Disc => ("disc", 1.0),
+        LayerShape::Dot => ("dot", 1.0),
+        LayerShape::Ring => ("ring", 1.0),
+        LayerShape::Triangle => ("triangle", 1.0),
+        LayerShape::Square => ("square", 1.0),
+        LayerShape::Diamond => ("diamond", 1.0),
     };
     let told = PyDict::new(py);
     told.set_item("name", &layer.name)?;
@@ -139,7 +139,7 @@ pub fn campaign_figures(
     kind: Option<String>,
     metrics: Vec<String>,
 ) -> PyResult<Vec<(String, Figure)>> {
-    let columns: HashMap<String, Column> =
+    let columns: HashMap<String, ColumnCells> =
         columns.iter().map(|(name, given)| Ok((name.clone(), column(given)?))).collect::<PyResult<_>>()?;
     let work = work.0.clone();
     let drawn = aside(py, move |_| {
@@ -166,7 +166,7 @@ pub fn modes_figure(scenario: &Scenario) -> Option<Figure> {
     let size = |values: &[f64]| values.iter().map(|value| value.abs()).collect::<Vec<_>>();
     let figure = match scenario.inner.model.axes() {
         Axes::One(body) => {
-            let modal = Modal::of(body);
+            let modal = ModalColumns::of(body);
             figures::modes(&modal.frequencies_rad_s, &size(&modal.gains), ("modal gain", ""))
         }
         Axes::Three(body) => {

@@ -27,12 +27,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::analysis::influence::Influences;
-use flexsc_core::analysis::modal::Modal;
+use flexsc_core::analysis::modal::ModalColumns;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::body::{Axes, Planar};
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::law::Law;
-use flexsc_core::manoeuvre::{Common, Manoeuvre, Plan, Report, Row, compare};
+use flexsc_core::manoeuvre::{CommandCost, FieldCommon, Manoeuvre, Plan, Report, compare};
 use flexsc_core::metrics;
 use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
@@ -114,8 +114,8 @@ impl Scenario {
     }
 
     /// The scenario as it is, as this run.
-    fn run(&self, number: u64) -> Run {
-        Run { number, scenario: self.inner.clone(), drawn: Vec::new() }
+    fn run(&self, number: u64) -> CampaignRun {
+        CampaignRun { number, scenario: self.inner.clone(), drawn: Vec::new() }
     }
 }
 
@@ -188,7 +188,7 @@ impl Scenario {
 
     fn modes_json(&self) -> String {
         match self.inner.model.axes() {
-            Axes::One(body) => json!(Modal::of(body)).to_string(),
+            Axes::One(body) => json!(ModalColumns::of(body)).to_string(),
             Axes::Three(body) => json!(Influences::of(&self.inner, body)).to_string(),
         }
     }
@@ -314,10 +314,10 @@ fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Opti
     let band = checked_band(band)?;
     let none = |peak| PyValueError::new_err(format!("peak_torque must be a positive number, got {peak}"));
     let limit = peak_torque.map(|peak| Positive::new(peak).ok_or_else(|| none(peak))).transpose()?;
-    let common = Common::of(manoeuvre, limit, plan);
+    let common = FieldCommon::of(manoeuvre, limit, plan);
     let (manoeuvre, body) = (manoeuvre.clone(), manoeuvre.planned_for(body).clone());
     let rows = aside(py, move |_| compare(&manoeuvre, common, &body, band))?;
-    Ok(serde_json::Value::from(rows.iter().map(Row::to_json).collect::<Vec<_>>()).to_string())
+    Ok(serde_json::Value::from(rows.iter().map(CommandCost::to_json).collect::<Vec<_>>()).to_string())
 }
 
 /// A log in memory.

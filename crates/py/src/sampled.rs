@@ -1,7 +1,7 @@
 //! Analyses of a scenario's sampled loop.
 
 use flexsc_core::analysis::sampled_loop::{
-    Doubt, Gains, Goal, Loop, Scaling, Search, Window, map, regions, robust,
+    Doubt, Gains, Loop, RobustGoal, RobustSearch, Scaling, SettlingWindow, map, regions, robust,
 };
 use flexsc_core::document::Fault;
 use flexsc_core::law::Pd;
@@ -24,7 +24,7 @@ fn allow(of: &Loop, times: usize, shortest: f64, delay: f64, (_, horizon, _, yes
     allowed(&cost.map_err(PyValueError::new_err)?, yes)
 }
 
-fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(Loop, &Pd, Window, Scaling)> {
+fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(Loop, &Pd, SettlingWindow, Scaling)> {
     let refused = |Fault { key, why }: Fault| {
         let origin = scenario.inner.name.clone();
         scenario_error(flexsc_core::ScenarioError::Key { origin, key, why })
@@ -93,12 +93,12 @@ pub fn robust_gains_json(
             return Err(PyValueError::new_err(format!("{name} is out of its range, got {value}")));
         }
     }
-    let search = Search {
+    let search = RobustSearch {
         gains: stepped(gains)?,
         scaling,
         window,
         doubt: Doubt { frequency: part, modal_gain: part, authority: part, delay },
-        goal: if itae { Goal::Itae } else { Goal::Settling },
+        goal: if itae { RobustGoal::Itae } else { RobustGoal::Settling },
         quantile,
         margin,
     };

@@ -6,7 +6,7 @@ use flexsc_core::campaign::Commanded;
 use flexsc_core::law::Command;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
-use flexsc_core::{Field, Group, Occasion, Simulation, SimulationError};
+use flexsc_core::{LookField, LookGroup, Occasion, Simulation, SimulationError};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -20,11 +20,11 @@ use crate::error::simulation_error;
 pub type FieldRow = (&'static str, &'static str, &'static str, Option<usize>);
 
 /// The fields of a simulation's row.
-pub fn fields(fields: &[Field]) -> Vec<FieldRow> {
+pub fn fields(fields: &[LookField]) -> Vec<FieldRow> {
     let group = |of| match of {
-        Group::State => "state",
-        Group::Measured => "measured",
-        Group::Believed => "believed",
+        LookGroup::State => "state",
+        LookGroup::Measured => "measured",
+        LookGroup::Believed => "believed",
     };
     fields.iter().map(|field| (group(field.group), field.name, field.unit, field.count)).collect()
 }
@@ -100,7 +100,7 @@ pub struct Simulator {
     axes: usize,
     unit: &'static str,
     limit: Vec<f64>,
-    fields: Vec<Field>,
+    fields: Vec<LookField>,
     /// What it was commanded, if that was kept.
     given: Option<Commanded>,
     /// Why it cannot go on.
@@ -183,7 +183,7 @@ impl Simulator {
     }
 
     fn look<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let mut row = vec![0.0; self.fields.iter().map(Field::width).sum()];
+        let mut row = vec![0.0; self.fields.iter().map(LookField::width).sum()];
         self.simulation.look(&mut row).map_err(|error| simulation_error(&self.name, error))?;
         Ok(row.into_pyarray(py))
     }

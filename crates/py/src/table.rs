@@ -1,16 +1,16 @@
 //! A column of a campaign's table, from Python.
 
-use flexsc_core::campaign::Column;
+use flexsc_core::campaign::ColumnCells;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 /// A column of a table, as the engine has it.
-pub fn column(given: &Bound<'_, PyAny>) -> PyResult<Column> {
+pub fn column(given: &Bound<'_, PyAny>) -> PyResult<ColumnCells> {
     if let Ok(numbers) = given.extract::<PyReadonlyArray1<'_, f64>>() {
-        return Ok(Column::Numbers(numbers.as_array().to_vec()));
+        return Ok(ColumnCells::Numbers(numbers.as_array().to_vec()));
     }
     if let Ok(integers) = given.extract::<PyReadonlyArray1<'_, i64>>() {
-        return Ok(Column::Integers(integers.as_array().iter().copied().map(Some).collect()));
+        return Ok(ColumnCells::Integers(integers.as_array().iter().copied().map(Some).collect()));
     }
-    Ok(Column::Words(given.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
+    Ok(ColumnCells::Words(given.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-use flexsc_core::campaign::Outcome;
+use flexsc_core::campaign::RunOutcome;
 use flexsc_core::metrics::{Metrics, Value, goal};
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
@@ -105,7 +105,7 @@ impl Live {
     }
 
     /// A run has ended.
-    pub fn add(&mut self, outcome: &Outcome) {
+    pub fn add(&mut self, outcome: &RunOutcome) {
         self.bar.inc(1);
         match &outcome.metrics {
             Ok(metrics) => {

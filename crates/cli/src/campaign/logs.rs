@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 use flexsc_core::SimulationError;
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, LogFile, Record, RecordError, RunEnd, There, there};
 
@@ -68,7 +68,7 @@ pub fn run(study: &Arc<Campaign>, job: &Job<'_>, detail: Option<Detail>) -> Resu
 /// Simulates a run into a log file, and returns its size. An interrupted run leaves a finished log, a failed one
 /// too, and one that cannot be written none.
 pub fn logged(
-    run: &Run,
+    run: &CampaignRun,
     path: &Path,
     (detail, force): (Detail, bool),
     record: impl Record,

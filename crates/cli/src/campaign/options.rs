@@ -1,7 +1,7 @@
 //! What campaigns and sweeps have in common on the command line.
 
 use clap::ValueEnum;
-use flexsc_core::campaign::{Design, Sampling, parquet_is_built_in};
+use flexsc_core::campaign::{PointDesign, Sampling, parquet_is_built_in};
 use flexsc_core::metrics::Selection;
 use flexsc_core::scenario::Cost;
 
@@ -130,7 +130,12 @@ impl Options {
 
     /// A design with these replicas and, where keys are uncertain, these draws; `points` are those of the whole campaign, if
     /// that is known.
-    pub fn complete(&self, design: Design, uncertain: bool, points: Option<u64>) -> Result<Design, Failure> {
+    pub fn complete(
+        &self,
+        design: PointDesign,
+        uncertain: bool,
+        points: Option<u64>,
+    ) -> Result<PointDesign, Failure> {
         let draws = if uncertain { self.sampling() } else { Sampling::Random };
         let hypercube = match (draws, points) {
             (Sampling::LatinHypercube, Some(points)) => points,
@@ -144,6 +149,6 @@ impl Options {
             let why = "no key is uncertain, and none is varied: there is nothing to draw";
             return Err(Failure::Arguments(format!("--sample: {why}")));
         }
-        Ok(Design { draws, hypercube, replicas: self.replicas, ..design })
+        Ok(PointDesign { draws, hypercube, replicas: self.replicas, ..design })
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, Directory, DirectoryError, MANIFEST, Manifest, Outcome, Rows, Run, RunError, Summary,
+    Campaign, CampaignRun, Directory, DirectoryError, MANIFEST, Manifest, Rows, RunError, RunOutcome, Summary,
 };
 use flexsc_core::count::counted;
 use flexsc_core::metrics::Metrics;
@@ -53,7 +53,7 @@ pub fn run(
     study: &Arc<Campaign>,
     job: &Job<'_>,
     path: &Path,
-    work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
+    work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
 ) -> Result<Told, Failure> {
     let mut manifest = Manifest::new(study, job.range.clone(), &job.selection)
         .map_err(|why| Failure::Arguments(format!("{}: {why}", study.scenario().name)))?;
@@ -83,7 +83,7 @@ pub fn run(
         // What the manifest holds is what is run, here as on any other machine.
         let campaign = &directory.work().campaign;
         let (range, threads) = (gap.clone(), job.threads());
-        let work = move |run: &Run| work(run);
+        let work = move |run: &CampaignRun| work(run);
         let tell = |outcome| making.take(outcome, &mut parts);
         let done = if job.plain {
             campaign.each_beside(range, threads, &job.selection, work, tell)
@@ -135,7 +135,7 @@ struct Making<'a> {
 impl Making<'_> {
     fn take<'r>(
         &mut self,
-        outcome: Option<Outcome>,
+        outcome: Option<RunOutcome>,
         parts: &mut impl Iterator<Item = &'r Range<u64>>,
     ) -> Result<(), Failure> {
         let Some(outcome) = outcome else {
@@ -149,7 +149,7 @@ impl Making<'_> {
         }
         let campaign = &self.directory.work().campaign;
         if self.job.json {
-            let Outcome { number, drawn, metrics, .. } = &outcome;
+            let RunOutcome { number, drawn, metrics, .. } = &outcome;
             print_lines(&[object(campaign, *number, drawn, metrics.as_ref())])?;
         }
         self.live.add(&outcome);

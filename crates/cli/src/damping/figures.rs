@@ -1,24 +1,28 @@
 //! The figure of a relay's damping over the frequency of a mode: what is left of its effect, how much gain and what limit
 //! cycle the delay leaves.
 
-use flexsc_core::analysis::damping::Damped;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_core::analysis::damping::DampedMode;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 /// Values that lie no further apart are shown in proportion.
 const NEAR: f64 = 10.0;
 
-fn scaled(name: &str, unit: &'static str, values: Vec<f64>) -> Axis {
+fn scaled(name: &str, unit: &'static str, values: Vec<f64>) -> FigureAxis {
     let (low, high) =
         values.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(*v), high.max(*v)));
-    if high <= NEAR * low { Axis::from_zero(name, unit, values) } else { Axis::decades(name, unit, values) }
+    if high <= NEAR * low {
+        FigureAxis::from_zero(name, unit, values)
+    } else {
+        FigureAxis::decades(name, unit, values)
+    }
 }
 
 /// The figure; `limit` is the frequency (rad/s) above which the relay drives the modes.
-pub fn figure(rows: &[Damped], limit: f64) -> Figure {
+pub fn figure(rows: &[DampedMode], limit: f64) -> Figure {
     let (low, high) = (rows.first(), rows.last());
     let range = low.map_or(0.0, |row| row.frequency_rad_s)..high.map_or(1.0, |row| row.frequency_rad_s);
-    let x = |name: &str| Axis::exact(name, "rad/s", range.clone());
-    let line = |value: &dyn Fn(&Damped) -> Option<f64>| -> Vec<Point> {
+    let x = |name: &str| FigureAxis::exact(name, "rad/s", range.clone());
+    let line = |value: &dyn Fn(&DampedMode) -> Option<f64>| -> Vec<Point> {
         rows.iter().map(|row| (row.frequency_rad_s, value(row).unwrap_or(f64::NAN))).collect()
     };
     let part = line(&|row| Some(row.phase_factor));
@@ -26,18 +30,18 @@ pub fn figure(rows: &[Damped], limit: f64) -> Figure {
     let cycle = line(&|row| row.limit_cycle_rate_rad_s);
     let values =
         |of: &[Point]| of.iter().map(|point| point.1).filter(|v| v.is_finite()).collect::<Vec<f64>>();
-    let panel = |x: Axis, y: Axis, points: Vec<Point>, name: &str| {
+    let panel = |x: FigureAxis, y: FigureAxis, points: Vec<Point>, name: &str| {
         let mut layers = Vec::new();
         let label = y.name.split(" (").next().unwrap_or_default().to_owned();
         if limit < range.end {
             let edge = y.range.clone();
             let at = vec![(limit, edge.start), (limit, edge.end)];
-            layers.push(Layer::new(name, colour::VERMILLION, Shape::Dashes, at));
+            layers.push(Layer::new(name, colour::VERMILLION, LayerShape::Dashes, at));
         }
-        layers.push(Layer::new(&label, colour::BLUE, Shape::Line(1.6), points));
+        layers.push(Layer::new(&label, colour::BLUE, LayerShape::Line(1.6), points));
         Panel::new(x, y, layers)
     };
-    let factor = Axis::around("phase factor", "", values(&part).into_iter().chain([0.0, 1.0]));
+    let factor = FigureAxis::around("phase factor", "", values(&part).into_iter().chain([0.0, 1.0]));
     let gains = scaled("gain limit (1/s)", "", values(&gain));
     let cycles = scaled("limit cycle", "rad/s", values(&cycle));
     let mut panels = vec![panel(x("").unnamed(), factor, part, "beyond this the relay drives the mode")];

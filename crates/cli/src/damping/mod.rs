@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use std::io::Write;
 
 use flexsc_core::actuator::PulseTiming;
-use flexsc_core::analysis::damping::{Damped, PulsedDamping};
+use flexsc_core::analysis::damping::{DampedMode, PulsedDamping};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
@@ -56,7 +56,7 @@ pub struct Effect {
     timing: PulseTiming,
     /// The frequency above which it drives the modes (rad/s).
     limit: f64,
-    rows: Vec<Damped>,
+    rows: Vec<DampedMode>,
 }
 
 impl Args {

@@ -1,7 +1,7 @@
 //! The figure of an adaptive observer's trials: how many runs have found their modes by when, a panel for each set.
 
-use flexsc_core::analysis::identification::Row;
-use flexsc_figure::{Axis, Figure, Layer, Panel, RGBColor, Shape, colour, steps};
+use flexsc_core::analysis::identification::IdentificationRow;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, RGBColor, colour, steps};
 
 use super::Set;
 
@@ -11,9 +11,9 @@ const COLOURS: [RGBColor; 5] =
 
 /// The figure; a run lasts `whole` seconds.
 pub fn figure(sets: &[Set], whole: f64) -> Figure {
-    let x = Axis::exact("time (s)", "", 0.0..whole);
+    let x = FigureAxis::exact("time (s)", "", 0.0..whole);
     let panel = |set: &Set| {
-        let layer = |(index, row): (usize, &Row)| {
+        let layer = |(index, row): (usize, &IdentificationRow)| {
             let found = row.times_s.iter().zip(1_u32..);
             let part = |count: u32| 100.0 * f64::from(count) / row.runs as f64;
             let line = steps(
@@ -22,10 +22,10 @@ pub fn figure(sets: &[Set], whole: f64) -> Figure {
             );
             let off = format!("{} % off", (1000.0 * row.off).round() / 10.0);
             let name = if index == 0 { format!("{} Hz, {off}", set.hertz()) } else { off };
-            Layer::new(&name, COLOURS[index % COLOURS.len()], Shape::Line(1.4), line)
+            Layer::new(&name, COLOURS[index % COLOURS.len()], LayerShape::Line(1.4), line)
         };
         let layers = set.rows.iter().enumerate().map(layer).collect();
-        let y = Axis::exact("found (%)", "", 0.0..104.0);
+        let y = FigureAxis::exact("found (%)", "", 0.0..104.0);
         Panel::new(x.unnamed(), y, layers)
     };
     let mut panels: Vec<Panel> = sets.iter().map(panel).collect();

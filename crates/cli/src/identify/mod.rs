@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::io::Write;
 use std::str::FromStr;
 
-use flexsc_core::analysis::identification::{CYCLE, Row, Trial};
+use flexsc_core::analysis::identification::{CYCLE, IdentificationRow, Trial};
 use flexsc_core::count::counted;
 use flexsc_core::quantity::NonNegative;
 use flexsc_figure::Named;
@@ -71,7 +71,7 @@ struct Modes(Vec<(f64, f64)>);
 struct Set {
     /// Frequency (rad/s) and influence of each mode.
     modes: Vec<(f64, f64)>,
-    rows: Vec<Row>,
+    rows: Vec<IdentificationRow>,
 }
 
 impl Set {

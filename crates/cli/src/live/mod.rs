@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, Encode, Record, RecordError, RunEnd, Sample};
 use flexsc_core::time::Instant;
@@ -79,7 +79,7 @@ pub struct Live {
 
 impl Args {
     /// Begins to serve, if asked to.
-    pub fn serve(&self, run: &Run) -> Result<Option<Live>, Failure> {
+    pub fn serve(&self, run: &CampaignRun) -> Result<Option<Live>, Failure> {
         let Some(address) = &self.live else { return Ok(None) };
         let failed = |source| Failure::Serve { address: address.clone(), source };
         let listener = TcpListener::bind(address).map_err(failed)?;

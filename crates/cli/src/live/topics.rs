@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use flexsc_core::actuator::Firing;
-use flexsc_core::campaign::Run;
+use flexsc_core::campaign::CampaignRun;
 use flexsc_core::estimator::Estimator;
 use flexsc_core::law::Law;
 use flexsc_core::motion::turning::Bearing;
@@ -12,7 +12,7 @@ use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, Simulation};
 
 /// The topics of a run as indices into [`TOPICS`]: those of its first instant, and those of what may happen later.
-pub fn expected(run: &Run, from: &Provenance) -> BTreeSet<usize> {
+pub fn expected(run: &CampaignRun, from: &Provenance) -> BTreeSet<usize> {
     let mut topics = Topics::default();
     if let Ok(mut messages) = Encode::new(&mut topics, from, Detail::Scene) {
         // A run that fails at its start reports it when it is made.
@@ -74,7 +74,7 @@ mod tests {
                 continue;
             }
             let scenario = Scenario::load(&file.path()).expect("a scenario");
-            let run = Run { number: 0, scenario, drawn: Vec::new() };
+            let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
             let from = Campaign::provenance(&run, Detail::Scene);
             let (expected, mut seen) = (expected(&run, &from), Topics::default());
             let mut messages = Encode::new(&mut seen, &from, Detail::Scene).expect("messages");

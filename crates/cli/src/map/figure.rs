@@ -1,8 +1,10 @@
 //! The map of the spectral radius over the frequency of the dominant mode and the period of the samples.
 
-use flexsc_core::analysis::sampled_loop::Cell;
+use flexsc_core::analysis::sampled_loop::MapCell;
 use flexsc_figure::palette::between;
-use flexsc_figure::{Axis, Bar, Field, Figure, Layer, Panel, Point, RGBColor, Shape, colour};
+use flexsc_figure::{
+    Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, ScalarField, colour,
+};
 
 /// The values that the bar tells: finest near 1, where stability ends.
 const EDGES: [f64; 13] = [0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1.0, 1.001, 1.003, 1.01, 1.03, 1.1, 1.3];
@@ -56,16 +58,16 @@ fn shade(index: usize) -> RGBColor {
 }
 
 /// The map: cells in rows of one frequency each, and where the scenario itself lies, frequency (rad/s) and period (s).
-pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
+pub fn figure(name: &str, cells: &[MapCell], own: Point) -> Figure {
     let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
     frequencies.dedup();
     let periods = cells.iter().take(cells.len() / frequencies.len().max(1)).map(|cell| cell.period_s);
     let number = |radius: f64| if radius.is_nan() { f64::INFINITY } else { radius };
     let radii: Vec<f64> = cells.iter().map(|cell| number(cell.spectral_radius)).collect();
     let ends = |values: &[f64]| values[0]..values[values.len() - 1];
-    let field = Field { y: periods.collect(), x: frequencies, values: radii };
-    let x = Axis::exact("frequency of the dominant mode (rad/s)", "", ends(&field.x));
-    let y = Axis::exact("period of the samples (s)", "", ends(&field.y));
+    let field = ScalarField { y: periods.collect(), x: frequencies, values: radii };
+    let x = FigureAxis::exact("frequency of the dominant mode (rad/s)", "", ends(&field.x));
+    let y = FigureAxis::exact("period of the samples (s)", "", ends(&field.y));
 
     // The shades that there are.
     let limits = limits();
@@ -76,8 +78,8 @@ pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
     let mut fine = field.refined(steps);
     fine.values.iter_mut().for_each(|radius| *radius = place(*radius));
     let mut layers = regions(&fine, &limits, lowest, highest);
-    layers.push(Layer::new("limit of stability", colour::BLACK, Shape::Line(1.8), fine.lines(0.0)));
-    layers.push(Layer::new("scenario", colour::BLACK, Shape::Diamond, vec![own]));
+    layers.push(Layer::new("limit of stability", colour::BLACK, LayerShape::Line(1.8), fine.lines(0.0)));
+    layers.push(Layer::new("scenario", colour::BLACK, LayerShape::Diamond, vec![own]));
     let bar = Bar {
         name: "spectral radius".to_owned(),
         colours: (lowest..=highest).map(shade).collect(),
@@ -90,7 +92,7 @@ pub fn figure(name: &str, cells: &[Cell], own: Point) -> Figure {
 
 /// The map in colours. Curves of constant radius do not cross: drawn from the largest to the smallest, each is filled with
 /// the class just within it.
-fn regions(field: &Field, limits: &[(f64, String)], lowest: usize, highest: usize) -> Vec<Layer> {
+fn regions(field: &ScalarField, limits: &[(f64, String)], lowest: usize, highest: usize) -> Vec<Layer> {
     let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| {
         let end = |axis: &[f64], last: usize| axis[last * (axis.len() - 1)];
         (end(&field.x, i), end(&field.y, j))
@@ -106,7 +108,7 @@ fn regions(field: &Field, limits: &[(f64, String)], lowest: usize, highest: usiz
     }
     rings.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let layer = |(_, _, class, points): (f64, usize, usize, Vec<Point>)| {
-        Layer::new("", shade(class), Shape::Area(1.0), points)
+        Layer::new("", shade(class), LayerShape::Area(1.0), points)
     };
     rings.into_iter().map(layer).collect()
 }

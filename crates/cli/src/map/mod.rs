@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::sampled_loop::{Cell, map};
+use flexsc_core::analysis::sampled_loop::{MapCell, map};
 use flexsc_core::count::counted;
 use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
@@ -48,7 +48,7 @@ pub struct Args {
 pub struct Mapped {
     /// Name of the scenario.
     name: String,
-    cells: Vec<Cell>,
+    cells: Vec<MapCell>,
     /// Frequency (rad/s) and period (s) of the scenario itself.
     own: Point,
 }
@@ -99,11 +99,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn csv(cells: &[Cell]) -> String {
+fn csv(cells: &[MapCell]) -> String {
     let head = "frequency_rad_s,period_s,spectral_radius,settling_s,itae_rad_s2\n".to_owned();
-    let row = |cell: &Cell| {
+    let row = |cell: &MapCell| {
         let settling = cell.settling_s.map_or(String::new(), |time| time.to_string());
-        let Cell { frequency_rad_s, period_s, spectral_radius, itae_rad_s2, .. } = cell;
+        let MapCell { frequency_rad_s, period_s, spectral_radius, itae_rad_s2, .. } = cell;
         format!("{frequency_rad_s},{period_s},{spectral_radius:e},{settling},{itae_rad_s2:e}\n")
     };
     std::iter::once(head).chain(cells.iter().map(row)).collect()

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use flexsc_core::analysis::parts::Parts;
+use flexsc_core::analysis::parts::ModalParts;
 use serde_json::{Value as Json, json};
 
 use super::tell_influences;
@@ -15,7 +15,7 @@ use crate::say;
 pub struct Spacecraft {
     /// Name of the scenario.
     pub name: String,
-    pub parts: Parts,
+    pub parts: ModalParts,
     /// About which axes jets act; about others a torque of 1 N m is told.
     pub jets: [bool; 3],
 }

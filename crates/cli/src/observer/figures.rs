@@ -2,7 +2,7 @@
 //! figure 2), and what a sample leaves of an error over the gain of the identification.
 
 use flexsc_core::analysis::damping::{Convergence, Margin};
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, RGBColor, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, band, colour};
 
 use crate::grid::Even;
 
@@ -39,15 +39,20 @@ fn regions(of: &Convergence, kappas: &[f64]) -> Panel {
         layers.push(Layer::new(
             &format!("converges, W4 |g| = {kappa}"),
             of_its_own,
-            Shape::Area(0.35),
+            LayerShape::Area(0.35),
             band(&lower, &upper),
         ));
-        layers.push(Layer::new("", of_its_own, Shape::Line(1.4), lower));
-        layers.push(Layer::new("", of_its_own, Shape::Line(1.4), upper));
+        layers.push(Layer::new("", of_its_own, LayerShape::Line(1.4), lower));
+        layers.push(Layer::new("", of_its_own, LayerShape::Line(1.4), upper));
     }
-    layers.push(Layer::new("weights", colour::BLACK, Shape::Diamond, vec![(of.weights[1], of.weights[2])]));
-    let x = Axis::around("W2, regressor frozen", "", [low, high, of.weights[1]]);
-    Panel::new(x, Axis::around("W3", "", heights), layers)
+    layers.push(Layer::new(
+        "weights",
+        colour::BLACK,
+        LayerShape::Diamond,
+        vec![(of.weights[1], of.weights[2])],
+    ));
+    let x = FigureAxis::around("W2, regressor frozen", "", [low, high, of.weights[1]]);
+    Panel::new(x, FigureAxis::around("W3", "", heights), layers)
 }
 
 /// What a sample leaves of an error over W4 V, the regressor turning.
@@ -59,20 +64,26 @@ fn radii(of: &Convergence, margin: Option<Margin>) -> Panel {
         .map(|decade| 10_f64.powf(*decade))
         .map(|kappa| (kappa, of.spectral_radius(kappa)))
         .collect();
-    let y = Axis::around("left of an error by a sample", "", line.iter().map(|point| point.1).chain([1.0]));
+    let y =
+        FigureAxis::around("left of an error by a sample", "", line.iter().map(|point| point.1).chain([1.0]));
     let mut layers = vec![
         Layer::new(
             "beyond this it diverges",
             colour::VERMILLION,
-            Shape::Dashes,
+            LayerShape::Dashes,
             vec![(low, 1.0), (high, 1.0)],
         ),
-        Layer::new("", colour::BLUE, Shape::Line(1.6), line),
+        Layer::new("", colour::BLUE, LayerShape::Line(1.6), line),
     ];
     if let Some(margin) = margin {
         let best = vec![(margin.gain_best, margin.spectral_radius)];
-        layers.push(Layer::new("soonest", colour::GREEN, Shape::Disc, best));
-        layers.push(Layer::new("limit", colour::VERMILLION, Shape::Square, vec![(margin.gain_max, 1.0)]));
+        layers.push(Layer::new("soonest", colour::GREEN, LayerShape::Disc, best));
+        layers.push(Layer::new(
+            "limit",
+            colour::VERMILLION,
+            LayerShape::Square,
+            vec![(margin.gain_max, 1.0)],
+        ));
     }
-    Panel::new(Axis::decades("W4 V, regressor turning", "", [low, high]), y, layers)
+    Panel::new(FigureAxis::decades("W4 V, regressor turning", "", [low, high]), y, layers)
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use flexsc_core::body::Planar;
-use flexsc_core::manoeuvre::{Common, Row};
+use flexsc_core::manoeuvre::{CommandCost, FieldCommon};
 use serde_json::Value as Json;
 
 use super::percent;
@@ -22,13 +22,13 @@ pub struct Field {
     /// Index of the coordinate that the table shows, of the hub's angle and the outputs.
     pub shown: usize,
     /// What all commands have in common.
-    pub common: Common,
-    pub rows: Vec<Row>,
+    pub common: FieldCommon,
+    pub rows: Vec<CommandCost>,
 }
 
 impl Results for Field {
     fn json(&self) -> Vec<Json> {
-        self.rows.iter().map(Row::to_json).collect()
+        self.rows.iter().map(CommandCost::to_json).collect()
     }
 
     fn tell(&self) -> Result<(), Failure> {
@@ -36,8 +36,10 @@ impl Results for Field {
         let chosen = shown.checked_sub(1).map_or("angle", |index| &body.outputs[index].name);
         let unit = body.torque_unit();
         match self.common {
-            Common::Time(time) => say!("{name}   every command in {} s", time.seconds()),
-            Common::PeakTorque(peak) => say!("{name}   every command at a peak of {} {unit}", peak.get()),
+            FieldCommon::Time(time) => say!("{name}   every command in {} s", time.seconds()),
+            FieldCommon::PeakTorque(peak) => {
+                say!("{name}   every command at a peak of {} {unit}", peak.get())
+            }
         }
         let (band, hub) = (percent(self.band), "angle");
         say!(

@@ -4,9 +4,9 @@
 use std::f64::consts::TAU;
 use std::sync::Arc as Shared;
 
-use flexsc_core::body::{Drive, Forced, Input, Planar, Segment};
+use flexsc_core::body::{Drive, Forced, ForcedInput, Planar, Segment};
 use flexsc_core::manoeuvre::Plan;
-use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, colour, name_and_unit};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour, name_and_unit};
 
 use super::family::{Family, Member};
 
@@ -47,8 +47,9 @@ impl Family<'_> {
     fn torque(&self) -> Figure {
         let lines = self.lines(|plan| plan.torque(self.body, self.step(self.plan.time)));
         let name = if self.body.has_unit_inertia() { "acceleration" } else { "torque" };
-        let y = Axis::around(name, self.body.torque_unit(), heights(&lines));
-        let zero = Layer::new("", colour::GREY, Shape::Line(0.8), vec![(0.0, 0.0), (self.plan.time, 0.0)]);
+        let y = FigureAxis::around(name, self.body.torque_unit(), heights(&lines));
+        let zero =
+            Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (self.plan.time, 0.0)]);
         let moves = if self.body.drive == Drive::Motion { " that moves the hub" } else { "" };
         self.figure(&format!("{name}{moves}"), time(self.plan.time), y, vec![zero], lines)
     }
@@ -56,11 +57,11 @@ impl Family<'_> {
     fn angle(&self) -> Figure {
         let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[0])).collect());
         // Of some radians milliradians would be long numbers.
-        let y = Axis::around("hub angle (rad)", "", heights(&lines));
+        let y = FigureAxis::around("hub angle (rad)", "", heights(&lines));
         let (plan, end) = (self.plan, self.end());
         let target = self.body.angle.get() + plan.angle;
         let goal = vec![(plan.time, target), (end, target + plan.end_rate * (end - plan.time))];
-        let goal = Layer::new("goal", colour::BLACK, Shape::Dashes, goal);
+        let goal = Layer::new("goal", colour::BLACK, LayerShape::Dashes, goal);
         let below = vec![self.arrival(&y)];
         let mut figure = self.figure("hub angle", time(end), y, below, lines);
         figure.panels.iter_mut().for_each(|panel| panel.layers.push(goal.clone()));
@@ -71,7 +72,7 @@ impl Family<'_> {
         let (name, unit) = self.coordinate();
         let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[1])).collect());
         let (label, unit) = name_and_unit(&name, &unit);
-        let y = Axis::around(&label, unit, heights(&lines));
+        let y = FigureAxis::around(&label, unit, heights(&lines));
         let below = vec![self.arrival(&y)];
         self.figure(&name, time(self.end()), y, below, lines)
     }
@@ -83,8 +84,8 @@ impl Family<'_> {
             self.lines(|plan| (0..BAND).map(factor).map(|off| (1e2 * off, left(plan, off))).collect());
         let (name, unit) = self.coordinate();
         let (label, unit) = name_and_unit(&format!("left in {name}"), &unit);
-        let y = Axis::decades(&label, unit, heights(&lines));
-        let x = Axis::exact("all frequencies off by (%)", "", -1e2 * band..1e2 * band);
+        let y = FigureAxis::decades(&label, unit, heights(&lines));
+        let x = FigureAxis::exact("all frequencies off by (%)", "", -1e2 * band..1e2 * band);
         self.figure(&format!("vibration left in {name}"), x, y, Vec::new(), lines)
     }
 
@@ -92,9 +93,16 @@ impl Family<'_> {
         self.members.iter().map(|member| line(&member.plan)).collect()
     }
 
-    fn figure(&self, what: &str, x: Axis, y: Axis, below: Vec<Layer>, lines: Vec<Vec<Point>>) -> Figure {
+    fn figure(
+        &self,
+        what: &str,
+        x: FigureAxis,
+        y: FigureAxis,
+        below: Vec<Layer>,
+        lines: Vec<Vec<Point>>,
+    ) -> Figure {
         let layer = |(Member { name, colour, .. }, points): (&Member, Vec<Point>)| {
-            Layer::new(name, *colour, Shape::Line(1.5), points)
+            Layer::new(name, *colour, LayerShape::Line(1.5), points)
         };
         let layers = below.into_iter().chain(self.members.iter().zip(lines).map(layer)).collect();
         let title = format!("{}: {what}", self.name);
@@ -102,9 +110,9 @@ impl Family<'_> {
     }
 
     /// A line where the manoeuvre ends.
-    fn arrival(&self, y: &Axis) -> Layer {
+    fn arrival(&self, y: &FigureAxis) -> Layer {
         let ends = vec![(self.plan.time, y.range.start), (self.plan.time, y.range.end)];
-        Layer::new("", colour::GREY, Shape::Dashes, ends)
+        Layer::new("", colour::GREY, LayerShape::Dashes, ends)
     }
 
     /// The end of what is shown (s).
@@ -128,7 +136,7 @@ impl Family<'_> {
         let mut segment = Segment::new(self.body);
         let mut state = self.body.start();
         let waveform = Some(Forced::new(Shared::new(plan.waveform.clone()), 0.0));
-        segment.depart(&state.clone(), &Input { constant: 0.0, waveform });
+        segment.depart(&state.clone(), &ForcedInput { constant: 0.0, waveform });
         let mut at = |t: f64| {
             let angle = segment.at(t, &mut state).angle;
             let output = self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index));
@@ -146,6 +154,6 @@ fn heights(lines: &[Vec<Point>]) -> impl Iterator<Item = f64> {
     lines.iter().flatten().map(|point| point.1)
 }
 
-fn time(end: f64) -> Axis {
-    Axis::exact("time", "s", 0.0..end)
+fn time(end: f64) -> FigureAxis {
+    FigureAxis::exact("time", "s", 0.0..end)
 }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use flexsc_core::body::Planar;
 use flexsc_core::document::Fault;
-use flexsc_core::manoeuvre::{Common, Manoeuvre, Report, compare};
+use flexsc_core::manoeuvre::{FieldCommon, Manoeuvre, Report, compare};
 use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::{Scenario, ScenarioError};
 
@@ -61,7 +61,7 @@ impl Args {
         let model = manoeuvre.planned_for(&body).clone();
         let name = scenario.written.name;
         if self.compare {
-            let common = Common::of(&manoeuvre, limit, &plan);
+            let common = FieldCommon::of(&manoeuvre, limit, &plan);
             let rows = compare(&manoeuvre, common, &model, band);
             return Ok(Box::new(Field { name, body, band, shown, common, rows }));
         }

@@ -1,6 +1,6 @@
 //! Figure `accelerations` of a spacecraft: what each accelerometer tells along its axes.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::spatial::Cycles;
 use super::story::Story;
@@ -22,12 +22,12 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         let layer = |axis: usize| {
             let points: Vec<Point> = rows().map(|(t, row)| (*t, row.axes[axis].measured_m_s2)).collect();
             let name = if own { ["x", "y", "z"][axis].to_owned() } else { format!("axis {}", axis + 1) };
-            Layer::new(&name, COLOURS[axis], Shape::Line(0.8), points)
+            Layer::new(&name, COLOURS[axis], LayerShape::Line(0.8), points)
         };
         let axes = if own { 3 } else { accelerometer.along.len() };
         let layers: Vec<Layer> = (0..axes).map(layer).collect();
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-        let y = Axis::around(&scenario.study.sensed_at[*index], "m/s²", values.collect::<Vec<_>>());
+        let y = FigureAxis::around(&scenario.study.sensed_at[*index], "m/s²", values.collect::<Vec<_>>());
         let x = time(0.0..story.end);
         Panel::new(if place + 1 == all.len() { x } else { x.unnamed() }, y, layers)
     };

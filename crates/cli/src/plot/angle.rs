@@ -1,6 +1,6 @@
 //! Figure `angle`: the hub's angle over the run with its goal, how far it is from it, and when it has settled.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -18,30 +18,31 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let x = time(0.0..story.end);
     let error: Vec<f64> = motion.angle.iter().zip(&motion.goal).map(|(angle, goal)| angle - goal).collect();
     let settled = Settled::of(story, &motion.time, &error);
-    let marks = |y: &Axis| settled.iter().flat_map(|settled| settled.layers(story, y)).collect::<Vec<_>>();
+    let marks =
+        |y: &FigureAxis| settled.iter().flat_map(|settled| settled.layers(story, y)).collect::<Vec<_>>();
     let panels = if story.scenario.plan.is_some() {
-        let whole = Axis::around("angle", "rad", motion.angle.iter().chain(&motion.goal).copied());
+        let whole = FigureAxis::around("angle", "rad", motion.angle.iter().chain(&motion.goal).copied());
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let beyond = if largest(&error) > ROUNDING * largest(&motion.goal) {
-            Axis::around("error", "rad", error.iter().copied())
+            FigureAxis::around("error", "rad", error.iter().copied())
         } else {
-            Axis::exact("error", "rad", -SMALL..SMALL)
+            FigureAxis::exact("error", "rad", -SMALL..SMALL)
         };
         let mut above: Vec<Layer> = arrival(story, &whole).into_iter().collect();
         above.extend([
-            Layer::new("hub", colour::BLACK, Shape::Line(1.4), over_time(&motion.angle)),
-            Layer::new("goal of a rigid body", colour::ORANGE, Shape::Dashes, over_time(&motion.goal)),
+            Layer::new("hub", colour::BLACK, LayerShape::Line(1.4), over_time(&motion.angle)),
+            Layer::new("goal of a rigid body", colour::ORANGE, LayerShape::Dashes, over_time(&motion.goal)),
         ]);
         let mut below: Vec<Layer> = arrival(story, &beyond).into_iter().chain(marks(&beyond)).collect();
-        below.push(Layer::new("hub less goal", colour::BLUE, Shape::Line(1.2), over_time(&error)));
+        below.push(Layer::new("hub less goal", colour::BLUE, LayerShape::Line(1.2), over_time(&error)));
         vec![Panel::new(x.unnamed(), whole, above), Panel::new(x, beyond, below)]
     } else {
-        let whole = Axis::around("angle", "rad", motion.angle.iter().copied());
+        let whole = FigureAxis::around("angle", "rad", motion.angle.iter().copied());
         let near = settled.as_ref().map(|settled| BANDS * settled.band);
-        let near = near.map(|half| Axis::exact("angle", "rad", -half..half));
-        let panel = |x: Axis, y: Axis, named: bool| {
+        let near = near.map(|half| FigureAxis::exact("angle", "rad", -half..half));
+        let panel = |x: FigureAxis, y: FigureAxis, named: bool| {
             let mut layers = marks(&y);
-            layers.push(Layer::new("angle", colour::BLACK, Shape::Line(1.2), over_time(&motion.angle)));
+            layers.push(Layer::new("angle", colour::BLACK, LayerShape::Line(1.2), over_time(&motion.angle)));
             for layer in layers.iter_mut().filter(|_| !named) {
                 layer.name.clear();
             }
@@ -79,15 +80,15 @@ impl Settled {
         Some(Self { band, from, at })
     }
 
-    fn layers(&self, story: &Story, y: &Axis) -> Vec<Layer> {
+    fn layers(&self, story: &Story, y: &FigureAxis) -> Vec<Layer> {
         let level = |height: f64| [(self.from, height), (story.end, height)];
         let width = format!("within ±{} mrad", super::short(1e3 * self.band));
         let within = band(&level(-self.band), &level(self.band));
-        let mut layers = vec![Layer::new(&width, colour::GREEN, Shape::Area(0.25), within)];
+        let mut layers = vec![Layer::new(&width, colour::GREEN, LayerShape::Area(0.25), within)];
         if let Some(at) = self.at {
             let line = vec![(at, y.range.start), (at, y.range.end)];
             let name = format!("settled at {at:.1} s");
-            layers.push(Layer::new(&name, colour::VERMILLION, Shape::Dashes, line));
+            layers.push(Layer::new(&name, colour::VERMILLION, LayerShape::Dashes, line));
         }
         layers
     }

@@ -2,7 +2,7 @@
 //! normalised error squared, which is about 1 for each of its states if they fit.
 
 use flexsc_core::record::AxisEstimate;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::spatial::{Cycles, panels};
 use super::story::Story;
@@ -22,8 +22,13 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         let [high, low] = [3.0, -3.0].map(|width| over_time(axis, &|row| width * row.angle_sd_rad));
         let errors = over_time(axis, &|row| row.angle_error_rad);
         vec![
-            Layer::new(name("3 standard deviations"), colour::GREEN, Shape::Area(0.2), band(&low, &high)),
-            Layer::new(name("error of the attitude"), colour::BLUE, Shape::Line(1.0), errors),
+            Layer::new(
+                name("3 standard deviations"),
+                colour::GREEN,
+                LayerShape::Area(0.2),
+                band(&low, &high),
+            ),
+            Layer::new(name("error of the attitude"), colour::BLUE, LayerShape::Line(1.0), errors),
         ]
     });
     if let Some(last) = panels.last_mut() {
@@ -31,15 +36,15 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     }
     let nees: Vec<Point> = cycles.attitude.iter().map(|(time, row)| (*time, row.nees / STATES)).collect();
     let level = |height: f64| [(0.0, height), (story.end, height)];
-    let y = Axis::from_zero("NEES / states", "", nees.iter().map(|point| point.1).chain(INSIDE));
+    let y = FigureAxis::from_zero("NEES / states", "", nees.iter().map(|point| point.1).chain(INSIDE));
     let layers = vec![
         Layer::new(
             "95 % of chi-square",
             colour::GREEN,
-            Shape::Area(0.2),
+            LayerShape::Area(0.2),
             band(&level(INSIDE[0]), &level(INSIDE[1])),
         ),
-        Layer::new("NEES", colour::BLUE, Shape::Line(1.0), nees),
+        Layer::new("NEES", colour::BLUE, LayerShape::Line(1.0), nees),
     ];
     panels.push(Panel::new(time(0.0..story.end), y, layers));
     Figure { title: title(story, "consistency of the attitude filter"), panels, panel_height: 160 }

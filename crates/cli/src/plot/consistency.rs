@@ -1,7 +1,7 @@
 //! Figure `consistency`: whether a filter's covariance fits its errors. The normalised innovation squared, over the number
 //! of measurements, and the normalised estimation error squared, over the number of states, are both about 1 if it does.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::motion::{Estimate, Motion};
 use super::story::Story;
@@ -26,7 +26,11 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         let [low, high] = chi_square(degrees * averaged).map(|bound| bound / (degrees * averaged) as f64);
         let shown = || line.iter().map(|point| point.1).chain([low, high]);
         let far = shown().any(|value| value > FAR);
-        let y = if far { Axis::decades(name, "", shown()) } else { Axis::from_zero(name, "", shown()) };
+        let y = if far {
+            FigureAxis::decades(name, "", shown())
+        } else {
+            FigureAxis::from_zero(name, "", shown())
+        };
         let mut layers = lock::spans(motion, &y, named);
         let level = |height: f64| [(0.0, height), (story.end, height)];
         let of = if averaged == 1 { "one sample".to_owned() } else { format!("{averaged} samples") };
@@ -34,11 +38,16 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
             Layer::new(
                 &format!("95 % of chi-square, {of}"),
                 colour::GREEN,
-                Shape::Area(0.2),
+                LayerShape::Area(0.2),
                 band(&level(low), &level(high)),
             ),
-            Layer::new("", colour::GREY, Shape::Line(0.8), level(1.0).to_vec()),
-            Layer::new(&format!("mean of the last {window} samples"), colour::BLUE, Shape::Line(1.2), line),
+            Layer::new("", colour::GREY, LayerShape::Line(0.8), level(1.0).to_vec()),
+            Layer::new(
+                &format!("mean of the last {window} samples"),
+                colour::BLUE,
+                LayerShape::Line(1.2),
+                line,
+            ),
         ]);
         Panel::new(time(0.0..story.end), y, layers)
     };

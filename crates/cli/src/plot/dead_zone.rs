@@ -1,7 +1,7 @@
 //! Figure `angle` under a law that switches: the angle at the end of the run, with the dead zone and where the law switched.
 
 use flexsc_core::law::{Law, Sides};
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -25,20 +25,21 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         },
         _ => Vec::new(),
     };
-    let y = Axis::around("angle x", "rad", line.iter().map(|point| point.1).chain(borders.iter().copied()));
+    let y =
+        FigureAxis::around("angle x", "rad", line.iter().map(|point| point.1).chain(borders.iter().copied()));
     let border = |(index, height): (usize, &f64)| {
         let name = match (index, borders.len()) {
             (0, 1) => "ε",
             (0, _) => "±ε",
             _ => "",
         };
-        Layer::new(name, colour::GREY, Shape::Dashes, vec![(shown.start, *height), (shown.end, *height)])
+        Layer::new(name, colour::GREY, LayerShape::Dashes, vec![(shown.start, *height), (shown.end, *height)])
     };
     let mut layers: Vec<Layer> = borders.iter().enumerate().map(border).collect();
     layers.extend([
-        Layer::new("angle", colour::BLACK, Shape::Line(1.2), line),
-        Layer::new("switching by guard", colour::VERMILLION, Shape::Disc, points(false)),
-        Layer::new("by timeout", colour::BLUE, Shape::Diamond, points(true)),
+        Layer::new("angle", colour::BLACK, LayerShape::Line(1.2), line),
+        Layer::new("switching by guard", colour::VERMILLION, LayerShape::Disc, points(false)),
+        Layer::new("by timeout", colour::BLUE, LayerShape::Diamond, points(true)),
     ]);
     let panels = vec![Panel::new(time(shown), y, layers)];
     Figure { title: title(story, "angle"), panels, panel_height: 300 }

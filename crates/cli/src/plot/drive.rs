@@ -1,7 +1,7 @@
 //! Figure `torque` of a rotation: what was planned, what the actuator made of it, the law's part and disturbances.
 
 use flexsc_core::actuator::Actuator;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -15,16 +15,18 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let (name, unit) = story.scenario.model.commanded();
     let x = time(0.0..story.end);
     let executed = applied.iter().zip(planned.iter().zip(feedback)).any(|(a, (p, f))| *a != p + f);
-    let panel =
-        |x: Axis, name: &str, unit: &'static str, series: &[(&str, flexsc_figure::RGBColor, &[f64])]| {
-            let all = series.iter().flat_map(|(.., values)| values.iter().copied());
-            let y = Axis::around(name, unit, all);
-            let lines = series
-                .iter()
-                .map(|(name, colour, values)| Layer::new(name, *colour, Shape::Line(1.2), over_time(values)));
-            let layers = arrival(story, &y).into_iter().chain(lines).collect();
-            Panel::new(x, y, layers)
-        };
+    let panel = |x: FigureAxis,
+                 name: &str,
+                 unit: &'static str,
+                 series: &[(&str, flexsc_figure::RGBColor, &[f64])]| {
+        let all = series.iter().flat_map(|(.., values)| values.iter().copied());
+        let y = FigureAxis::around(name, unit, all);
+        let lines = series.iter().map(|(name, colour, values)| {
+            Layer::new(name, *colour, LayerShape::Line(1.2), over_time(values))
+        });
+        let layers = arrival(story, &y).into_iter().chain(lines).collect();
+        Panel::new(x, y, layers)
+    };
     let mut main: Vec<(&str, _, &[f64])> = Vec::new();
     if executed {
         main.push(("executed", colour::SKY, applied));

@@ -1,7 +1,7 @@
 //! Figure `drives` of a spacecraft whose appendages turn: angles of the drives, and natural frequencies over the highest of each.
 
 use flexsc_core::record::DrivesMotion;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::spatial::Cycles;
 use super::story::Story;
@@ -24,12 +24,12 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     };
     let (drives, modes) =
         cycles.drives.first().map_or((0, 0), |(_, row)| (row.drives.len(), row.modes.len()));
-    let panel = |x: Axis, name: &str, unit: &'static str, lines: Vec<(String, Vec<Point>)>| {
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, Vec<Point>)>| {
         let values: Vec<f64> = lines.iter().flat_map(|(_, points)| points).map(|(_, value)| *value).collect();
         let layers = lines.into_iter().enumerate().map(|(index, (name, points))| {
-            Layer::new(&name, COLOURS[index % COLOURS.len()], Shape::Line(1.2), points)
+            Layer::new(&name, COLOURS[index % COLOURS.len()], LayerShape::Line(1.2), points)
         });
-        Panel::new(x, Axis::around(name, unit, values), layers.collect())
+        Panel::new(x, FigureAxis::around(name, unit, values), layers.collect())
     };
     let x = time(0.0..story.end);
     let angles = (0..drives)

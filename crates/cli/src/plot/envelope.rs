@@ -1,7 +1,7 @@
 //! Figure `envelope`: the envelope of the elastic modes over the run with its window means, and the elastic angle
 //! within it at the end (figures 5v and 5g of \[Silaev\]).
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::Motion;
 use super::story::{Mean, Story};
@@ -11,10 +11,10 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let all = motion.envelope.iter().map(|(_, value)| *value);
     let whole = Panel::new(
         time(0.0..story.end),
-        Axis::from_zero("envelope a", "rad", all),
+        FigureAxis::from_zero("envelope a", "rad", all),
         vec![
-            Layer::new("envelope", colour::SKY, Shape::Line(0.6), motion.envelope.clone()),
-            Layer::new("window means", colour::VERMILLION, Shape::Line(2.0), means(&story.means)),
+            Layer::new("envelope", colour::SKY, LayerShape::Line(0.6), motion.envelope.clone()),
+            Layer::new("window means", colour::VERMILLION, LayerShape::Line(2.0), means(&story.means)),
         ],
     );
     let shown = swings(story);
@@ -26,14 +26,14 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let elastic: Vec<Point> = elastic.filter(|(time, _)| *time >= shown.start).collect();
     let (upper, lower) = (bound(1.0), bound(-1.0));
     let values = upper.iter().chain(&lower).chain(&elastic).map(|(_, value)| *value);
-    let y = Axis::around("elastic angle", "rad", values);
+    let y = FigureAxis::around("elastic angle", "rad", values);
     let end = Panel::new(
         time(shown),
         y,
         vec![
-            Layer::new("± envelope", colour::ORANGE, Shape::Line(1.2), upper),
-            Layer::new("", colour::ORANGE, Shape::Line(1.2), lower),
-            Layer::new("elastic angle", colour::BLUE, Shape::Line(1.2), elastic),
+            Layer::new("± envelope", colour::ORANGE, LayerShape::Line(1.2), upper),
+            Layer::new("", colour::ORANGE, LayerShape::Line(1.2), lower),
+            Layer::new("elastic angle", colour::BLUE, LayerShape::Line(1.2), elastic),
         ],
     );
     let what = "envelope of the elastic modes";
@@ -43,8 +43,8 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
 /// The window means alone, of three axes.
 pub fn over_windows(story: &Story) -> Figure {
     let all = story.means.iter().map(|mean| mean.value);
-    let line = Layer::new("window means", colour::VERMILLION, Shape::Line(2.0), means(&story.means));
-    let panel = Panel::new(time(0.0..story.end), Axis::from_zero("envelope a", "rad", all), vec![line]);
+    let line = Layer::new("window means", colour::VERMILLION, LayerShape::Line(2.0), means(&story.means));
+    let panel = Panel::new(time(0.0..story.end), FigureAxis::from_zero("envelope a", "rad", all), vec![line]);
     let what = "envelope of the elastic modes";
     Figure { title: title(story, what), panels: vec![panel], panel_height: 300 }
 }

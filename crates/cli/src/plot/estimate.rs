@@ -1,7 +1,7 @@
 //! Figure `estimate`: the displacement of the dominant mode as the law reads it from a filter, what it really is, and how
 //! far apart they are.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -14,17 +14,17 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let error: Vec<Point> = estimated.iter().zip(&truth).map(|(e, t)| (e.0, e.1 - t.1)).collect();
     let x = time(0.0..story.end);
     let heights = estimated.iter().chain(&truth).map(|point| point.1);
-    let y = Axis::around("displacement", "rad", heights);
+    let y = FigureAxis::around("displacement", "rad", heights);
     let mut layers = lock::spans(motion, &y, true);
     layers.extend([
-        Layer::new("estimated, as the law reads it", colour::ORANGE, Shape::Line(2.0), estimated),
-        Layer::new("true", colour::BLACK, Shape::Dashes, truth),
+        Layer::new("estimated, as the law reads it", colour::ORANGE, LayerShape::Line(2.0), estimated),
+        Layer::new("true", colour::BLACK, LayerShape::Dashes, truth),
     ]);
     let whole = Panel::new(x.unnamed(), y, layers);
-    let y = Axis::around("error", "rad", error.iter().map(|point| point.1));
+    let y = FigureAxis::around("error", "rad", error.iter().map(|point| point.1));
     let mut layers = lock::spans(motion, &y, false);
-    layers.push(Layer::new("", colour::GREY, Shape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]));
-    layers.push(Layer::new("", colour::BLUE, Shape::Line(1.0), error));
+    layers.push(Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]));
+    layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.0), error));
     let panels = vec![whole, Panel::new(x, y, layers)];
     Figure { title: title(story, "displacement of the dominant mode"), panels, panel_height: 200 }
 }

@@ -2,7 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::law::{Extra, Law};
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -25,11 +25,11 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let gain = |w: f64| of(story).map_or(0.0, |extra| extra.gain(w));
     let gains: Vec<Point> = read.iter().map(|(t, w)| (*t, gain(*w))).collect();
     let x = time(0.0..story.end);
-    let panel = |x: Axis, name: &str, line: Vec<Point>, named: bool| {
-        let y = Axis::around(name, "", line.iter().map(|point| point.1));
+    let panel = |x: FigureAxis, name: &str, line: Vec<Point>, named: bool| {
+        let y = FigureAxis::around(name, "", line.iter().map(|point| point.1));
         let mut layers = lock::spans(motion, &y, named);
         let (label, _) = name.split_once(" (").unwrap_or((name, ""));
-        layers.push(Layer::new(label, colour::BLUE, Shape::Line(1.4), line));
+        layers.push(Layer::new(label, colour::BLUE, LayerShape::Line(1.4), line));
         Panel::new(x, y, layers)
     };
     let panels =

@@ -1,6 +1,6 @@
 //! When sensors or actuators fail: shaded in every figure over time.
 
-use flexsc_figure::{Figure, Layer, Point, Shape, colour};
+use flexsc_figure::{Figure, Layer, LayerShape, Point, colour};
 
 use super::story::Story;
 use super::time;
@@ -33,7 +33,7 @@ pub fn shaded(mut figure: Figure, story: &Story) -> Figure {
         let points: Vec<Point> = failures.iter().flat_map(area).collect();
         if !points.is_empty() {
             let layer =
-                Layer::new(std::mem::take(&mut name), colour::VERMILLION, Shape::Area(DARKNESS), points);
+                Layer::new(std::mem::take(&mut name), colour::VERMILLION, LayerShape::Area(DARKNESS), points);
             panel.layers.insert(0, layer);
         }
     }

@@ -1,7 +1,7 @@
 //! Figure `frequency`: the natural frequency of the dominant mode as a filter estimates it, what it really is, and how far
 //! apart they are, with two standard deviations to each side.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::motion::{Estimate, Motion};
 use super::story::Story;
@@ -19,30 +19,30 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let heights = |points: &[Point]| points.iter().map(|point| point.1).collect::<Vec<_>>();
     let most = BEYOND * heights(&truth).into_iter().fold(0.0, f64::max);
     let shown = [&estimated, &truth, &lower, &upper].into_iter().flat_map(|points| heights(points));
-    let y = Axis::around("frequency (rad/s)", "", shown.map(|value| value.clamp(0.0, most)));
+    let y = FigureAxis::around("frequency (rad/s)", "", shown.map(|value| value.clamp(0.0, most)));
     let x = time(0.0..story.end);
     let mut layers = lock::spans(motion, &y, true);
     layers.extend([
-        Layer::new("± 2 standard deviations", colour::SKY, Shape::Area(0.35), band(&lower, &upper)),
-        Layer::new("estimated", colour::BLUE, Shape::Line(1.4), estimated),
-        Layer::new("true", colour::BLACK, Shape::Dashes, truth),
+        Layer::new("± 2 standard deviations", colour::SKY, LayerShape::Area(0.35), band(&lower, &upper)),
+        Layer::new("estimated", colour::BLUE, LayerShape::Line(1.4), estimated),
+        Layer::new("true", colour::BLACK, LayerShape::Dashes, truth),
     ]);
     if motion.estimates.iter().any(|estimate| estimate.read_frequency != estimate.frequency) {
         let apart = |e: &Estimate| e.read_frequency != e.frequency;
         let read = line(&|e| if apart(e) { e.read_frequency } else { f64::NAN });
-        layers.push(Layer::new("held for the law", colour::ORANGE, Shape::Line(1.2), read));
+        layers.push(Layer::new("held for the law", colour::ORANGE, LayerShape::Line(1.2), read));
     }
     let whole = Panel::new(x.unnamed(), y, layers);
 
     let error = line(&|e| e.frequency - e.true_frequency);
     let [lower, upper] = [-2.0, 2.0].map(|deviations| line(&|e| deviations * e.frequency_sd));
     let shown = [&error, &lower, &upper].into_iter().flat_map(|points| heights(points));
-    let y = Axis::around("error", "rad/s", shown.map(|value| value.clamp(-most, most)));
+    let y = FigureAxis::around("error", "rad/s", shown.map(|value| value.clamp(-most, most)));
     let mut layers = lock::spans(motion, &y, false);
     layers.extend([
-        Layer::new("", colour::SKY, Shape::Area(0.35), band(&lower, &upper)),
-        Layer::new("", colour::GREY, Shape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]),
-        Layer::new("", colour::BLUE, Shape::Line(1.2), error),
+        Layer::new("", colour::SKY, LayerShape::Area(0.35), band(&lower, &upper)),
+        Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]),
+        Layer::new("", colour::BLUE, LayerShape::Line(1.2), error),
     ]);
     let panels = vec![whole, Panel::new(x, y, layers)];
     Figure { title: title(story, "frequency of the dominant mode"), panels, panel_height: 200 }

@@ -1,6 +1,6 @@
 //! Figure `gain`: the gain and what the adaptation decided, and the windows that it learnt from.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
 use super::envelope::means;
 use super::story::{Mean, Story};
@@ -15,15 +15,15 @@ pub fn figure(story: &Story) -> Figure {
         of_kind.map(|step| (step.time, step.gain)).collect()
     };
     let kinds = [
-        ("begin", colour::BLACK, Shape::Ring),
-        ("keep", colour::GREEN, Shape::Disc),
-        ("turn", colour::VERMILLION, Shape::Triangle),
-        ("ignore", colour::ORANGE, Shape::Square),
-        ("freeze", colour::BLUE, Shape::Diamond),
+        ("begin", colour::BLACK, LayerShape::Ring),
+        ("keep", colour::GREEN, LayerShape::Disc),
+        ("turn", colour::VERMILLION, LayerShape::Triangle),
+        ("ignore", colour::ORANGE, LayerShape::Square),
+        ("freeze", colour::BLUE, LayerShape::Diamond),
     ];
     let tunes = story.tunes();
-    let y = Axis::around(&format!("gain {tunes}"), "", line.iter().map(|(_, gain)| *gain));
-    let mut layers = vec![Layer::new(tunes, colour::BLACK, Shape::Line(1.2), line)];
+    let y = FigureAxis::around(&format!("gain {tunes}"), "", line.iter().map(|(_, gain)| *gain));
+    let mut layers = vec![Layer::new(tunes, colour::BLACK, LayerShape::Line(1.2), line)];
     let marks = kinds.map(|(decision, colour, shape)| Layer::new(decision, colour, shape, decided(decision)));
     layers.extend(marks.into_iter().filter(|layer| !layer.points.is_empty()));
     let gain = Panel::new(x.unnamed(), y, layers);
@@ -31,8 +31,8 @@ pub fn figure(story: &Story) -> Figure {
     let all = windows.iter().map(|mean| mean.value);
     let means = Panel::new(
         x,
-        Axis::from_zero(&name, unit, all),
-        vec![Layer::new(layer, colour::BLUE, Shape::Line(1.6), means(windows))],
+        FigureAxis::from_zero(&name, unit, all),
+        vec![Layer::new(layer, colour::BLUE, LayerShape::Line(1.6), means(windows))],
     );
     Figure { title: title(story, "adaptation"), panels: vec![gain, means], panel_height: 220 }
 }

@@ -3,7 +3,7 @@
 
 use flexsc_core::quantity::Positive;
 use flexsc_core::record::ControlMomentGyros;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::spatial::Cycles;
 use super::story::Story;
@@ -24,7 +24,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     };
     let named = |lines: Vec<(String, Vec<Point>)>| -> Vec<Layer> {
         let layer = |(index, (name, points)): (usize, (String, Vec<Point>))| {
-            Layer::new(&name, COLOURS[index % COLOURS.len()], Shape::Line(1.2), points)
+            Layer::new(&name, COLOURS[index % COLOURS.len()], LayerShape::Line(1.2), points)
         };
         lines.into_iter().enumerate().map(layer).collect()
     };
@@ -37,18 +37,18 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     };
     let x = time(0.0..story.end);
     let around = |name: &str, unit: &'static str, layers: Vec<Layer>| {
-        Panel::new(x.unnamed(), Axis::around(name, unit, values(&layers)), layers)
+        Panel::new(x.unnamed(), FigureAxis::around(name, unit, values(&layers)), layers)
     };
     let limit = story.scenario.actuator.control_moment_gyros();
     let limit = limit.and_then(|(gyros, _)| gyros.rate_limit).map(Positive::get);
     let limits = limit.into_iter().flat_map(|limit| [("limits", limit), ("", -limit)]);
     let mut rates: Vec<Layer> = limits
         .map(|(name, height)| {
-            Layer::new(name, colour::GREY, Shape::Dashes, vec![(0.0, height), (story.end, height)])
+            Layer::new(name, colour::GREY, LayerShape::Dashes, vec![(0.0, height), (story.end, height)])
         })
         .collect();
     rates.extend(each(|gyro| gyro.rate_rad_s));
-    let measure = Layer::new("", colour::BLUE, Shape::Line(1.2), line(&|row| row.singularity));
+    let measure = Layer::new("", colour::BLUE, LayerShape::Line(1.2), line(&|row| row.singularity));
     let momentum = named(vec![
         ("x".to_owned(), line(&|row| row.momentum_x_nm_s)),
         ("y".to_owned(), line(&|row| row.momentum_y_nm_s)),
@@ -58,7 +58,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let panels = vec![
         around("gimbal angle", "rad", each(|gyro| gyro.angle_rad)),
         around("gimbal rate", "rad/s", rates),
-        Panel::new(x.unnamed(), Axis::from_zero("singularity measure", "", measured), vec![measure]),
+        Panel::new(x.unnamed(), FigureAxis::from_zero("singularity measure", "", measured), vec![measure]),
         Panel { x: x.clone(), ..around("momentum", "N m s", momentum) },
     ];
     Figure { title: title(story, "control moment gyros"), panels, panel_height: 180 }

@@ -1,15 +1,15 @@
 //! Spans in which a filter learns no frequency because too little moves, or has lost the body, as shaded areas.
 
-use flexsc_figure::{Axis, Layer, Point, Shape, band, colour};
+use flexsc_figure::{FigureAxis, Layer, LayerShape, Point, band, colour};
 
 use super::motion::{Estimate, Motion};
 
 /// The areas, over the whole height of a panel, in its legend or not.
-pub fn spans(motion: &Motion, y: &Axis, named: bool) -> Vec<Layer> {
+pub fn spans(motion: &Motion, y: &FigureAxis, named: bool) -> Vec<Layer> {
     let area = |name: &str, colour, is: fn(&Estimate) -> bool| {
         let points = shaded(&motion.estimates, y, is);
         (!points.is_empty())
-            .then(|| Layer::new(if named { name } else { "" }, colour, Shape::Area(0.2), points))
+            .then(|| Layer::new(if named { name } else { "" }, colour, LayerShape::Area(0.2), points))
     };
     let gated = area("gated", colour::GREY, |estimate| estimate.gated);
     let lost = area("lock lost", colour::VERMILLION, |estimate| estimate.lost);
@@ -17,7 +17,7 @@ pub fn spans(motion: &Motion, y: &Axis, named: bool) -> Vec<Layer> {
 }
 
 /// A rectangle for each row of samples that are so, each up to the next sample.
-fn shaded(estimates: &[Estimate], y: &Axis, is: fn(&Estimate) -> bool) -> Vec<Point> {
+fn shaded(estimates: &[Estimate], y: &FigureAxis, is: fn(&Estimate) -> bool) -> Vec<Point> {
     let mut points = Vec::new();
     let mut from = 0;
     for alike in estimates.chunk_by(|a, b| is(a) == is(b)) {

@@ -1,7 +1,7 @@
 //! Figure `magnetorquers` of three axes: magnetic moments with their limits, and the momentum that wheels keep or the body has.
 
-use flexsc_core::record::Cycle;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_core::record::SpatialCycle;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::spatial::Cycles;
 use super::story::Story;
@@ -22,24 +22,25 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let moments = COLOURS.iter().enumerate().map(|(axis, (name, colour))| {
         let points: Vec<Point> =
             cycles.magnetorquers.iter().map(|(time, row)| (*time, row.axes[axis].moment_am2)).collect();
-        Layer::new(name, *colour, Shape::Line(1.2), points)
+        Layer::new(name, *colour, LayerShape::Line(1.2), points)
     });
     let levels: Vec<f64> = limits.into_iter().flat_map(|limit| [limit, -limit]).collect();
     let level = |(index, height): (usize, &f64)| {
         let name = if index == 0 { "largest" } else { "" };
-        Layer::new(name, colour::GREY, Shape::Dashes, vec![(0.0, *height), (story.end, *height)])
+        Layer::new(name, colour::GREY, LayerShape::Dashes, vec![(0.0, *height), (story.end, *height)])
     };
     let layers: Vec<Layer> = levels.iter().enumerate().map(level).chain(moments).collect();
     let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-    let y = Axis::around("moment", "A m²", values.collect::<Vec<_>>());
+    let y = FigureAxis::around("moment", "A m²", values.collect::<Vec<_>>());
     let x = time(0.0..story.end);
     let moments = Panel::new(x.unnamed(), y, layers);
     let wheels = story.scenario.study.wheels.is_some();
     let norm = |of: [f64; 3]| of.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let points = cycles
-        .over_time(|cycle: &Cycle| norm(if wheels { cycle.stored_nm_s } else { cycle.rigid_rate_rad_s }));
+    let points = cycles.over_time(|cycle: &SpatialCycle| {
+        norm(if wheels { cycle.stored_nm_s } else { cycle.rigid_rate_rad_s })
+    });
     let (name, unit) = if wheels { ("momentum of the wheels", "N m s") } else { ("rate", "rad/s") };
-    let y = Axis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>());
-    let kept = Panel::new(x, y, vec![Layer::new("", colour::BLUE, Shape::Line(1.2), points)]);
+    let y = FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>());
+    let kept = Panel::new(x, y, vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), points)]);
     Figure { title: title(story, "magnetorquers"), panels: vec![moments, kept], panel_height: 200 }
 }

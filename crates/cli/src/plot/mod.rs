@@ -40,7 +40,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use flexsc_core::record::Log;
-use flexsc_figure::{Axis, Figure, Layer, Shape, Style, colour, round_to_nice};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_to_nice};
 
 use crate::drawing::{Format, Target};
 use crate::failure::Failure;
@@ -261,10 +261,10 @@ fn unit_of_torque(story: &Story) -> &'static str {
 }
 
 /// A line where the manoeuvre ends, if there is one.
-fn arrival(story: &Story, y: &Axis) -> Option<Layer> {
+fn arrival(story: &Story, y: &FigureAxis) -> Option<Layer> {
     let plan = story.scenario.plan.as_ref()?;
     let ends = vec![(plan.time, y.range.start), (plan.time, y.range.end)];
-    Some(Layer::new("end of the manoeuvre", colour::GREY, Shape::Dashes, ends))
+    Some(Layer::new("end of the manoeuvre", colour::GREY, LayerShape::Dashes, ends))
 }
 
 /// What figures of the modes show: the whole run, or of a law that switches about seven periods of the slowest mode at
@@ -283,6 +283,6 @@ fn swings(story: &Story) -> std::ops::Range<f64> {
 }
 
 /// The axis of time.
-fn time(range: std::ops::Range<f64>) -> Axis {
-    Axis::exact("time", "s", range)
+fn time(range: std::ops::Range<f64>) -> FigureAxis {
+    FigureAxis::exact("time", "s", range)
 }

@@ -1,6 +1,6 @@
 //! Figure `modes`: the displacement of each elastic mode at the end of the run.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -21,8 +21,8 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         let name = format!("mode {index}, {} rad/s{since}", digits(frequency, 5));
         Panel::new(
             if index == last { x } else { x.unnamed() },
-            Axis::around("displacement", "rad", line.iter().map(|(_, value)| *value)),
-            vec![Layer::new(&name, colour::BLUE, Shape::Line(1.2), line)],
+            FigureAxis::around("displacement", "rad", line.iter().map(|(_, value)| *value)),
+            vec![Layer::new(&name, colour::BLUE, LayerShape::Line(1.2), line)],
         )
     };
     let panels: Vec<_> = motion.modes.iter().zip(frequencies).take(PANELS).enumerate().map(panel).collect();

@@ -1,7 +1,7 @@
 //! Figure `orbit` of three axes: the magnetic field and the directions to planet and Sun in the body's axes, and the shadow.
 
 use flexsc_core::record::{Light, OrbitAxis};
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::spatial::Cycles;
 use super::story::Story;
@@ -31,7 +31,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
             continue;
         }
         let values: Vec<f64> = lines.iter().flatten().map(|(_, value)| *value).collect();
-        let y = Axis::around(name, unit, values);
+        let y = FigureAxis::around(name, unit, values);
         let (low, high) = (y.range.start, y.range.end);
         let mut layers: Vec<Layer> = shadows(cycles, story.end)
             .into_iter()
@@ -39,11 +39,11 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
             .map(|(index, [from, to])| {
                 let label = if index == 0 && panels.is_empty() { "shadow" } else { "" };
                 let edges = |level: f64| [(from, level), (to, level)];
-                Layer::new(label, colour::GREY, Shape::Area(0.2), band(&edges(low), &edges(high)))
+                Layer::new(label, colour::GREY, LayerShape::Area(0.2), band(&edges(low), &edges(high)))
             })
             .collect();
         layers.extend(lines.into_iter().zip(COLOURS).map(|(points, (axis, colour))| {
-            Layer::new(if panels.is_empty() { axis } else { "" }, colour, Shape::Line(1.2), points)
+            Layer::new(if panels.is_empty() { axis } else { "" }, colour, LayerShape::Line(1.2), points)
         }));
         panels.push(Panel::new(time(0.0..story.end).unnamed(), y, layers));
     }

@@ -1,6 +1,6 @@
 //! Figure `outputs`: each observed coordinate over the run.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, name_and_unit};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, name_and_unit};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -15,9 +15,9 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let panel = |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::body::Output))| {
         let x = time(0.0..story.end);
         let (name, unit) = name_and_unit(&output.name, &output.unit);
-        let y = Axis::around(&name, unit, values.iter().copied());
+        let y = FigureAxis::around(&name, unit, values.iter().copied());
         let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
-        let line = Layer::new(&output.name, colour::BLUE, Shape::Line(1.2), line);
+        let line = Layer::new(&output.name, colour::BLUE, LayerShape::Line(1.2), line);
         let x = if index + 1 == motion.outputs.len() { x } else { x.unnamed() };
         let layers = arrival(story, &y).into_iter().chain([line]).collect();
         Panel::new(x, y, layers)

@@ -1,6 +1,6 @@
 //! The same figures of several runs, one over the other: a colour for each run.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, RGBColor, Scale, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, RGBColor, Scale, colour};
 
 /// The colours of the runs, in turn.
 const COLOURS: [RGBColor; 6] =
@@ -13,7 +13,7 @@ pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
     let (_, first) = runs.first()?;
     let alike = |figure: &Figure| {
         let axes = |figure: &Figure| -> Vec<[(String, &'static str, Scale); 2]> {
-            let axis = |axis: &Axis| (axis.name.clone(), axis.unit, axis.scale);
+            let axis = |axis: &FigureAxis| (axis.name.clone(), axis.unit, axis.scale);
             figure.panels.iter().map(|panel| [axis(&panel.x), axis(&panel.y)]).collect()
         };
         axes(figure) == axes(first)
@@ -41,7 +41,7 @@ pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
 }
 
 /// The axis that shows what the axes of all panels show.
-fn axis(panels: &[(&str, &Panel)], of: fn(&Panel) -> &Axis) -> Axis {
+fn axis(panels: &[(&str, &Panel)], of: fn(&Panel) -> &FigureAxis) -> FigureAxis {
     let mut all = of(panels[0].1).clone();
     for (_, panel) in panels {
         let range = &of(panel).range;
@@ -71,13 +71,13 @@ fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
     for (run, (name, panel)) in panels.iter().enumerate() {
         let own: Vec<&Layer> = panel.layers.iter().filter(|layer| !common(layer)).collect();
         // The widest line is what the panel is about.
-        let width = |layer: &Layer| if let Shape::Line(width) = layer.shape { width } else { 0.0 };
+        let width = |layer: &Layer| if let LayerShape::Line(width) = layer.shape { width } else { 0.0 };
         let main = (0..own.len()).max_by(|a, b| width(own[*a]).total_cmp(&width(own[*b])));
         let mut lines = 0;
         let mut told = false;
         for (place, layer) in own.iter().enumerate() {
             let mut layer = (*layer).clone();
-            let is_line = matches!(layer.shape, Shape::Line(_) | Shape::Dashes);
+            let is_line = matches!(layer.shape, LayerShape::Line(_) | LayerShape::Dashes);
             let shade = if Some(place) == main || !is_line {
                 0.0
             } else {
@@ -111,11 +111,14 @@ mod tests {
         let line = vec![(0.0, 0.0), (end, height)];
         let zone = vec![(0.0, 0.5), (100.0, 0.5)];
         let layers = vec![
-            Layer::new("dead zone", colour::GREY, Shape::Dashes, zone),
-            Layer::new("", colour::BLUE, Shape::Line(1.2), line),
+            Layer::new("dead zone", colour::GREY, LayerShape::Dashes, zone),
+            Layer::new("", colour::BLUE, LayerShape::Line(1.2), line),
         ];
-        let panel =
-            Panel::new(Axis::exact("time", "s", 0.0..end), Axis::exact("angle", "rad", 0.0..height), layers);
+        let panel = Panel::new(
+            FigureAxis::exact("time", "s", 0.0..end),
+            FigureAxis::exact("angle", "rad", 0.0..height),
+            layers,
+        );
         Figure { title: "one".to_owned(), panels: vec![panel], panel_height: 100 }
     }
 

@@ -1,7 +1,7 @@
 //! Figure `phase-plane`: rate against angle, the law's switching lines, and where the law switched.
 
 use flexsc_core::law::{Law, Relay, Sides};
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::Motion;
 use super::story::{Story, Switching};
@@ -44,12 +44,12 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     };
     let zone = relay.into_iter().flat_map(|relay| [-relay.dead_zone.get(), relay.dead_zone.get()]);
     let all = || first.iter().chain(&last).copied();
-    let x = Axis::around("angle x", "rad", all().map(|p| p.0).chain(zone));
-    let y = Axis::around("rate dx/dt", "rad/s", all().map(|p| p.1));
+    let x = FigureAxis::around("angle x", "rad", all().map(|p| p.0).chain(zone));
+    let y = FigureAxis::around("rate dx/dt", "rad/s", all().map(|p| p.1));
     let line = |name: &str, shape, at: f64| {
         Layer::new(name, colour::GREY, shape, vec![(at, y.range.start), (at, y.range.end)])
     };
-    let (boundary, brake) = (Shape::Line(1.0), Shape::Dashes);
+    let (boundary, brake) = (LayerShape::Line(1.0), LayerShape::Dashes);
     let lines = |relay: &Relay| {
         let (dead_zone, back) = (relay.dead_zone.get(), relay.dead_zone.get() - relay.hysteresis.get());
         match relay.sides {
@@ -66,10 +66,10 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let whole = first.is_empty() || story.shown.is_some();
     let name = if whole { "trajectory" } else { "end of the run" };
     layers.extend([
-        Layer::new("start of the run", colour::SKY, Shape::Line(0.6), first),
-        Layer::new(name, colour::BLACK, Shape::Line(1.1), last),
-        Layer::new("switching by guard", colour::VERMILLION, Shape::Disc, points(false)),
-        Layer::new("by timeout", colour::BLUE, Shape::Diamond, points(true)),
+        Layer::new("start of the run", colour::SKY, LayerShape::Line(0.6), first),
+        Layer::new(name, colour::BLACK, LayerShape::Line(1.1), last),
+        Layer::new("switching by guard", colour::VERMILLION, LayerShape::Disc, points(false)),
+        Layer::new("by timeout", colour::BLUE, LayerShape::Diamond, points(true)),
     ]);
     Figure { title: title(story, "phase plane"), panels: vec![Panel::new(x, y, layers)], panel_height: 480 }
 }

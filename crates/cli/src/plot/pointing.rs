@@ -1,7 +1,7 @@
 //! Figure `pointing` of three axes: how far the body is from its target about each axis, with its goal and its dead zone.
 
 use flexsc_core::law::Law;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
 use super::spatial::{Cycles, panels};
 use super::story::Story;
@@ -16,7 +16,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let line = |axis: usize| {
         let points = cycles.over_time(|cycle| cycle.error_rad[axis]);
         let name = if axis == 0 { "pointing error" } else { "" };
-        vec![Layer::new(name, colour::BLUE, Shape::Line(1.2), points)]
+        vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)]
     };
     let mut panels = panels(story, "rad", line);
     let of = |panel: &Panel| panel.layers[0].points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
@@ -25,27 +25,32 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         let [goal, zone] = bands(story, axis);
         let largest = of(panel);
         if largest < ROUNDING * largest_of_all {
-            panel.y = Axis::around(&panel.y.name, "rad", [-largest_of_all, largest_of_all]);
+            panel.y = FigureAxis::around(&panel.y.name, "rad", [-largest_of_all, largest_of_all]);
         }
         let shown =
             [goal, zone].into_iter().flatten().filter(|half| *half <= WIDE * largest).fold(0.0, f64::max);
         let values: Vec<f64> = panel.layers[0].points.iter().map(|point| point.1).collect();
         if shown > 0.0 {
-            panel.y = Axis::around(&panel.y.name, "rad", values.into_iter().chain([-shown, shown]));
+            panel.y = FigureAxis::around(&panel.y.name, "rad", values.into_iter().chain([-shown, shown]));
         }
         let level = |height: f64| [(0.0, height), (story.end, height)];
         let wide = |what: &str, half: f64| format!("{what} ±{} mrad", super::short(1e3 * half));
         let mut below = Vec::new();
         if let Some(half) = goal {
             let area = band(&level(-half), &level(half));
-            below.push(Layer::new(&wide("goal band", half), colour::GREEN, Shape::Area(0.2), area));
+            below.push(Layer::new(&wide("goal band", half), colour::GREEN, LayerShape::Area(0.2), area));
         }
         let target = if axis == 0 { "target" } else { "" };
-        below.push(Layer::new(target, colour::GREY, Shape::Line(0.8), level(0.0).to_vec()));
+        below.push(Layer::new(target, colour::GREY, LayerShape::Line(0.8), level(0.0).to_vec()));
         if let Some(half) = zone {
             let edges =
                 [(0.0, half), (story.end, half), (f64::NAN, f64::NAN), (0.0, -half), (story.end, -half)];
-            below.push(Layer::new(&wide("dead zone", half), colour::GREY, Shape::Dashes, edges.to_vec()));
+            below.push(Layer::new(
+                &wide("dead zone", half),
+                colour::GREY,
+                LayerShape::Dashes,
+                edges.to_vec(),
+            ));
         }
         below.append(&mut panel.layers);
         panel.layers = below;

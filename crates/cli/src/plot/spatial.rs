@@ -6,12 +6,12 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, Cycle, DrivesMotion, Log,
-    Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialMotion, TrackedMode, Tracking,
-    Wheels,
+    Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, DrivesMotion, Log,
+    Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialCycle, SpatialMotion, TrackedMode,
+    Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, steps};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
 use super::story::{Story, unusable};
 use super::{time, title};
@@ -23,7 +23,7 @@ const MANY: usize = 100;
 /// The cycles of a run.
 #[derive(Default)]
 pub struct Cycles {
-    all: Vec<(f64, Cycle)>,
+    all: Vec<(f64, SpatialCycle)>,
     tracking: Vec<(f64, Tracking)>,
     /// What an attitude filter made of each sample.
     pub attitude: Vec<(f64, AttitudeEstimate)>,
@@ -68,7 +68,7 @@ impl Cycles {
         Ok(cycles)
     }
 
-    pub fn over_time(&self, of: impl Fn(&Cycle) -> f64) -> Vec<Point> {
+    pub fn over_time(&self, of: impl Fn(&SpatialCycle) -> f64) -> Vec<Point> {
         self.all.iter().map(|(time, cycle)| (*time, of(cycle))).collect()
     }
 }
@@ -114,7 +114,7 @@ pub fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<La
     let panel = |(axis, name): (usize, &&str)| {
         let (x, layers) = (time(0.0..story.end), lines(axis));
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-        let y = Axis::around(name, unit, values.collect::<Vec<_>>());
+        let y = FigureAxis::around(name, unit, values.collect::<Vec<_>>());
         Panel { x: if axis == 2 { x } else { x.unnamed() }, y, layers, bar: None }
     };
     AXES.iter().enumerate().map(panel).collect()
@@ -127,8 +127,8 @@ pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
         let rigid = cycles.over_time(|c| c.rigid_rate_rad_s[axis]);
         let name = |name| if axis == 0 { name } else { "" };
         vec![
-            Layer::new(name("at the gyro"), colour::SKY, Shape::Line(1.0), seen),
-            Layer::new(name("rigid"), colour::BLACK, Shape::Line(1.2), rigid),
+            Layer::new(name("at the gyro"), colour::SKY, LayerShape::Line(1.0), seen),
+            Layer::new(name("rigid"), colour::BLACK, LayerShape::Line(1.2), rigid),
         ]
     };
     Figure { title: title(story, "rates"), panels: panels(story, "rad/s", lines), panel_height: 160 }
@@ -136,15 +136,15 @@ pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
 
 /// Where the first point is, and its velocity.
 pub fn position(story: &Story, cycles: &Cycles) -> Figure {
-    let panel = |x: Axis, name: &str, unit: &'static str, of: [fn(&Position) -> f64; 3]| {
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, of: [fn(&Position) -> f64; 3]| {
         let line = |(axis, colour): (usize, _)| {
             let points = cycles.position.iter().map(|(time, position)| (*time, of[axis](position))).collect();
-            Layer::new(["x", "y", "z"][axis], colour, Shape::Line(1.2), points)
+            Layer::new(["x", "y", "z"][axis], colour, LayerShape::Line(1.2), points)
         };
         let layers: Vec<Layer> =
             [colour::BLUE, colour::ORANGE, colour::GREEN].into_iter().enumerate().map(line).collect();
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-        Panel { x, y: Axis::around(name, unit, values.collect::<Vec<_>>()), layers, bar: None }
+        Panel { x, y: FigureAxis::around(name, unit, values.collect::<Vec<_>>()), layers, bar: None }
     };
     let x = time(0.0..story.end);
     let places: [fn(&Position) -> f64; 3] = [|at| at.x_m, |at| at.y_m, |at| at.z_m];
@@ -160,10 +160,10 @@ pub fn position(story: &Story, cycles: &Cycles) -> Figure {
 pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     let elastic = cycles.over_time(|cycle| cycle.elastic_energy_j);
     let fuel = cycles.over_time(|cycle| cycle.jets.fuel_kg);
-    let panel = |x: Axis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
         x,
-        y: Axis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
-        layers: vec![Layer::new(name, colour::BLUE, Shape::Line(1.2), points)],
+        y: FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
+        layers: vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)],
         bar: None,
     };
     let x = time(0.0..story.end);
@@ -171,10 +171,15 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     let below = if fires { x.unnamed() } else { x.clone() };
     let mut energies = panel(below, "elastic energy", "J", elastic);
     // Where both are one, the wider line shows beside the other.
-    energies.layers[0].shape = Shape::Line(2.4);
+    energies.layers[0].shape = LayerShape::Line(2.4);
     "all modes".clone_into(&mut energies.layers[0].name);
     let visible = cycles.over_time(|cycle| cycle.visible_energy_j);
-    energies.layers.push(Layer::new("modes that the gyro sees", colour::ORANGE, Shape::Line(1.0), visible));
+    energies.layers.push(Layer::new(
+        "modes that the gyro sees",
+        colour::ORANGE,
+        LayerShape::Line(1.0),
+        visible,
+    ));
     let mut panels = vec![energies];
     if fires {
         panels.push(panel(x, "propellant", "kg", fuel));
@@ -185,8 +190,9 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
 
 /// For how long the jets fire in each cycle.
 pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
-    let on =
-        |cycle: &Cycle, axis: usize| [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis];
+    let on = |cycle: &SpatialCycle, axis: usize| {
+        [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis]
+    };
     let period = cycles.all.get(1).map_or(0.0, |(time, _)| time - cycles.all[0].0);
     let line = |axis: usize| {
         // The outline of each row of cycles with pulses, and nothing between them.
@@ -200,11 +206,11 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
         }
         let zero = vec![(0.0, 0.0), (story.end, 0.0)];
         vec![
-            Layer::new("", colour::GREY, Shape::Line(0.8), zero),
+            Layer::new("", colour::GREY, LayerShape::Line(0.8), zero),
             Layer::new(
                 if axis == 0 { "firing time" } else { "" },
                 colour::VERMILLION,
-                Shape::Line(0.8),
+                LayerShape::Line(0.8),
                 points,
             ),
         ]
@@ -214,7 +220,7 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
     let longest = 1.1 * longest.fold(0.0, f64::max);
     let mut panels = panels(story, "s", line);
     for panel in &mut panels {
-        panel.y = Axis::exact(&panel.y.name, "s", -longest..longest);
+        panel.y = FigureAxis::exact(&panel.y.name, "s", -longest..longest);
     }
     Figure { title: title(story, "firing time of the jets in each cycle"), panels, panel_height: 160 }
 }
@@ -239,13 +245,13 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
             let truth = Layer::new(
                 name("true"),
                 colour::BLACK,
-                Shape::Dashes,
+                LayerShape::Dashes,
                 ends(of(mode, |of| of.true_frequency_rad_s)),
             );
             let estimate = Layer::new(
                 name("estimated"),
                 colour::VERMILLION,
-                Shape::Line(1.2),
+                LayerShape::Line(1.2),
                 of(mode, |of| of.frequency_rad_s),
             );
             layers.extend([estimate, truth]);
@@ -270,16 +276,16 @@ pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
         let fired =
             cycles.tracking.iter().filter(fires).map(|(time, t)| (*time, t.channels[axis].acted_on_rad_s));
         let fired: Vec<Point> = fired.collect();
-        let mark = if fired.len() > MANY { Shape::Dot } else { Shape::Disc };
+        let mark = if fired.len() > MANY { LayerShape::Dot } else { LayerShape::Disc };
         vec![
             Layer::new(
                 name("predicted elastic rate"),
                 colour::SKY,
-                Shape::Line(1.0),
+                LayerShape::Line(1.0),
                 of(|c| c.acted_on_rad_s),
             ),
-            Layer::new(name("threshold"), colour::BLACK, Shape::Line(0.8), of(|c| c.threshold_rad_s)),
-            Layer::new("", colour::BLACK, Shape::Line(0.8), of(|c| -c.threshold_rad_s)),
+            Layer::new(name("threshold"), colour::BLACK, LayerShape::Line(0.8), of(|c| c.threshold_rad_s)),
+            Layer::new("", colour::BLACK, LayerShape::Line(0.8), of(|c| -c.threshold_rad_s)),
             Layer::new("fires", colour::VERMILLION, mark, fired),
         ]
     };

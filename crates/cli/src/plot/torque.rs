@@ -1,6 +1,6 @@
 //! Figure `torque`: the commanded torque at the end of the run, strong and weak.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_nice, steps};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice, steps};
 
 use super::story::Story;
 use super::{time, title};
@@ -29,7 +29,7 @@ pub fn figure(story: &Story) -> Figure {
     let strong = levels.clone().fold(0.0, f64::max);
     let weak = levels.filter(|level| *level < 0.2 * strong).fold(0.0, f64::max);
     let (what, unit) = story.scenario.model.commanded();
-    let panel = |x: Axis, name: &str, most: f64, named: bool| {
+    let panel = |x: FigureAxis, name: &str, most: f64, named: bool| {
         let most = if most > 0.0 { 1.3 * most } else { 1.0 };
         let marks = |timeout: bool| -> Vec<Point> {
             let of_kind = story.switchings.iter().filter(|s| s.timeout == timeout);
@@ -38,12 +38,12 @@ pub fn figure(story: &Story) -> Figure {
         let legend = |name: &'static str| if named { name } else { "" };
         let zero = vec![(x.range.start, 0.0), (x.range.end, 0.0)];
         let layers = vec![
-            Layer::new("", colour::GREY, Shape::Line(0.8), zero),
-            Layer::new(legend(what), colour::BLACK, Shape::Line(1.2), line.clone()),
-            Layer::new(legend("switching by guard"), colour::VERMILLION, Shape::Disc, marks(false)),
-            Layer::new(legend("by timeout"), colour::BLUE, Shape::Diamond, marks(true)),
+            Layer::new("", colour::GREY, LayerShape::Line(0.8), zero),
+            Layer::new(legend(what), colour::BLACK, LayerShape::Line(1.2), line.clone()),
+            Layer::new(legend("switching by guard"), colour::VERMILLION, LayerShape::Disc, marks(false)),
+            Layer::new(legend("by timeout"), colour::BLUE, LayerShape::Diamond, marks(true)),
         ];
-        Panel::new(x, Axis::exact(name, unit, -most..most), layers)
+        Panel::new(x, FigureAxis::exact(name, unit, -most..most), layers)
     };
     let title = title(story, what);
     if weak > 0.0 {

@@ -1,7 +1,7 @@
 //! Figure `wheel`: speed and momentum of the flywheel with its limits.
 
 use flexsc_core::actuator::Rotor;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::Motion;
 use super::story::Story;
@@ -15,16 +15,21 @@ pub fn rotor(story: &Story) -> Option<&Rotor> {
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let limit = rotor(story).and_then(|rotor| Some((rotor.speed_limit?.get(), rotor.inertia.get())));
     let x = time(0.0..story.end);
-    let panel = |x: Axis, name: &str, unit: &'static str, values: &[f64], limit: Option<f64>| {
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, values: &[f64], limit: Option<f64>| {
         let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
         let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
-        let y = Axis::around(name, unit, values.iter().chain(&limits).copied());
+        let y = FigureAxis::around(name, unit, values.iter().chain(&limits).copied());
         let level = |(index, height): (usize, &f64)| {
             let name = if index == 0 { "limits" } else { "" };
-            Layer::new(name, colour::VERMILLION, Shape::Dashes, vec![(0.0, *height), (story.end, *height)])
+            Layer::new(
+                name,
+                colour::VERMILLION,
+                LayerShape::Dashes,
+                vec![(0.0, *height), (story.end, *height)],
+            )
         };
         let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
-        layers.push(Layer::new(name, colour::BLACK, Shape::Line(1.2), line));
+        layers.push(Layer::new(name, colour::BLACK, LayerShape::Line(1.2), line));
         Panel::new(x, y, layers)
     };
     // On a body without inertia a momentum is a rate.

@@ -5,7 +5,7 @@ use flexsc_core::attitude::AXES;
 use flexsc_core::motion::turning::Bearing;
 use flexsc_core::quantity::Positive;
 use flexsc_core::record;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::spatial::Cycles;
 use super::story::Story;
@@ -33,21 +33,22 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
             |wheel: usize| cycles.wheels.iter().map(|(time, row)| (*time, of(&row.wheels[wheel]))).collect();
         (0..count).map(line).collect()
     };
-    let panel = |x: Axis, name: &str, unit: &'static str, limit: Option<f64>, lines: Vec<Vec<Point>>| {
-        let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
-        let values = lines.iter().flatten().map(|(_, value)| *value);
-        let y = Axis::around(name, unit, values.chain(limits.iter().copied()));
-        let level = |(index, height): (usize, &f64)| {
-            let name = if index == 0 { "limits" } else { "" };
-            Layer::new(name, colour::GREY, Shape::Dashes, vec![(0.0, *height), (story.end, *height)])
+    let panel =
+        |x: FigureAxis, name: &str, unit: &'static str, limit: Option<f64>, lines: Vec<Vec<Point>>| {
+            let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
+            let values = lines.iter().flatten().map(|(_, value)| *value);
+            let y = FigureAxis::around(name, unit, values.chain(limits.iter().copied()));
+            let level = |(index, height): (usize, &f64)| {
+                let name = if index == 0 { "limits" } else { "" };
+                Layer::new(name, colour::GREY, LayerShape::Dashes, vec![(0.0, *height), (story.end, *height)])
+            };
+            let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
+            layers.extend(lines.into_iter().enumerate().map(|(wheel, points)| {
+                let name = format!("wheel {}", wheel + 1);
+                Layer::new(&name, COLOURS[wheel % COLOURS.len()], LayerShape::Line(1.2), points)
+            }));
+            Panel::new(x, y, layers)
         };
-        let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
-        layers.extend(lines.into_iter().enumerate().map(|(wheel, points)| {
-            let name = format!("wheel {}", wheel + 1);
-            Layer::new(&name, COLOURS[wheel % COLOURS.len()], Shape::Line(1.2), points)
-        }));
-        Panel::new(x, y, layers)
-    };
     let x = time(0.0..story.end);
     let last = if rubs { x.unnamed() } else { x.clone() };
     let mut panels = vec![
@@ -61,10 +62,10 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         panels.push(panel(x.unnamed(), "friction", "N m", None, (0..count).map(friction).collect()));
         let error = |axis: usize| cycles.over_time(|cycle| cycle.error_rad[axis]);
         let axes = AXES.iter().enumerate().map(|(axis, name)| {
-            Layer::new(name, COLOURS[axis % COLOURS.len()], Shape::Line(1.2), error(axis))
+            Layer::new(name, COLOURS[axis % COLOURS.len()], LayerShape::Line(1.2), error(axis))
         });
         let values = (0..3).flat_map(|axis| error(axis).into_iter().map(|(_, value)| value));
-        panels.push(Panel::new(x, Axis::around("error", "rad", values), axes.collect()));
+        panels.push(Panel::new(x, FigureAxis::around("error", "rad", values), axes.collect()));
     }
     Figure { title: title(story, "wheels"), panels, panel_height: 200 }
 }

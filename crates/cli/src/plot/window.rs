@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Scale, Shape};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Scale};
 
 use crate::failure::Failure;
 
@@ -32,7 +32,7 @@ pub fn cut(mut figure: Figure, shown: &Range<f64>) -> Figure {
         figure.panels.iter_mut().filter(|panel| panel.x.unit == "s" && panel.x.scale == Scale::Linear)
     {
         let name = std::mem::take(&mut panel.x.name);
-        panel.x = Axis::exact(&name, "s", shown.clone());
+        panel.x = FigureAxis::exact(&name, "s", shown.clone());
         if panel.y.scale == Scale::Linear
             && let Some(range) = heights(panel)
         {
@@ -47,7 +47,8 @@ fn heights(panel: &Panel) -> Option<Range<f64>> {
     let (shown, before) = (&panel.x.range, &panel.y.range);
     // Areas and lines straight up are as high as the panel was, and tell nothing of the values.
     let upright = |layer: &Layer| layer.points.windows(2).all(|pair| pair[0].0 == pair[1].0);
-    let lines = panel.layers.iter().filter(|layer| !matches!(layer.shape, Shape::Area(_)) && !upright(layer));
+    let lines =
+        panel.layers.iter().filter(|layer| !matches!(layer.shape, LayerShape::Area(_)) && !upright(layer));
     let seen = lines.flat_map(|layer| {
         let inside = layer.points.iter().filter(|point| shown.contains(&point.0) || point.0 == shown.end);
         let ends = [shown.start, shown.end].map(|time| at(layer, time));
@@ -68,7 +69,7 @@ fn heights(panel: &Panel) -> Option<Range<f64>> {
 
 /// The value of a line at a time, between two of its points.
 fn at(layer: &Layer, time: f64) -> Option<f64> {
-    if !matches!(layer.shape, Shape::Line(_) | Shape::Dashes) {
+    if !matches!(layer.shape, LayerShape::Line(_) | LayerShape::Dashes) {
         return None;
     }
     let around = layer.points.windows(2).find(|pair| pair[0].0 <= time && time < pair[1].0)?;
@@ -87,11 +88,14 @@ mod tests {
         let line: Vec<_> = (0..=100).map(|i| (f64::from(i), f64::from(i * i))).collect();
         let mark = vec![(15.0, -1e6), (15.0, 1e6)];
         let layers = vec![
-            Layer::new("", colour::BLUE, Shape::Line(1.0), line),
-            Layer::new("", colour::GREY, Shape::Dashes, mark),
+            Layer::new("", colour::BLUE, LayerShape::Line(1.0), line),
+            Layer::new("", colour::GREY, LayerShape::Dashes, mark),
         ];
-        let panel =
-            Panel::new(Axis::exact("time", "s", 0.0..100.0), Axis::exact("y", "m", -1.0..1e4), layers);
+        let panel = Panel::new(
+            FigureAxis::exact("time", "s", 0.0..100.0),
+            FigureAxis::exact("y", "m", -1.0..1e4),
+            layers,
+        );
         let figure = Figure { title: String::new(), panels: vec![panel], panel_height: 100 };
         let cut = cut(figure, &(10.5..20.0));
         let (x, y) = (&cut.panels[0].x, &cut.panels[0].y);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use flexsc_core::campaign::{Campaign, Outcome};
+use flexsc_core::campaign::{Campaign, RunOutcome};
 use flexsc_core::metrics::Selection;
 use serde_json::{Map, Value as Json, json};
 
@@ -76,7 +76,7 @@ fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, Failur
         &Selection::ALL,
         |run| Ok(Campaign::simulate(run, Stop)?),
         |outcome| {
-            let Some(Outcome { number, drawn, metrics, .. }) = outcome else { return Ok(()) };
+            let Some(RunOutcome { number, drawn, metrics, .. }) = outcome else { return Ok(()) };
             let failed = |why| Failure::Runs { failed: 1, runs, number, why };
             let metrics = metrics.map_err(|error| failed(error.to_string()))?;
             objects.push(campaign::object(study, number, &drawn, Ok(&metrics)));

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use flexsc_core::campaign::{Block, MOST_NUMBERS};
+use flexsc_core::campaign::{DesignBlock, MOST_NUMBERS};
 
 use crate::failure::Failure;
 
 /// Reads a table.
-pub fn read(path: &Path) -> Result<Block, Failure> {
+pub fn read(path: &Path) -> Result<DesignBlock, Failure> {
     let refused = |why: String| Failure::Arguments(format!("{}: {why}", path.display()));
     let wrong = |error: csv::Error| refused(format!("is not a table of points: {error}"));
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(wrong)?;
@@ -31,5 +31,5 @@ pub fn read(path: &Path) -> Result<Block, Failure> {
     if points.is_empty() {
         return Err(refused("has no point".to_owned()));
     }
-    Ok(Block::Table { keys, points })
+    Ok(DesignBlock::Table { keys, points })
 }

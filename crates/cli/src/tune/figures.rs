@@ -3,7 +3,7 @@
 
 use flexsc_core::analysis::sampled_loop::{Region, Robust};
 use flexsc_core::law::Extra;
-use flexsc_figure::{Axis, Figure, Layer, Named, Panel, Point, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, band, colour};
 
 use super::tuning::Tuning;
 
@@ -35,27 +35,27 @@ impl Drawn<'_> {
         let robust: Vec<Point> =
             self.robust.map_or_else(Vec::new, |(of, _)| over(of, |r| r.frequency_rad_s, |r| r.gain));
         let shown = [&lower, &upper, &own, &robust].into_iter().flatten().map(|point| point.1);
-        let y = Axis::around("gain k_d of the extra loop", "", shown.chain([0.0]));
+        let y = FigureAxis::around("gain k_d of the extra loop", "", shown.chain([0.0]));
         let x = self.frequency();
         let zero = vec![(x.range.start, 0.0), (x.range.end, 0.0)];
         let within = format!("stable, settles within {} s", self.tuning.limit);
         let mut layers = vec![
-            Layer::new(&within, colour::SKY, Shape::Area(0.35), band(&lower, &upper)),
-            Layer::new("", colour::GREY, Shape::Line(0.8), zero),
-            Layer::new("", colour::SKY, Shape::Line(1.0), lower),
-            Layer::new("", colour::SKY, Shape::Line(1.0), upper),
+            Layer::new(&within, colour::SKY, LayerShape::Area(0.35), band(&lower, &upper)),
+            Layer::new("", colour::GREY, LayerShape::Line(0.8), zero),
+            Layer::new("", colour::SKY, LayerShape::Line(1.0), lower),
+            Layer::new("", colour::SKY, LayerShape::Line(1.0), upper),
         ];
         let highest = self.tuning.gains.values().last().copied().unwrap_or(self.tuning.gains.high);
         // Where the region ends only because no higher gain was tried, its middle means little.
         if self.regions.iter().any(|region| region.gain.is_some_and(|gain| gain.1 >= highest)) {
             let level = vec![(x.range.start, highest), (x.range.end, highest)];
-            layers.push(Layer::new("highest gain tried", colour::GREY, Shape::Dashes, level));
+            layers.push(Layer::new("highest gain tried", colour::GREY, LayerShape::Dashes, level));
         }
-        layers.push(Layer::new("middle", colour::BLUE, Shape::Line(1.6), middle));
+        layers.push(Layer::new("middle", colour::BLUE, LayerShape::Line(1.6), middle));
         if !own.is_empty() {
-            layers.push(Layer::new("of the scenario", colour::BLACK, Shape::Dashes, own));
+            layers.push(Layer::new("of the scenario", colour::BLACK, LayerShape::Dashes, own));
         }
-        layers.push(Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), robust));
+        layers.push(Layer::new(&self.robust_name(), colour::VERMILLION, LayerShape::Line(1.6), robust));
         let title = format!("{}: gains of the extra loop", self.tuning.name);
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
@@ -71,14 +71,14 @@ impl Drawn<'_> {
         let shown = [&middle, &without, &nominal, &worst].into_iter().flatten().map(|point| point.1);
         let finite = shown.filter(|time| time.is_finite()).chain([self.tuning.limit]);
         let times = finite.map(|time| time.min(BEYOND * self.tuning.limit));
-        let y = Axis::from_zero("settling time (s)", "", times);
+        let y = FigureAxis::from_zero("settling time (s)", "", times);
         let level = vec![(x.range.start, self.tuning.limit), (x.range.end, self.tuning.limit)];
         let layers = vec![
-            Layer::new("limit", colour::GREY, Shape::Dashes, level),
-            Layer::new("without the extra loop", colour::BLACK, Shape::Line(1.4), without),
-            Layer::new("middle of the region", colour::BLUE, Shape::Line(1.6), middle),
-            Layer::new(&self.robust_name(), colour::VERMILLION, Shape::Line(1.6), nominal),
-            Layer::new("the same, perturbed", colour::VERMILLION, Shape::Dashes, worst),
+            Layer::new("limit", colour::GREY, LayerShape::Dashes, level),
+            Layer::new("without the extra loop", colour::BLACK, LayerShape::Line(1.4), without),
+            Layer::new("middle of the region", colour::BLUE, LayerShape::Line(1.6), middle),
+            Layer::new(&self.robust_name(), colour::VERMILLION, LayerShape::Line(1.6), nominal),
+            Layer::new("the same, perturbed", colour::VERMILLION, LayerShape::Dashes, worst),
         ];
         let title = format!("{}: settling time", self.tuning.name);
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
@@ -88,10 +88,10 @@ impl Drawn<'_> {
         self.robust.map_or_else(String::new, |(_, off)| format!("robust against {} %", 100.0 * off))
     }
 
-    fn frequency(&self) -> Axis {
+    fn frequency(&self) -> FigureAxis {
         let all = || self.regions.iter().map(|region| region.frequency_rad_s);
         let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max));
-        Axis::exact("frequency of the dominant mode (rad/s)", "", low..high)
+        FigureAxis::exact("frequency of the dominant mode (rad/s)", "", low..high)
     }
 
     /// The scenario's own gain at the frequencies.

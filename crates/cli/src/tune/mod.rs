@@ -6,7 +6,7 @@ mod tuned;
 mod tuning;
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::sampled_loop::{Doubt, Goal, Search, robust};
+use flexsc_core::analysis::sampled_loop::{Doubt, RobustGoal, RobustSearch, robust};
 
 use crate::drawing::Drawing;
 use crate::failure::Failure;
@@ -102,7 +102,7 @@ impl Args {
     }
 
     /// The search for gains that do with the model off by a part.
-    fn search(&self, tuning: &Tuning, off: f64) -> Result<Search, Failure> {
+    fn search(&self, tuning: &Tuning, off: f64) -> Result<RobustSearch, Failure> {
         part("--robust", off)?;
         part("--margin", self.margin)?;
         if !(self.quantile > 0.0 && self.quantile <= 1.0) {
@@ -112,12 +112,12 @@ impl Args {
         if !(self.delay.is_finite() && self.delay >= 0.0) {
             return Err(Failure::Arguments(format!("--delay must be 0 or more, got {}", self.delay)));
         }
-        Ok(Search {
+        Ok(RobustSearch {
             gains: tuning.gains,
             scaling: tuning.scaling,
             window: tuning.window,
             doubt: Doubt { frequency: off, modal_gain: off, authority: off, delay: self.delay },
-            goal: if self.itae { Goal::Itae } else { Goal::Settling },
+            goal: if self.itae { RobustGoal::Itae } else { RobustGoal::Settling },
             quantile: self.quantile,
             margin: self.margin,
         })

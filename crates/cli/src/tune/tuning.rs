@@ -1,6 +1,6 @@
 //! What `flexsc tune` works on.
 
-use flexsc_core::analysis::sampled_loop::{Gains, Loop, Region, Scaling, Window, regions};
+use flexsc_core::analysis::sampled_loop::{Gains, Loop, Region, Scaling, SettlingWindow, regions};
 use flexsc_core::law::Extra;
 
 /// What is tuned.
@@ -18,7 +18,7 @@ pub struct Tuning {
     /// The gains that are tried.
     pub gains: Gains,
     /// What counts as settled.
-    pub window: Window,
+    pub window: SettlingWindow,
     /// The longest settling time of the region (s).
     pub limit: f64,
 }

@@ -5,17 +5,17 @@
 //! the largest part in its direction is given.
 
 use super::valves::Valves;
-use super::{Actuate, Cycle, Demand, Group, Jets, Nozzle, PulseWidth};
+use super::{Actuate, Demand, FiringGroup, JetCycle, Jets, OpenThruster, PulseWidth};
 use crate::attitude::Vector;
 use crate::body::{Push, Wrench};
 use crate::document::Fault;
-use crate::numerics::simplex::Programme;
+use crate::numerics::simplex::LinearProgramme;
 use crate::time::{Instant, Span};
 
 /// Jets at work.
 #[derive(Clone, Debug)]
 pub struct Allocated {
-    programme: Programme,
+    programme: LinearProgramme,
     /// Torques (N m), and propellant in a second (kg/s), of each thruster.
     torques: Vec<Vector>,
     flows: Vec<f64>,
@@ -37,13 +37,13 @@ pub struct Allocated {
 }
 
 /// The programme of thrusters: their largest on-time (s), and whether their forces shall cancel.
-fn programme(nozzles: &[Nozzle], most: f64, force_free: bool) -> Programme {
-    let column = |nozzle: &Nozzle| {
+fn programme(nozzles: &[OpenThruster], most: f64, force_free: bool) -> LinearProgramme {
+    let column = |nozzle: &OpenThruster| {
         let force = nozzle.push.force.iter().copied().filter(|_| force_free);
         nozzle.push.torque.iter().copied().chain(force).collect()
     };
     let rows = if force_free { 6 } else { 3 };
-    Programme::new(rows, nozzles.iter().map(column).collect(), vec![most; nozzles.len()])
+    LinearProgramme::new(rows, nozzles.iter().map(column).collect(), vec![most; nozzles.len()])
 }
 
 /// What is asked of a programme: a torque or an impulse, and no force.
@@ -58,10 +58,10 @@ fn asked(wanted: &Vector, force_free: bool) -> Vec<f64> {
 /// They cannot turn the body about such an axis.
 pub(super) fn largest(
     jets: &Jets,
-    nozzles: &[Nozzle],
+    nozzles: &[OpenThruster],
     inertia: [f64; 3],
     acts: [bool; 3],
-) -> Result<[[Group; 2]; 3], Fault> {
+) -> Result<[[FiringGroup; 2]; 3], Fault> {
     let programme = programme(nozzles, 1.0, jets.force_free);
     let costs: Vec<f64> = nozzles.iter().map(|nozzle| nozzle.flow).collect();
     // More than all of them have.
@@ -83,18 +83,22 @@ pub(super) fn largest(
             return Err(Fault::new("thrusters", why));
         }
         let acceleration = push.torque[axis].abs() / inertia[axis];
-        Ok(Group { push, flow, acceleration })
+        Ok(FiringGroup { push, flow, acceleration })
     };
     let pair = |axis: usize| {
         let modes = nozzles.first().map_or(0, |nozzle| nozzle.push.forces.len());
-        if acts[axis] { Ok([group(axis, 1.0)?, group(axis, -1.0)?]) } else { Ok(Group::idle(modes)) }
+        if acts[axis] { Ok([group(axis, 1.0)?, group(axis, -1.0)?]) } else { Ok(FiringGroup::idle(modes)) }
     };
     Ok([pair(0)?, pair(1)?, pair(2)?])
 }
 
 impl Allocated {
     /// The jets before the first command; `period` is that of the law, for jets without one of their own.
-    pub fn new(jets: &Jets, (groups, nozzles): (&[[Group; 2]; 3], &[Nozzle]), period: Span) -> Self {
+    pub fn new(
+        jets: &Jets,
+        (groups, nozzles): (&[[FiringGroup; 2]; 3], &[OpenThruster]),
+        period: Span,
+    ) -> Self {
         let count = nozzles.len();
         let cycle = jets.period.unwrap_or(period);
         let torque = |axis: usize, side: usize| groups[axis][side].push.torque[axis].abs();
@@ -205,7 +209,7 @@ impl Actuate for Allocated {
         self.turned_by(&self.executed)
     }
 
-    fn cycle(&self) -> Option<Cycle> {
+    fn cycle(&self) -> Option<JetCycle> {
         let turned = self.impulse();
         let on = [0, 1, 2].map(|axis| match self.largest[axis][usize::from(turned[axis] < 0.0)] {
             0.0 => 0.0,
@@ -213,7 +217,7 @@ impl Actuate for Allocated {
         });
         let since = self.valves.since();
         let left = |index: usize| self.ends[index].map_or(0.0, |end| end.since(since).seconds());
-        Some(Cycle {
+        Some(JetCycle {
             on,
             fuel: self.valves.fuel(left),
             pulses: self.pulses,

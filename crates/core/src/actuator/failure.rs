@@ -108,7 +108,7 @@ pub struct Lasting<'a> {
 
 /// What an actuator consists of, as its failures name it.
 #[derive(Copy, Clone, Debug)]
-pub(super) enum Parts<'a> {
+pub(super) enum FailingPart<'a> {
     /// One actuator about each of so many axes; magnetorquers are such a one too.
     Axes(usize),
     /// So many wheels.
@@ -146,17 +146,17 @@ impl Failure {
     }
 
     /// What of it does not fit an actuator of these parts, which `turns` the body by torques or not: a key, and why.
-    pub(super) fn fault(&self, parts: Parts<'_>, turns: bool) -> Option<Fault> {
+    pub(super) fn fault(&self, parts: FailingPart<'_>, turns: bool) -> Option<Fault> {
         let Lasting { outage, about, wheel, gimbal, thruster } = self.lasting();
         if let Some(fault) = outage.disorder() {
             return Some(fault);
         }
         let at = |key: &str, why: &str| Some(Fault::new(format!("{}.{key}", self.kind()), why));
         let (axes, wheels, gimbals, names): (usize, usize, usize, &[String]) = match parts {
-            Parts::Axes(axes) => (axes, 0, 0, &[]),
-            Parts::Wheels(wheels) => (0, wheels, 0, &[]),
-            Parts::Gimbals(gimbals) => (0, 0, gimbals, &[]),
-            Parts::Thrusters(names) => (0, 0, 0, names),
+            FailingPart::Axes(axes) => (axes, 0, 0, &[]),
+            FailingPart::Wheels(wheels) => (0, wheels, 0, &[]),
+            FailingPart::Gimbals(gimbals) => (0, 0, gimbals, &[]),
+            FailingPart::Thrusters(names) => (0, 0, 0, names),
         };
         if about.is_some() && axes < 3 {
             return at(
@@ -184,7 +184,7 @@ impl Failure {
             let why = "apply only to a torque on the body: wheels, gimbals, jets and magnetorquers can only add a constant; a `[[disturbance]]` can have sines";
             return at("sines", why);
         }
-        if let Parts::Thrusters(_) = parts {
+        if let FailingPart::Thrusters(_) = parts {
             return self.thruster_fault();
         }
         None

@@ -6,7 +6,7 @@
 use super::control_moment_gyros::ControlMomentGyros;
 use super::failure::Failing;
 use super::steering::{self, GyroAxes, Robustness};
-use super::{Actuate, Demand, Setting};
+use super::{Actuate, Demand, TorquerSetting};
 use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::motion::turning::Gimbal;
@@ -25,7 +25,7 @@ pub struct Gimbals {
     robust: Option<Robustness>,
     /// Preferred angles (rad), and the gain towards them (1/s).
     preferred: Option<(Vec<f64>, f64)>,
-    settings: Vec<Setting>,
+    settings: Vec<TorquerSetting>,
     /// The torque on the body that laws ask for, and one of others that they hold against (N m).
     wanted: Vector,
     against: Vector,
@@ -43,7 +43,7 @@ pub struct Gimbals {
 
 impl ControlMomentGyros {
     /// The control moment gyros before their first command, on a body of these settings.
-    pub fn start(&self, axes: &[GyroAxes], settings: &[Setting]) -> Gimbals {
+    pub fn start(&self, axes: &[GyroAxes], settings: &[TorquerSetting]) -> Gimbals {
         let (angles, count) = (self.starts(), axes.len());
         let least_measure = steering::measure(&steering::columns(axes, &angles));
         Gimbals {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, Failure, Setting};
+use super::{AxisActuate, Failure, TorquerSetting};
 use crate::quantity::Time;
 use crate::time::{Instant, Span};
 
@@ -25,7 +25,7 @@ pub struct ZeroOrderHold {
 #[derive(Clone, Debug)]
 pub struct Holding {
     period: Span,
-    setting: Setting,
+    setting: TorquerSetting,
     next: Instant,
     feedback: f64,
     held: f64,
@@ -33,7 +33,7 @@ pub struct Holding {
 
 impl ZeroOrderHold {
     /// The hold before its first period.
-    pub fn start(&self, setting: &Setting) -> Holding {
+    pub fn start(&self, setting: &TorquerSetting) -> Holding {
         Holding {
             period: self.period,
             setting: setting.clone(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, Failure, Setting};
+use super::{AxisActuate, Failure, TorquerSetting};
 use crate::body::Forced;
 use crate::time::Instant;
 use crate::waveform::Waveform;
@@ -28,7 +28,7 @@ pub struct Executing {
 
 impl Executing {
     /// The actuator before its first command.
-    pub fn new(setting: &Setting) -> Self {
+    pub fn new(setting: &TorquerSetting) -> Self {
         let share = |waveform: &Arc<Waveform>| match setting.share {
             1.0 => Arc::clone(waveform),
             share => Arc::new(waveform.shifted(0.0, share)),

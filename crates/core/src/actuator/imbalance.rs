@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use super::per_wheel::PerWheel;
 use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
-use crate::body::craft::Rotor;
+use crate::body::craft::HubRotor;
 use crate::count::counted;
 use crate::document::Fault;
-use crate::motion::turning::{Flexible, Line};
+use crate::motion::turning::{Flexible, HarmonicLine};
 use crate::quantity::{Finite, NonNegative, Positive};
 
 /// Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th.
@@ -83,9 +83,9 @@ impl Imbalance {
     pub fn lines(
         &self,
         wheel: usize,
-        rotor: &Rotor,
+        rotor: &HubRotor,
         (body, flexible): (&Spatial, &Flexible),
-    ) -> Result<Vec<Line>, Fault> {
+    ) -> Result<Vec<HarmonicLine>, Fault> {
         let first = body.points.first().map_or("", |point| point.name.as_str());
         let name = self.point.as_deref().unwrap_or(first);
         let Some(point) = body.point(name) else {
@@ -112,7 +112,7 @@ impl Imbalance {
                 };
                 modes.map(of).collect()
             };
-            Line { order, torque, force, forces: [beyond(0), beyond(1)] }
+            HarmonicLine { order, torque, force, forces: [beyond(0), beyond(1)] }
         };
         let (first, second) = across(&rotor.axis);
         // Along e1 cos(x + phase) + e2 sin(x + phase), of cos x and of sin x.

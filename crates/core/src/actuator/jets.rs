@@ -117,7 +117,7 @@ pub struct Pair {
 
 /// What a group does while it is on.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Group {
+pub struct FiringGroup {
     /// Its forces, all together.
     pub push: Push,
     /// Propellant in a second (kg/s).
@@ -126,7 +126,7 @@ pub struct Group {
     pub acceleration: f64,
 }
 
-impl Group {
+impl FiringGroup {
     /// Two groups that do nothing to a body with so many modes.
     pub(super) fn idle(modes: usize) -> [Self; 2] {
         let push = Push { forces: vec![0.0; modes], ..Push::default() };
@@ -136,7 +136,7 @@ impl Group {
 
 /// What a thruster does while it is open.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Nozzle {
+pub struct OpenThruster {
     /// Its force.
     pub push: Push,
     /// Propellant in a second (kg/s).
@@ -147,13 +147,13 @@ pub struct Nozzle {
 
 impl Jets {
     /// What each thruster does to a body that has their points.
-    pub fn nozzles_on(&self, body: &Spatial) -> Vec<Nozzle> {
+    pub fn nozzles_on(&self, body: &Spatial) -> Vec<OpenThruster> {
         let nozzle = |thruster: &Thruster| {
             let thrust = thruster.thrust.get();
             let mut push = Push { forces: vec![0.0; body.modes.len()], ..Push::default() };
             let force = vector(&thruster.direction).normalize() * thrust;
             push.add(body, &thruster.point, &vector(&thruster.offset), &force);
-            Nozzle { push, flow: thrust / (self.specific_impulse.get() * G_0), thrust }
+            OpenThruster { push, flow: thrust / (self.specific_impulse.get() * G_0), thrust }
         };
         self.thrusters.iter().map(nozzle).collect()
     }
@@ -178,7 +178,7 @@ impl Jets {
     ///
     /// # Errors
     /// A key within the jets, and why.
-    pub fn groups_on(&self, body: &Spatial, acts: [bool; 3]) -> Result<[[Group; 2]; 3], Fault> {
+    pub fn groups_on(&self, body: &Spatial, acts: [bool; 3]) -> Result<[[FiringGroup; 2]; 3], Fault> {
         for (index, thruster) in self.thrusters.iter().enumerate() {
             let refused = |key: &str, why: String| Err(Fault::new(format!("thrusters[{index}].{key}"), why));
             let length = vector(&thruster.direction).norm();
@@ -213,7 +213,7 @@ impl Jets {
             let why = "must be given, or `allocation = \"least_propellant\"`";
             return Err(Fault::new("groups", why));
         };
-        let mut groups = [(); 3].map(|()| Group::idle(body.modes.len()));
+        let mut groups = [(); 3].map(|()| FiringGroup::idle(body.modes.len()));
         for (axis, pair) in given.each().into_iter().enumerate() {
             match pair {
                 Some(pair) => {
@@ -242,7 +242,7 @@ impl Jets {
         sign: &str,
         sense: f64,
         names: &[String],
-    ) -> Result<Group, Fault> {
+    ) -> Result<FiringGroup, Fault> {
         let key = format!("groups.{}.{sign}", AXES[axis]);
         let mut push = Push { forces: vec![0.0; body.modes.len()], ..Push::default() };
         let mut thrust = 0.0;
@@ -264,7 +264,7 @@ impl Jets {
         }
         let acceleration = torque[axis].abs() / body.tensor()[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
-        Ok(Group { push, flow, acceleration })
+        Ok(FiringGroup { push, flow, acceleration })
     }
 
     /// The names of the thrusters.
@@ -274,7 +274,7 @@ impl Jets {
 
     /// The jets before the first command, with what their groups and their thrusters do; `period` is that of the law, for jets without
     /// one of their own.
-    pub fn start(&self, fitted: (&[[Group; 2]; 3], &[Nozzle]), period: Span) -> Box<dyn Actuate> {
+    pub fn start(&self, fitted: (&[[FiringGroup; 2]; 3], &[OpenThruster]), period: Span) -> Box<dyn Actuate> {
         match self.allocation {
             Firing::Groups => Box::new(Pulsing::new(self, fitted, period)),
             Firing::LeastPropellant => Box::new(Allocated::new(self, fitted, period)),

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{Failing, Lasting};
-use super::{Actuate, Demand, Failure, Setting};
+use super::{Actuate, Demand, Failure, TorquerSetting};
 use crate::attitude::Vector;
 use crate::axes::Each;
 use crate::body::Wrench;
@@ -27,7 +27,7 @@ pub struct Magnetorquers {
 
 impl Magnetorquers {
     /// The torquers before their first command.
-    pub fn start(&self, settings: &[Setting]) -> Torquing {
+    pub fn start(&self, settings: &[TorquerSetting]) -> Torquing {
         Torquing {
             limits: [0, 1, 2].map(|axis| self.moment.about(axis).get()),
             settings: settings.to_vec(),
@@ -51,7 +51,7 @@ impl Magnetorquers {
 #[derive(Clone, Debug)]
 pub struct Torquing {
     limits: [f64; 3],
-    settings: Vec<Setting>,
+    settings: Vec<TorquerSetting>,
     /// The field in the body's axes as it is known (T).
     field: Option<Vector>,
     /// The torque that is asked for (N m).
@@ -109,7 +109,7 @@ impl Actuate for Torquing {
         if demands.iter().any(|demand| matches!(demand, Demand::Moment(_))) {
             return self.hold(demands);
         }
-        let torque = |(demand, setting): (&Demand, &Setting)| match demand {
+        let torque = |(demand, setting): (&Demand, &TorquerSetting)| match demand {
             Demand::Torque(torque) => *torque,
             Demand::Change(change) => change * setting.inertia / setting.cycle.map_or(1.0, Span::seconds),
             Demand::Moment(_) => 0.0,
@@ -169,7 +169,7 @@ mod tests {
 
     fn start(text: &str) -> Torquing {
         let torquers: Magnetorquers = crate::document::from_text(text).unwrap();
-        let setting = |axis| Setting {
+        let setting = |axis| TorquerSetting {
             axis,
             inertia: 10.0,
             planned_inertia: 10.0,

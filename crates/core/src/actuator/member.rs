@@ -9,30 +9,30 @@ use crate::parts::Parts;
 
 /// An actuator among those of a scenario.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Member<'a> {
+pub struct ActuatorMember<'a> {
     /// Its key.
     pub key: String,
     /// The actuator.
     pub kind: Cow<'a, Actuator>,
     /// What it is for.
-    pub task: Task,
+    pub task: ActuatorTask,
 }
 
 /// What an actuator is for.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Task {
+pub enum ActuatorTask {
     /// It executes this share of what laws demand about each axis.
     Executes([f64; 3]),
     /// It unloads the wheels beside it.
     Unloads(Unloads),
 }
 
-impl Member<'_> {
+impl ActuatorMember<'_> {
     /// Its share of what laws demand about an axis.
     pub fn share(&self, axis: usize) -> f64 {
         match &self.task {
-            Task::Executes(shares) => shares[axis],
-            Task::Unloads(_) => 0.0,
+            ActuatorTask::Executes(shares) => shares[axis],
+            ActuatorTask::Unloads(_) => 0.0,
         }
     }
 
@@ -46,10 +46,10 @@ impl Member<'_> {
     pub fn failure_fault(&self, axes: usize) -> Option<Fault> {
         let names = if let Actuator::Jets(jets) = &*self.kind { jets.names() } else { Vec::new() };
         let parts = match &*self.kind {
-            Actuator::Jets(_) => failure::Parts::Thrusters(&names),
-            Actuator::Wheels(wheels) => failure::Parts::Wheels(wheels.count()),
-            Actuator::ControlMomentGyros(gyros) => failure::Parts::Gimbals(gyros.count()),
-            _ => failure::Parts::Axes(axes),
+            Actuator::Jets(_) => failure::FailingPart::Thrusters(&names),
+            Actuator::Wheels(wheels) => failure::FailingPart::Wheels(wheels.count()),
+            Actuator::ControlMomentGyros(gyros) => failure::FailingPart::Gimbals(gyros.count()),
+            _ => failure::FailingPart::Axes(axes),
         };
         let sines = !matches!(&*self.kind, Actuator::Magnetorquers(_));
         let mut failures = self.kind.failures().iter().enumerate();
@@ -61,7 +61,7 @@ impl Member<'_> {
 
 impl Parts<Assigned> {
     /// All of them, those too that are written within others.
-    pub fn members(&self) -> Vec<Member<'_>> {
+    pub fn members(&self) -> Vec<ActuatorMember<'_>> {
         let mut members = Vec::with_capacity(self.len());
         for (index, assigned) in self.iter().enumerate() {
             let key = self.kind_key(index);
@@ -71,13 +71,14 @@ impl Parts<Assigned> {
             };
             let shares = [0, 1, 2].map(|axis| if serves(axis) { share } else { 0.0 });
             let task = assigned.unloads.as_deref();
-            let task = task.map_or(Task::Executes(shares), |unloads| Task::Unloads(unloads.clone()));
+            let task =
+                task.map_or(ActuatorTask::Executes(shares), |unloads| ActuatorTask::Unloads(unloads.clone()));
             let within = assigned.unloading().map(|unloading| {
                 let kind = unloading.by();
                 let key = format!("{key}.unloading.{}", kind.kind());
-                Member { key, kind: Cow::Owned(kind), task: Task::Unloads(unloading.how()) }
+                ActuatorMember { key, kind: Cow::Owned(kind), task: ActuatorTask::Unloads(unloading.how()) }
             });
-            members.push(Member { key, kind: Cow::Borrowed(&assigned.kind), task });
+            members.push(ActuatorMember { key, kind: Cow::Borrowed(&assigned.kind), task });
             members.extend(within);
         }
         members

@@ -36,7 +36,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
 use crate::body::Wrench;
-use crate::motion::turning::Turned;
+use crate::motion::turning::SlippedRotor;
 use crate::own::{Halt, Own};
 use crate::quantity::{Share, Time};
 use crate::record::{self, Steered, WheelMotion};
@@ -52,9 +52,9 @@ pub use gimbals::Gimbals;
 pub use hold::ZeroOrderHold;
 pub use ideal::Ideal;
 pub use imbalance::{Harmonic, Imbalance};
-pub use jets::{Firing, Group, Groups, Jets, Nozzle, Pair, Thruster};
+pub use jets::{Firing, FiringGroup, Groups, Jets, OpenThruster, Pair, Thruster};
 pub use magnetorquers::{Magnetorquers, Torquing};
-pub use member::{Member, Task};
+pub use member::{ActuatorMember, ActuatorTask};
 pub use per_wheel::PerWheel;
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
@@ -63,7 +63,7 @@ pub use several::Several;
 pub use spinning::Spinning;
 pub use steering::{GyroAxes, NullMotion, Robustness, Steering};
 pub use thrusters::Thrusters;
-pub use torquers::{AxisActuate, Setting, Torquers};
+pub use torquers::{AxisActuate, TorquerSetting, Torquers};
 pub use unloading::{Unloading, Unloads};
 pub use wheel::{Opposes, Rotor, Wheel};
 pub use wheels::{Arrangement, Compensation, SpeedBias, Wheels};
@@ -106,7 +106,7 @@ pub enum Demand {
 /// What an actuator from outside tells of itself before a run.
 pub trait Effector: Send + Sync {
     /// The actuator at work, in the setting of each axis.
-    fn start(&self, settings: &[Setting]) -> Box<dyn Actuate>;
+    fn start(&self, settings: &[TorquerSetting]) -> Box<dyn Actuate>;
 
     /// Its largest torque about an axis (N m); none without a limit.
     fn limit(&self, _axis: usize) -> Option<f64> {
@@ -139,7 +139,7 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     fn serve(&mut self, _now: Instant, _rigid: [f64; 3]) {}
 
     /// Takes over how its rotors in bearings are now, which the motion tells.
-    fn turned(&mut self, _now: Instant, _rotors: &[Turned]) {}
+    fn turned(&mut self, _now: Instant, _rotors: &[SlippedRotor]) {}
 
     /// Adds what it exerts from now on.
     fn exert(&self, now: Instant, onto: &mut Wrench);
@@ -204,7 +204,7 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     }
 
     /// Of jets, the cycle of pulses that has begun.
-    fn cycle(&self) -> Option<Cycle> {
+    fn cycle(&self) -> Option<JetCycle> {
         None
     }
 
@@ -245,7 +245,7 @@ impl Clone for Box<dyn Actuate> {
 
 /// What jets do in a cycle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cycle {
+pub struct JetCycle {
     /// Signed on-times about each axis (s).
     pub on: [f64; 3],
     /// Propellant until their end (kg).
@@ -328,7 +328,7 @@ impl Actuator {
 
     /// The actuator of a single axis at work in a setting. Jets, torquers, wheels of three axes, control moment gyros and one from
     /// outside act about all axes, and are not asked.
-    pub fn about_an_axis(&self, setting: &Setting) -> Box<dyn AxisActuate> {
+    pub fn about_an_axis(&self, setting: &TorquerSetting) -> Box<dyn AxisActuate> {
         match self {
             Self::Ideal(_)
             | Self::Jets(_)

@@ -1,7 +1,7 @@
 //! Jets at work: what is commanded, what waits, what burns, and the propellant.
 
 use super::valves::Valves;
-use super::{Actuate, Cycle, Demand, Group, Jets, Nozzle, PulseWidth};
+use super::{Actuate, Demand, FiringGroup, JetCycle, Jets, OpenThruster, PulseWidth};
 use crate::attitude::Vector;
 use crate::body::Wrench;
 use crate::time::{Instant, Span};
@@ -32,7 +32,7 @@ impl Pulse {
 /// The jets of a body.
 #[derive(Clone, Debug)]
 pub struct Pulsing {
-    groups: [[Group; 2]; 3],
+    groups: [[FiringGroup; 2]; 3],
     width: PulseWidth,
     delayed: bool,
     /// The cycle of the pulses, and when the next begins where it is not the law's.
@@ -55,7 +55,11 @@ pub struct Pulsing {
 
 impl Pulsing {
     /// The jets before the first command, of these groups; `period` is that of the law, for jets without one of their own.
-    pub fn new(jets: &Jets, (groups, nozzles): (&[[Group; 2]; 3], &[Nozzle]), period: Span) -> Self {
+    pub fn new(
+        jets: &Jets,
+        (groups, nozzles): (&[[FiringGroup; 2]; 3], &[OpenThruster]),
+        period: Span,
+    ) -> Self {
         let valves = Valves::new(jets, nozzles);
         Self {
             valves: valves.fail().then(|| (valves, jets.memberships())),
@@ -74,7 +78,7 @@ impl Pulsing {
     }
 
     /// The group of an axis whose pulse has this sign.
-    fn group(&self, axis: usize, on: f64) -> &Group {
+    fn group(&self, axis: usize, on: f64) -> &FiringGroup {
         &self.groups[axis][usize::from(on < 0.0)]
     }
 
@@ -204,9 +208,9 @@ impl Actuate for Pulsing {
         pulse(0) + pulse(1) + pulse(2)
     }
 
-    fn cycle(&self) -> Option<Cycle> {
+    fn cycle(&self) -> Option<JetCycle> {
         let sign = |axis: usize| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 };
-        Some(Cycle {
+        Some(JetCycle {
             on: self.executed,
             fuel: self.fuel(),
             pulses: self.pulses,

@@ -1,10 +1,10 @@
 //! Several actuators: each executes its share of what is demanded about each axis, or unloads the wheels or gyros beside it.
 
 use super::unloading::Unloader;
-use super::{Actuate, Actuator, Cycle, Demand, Pulse, Task};
+use super::{Actuate, Actuator, ActuatorTask, Demand, JetCycle, Pulse};
 use crate::attitude::Vector;
 use crate::body::Wrench;
-use crate::motion::turning::Turned;
+use crate::motion::turning::SlippedRotor;
 use crate::own::Halt;
 use crate::record::{self, WheelMotion};
 use crate::time::Instant;
@@ -33,7 +33,7 @@ fn shared(demand: Demand, share: f64) -> Demand {
 
 impl Several {
     /// Actuators about so many axes, before they first act.
-    pub fn new(axes: usize, members: Vec<(&Actuator, &Task, Box<dyn Actuate>)>) -> Self {
+    pub fn new(axes: usize, members: Vec<(&Actuator, &ActuatorTask, Box<dyn Actuate>)>) -> Self {
         let mut several = Self {
             executing: Vec::with_capacity(members.len()),
             keepers: Vec::new(),
@@ -42,13 +42,15 @@ impl Several {
         };
         for (kind, task, actuator) in members {
             match task {
-                Task::Executes(shares) => {
+                ActuatorTask::Executes(shares) => {
                     if let Actuator::Wheels(_) | Actuator::ControlMomentGyros(_) = kind {
                         several.keepers.push(several.executing.len());
                     }
                     several.executing.push((actuator, *shares));
                 }
-                Task::Unloads(unloads) => several.unloader = Some(Unloader::new(unloads, kind, actuator)),
+                ActuatorTask::Unloads(unloads) => {
+                    several.unloader = Some(Unloader::new(unloads, kind, actuator))
+                }
             }
         }
         several
@@ -112,7 +114,7 @@ impl Actuate for Several {
         }
     }
 
-    fn turned(&mut self, now: Instant, rotors: &[Turned]) {
+    fn turned(&mut self, now: Instant, rotors: &[SlippedRotor]) {
         self.executing.iter_mut().for_each(|(actuator, _)| actuator.turned(now, rotors));
     }
 
@@ -175,7 +177,7 @@ impl Actuate for Several {
         stored.reduce(|sum, next| sum + next).unwrap_or_default().into()
     }
 
-    fn cycle(&self) -> Option<Cycle> {
+    fn cycle(&self) -> Option<JetCycle> {
         self.each().find_map(Actuate::cycle)
     }
 

@@ -7,10 +7,10 @@
 use super::allocation::Allocation;
 use super::failure::Failing;
 use super::wheels::{Compensation, SpeedBias, Wheels};
-use super::{Actuate, Demand, Setting};
+use super::{Actuate, Demand, TorquerSetting};
 use crate::attitude::Vector;
 use crate::body::Wrench;
-use crate::motion::turning::{Rotor, Turned};
+use crate::motion::turning::{Rotor, SlippedRotor};
 use crate::quantity::Positive;
 use crate::random::Seed;
 use crate::record;
@@ -34,7 +34,7 @@ pub struct Spinning {
     momentum_limit: f64,
     speed_limit: f64,
     bias: Option<SpeedBias>,
-    settings: Vec<Setting>,
+    settings: Vec<TorquerSetting>,
     /// The torque on the body that laws ask for, and one of others that the wheels hold against (N m).
     wanted: Vector,
     against: Vector,
@@ -42,7 +42,7 @@ pub struct Spinning {
     /// Since when the wheels' momenta are counted.
     since: Instant,
     /// How they are, which the motion tells of wheels in bearings.
-    turned: Vec<Turned>,
+    turned: Vec<SlippedRotor>,
     /// By what their drives know the speeds; they know them exactly without it.
     tachometer: Option<Counting>,
     /// The momentum that they store by its last reading (N m s).
@@ -72,14 +72,14 @@ impl Spin {
 
 impl Wheels {
     /// The wheels before their first command, on a body of these settings.
-    pub fn start(&self, allocation: &Allocation, settings: &[Setting]) -> Spinning {
+    pub fn start(&self, allocation: &Allocation, settings: &[TorquerSetting]) -> Spinning {
         Spinning::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
     }
 }
 
 impl Spinning {
     /// The wheels before their first command, at these speeds (rad/s).
-    pub fn new(wheels: &Wheels, allocation: Allocation, speeds: &[f64], settings: &[Setting]) -> Self {
+    pub fn new(wheels: &Wheels, allocation: Allocation, speeds: &[f64], settings: &[TorquerSetting]) -> Self {
         let inertia = wheels.inertia.get();
         let rate = Vector::from_fn(|axis, _| settings.get(axis).map_or(0.0, |setting| setting.rate));
         let spin = |(axis, speed): (&Vector, &f64)| Spin {
@@ -305,7 +305,7 @@ impl Actuate for Spinning {
         onto.rotors.extend(self.allocation.axes().iter().zip(&self.wheels).map(rotor));
     }
 
-    fn turned(&mut self, now: Instant, rotors: &[Turned]) {
+    fn turned(&mut self, now: Instant, rotors: &[SlippedRotor]) {
         self.turn(now);
         for (wheel, rotor) in self.wheels.iter_mut().zip(rotors) {
             wheel.momentum = rotor.momentum;

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, Failure, PulseWidth, Setting};
+use super::{AxisActuate, Failure, PulseWidth, TorquerSetting};
 use crate::axes::Each;
 use crate::quantity::{NonNegative, Positive, Time};
 use crate::time::{Instant, Span};
@@ -45,7 +45,7 @@ impl Thrusters {
     }
 
     /// The thrusters before their first period.
-    pub fn start(&self, setting: &Setting) -> Pulsed {
+    pub fn start(&self, setting: &TorquerSetting) -> Pulsed {
         Pulsed {
             most: self.torque.about(setting.axis).get(),
             period: self.period,
@@ -66,7 +66,7 @@ pub struct Pulsed {
     most: f64,
     period: Span,
     width: PulseWidth,
-    setting: Setting,
+    setting: TorquerSetting,
     next: Instant,
     feedback: f64,
     held: f64,

@@ -15,7 +15,7 @@ use crate::waveform::Waveform;
 
 /// What an actuator of one axis knows of what is around it.
 #[derive(Clone, Debug)]
-pub struct Setting {
+pub struct TorquerSetting {
     /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
     pub axis: usize,
     /// What a unit of the torque accelerates (kg m²).
@@ -32,7 +32,7 @@ pub struct Setting {
     pub share: f64,
 }
 
-impl Setting {
+impl TorquerSetting {
     /// Impulse of its share of the waveform over the next `h` seconds (N m s).
     pub fn planned(&self, now: Instant, h: f64) -> f64 {
         let from = now.seconds();
@@ -112,12 +112,12 @@ impl Clone for Box<dyn AxisActuate> {
 
 /// The actuators of all axes; none about one that others serve.
 #[derive(Clone, Debug)]
-pub struct Torquers(Vec<Option<(Box<dyn AxisActuate>, Setting)>>);
+pub struct Torquers(Vec<Option<(Box<dyn AxisActuate>, TorquerSetting)>>);
 
 impl Torquers {
     /// An actuator in the setting of each axis about which it acts, with the failures that are its own.
-    pub fn new(kind: &Actuator, settings: Vec<Setting>) -> Self {
-        let of = |setting: Setting| {
+    pub fn new(kind: &Actuator, settings: Vec<TorquerSetting>) -> Self {
+        let of = |setting: TorquerSetting| {
             let (actuator, axis) = (kind.about_an_axis(&setting), setting.axis);
             let own = |of: &Lasting<'_>| of.about.is_none_or(|about| about.index() == axis);
             (Impaired::by(kind.failures(), own, actuator), setting)
@@ -126,7 +126,7 @@ impl Torquers {
     }
 
     /// A number of the actuator about an axis, 0 where there is none.
-    fn about(&self, axis: usize, number: impl Fn(&dyn AxisActuate, &Setting) -> f64) -> f64 {
+    fn about(&self, axis: usize, number: impl Fn(&dyn AxisActuate, &TorquerSetting) -> f64) -> f64 {
         let actuator = self.0.get(axis).and_then(Option::as_ref);
         actuator.map_or(0.0, |(actuator, setting)| number(&**actuator, setting))
     }

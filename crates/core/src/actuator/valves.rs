@@ -1,7 +1,7 @@
 //! The valves of jets: which thrusters are open, what failures make of that, and the propellant that passes.
 
 use super::failure::{Added, Failing, Failure, Lasting};
-use super::{Jets, Nozzle, Thruster};
+use super::{Jets, OpenThruster, Thruster};
 use crate::body::{Push, Wrench};
 use crate::quantity::Finite;
 use crate::time::Instant;
@@ -9,7 +9,7 @@ use crate::time::Instant;
 /// The thrusters of a body, each with its failures.
 #[derive(Clone, Debug)]
 pub(super) struct Valves {
-    nozzles: Vec<Nozzle>,
+    nozzles: Vec<OpenThruster>,
     failing: Vec<Option<Failing>>,
     /// How far each is asked to be open: 1, or the number of groups that ask it.
     open: Vec<f64>,
@@ -21,8 +21,8 @@ pub(super) struct Valves {
 
 impl Valves {
     /// The valves of jets with these nozzles, all closed; none where nothing fails and groups act as they are.
-    pub fn new(jets: &Jets, nozzles: &[Nozzle]) -> Self {
-        let failing = |(nozzle, thruster): (&Nozzle, &Thruster)| {
+    pub fn new(jets: &Jets, nozzles: &[OpenThruster]) -> Self {
+        let failing = |(nozzle, thruster): (&OpenThruster, &Thruster)| {
             let own = |of: &Lasting<'_>| of.thruster.is_none_or(|name| name == thruster.name);
             // What is added is a part of the thrust too.
             let part = |failure: &Failure| match failure {
@@ -60,7 +60,7 @@ impl Valves {
     }
 
     /// The part of its thrust that each gives.
-    fn parts(&self) -> impl Iterator<Item = (&Nozzle, f64)> {
+    fn parts(&self) -> impl Iterator<Item = (&OpenThruster, f64)> {
         let of = |((nozzle, failing), open): ((_, &Option<Failing>), &f64)| {
             (nozzle, failing.as_ref().map_or(*open, |failing| failing.of(*open)))
         };

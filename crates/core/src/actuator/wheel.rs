@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, Failure, Setting};
+use super::{AxisActuate, Failure, TorquerSetting};
 use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::record::WheelMotion;
 use crate::time::{Instant, Span};
@@ -85,9 +85,9 @@ impl Wheel {
 
 /// The wheel at work.
 #[derive(Clone, Debug)]
-pub struct Driven {
+pub struct DrivenWheel {
     wheel: Wheel,
-    setting: Setting,
+    setting: TorquerSetting,
     /// What the law commands, and the torque that it comes to without back-EMF (N m).
     feedback: f64,
     held: f64,
@@ -99,8 +99,8 @@ pub struct Driven {
 
 impl Wheel {
     /// The wheel before its first command.
-    pub fn start(&self, setting: &Setting) -> Driven {
-        Driven {
+    pub fn start(&self, setting: &TorquerSetting) -> DrivenWheel {
+        DrivenWheel {
             wheel: self.clone(),
             setting: setting.clone(),
             feedback: 0.0,
@@ -111,7 +111,7 @@ impl Wheel {
     }
 }
 
-impl Driven {
+impl DrivenWheel {
     /// Commands what the law wants, and the next part of the manoeuvre.
     fn drive(&mut self, now: Instant) {
         let delay = Span::from_seconds(self.wheel.delay.get());
@@ -156,7 +156,7 @@ impl Driven {
     }
 }
 
-impl AxisActuate for Driven {
+impl AxisActuate for DrivenWheel {
     fn command(&mut self, now: Instant, command: f64, rigid_rate: f64) {
         self.feedback = command;
         self.drive(now);

@@ -10,7 +10,7 @@ use super::unloading::Unloading;
 use super::{Failure, Friction, Imbalance};
 use crate::attitude::Vector;
 use crate::body::Spatial;
-use crate::body::craft::Rotor;
+use crate::body::craft::HubRotor;
 use crate::count::counted;
 use crate::document::Fault;
 use crate::motion::turning::{Bearing, Flexible};
@@ -192,7 +192,7 @@ impl Wheels {
     /// # Errors
     /// A key within the wheels, and why.
     pub fn bearings(&self, body: (&Spatial, &Flexible)) -> Result<Vec<Bearing>, Fault> {
-        let bearing = |(wheel, rotor): (usize, Rotor)| {
+        let bearing = |(wheel, rotor): (usize, HubRotor)| {
             let friction = self.friction.as_ref();
             let lines = match &self.imbalance {
                 Some(of) => of.lines(wheel, &rotor, body).map_err(|fault| fault.within("imbalance"))?,
@@ -213,9 +213,9 @@ impl Wheels {
     ///
     /// # Errors
     /// A key that does not fit the others, and why.
-    pub fn rotors(&self) -> Result<Vec<Rotor>, Fault> {
+    pub fn rotors(&self) -> Result<Vec<HubRotor>, Fault> {
         let spin_inertia = self.inertia.get();
-        Ok(self.directions()?.into_iter().map(|axis| Rotor { axis, spin_inertia }).collect())
+        Ok(self.directions()?.into_iter().map(|axis| HubRotor { axis, spin_inertia }).collect())
     }
 
     /// The unit axes.

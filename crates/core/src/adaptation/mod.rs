@@ -14,7 +14,7 @@ use crate::random::Seed;
 use crate::time::{Instant, Span};
 
 pub use objective::Objective;
-pub use random_search::{Decision, RandomSearch, Search, Step};
+pub use random_search::{Decision, RandomSearch, SearchState, SearchStep};
 
 /// The kinds of adaptation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -53,7 +53,7 @@ pub trait Adapt: Send + Sync {
 /// An adaptation at work.
 pub trait Learn: fmt::Debug + Send + Sync {
     /// Learns the objective over the window that ends now; tells nothing once it has ended.
-    fn learn(&mut self, now: Instant, measured: f64) -> Option<Step>;
+    fn learn(&mut self, now: Instant, measured: f64) -> Option<SearchStep>;
 
     /// Why it cannot go on, of one from outside that cannot: the run ends there.
     fn halted(&self) -> Option<Halt> {
@@ -107,7 +107,7 @@ impl Adaptation {
     pub fn start(&self, value: f64, seed: Seed) -> Box<dyn Learn> {
         match self {
             Self::RandomSearch(constants) => {
-                Box::new(random_search::Drawing::new(Search::new(constants.clone(), value), seed))
+                Box::new(random_search::Drawing::new(SearchState::new(constants.clone(), value), seed))
             }
             Self::Own(own) => own.start(value, seed),
         }

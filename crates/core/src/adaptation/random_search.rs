@@ -88,7 +88,7 @@ labels! {
 
 /// One step of the search, as logged.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Step {
+pub struct SearchStep {
     /// What was decided.
     pub decision: Decision,
     /// Relative change of the mean since the window before; NaN after the first.
@@ -103,7 +103,7 @@ pub struct Step {
 
 /// The search at work.
 #[derive(Clone, Debug)]
-pub struct Search {
+pub struct SearchState {
     constants: RandomSearch,
     gain: f64,
     draw: f64,
@@ -113,7 +113,7 @@ pub struct Search {
     frozen: bool,
 }
 
-impl Search {
+impl SearchState {
     /// A search that starts from the law's own gain.
     pub fn new(constants: RandomSearch, gain: f64) -> Self {
         Self { constants, gain, draw: 0.0, previous: None, falls: 0, settled: 0, frozen: false }
@@ -121,7 +121,7 @@ impl Search {
 
     /// Learns the objective over the window that ends now, such as the mean envelope, with a fresh uniform number of [0, 1). Answers
     /// nothing once the gain is frozen.
-    pub fn learn(&mut self, now: Instant, mean: f64, uniform: f64) -> Option<Step> {
+    pub fn learn(&mut self, now: Instant, mean: f64, uniform: f64) -> Option<SearchStep> {
         if self.frozen {
             return None;
         }
@@ -155,30 +155,30 @@ impl Search {
         if trusted { Decision::Ignore } else { Decision::Turn }
     }
 
-    fn advance(&mut self, decision: Decision, change: f64) -> Step {
+    fn advance(&mut self, decision: Decision, change: f64) -> SearchStep {
         let [low, high] = self.constants.bounds.map(Finite::get);
         self.gain = (self.gain + self.draw * self.constants.step.get()).clamp(low, high);
         let Self { gain, draw, settled, .. } = *self;
-        Step { decision, change, draw, gain, settled }
+        SearchStep { decision, change, draw, gain, settled }
     }
 }
 
 /// The search with the numbers that it draws, one for each window.
 #[derive(Clone, Debug)]
 pub(super) struct Drawing {
-    search: Search,
+    search: SearchState,
     draws: Stream,
 }
 
 impl Drawing {
     /// A search in a run.
-    pub fn new(search: Search, seed: Seed) -> Self {
+    pub fn new(search: SearchState, seed: Seed) -> Self {
         Self { search, draws: seed.stream("adaptation") }
     }
 }
 
 impl Learn for Drawing {
-    fn learn(&mut self, now: Instant, mean: f64) -> Option<Step> {
+    fn learn(&mut self, now: Instant, mean: f64) -> Option<SearchStep> {
         self.search.learn(now, mean, self.draws.uniform())
     }
 

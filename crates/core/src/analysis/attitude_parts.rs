@@ -12,16 +12,16 @@ use crate::time::Span;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AttitudeParts {
     /// The gyro.
-    pub gyro: Mounted,
+    pub gyro: MountedSensor,
     /// The sensor of the attitude.
-    pub sensor: Mounted,
+    pub sensor: MountedSensor,
     /// k: three rows for the attitude (rad/rad), and three for the bias of the gyro (1/s).
     pub gain: Vec<[f64; 3]>,
 }
 
 /// A sensor of an attitude filter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Mounted {
+pub struct MountedSensor {
     /// Period of its samples (s).
     pub period: f64,
     /// How late it reports them (s).
@@ -48,7 +48,7 @@ impl AttitudeParts {
         let mounted = |index: usize, latency: f64| {
             let sensor = &scenario.sensor[index];
             let shapes = body.shapes(study.sensed_at.get(index).map_or("", String::as_str));
-            Mounted {
+            MountedSensor {
                 period: sensor.period(study.cycle).or(study.sampling).map_or(0.0, Span::seconds),
                 latency,
                 integrates: sensor.integrates(),

@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, RowDVector, Schur};
 
-use crate::body::{Input, Planar, Segment};
+use crate::body::{ForcedInput, Planar, Segment};
 use crate::law::Phase;
 use crate::motion::{self, State};
 use crate::record::{Command, Record, RecordError, Sample, Trigger};
@@ -24,9 +24,9 @@ const MOST_MODES: usize = 64;
 
 /// A limit cycle of a simulated run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cycle {
+pub struct LimitCycle {
     /// Which boundaries push back.
-    pub kind: Kind,
+    pub kind: CycleKind,
     /// Period (s).
     pub period: f64,
     /// Pushes from the section's boundary in one period.
@@ -44,7 +44,7 @@ pub struct Cycle {
 
 /// Which boundaries push back in a cycle.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum CycleKind {
     /// Both, as often.
     TwoSided,
     /// One.
@@ -53,7 +53,7 @@ pub enum Kind {
     Mixed,
 }
 
-impl Kind {
+impl CycleKind {
     /// The kind as a word.
     pub const fn word(self) -> &'static str {
         match self {
@@ -143,7 +143,7 @@ impl CycleWatch {
     }
 
     /// The cycle that the run ended in, if it did.
-    pub fn cycle(mut self) -> Option<Cycle> {
+    pub fn cycle(mut self) -> Option<LimitCycle> {
         let sections_of = |phase: Phase| -> Vec<usize> {
             (0..self.kept.len()).filter(|&index| self.kept[self.place(index)].phase == phase).collect()
         };
@@ -162,12 +162,12 @@ impl CycleWatch {
         let period = one[one.len() - 1].of.at.since(one[0].of.at).seconds();
         let count = |phase| one[1..].iter().filter(|s| s.of.phase == phase).count();
         let kind = match (count(Phase::RightPush), count(Phase::LeftPush)) {
-            (0, _) | (_, 0) => Kind::OneSided,
-            (right, left) if right == left => Kind::TwoSided,
-            _ => Kind::Mixed,
+            (0, _) | (_, 0) => CycleKind::OneSided,
+            (right, left) if right == left => CycleKind::TwoSided,
+            _ => CycleKind::Mixed,
         };
         let pairs = || one.windows(2);
-        Some(Cycle {
+        Some(LimitCycle {
             kind,
             period,
             order,
@@ -234,7 +234,7 @@ fn multipliers(segment: &mut Segment, one: &[Switching]) -> Vec<(f64, f64)> {
     for pair in one.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
         let h = to.of.at.since(from.of.at).seconds();
-        segment.depart(&from.state, &Input::constant(from.of.torque));
+        segment.depart(&from.state, &ForcedInput::constant(from.of.torque));
         let sensed = segment.at(h, &mut end);
         for mut column in fundamental.column_iter_mut() {
             segment.carry(h, column.as_mut_slice());

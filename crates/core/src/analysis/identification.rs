@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::damping::Excitation;
-use crate::estimator::adaptive::{Gradient, Observer, Oscillator, Phase, Pulse, Tracker, bounds};
+use crate::estimator::adaptive::{Gradient, ModelOscillator, ModelPhase, Observer, Pulse, Tracker, bounds};
 use crate::quantity::{Finite, Frequency};
 use crate::random::{Seed, Stream};
 use crate::scenario::Cost;
@@ -43,7 +43,7 @@ pub struct Trial {
 
 /// What a run found.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct RunIdentification {
     /// The last time at which a frequency was off by more than 2 % (s); none if that is the last cycle.
     pub time: Option<f64>,
     /// Relative error of the frequency that is furthest off at the end, and of the influence.
@@ -54,7 +54,7 @@ pub struct Found {
 
 /// What many runs found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct IdentificationRow {
     /// Part by which the frequencies were off at the start.
     pub off: f64,
     /// Runs, and those that converged.
@@ -118,7 +118,7 @@ impl Trial {
     }
 
     /// A run.
-    pub fn run(&self, number: u64) -> Found {
+    pub fn run(&self, number: u64) -> RunIdentification {
         let seed = Seed { scenario: self.seed, run: number };
         let mut observer =
             self.observer.observer(&self.start(&mut seed.stream("errors")), &[1.0], self.cycle);
@@ -143,21 +143,21 @@ impl Trial {
             errors[1] = errors[1].max(off(mode.influence[0], *mu));
         }
         let time = (last + 1 < self.cycles).then_some(f64::from(last) * self.cycle);
-        Found { time, errors, persistence: excitation.persistence() }
+        RunIdentification { time, errors, persistence: excitation.persistence() }
     }
 
     /// Runs on the threads of the current rayon pool.
-    pub fn table(&self, runs: u64) -> Row {
+    pub fn table(&self, runs: u64) -> IdentificationRow {
         self.row(&(0..runs).into_par_iter().map(|number| self.run(number)).collect::<Vec<_>>())
     }
 
     /// What was found in runs.
-    pub fn row(&self, found: &[Found]) -> Row {
-        let converged: Vec<&Found> = found.iter().filter(|found| found.time.is_some()).collect();
+    pub fn row(&self, found: &[RunIdentification]) -> IdentificationRow {
+        let converged: Vec<&RunIdentification> = found.iter().filter(|found| found.time.is_some()).collect();
         let mut times_s: Vec<f64> = converged.iter().filter_map(|found| found.time).collect();
         times_s.sort_by(f64::total_cmp);
         let error = |kind: usize| median(converged.iter().map(|found| found.errors[kind]).collect());
-        Row {
+        IdentificationRow {
             off: self.off[0],
             runs: found.len() as u64,
             converged: converged.len() as u64,
@@ -191,15 +191,15 @@ impl Trial {
 
 /// A channel in motion.
 struct Channel {
-    modes: Vec<(Oscillator, f64)>,
+    modes: Vec<(ModelOscillator, f64)>,
     rate: f64,
-    phases: Vec<Phase>,
+    phases: Vec<ModelPhase>,
 }
 
 impl Channel {
     fn new(trial: &Trial) -> Self {
         let damping = trial.observer.damping.get();
-        let modes = trial.modes.iter().map(|(w, mu)| (Oscillator { frequency: *w, damping }, *mu));
+        let modes = trial.modes.iter().map(|(w, mu)| (ModelOscillator { frequency: *w, damping }, *mu));
         Self { modes: modes.collect(), rate: 0.0, phases: vec![[0.0; 2]; trial.modes.len()] }
     }
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::attitude_parts::AttitudeParts;
 use crate::belief::Reads;
 use crate::document::Fault;
-use crate::estimator::kalman::{Kalman, Setting, Steady};
+use crate::estimator::kalman::{Kalman, KalmanSetting, Steady};
 use crate::estimator::{Estimator, Feeds};
 use crate::law::Law;
 use crate::random::Seed;
@@ -17,14 +17,14 @@ pub struct LoopParts {
     /// b0, b1, b2 and a1, a2 of each filter of the law about each axis, in the order in which they act.
     pub filters: Vec<Vec<([f64; 3], [f64; 2])>>,
     /// The estimator of each axis; none where the law reads what is measured.
-    pub estimators: Option<Vec<Observer>>,
+    pub estimators: Option<Vec<AxisEstimator>>,
     /// The attitude filter, if the law reads one.
     pub attitude: Option<AttitudeParts>,
 }
 
 /// An estimator of one axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Observer {
+pub struct AxisEstimator {
     /// The filter.
     #[serde(flatten)]
     pub steady: Steady,
@@ -84,12 +84,12 @@ fn filters(law: &Law) -> Vec<([f64; 3], [f64; 2])> {
 }
 
 /// The filter about an axis in the end.
-fn observer(scenario: &Scenario, kalman: &Kalman, axis: usize) -> Result<Observer, Fault> {
+fn observer(scenario: &Scenario, kalman: &Kalman, axis: usize) -> Result<AxisEstimator, Fault> {
     let fault = |why: &str| Fault::new("estimator.kalman", why);
     let known = scenario.known();
     let Some(period) = known.sampling else { return Err(fault("has no samples")) };
     let body = &known.axes[axis];
-    let setting = Setting {
+    let setting = KalmanSetting {
         body,
         back_emf: (known.back_emf.0 / body.inertia.get(), known.back_emf.1),
         period: period.seconds(),
@@ -100,7 +100,7 @@ fn observer(scenario: &Scenario, kalman: &Kalman, axis: usize) -> Result<Observe
     let Some(steady) = kalman.filter(&setting, draws).steady() else {
         return Err(fault("has gains that do not settle: give it `moment_noise`"));
     };
-    Ok(Observer {
+    Ok(AxisEstimator {
         steady,
         inertia: body.commanded_inertia(),
         rigid: feeds(scenario, false) == Feeds::Rigid,

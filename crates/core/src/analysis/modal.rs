@@ -6,7 +6,7 @@ use crate::body::{Drive, Mode, Planar};
 
 /// A body's modes, column by column in the order of the modes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Modal {
+pub struct ModalColumns {
     /// Moment of inertia (kg m²).
     pub inertia_kg_m2: f64,
     /// What is commanded: with a torque the modes are those of the free body, with a motion those of the clamped one.
@@ -44,7 +44,7 @@ pub struct Weighted {
     pub weights: Vec<f64>,
 }
 
-impl Modal {
+impl ModalColumns {
     /// The modes of a body.
     pub fn of(body: &Planar) -> Self {
         let column = |value: &dyn Fn(&Mode) -> f64| -> Vec<f64> { body.modes.iter().map(value).collect() };

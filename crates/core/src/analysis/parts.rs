@@ -13,7 +13,7 @@ const PARTS: u32 = 12;
 
 /// A spacecraft's modes, clamped and free.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parts {
+pub struct ModalParts {
     /// The free modes.
     #[serde(flatten)]
     pub free: Influences,
@@ -75,7 +75,7 @@ pub struct AtPoint {
     pub influences: [Vec<f64>; 3],
 }
 
-impl Parts {
+impl ModalParts {
     /// The modes of a scenario's spacecraft.
     pub fn of(scenario: &Scenario, craft: &Craft) -> Self {
         let written = scenario.appendage.iter().flat_map(|appendage| {

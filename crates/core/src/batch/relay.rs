@@ -5,13 +5,14 @@ mod damped;
 mod tests;
 
 use super::{Batch, Job};
-use crate::body::{Input, Segment};
+use crate::body::{ForcedInput, Segment};
 use crate::estimator::Monitor;
 use crate::flight::{
-    Crew, Flight, MOST, Place, Searched, Setup, Sight, flies, instant, is_damped, phase, see, setup, watched,
+    Crew, CyclePlace, Flight, LaneSight, MOST, Searched, Setup, flies, instant, is_damped, phase, see, setup,
+    watched,
 };
 use crate::guard::Guard;
-use crate::lanes::{Processor, Real, Work};
+use crate::lanes::{LaneWork, Processor, Real};
 use crate::law::Phase;
 use crate::metrics::{Gather, Metrics};
 use crate::motion::State;
@@ -89,7 +90,7 @@ impl<'a> Runs<'a> {
     }
 }
 
-impl Work for &mut Runs<'_> {
+impl LaneWork for &mut Runs<'_> {
     type Output = ();
 
     #[allow(clippy::inline_always, reason = "a function of its own would lack the processor's instructions")]
@@ -103,10 +104,10 @@ impl Work for &mut Runs<'_> {
 
 impl Lane<'_> {
     /// Departs from what was seen, on the motion of a place.
-    fn depart(&mut self, place: Place, from: &Sight) {
+    fn depart(&mut self, place: CyclePlace, from: &LaneSight) {
         see(&mut self.state, from);
         let constant = self.setup.torque(place, from.side);
-        self.segment.depart(&self.state, &Input { constant, waveform: None });
+        self.segment.depart(&self.state, &ForcedInput { constant, waveform: None });
     }
 }
 
@@ -153,7 +154,7 @@ impl Crew for Runs<'_> {
         None
     }
 
-    fn search(&mut self, lane: usize, place: Place, from: &Sight) -> Option<Searched> {
+    fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight) -> Option<Searched> {
         let lane = self.lanes[lane].as_mut()?;
         lane.depart(place, from);
         let guards = lane.setup.guards(place, from.side);
@@ -175,7 +176,7 @@ impl Crew for Runs<'_> {
         }
     }
 
-    fn switched(&mut self, lane: usize, to: Place, now: &Sight) {
+    fn switched(&mut self, lane: usize, to: CyclePlace, now: &LaneSight) {
         let Some(lane) = &mut self.lanes[lane] else { return };
         let state = phase(to, now.side);
         see(&mut lane.state, now);
@@ -186,7 +187,7 @@ impl Crew for Runs<'_> {
             time_whole_s,
             time_fs,
             state,
-            cause: if to == Place::Coast { Trigger::Timeout } else { Trigger::Guard },
+            cause: if to == CyclePlace::Coast { Trigger::Timeout } else { Trigger::Guard },
             torque_nm: lane.setup.torque(to, now.side),
             angle_rad: lane.state.angle(),
             rate_rad_s: now.rate,
@@ -206,7 +207,7 @@ impl Crew for Runs<'_> {
         row.gain
     }
 
-    fn strays(&mut self, lane: usize, place: Place, from: &Sight, until: (u64, u64)) {
+    fn strays(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, until: (u64, u64)) {
         let Some(lane) = self.lanes[lane].as_mut().filter(|lane| lane.gather.course() != Course::None) else {
             return;
         };

@@ -8,9 +8,9 @@ mod motions;
 
 use super::{Batch, Job};
 use crate::body::Lent;
-use crate::lanes::{Mask, Processor, Real, Work};
+use crate::lanes::{LaneWork, Mask, Processor, Real};
 use crate::law::Law;
-use crate::metrics::{Courses, Gather, Metrics, Passed};
+use crate::metrics::{Gather, Metrics, MotionMetrics, Passed};
 use crate::record::{Course, Record};
 use crate::scenario::Scenario;
 use crate::sim::{Exerted, Simulation};
@@ -105,7 +105,7 @@ struct Rounds<'a> {
     gathers: &'a mut [Gather],
 }
 
-impl Work for Rounds<'_> {
+impl LaneWork for Rounds<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -120,7 +120,7 @@ impl Work for Rounds<'_> {
             return;
         }
         let mut filters = filters::of(kind, runs);
-        let mut courses = Courses::new(kind);
+        let mut courses = MotionMetrics::new(kind);
         let wants_course = gathers.iter().any(|gather| gather.course() != Course::None);
         // Where the bodies are: angles and rates of all coordinates.
         let mut here = vec![zero; 2 * count];

@@ -11,11 +11,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::forced::{Forced, Input};
+use super::forced::{Forced, ForcedInput};
 use super::{Mode, Planar};
 use crate::motion::stretch::{Expansion, REACH};
 use crate::motion::{Sensed, State};
-use crate::numerics::extrapolation::{Field, Trajectory};
+use crate::numerics::extrapolation::{RightHandSide, Trajectory};
 use crate::numerics::polynomial::{Series, TERMS};
 use crate::structure::Structure;
 
@@ -96,7 +96,7 @@ fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &Planar) -> DMatrix<f64> {
 /// The equations under one input.
 struct Driven<'a> {
     chain: &'a Chain,
-    input: &'a Input,
+    input: &'a ForcedInput,
 }
 
 impl Driven<'_> {
@@ -124,7 +124,7 @@ impl Driven<'_> {
     }
 }
 
-impl Field for Driven<'_> {
+impl RightHandSide for Driven<'_> {
     fn rate(&self, t: f64, y: &[f64], rate: &mut [f64]) {
         let n = y.len() / 2;
         rate[..n].copy_from_slice(&y[n..]);
@@ -134,26 +134,26 @@ impl Field for Driven<'_> {
 
 /// The motion of a chain under one input.
 #[derive(Clone, Debug)]
-pub struct Flight {
+pub struct ChainMotion {
     chain: Chain,
-    input: Input,
+    input: ForcedInput,
     /// Angles and rates.
     trajectory: Trajectory,
     /// The same at departure.
     start: Vec<f64>,
 }
 
-impl Flight {
+impl ChainMotion {
     /// A chain at rest at an angle, or turning at a rate, under no input.
     pub fn new(chain: &Chain, angle: f64, rate: f64) -> Self {
         let step = 0.05 / chain.frequencies.iter().copied().fold(1e-3, f64::max);
         let trajectory = Trajectory::new(chain.tolerance, chain.start(angle, rate), step);
         let start = trajectory.here().to_vec();
-        Self { chain: chain.clone(), input: Input::default(), trajectory, start }
+        Self { chain: chain.clone(), input: ForcedInput::default(), trajectory, start }
     }
 
     /// Begins a motion under another input, from where the chain was seen last.
-    pub fn depart(&mut self, input: &Input) {
+    pub fn depart(&mut self, input: &ForcedInput) {
         self.input = input.clone();
         self.trajectory.depart();
         self.start.copy_from_slice(self.trajectory.here());
@@ -229,7 +229,7 @@ impl Flight {
 /// A chain's motion as Taylor series of its angles, each coefficient from those before it.
 #[derive(Debug)]
 pub struct Flown<'a> {
-    flight: &'a Flight,
+    flight: &'a ChainMotion,
     /// When the series begin, after departure (s).
     begins: f64,
     angles: Vec<Series>,

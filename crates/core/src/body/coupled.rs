@@ -6,7 +6,7 @@
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::Planar;
-use crate::motion::linear::{Linear, System};
+use crate::motion::linear::{LinearFlow, System};
 use crate::numerics::exponential::{exponential, exponentials};
 
 /// The matrices of a body at constant frequencies.
@@ -53,14 +53,14 @@ impl Coupled {
 
     /// The exact flow of the system, with the measured angle as its output; none where its numbers leave the range of
     /// doubles.
-    pub fn flow(&self) -> Option<Linear> {
+    pub fn flow(&self) -> Option<LinearFlow> {
         let order = self.system.nrows();
         let system = System {
             matrix: self.system.clone(),
             input: DMatrix::from_column_slice(order, 1, self.input.as_slice()),
             output: DMatrix::from_row_slice(1, order, self.angle.clone_owned().as_slice()),
         };
-        Linear::new(system.form())
+        LinearFlow::new(system.form())
     }
 
     /// The transition over `h` seconds and what a constant unit of the reduced moment adds to it.

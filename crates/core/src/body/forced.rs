@@ -3,7 +3,7 @@
 use std::ops::AddAssign;
 use std::sync::Arc as Shared;
 
-use super::mode::Flow;
+use super::mode::ModeFlow;
 use super::spatial::Spatial;
 use crate::attitude::Vector;
 use crate::motion::turning::{Gimbal, Rotor};
@@ -14,14 +14,14 @@ use crate::waveform::Waveform;
 
 /// What drives a body from an instant on.
 #[derive(Clone, Debug, Default)]
-pub struct Input {
+pub struct ForcedInput {
     /// A constant (N m; rad/s² where the hub's motion is commanded).
     pub constant: f64,
     /// A waveform, and the time on it at that instant (s).
     pub waveform: Option<Forced>,
 }
 
-impl Input {
+impl ForcedInput {
     /// A constant alone (N m).
     pub fn constant(constant: f64) -> Self {
         Self { constant, waveform: None }
@@ -137,13 +137,13 @@ pub struct Forced {
 
 /// The forced part of a motion: angle (rad), rate (rad/s), acceleration (rad/s²).
 #[derive(Copy, Clone, Debug)]
-pub struct Response {
+pub struct ForcedResponse {
     pub angle: f64,
     pub rate: f64,
     pub acceleration: f64,
 }
 
-impl Response {
+impl ForcedResponse {
     /// The same for so many times the command.
     pub fn times(self, factor: f64) -> Self {
         let Self { angle, rate, acceleration } = self;
@@ -181,9 +181,9 @@ impl Forced {
     }
 
     /// What it adds to the rigid motion of a body of unit inertia within `h` seconds.
-    pub fn rigid(&self, h: f64) -> Response {
+    pub fn rigid(&self, h: f64) -> ForcedResponse {
         let to = self.since + h;
-        Response {
+        ForcedResponse {
             angle: self.waveform.travel(self.since, to),
             rate: self.waveform.impulse(self.since, to),
             acceleration: self.waveform.at(to),
@@ -191,13 +191,15 @@ impl Forced {
     }
 
     /// What it adds to a mode of a body of unit inertia within `h` seconds.
-    pub fn mode(&self, flow: &Flow, h: f64) -> Response {
+    pub fn mode(&self, flow: &ModeFlow, h: f64) -> ForcedResponse {
         // A scenario with a manoeuvre has no mode without a pole.
-        let Some(pole) = flow.pole() else { return Response { angle: 0.0, rate: 0.0, acceleration: 0.0 } };
+        let Some(pole) = flow.pole() else {
+            return ForcedResponse { angle: 0.0, rate: 0.0, acceleration: 0.0 };
+        };
         let to = self.since + h;
         let driven: Phasor = self.waveform.response(pole, self.since, to) * (flow.gain / pole.im);
         let (angle, rate) = (driven.im, (pole * driven).im);
         let [_, back] = flow.velocity(angle, rate / flow.frequency);
-        Response { angle, rate, acceleration: flow.gain * self.waveform.at(to) + flow.frequency * back }
+        ForcedResponse { angle, rate, acceleration: flow.gain * self.waveform.at(to) + flow.frequency * back }
     }
 }

@@ -1,6 +1,6 @@
 //! Every trip that is guessed and certified is the one that the certified search finds.
 
-use super::{Input, Mode, Planar, Segment};
+use super::{ForcedInput, Mode, Planar, Segment};
 use crate::guard::Guard;
 use crate::motion::State;
 use crate::motion::crossing::locate;
@@ -75,7 +75,7 @@ fn study(seen: &mut Seen, modes: &[(f64, f64, f64)], k_t: f64, cycles: usize) {
     (state.rigid_angle, state.rigid_rate) = (4.5e-4, 2.2e-5);
     let forever = Span::from_seconds(2e4);
     let depart = |arc: &mut Segment, state: &State, torque| {
-        arc.depart(state, &Input { constant: torque, waveform: None });
+        arc.depart(state, &ForcedInput { constant: torque, waveform: None });
     };
     let mut torque = weak;
     for _ in 0..cycles {
@@ -185,7 +185,7 @@ fn random_motions(seed: u64, ratio: impl Fn(f64) -> f64) {
             (phase.displacement, phase.quadrature) = (size * draw(), size * draw());
         }
         let mut arc = Segment::new(&body);
-        arc.depart(&state, &Input { constant: 4e-6 * draw() * draw(), waveform: None });
+        arc.depart(&state, &ForcedInput { constant: 4e-6 * draw() * draw(), waveform: None });
         let guards = [Guard::at_least(1.2e-3 * draw()), Guard::at_most(1.2e-3 * draw())];
         let guards = if draw() < 0.0 { &guards[..1] } else { &guards };
         let horizon = Span::from_seconds(100.0 + 99.0 * draw());

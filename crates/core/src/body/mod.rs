@@ -31,16 +31,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::Fault;
 
-pub use chain::{Chain, Flight, Flown};
+pub use chain::{Chain, ChainMotion, Flown};
 pub use coupled::Coupled;
 pub use craft::Craft;
 pub use damping::Damping;
 pub use drift::{Drift, Point, Profile, Ramp, SERIES, Sinusoid};
 pub use drifting::Drifting;
-pub use forced::{Forced, Input, Push, Wrench};
+pub use forced::{Forced, ForcedInput, Push, Wrench};
 pub use matrices::{Matrices, Sum};
-pub(crate) use mode::Flow;
 pub use mode::Mode;
+pub(crate) use mode::ModeFlow;
 pub use model::{Axes, Model};
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};

@@ -65,7 +65,7 @@ impl Mode {
 
 /// The constants of a mode's flow.
 #[derive(Copy, Clone, Debug)]
-pub struct Flow {
+pub struct ModeFlow {
     /// Natural frequency (rad/s).
     pub frequency: f64,
     /// Modal gain.
@@ -89,7 +89,7 @@ enum Regime {
     Over(f64, f64, f64),
 }
 
-impl Flow {
+impl ModeFlow {
     /// The flow of a mode.
     pub fn new(mode: &Mode) -> Self {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
@@ -242,7 +242,7 @@ mod tests {
                 for turns in [1e-3, 0.7, 5.0] {
                     let h = turns / frequency;
                     let exact = exponential(frequency, damping, h);
-                    let flow = Flow::new(&mode(frequency, damping)).transition(h);
+                    let flow = ModeFlow::new(&mode(frequency, damping)).transition(h);
                     for (a, b) in flow.iter().zip(exact) {
                         // The reference itself loses 2^24 roundings.
                         assert!((a - b).abs() < 2e-8, "w {frequency}, zeta {damping}: {a} {b}");

@@ -10,7 +10,7 @@ use super::planar::HUB_FREE;
 use super::{Damping, Drive, Mode, Output, Planar};
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, Positive};
-use crate::structure::{Hub, Structure, TOO_FAR_APART, eigenvalues};
+use crate::structure::{HubState, Structure, TOO_FAR_APART, eigenvalues};
 
 /// What is kept of a structure, and how it starts.
 pub struct Reduction<'a> {
@@ -44,8 +44,8 @@ impl Reduction<'_> {
             weights.extend((0..order).map(unit));
         }
         let hub = match self.drive {
-            Drive::Torque => Hub::Free,
-            Drive::Motion => Hub::Held,
+            Drive::Torque => HubState::Free,
+            Drive::Motion => HubState::Held,
         };
         let solved = structure.modes(hub, &weights)?;
         let within = |w: &&f64| **w <= Frequency::LARGEST;

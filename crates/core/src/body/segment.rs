@@ -4,8 +4,8 @@ mod guess;
 
 use nalgebra::DVector;
 
-use super::forced::{Forced, Input, Response};
-use super::mode::Flow;
+use super::forced::{Forced, ForcedInput, ForcedResponse};
+use super::mode::ModeFlow;
 use super::{Drive, Planar};
 use crate::guard::Guard;
 use crate::motion::crossing::{Approach, first_root};
@@ -40,7 +40,7 @@ pub struct Segment {
 /// One mode on a segment: its equilibrium, and the deviation in which the segment began.
 #[derive(Clone, Debug)]
 struct ModeSegment {
-    flow: Flow,
+    flow: ModeFlow,
     equilibrium: f64,
     from: Phase,
 }
@@ -48,7 +48,8 @@ struct ModeSegment {
 impl Segment {
     /// The segment of a body, not yet departed.
     pub fn new(body: &Planar) -> Self {
-        let swing = |mode| ModeSegment { flow: Flow::new(mode), equilibrium: 0.0, from: Phase::default() };
+        let swing =
+            |mode| ModeSegment { flow: ModeFlow::new(mode), equilibrium: 0.0, from: Phase::default() };
         let visible = body.drive == Drive::Torque;
         Self {
             mobility: 1.0 / body.commanded_inertia(),
@@ -67,7 +68,7 @@ impl Segment {
     }
 
     /// Begins the segment anew: from this state, under this input. Its bounds, and so guards, are for the constant only.
-    pub fn depart(&mut self, from: &State, input: &Input) {
+    pub fn depart(&mut self, from: &State, input: &ForcedInput) {
         self.moment = input.constant * self.mobility;
         self.forced.clone_from(&input.waveform);
         self.angle = from.rigid_angle;
@@ -120,7 +121,7 @@ impl Segment {
     /// no waveform, stays small.
     #[inline(never)]
     fn add_forced(&self, forced: &Forced, h: f64, state: &mut State, sensed: &mut Sensed) {
-        let mut show = |push: Response| {
+        let mut show = |push: ForcedResponse| {
             sensed.angle += push.angle;
             sensed.rate += push.rate;
             sensed.acceleration += push.acceleration;

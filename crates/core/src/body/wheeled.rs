@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 use super::{Coupled, Drift, Drifting, Planar};
 use crate::guard::Guard;
 use crate::motion::crossing::{Trip, locate};
-use crate::motion::linear::{Level, Linear, Modal, Seen, Segment};
+use crate::motion::linear::{GuardLevel, LinearFlow, LinearSegment, LinearSight, Modal};
 use crate::motion::stretch::{self, Expansion};
 use crate::motion::{Sensed, State};
 use crate::numerics::phasor::abs;
@@ -43,11 +43,11 @@ struct Poles {
     /// Reduced moment (rad/s²), and z at departure.
     moment: f64,
     from: DVector<f64>,
-    flow: Shared<Linear>,
-    segment: Segment,
+    flow: Shared<LinearFlow>,
+    segment: LinearSegment,
     here: Modal,
-    seen: Seen,
-    levels: Vec<Level>,
+    seen: LinearSight,
+    levels: Vec<GuardLevel>,
 }
 
 /// A motion that someone else computes, before its first departure.
@@ -100,10 +100,10 @@ pub struct Constant {
 impl Coupling {
     /// A body at its start, under no input, by the poles of its flow. A wheel takes back-EMF a (1/s) from the total rate, or
     /// from the rigid one.
-    pub fn by_poles(body: &Planar, flow: &Shared<Linear>, back_emf: f64, total: bool) -> Self {
+    pub fn by_poles(body: &Planar, flow: &Shared<LinearFlow>, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
         let start = body.start().to_vector(&frequencies);
-        let (segment, here) = (Segment::new(Shared::clone(flow)), flow.modal(&start));
+        let (segment, here) = (LinearSegment::new(Shared::clone(flow)), flow.modal(&start));
         let poles = Poles {
             system: Coupled::new(body, back_emf, total, &vec![1.0; frequencies.len()]),
             moment: 0.0,
@@ -111,7 +111,7 @@ impl Coupling {
             flow: Shared::clone(flow),
             segment,
             here,
-            seen: Seen::default(),
+            seen: LinearSight::default(),
             levels: Vec::with_capacity(2),
         };
         Self {
@@ -132,7 +132,7 @@ impl Coupling {
                 let pushed = (&system.rate * &system.input)[0];
                 let modes = body.modes.iter();
                 let fastest =
-                    modes.clone().map(|mode| super::mode::Flow::new(mode).fastest()).fold(0.0, f64::max);
+                    modes.clone().map(|mode| super::mode::ModeFlow::new(mode).fastest()).fold(0.0, f64::max);
                 let gains: f64 = modes.map(|mode| mode.gain.get().abs()).sum();
                 Flow::Constant(Constant {
                     acceleration: (&system.rate * &system.system, pushed),
@@ -222,7 +222,7 @@ impl Coupling {
     ) -> Result<Option<Trip<()>>, E> {
         let Flow::Linear(poles) = &mut self.flow else { return Ok(None) };
         poles.levels.clear();
-        poles.levels.extend(guards.iter().map(|guard| Level { output: 0, guard: *guard }));
+        poles.levels.extend(guards.iter().map(|guard| GuardLevel { output: 0, guard: *guard }));
         locate(&poles.segment, &poles.levels, horizon, &mut poles.seen, go_on)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Campaign, Run};
+use super::{Campaign, CampaignRun};
 use crate::law::Command;
 use crate::metrics::{Gather, Metrics};
 use crate::record::{Attachment, COMMANDS, Detail, Provenance, Record};
@@ -53,7 +53,7 @@ impl Commanded {
     /// As a run.
     pub fn simulate(
         &self,
-        run: &Run,
+        run: &CampaignRun,
         until: Instant,
         record: impl Record,
     ) -> Result<Metrics, SimulationError> {
@@ -81,7 +81,7 @@ impl Commanded {
     /// As a run.
     pub fn sample(
         &self,
-        run: &Run,
+        run: &CampaignRun,
         times: &[f64],
         stop: &mut impl Record,
         seen: &mut impl Record,
@@ -100,7 +100,7 @@ impl Commanded {
     }
 
     /// The provenance in the log of the run: with commands, it has them too.
-    pub fn provenance(&self, run: &Run, detail: Detail) -> Provenance {
+    pub fn provenance(&self, run: &CampaignRun, detail: Detail) -> Provenance {
         let mut provenance = Campaign::provenance(run, detail);
         if !self.is_empty() {
             let data = self.to_csv().into_bytes();

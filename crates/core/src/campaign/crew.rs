@@ -7,7 +7,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::{Campaign, Outcome, Run, RunError};
+use super::{Campaign, CampaignRun, RunError, RunOutcome};
 use crate::batch::{self, Job};
 use crate::metrics::{Metrics, Selection};
 
@@ -84,8 +84,8 @@ impl Campaign {
         self: &Arc<Self>,
         runs: Range<u64>,
         threads: usize,
-        work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
-        tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
+        work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
+        tell: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
     ) -> Result<(), E> {
         self.go(runs, threads, (1, Selection::ALL), work, tell)
     }
@@ -97,8 +97,8 @@ impl Campaign {
         runs: Range<u64>,
         threads: usize,
         selection: &Selection,
-        work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
-        tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
+        work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
+        tell: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
     ) -> Result<(), E> {
         let most = if batch::takes(self.scenario()) { BESIDE } else { 1 };
         self.go(runs, threads, (most, selection.clone()), work, tell)
@@ -109,8 +109,8 @@ impl Campaign {
         runs: Range<u64>,
         threads: usize,
         (most, selection): (u64, Selection),
-        work: impl Fn(&Run) -> Result<Metrics, RunError> + Send + Sync + 'static,
-        mut tell: impl FnMut(Option<Outcome>) -> Result<(), E>,
+        work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
+        mut tell: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
     ) -> Result<(), E> {
         let state = State { next: runs.start, due: runs.start, end: runs.end };
         let crew = Arc::new(Crew { state: Mutex::new(state), told: Condvar::new() });
@@ -144,8 +144,8 @@ impl Campaign {
         &self,
         worker: &Worker,
         (most, selection): (u64, &Selection),
-        outcomes: &Sender<Outcome>,
-        work: &impl Fn(&Run) -> Result<Metrics, RunError>,
+        outcomes: &Sender<RunOutcome>,
+        work: &impl Fn(&CampaignRun) -> Result<Metrics, RunError>,
     ) {
         loop {
             let numbers = worker.0.take(most);
@@ -170,8 +170,8 @@ impl Campaign {
         &self,
         numbers: Range<u64>,
         selection: &Selection,
-        work: &impl Fn(&Run) -> Result<Metrics, RunError>,
-        tell: &mut impl FnMut(Outcome) -> bool,
+        work: &impl Fn(&CampaignRun) -> Result<Metrics, RunError>,
+        tell: &mut impl FnMut(RunOutcome) -> bool,
     ) -> bool {
         let began = Instant::now();
         let runs: Vec<_> = numbers.map(|number| (number, self.run_for(number, selection))).collect();
@@ -193,7 +193,7 @@ impl Campaign {
                 }
                 Err(error) => (self.draw(number), Err(RunError::from(error))),
             };
-            if !tell(Outcome { number, drawn, metrics, seconds }) {
+            if !tell(RunOutcome { number, drawn, metrics, seconds }) {
                 return false;
             }
         }
@@ -201,7 +201,7 @@ impl Campaign {
             let began = Instant::now();
             let metrics = work(&run);
             let seconds = began.elapsed().as_secs_f64();
-            tell(Outcome { number: run.number, metrics, drawn: run.drawn, seconds })
+            tell(RunOutcome { number: run.number, metrics, drawn: run.drawn, seconds })
         })
     }
 }
@@ -209,8 +209,8 @@ impl Campaign {
 fn tell_in_order<E>(
     crew: &Crew,
     runs: Range<u64>,
-    ended: &Receiver<Outcome>,
-    tell: &mut impl FnMut(Option<Outcome>) -> Result<(), E>,
+    ended: &Receiver<RunOutcome>,
+    tell: &mut impl FnMut(Option<RunOutcome>) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut early = BTreeMap::new();
     let mut due = runs.start;

@@ -17,7 +17,7 @@ pub const MOST_NUMBERS: usize = 10_000_000;
 /// of the last block from point to point. Without, a point is the scenario itself, as often as it is wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Design {
+pub struct PointDesign {
     /// How the `[uncertain]` keys are drawn.
     #[serde(default)]
     pub draws: Sampling,
@@ -28,10 +28,10 @@ pub struct Design {
     pub replicas: u64,
     /// What the points are combined from.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<DesignBlock>,
 }
 
-impl Default for Design {
+impl Default for PointDesign {
     fn default() -> Self {
         Self { draws: Sampling::Random, hypercube: 0, replicas: 1, blocks: Vec::new() }
     }
@@ -40,7 +40,7 @@ impl Default for Design {
 /// Points of some keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Block {
+pub enum DesignBlock {
     /// Values of one key, evenly apart.
     Even {
         /// The key.
@@ -73,14 +73,14 @@ pub enum Block {
         /// How many they are.
         count: u64,
         /// The ranges.
-        ranges: Vec<Span>,
+        ranges: Vec<KeyRange>,
     },
 }
 
 /// The range of a key.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Span {
+pub struct KeyRange {
     /// The key.
     pub key: String,
     /// From here ...
@@ -89,7 +89,7 @@ pub struct Span {
     pub to: f64,
 }
 
-impl From<Grid> for Block {
+impl From<Grid> for DesignBlock {
     fn from(Grid { key, values }: Grid) -> Self {
         Self::List { key, values }
     }
@@ -101,7 +101,7 @@ pub(super) fn even(first: f64, last: f64, count: u32, index: u32) -> f64 {
     first * (1.0 - part) + last * part
 }
 
-impl Block {
+impl DesignBlock {
     /// How many points there are.
     pub fn count(&self) -> u64 {
         match self {
@@ -132,7 +132,7 @@ impl Block {
             Self::List { values, .. } => vec![values[index]],
             Self::Table { points, .. } => points[index].clone(),
             Self::Sample { sampling, count, ranges } => {
-                let value = |(place, Span { key, from, to }): (usize, &Span)| {
+                let value = |(place, KeyRange { key, from, to }): (usize, &KeyRange)| {
                     let name = format!("design {key}");
                     let part = sampling.number(Dimension { seed, name: &name, place }, point, *count);
                     from * (1.0 - part) + to * part
@@ -213,7 +213,7 @@ impl Block {
                 writeln!(text, "# {} = a table of {} points, hash {hash:016x}", keys.join(", "), points.len())
             }
             Self::Sample { sampling, count, ranges } => {
-                let range = |of: &Span| format!("{} = {} to {}", of.key, of.from, of.to);
+                let range = |of: &KeyRange| format!("{} = {} to {}", of.key, of.from, of.to);
                 let ranges: Vec<String> = ranges.iter().map(range).collect();
                 writeln!(text, "# {}: {count} points, {}", ranges.join(", "), sampling.name())
             }
@@ -228,15 +228,15 @@ impl Sampling {
     }
 }
 
-impl Design {
+impl PointDesign {
     /// The design of some blocks.
-    pub fn of(blocks: impl IntoIterator<Item = Block>) -> Self {
+    pub fn of(blocks: impl IntoIterator<Item = DesignBlock>) -> Self {
         Self { blocks: blocks.into_iter().collect(), ..Self::default() }
     }
 
     /// The keys whose values it gives.
     pub fn keys(&self) -> Vec<&str> {
-        self.blocks.iter().flat_map(Block::keys).collect()
+        self.blocks.iter().flat_map(DesignBlock::keys).collect()
     }
 
     /// How many runs it has, if it is not as many as are wanted.
@@ -270,12 +270,12 @@ impl Design {
 
     /// The ends of what each key takes.
     pub(super) fn ends(&self) -> impl Iterator<Item = (&str, f64)> {
-        self.blocks.iter().flat_map(Block::ends)
+        self.blocks.iter().flat_map(DesignBlock::ends)
     }
 
     /// What is wrong with it, if anything is; `uncertain` keys are drawn.
     pub fn problem(&self, uncertain: usize) -> Option<String> {
-        if let Some(problem) = self.blocks.iter().find_map(Block::problem) {
+        if let Some(problem) = self.blocks.iter().find_map(DesignBlock::problem) {
             return Some(problem);
         }
         let keys = self.keys();

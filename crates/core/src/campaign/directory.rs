@@ -28,7 +28,7 @@ use super::error::{DirectoryError, io_of, unread, wrong};
 use super::manifest::{LARGEST, Manifest};
 use super::parquet::{Reading, parquet_is_built_in};
 use super::part;
-use super::rows::{Column, Rows};
+use super::rows::{ColumnCells, Rows};
 use super::work::{NOTE, Work};
 use crate::record::Record;
 use crate::whole::{self, Partial};
@@ -163,15 +163,16 @@ impl Directory {
     }
 
     /// A column of all rows that there are, in the order of their runs. Parts without it have nothing there.
-    pub fn column(&self, name: &str) -> Result<Option<Column>, DirectoryError> {
+    pub fn column(&self, name: &str) -> Result<Option<ColumnCells>, DirectoryError> {
         Ok(self.columns(&[name])?.remove(0))
     }
 
     /// Several columns, each part opened once.
-    pub fn columns(&self, names: &[&str]) -> Result<Vec<Option<Column>>, DirectoryError> {
+    pub fn columns(&self, names: &[&str]) -> Result<Vec<Option<ColumnCells>>, DirectoryError> {
         let kind =
             |name: &str| self.work.fields().iter().find(|field| field.name == name).map(|field| field.kind);
-        let mut all: Vec<Option<Column>> = names.iter().map(|name| kind(name).map(Column::of)).collect();
+        let mut all: Vec<Option<ColumnCells>> =
+            names.iter().map(|name| kind(name).map(ColumnCells::of)).collect();
         let known: Vec<&str> = names.iter().copied().filter(|name| kind(name).is_some()).collect();
         for runs in self.parts()? {
             for (all, column) in all.iter_mut().flatten().zip(self.columns_of(&runs, &known)?) {
@@ -182,7 +183,7 @@ impl Directory {
     }
 
     /// Columns of a part.
-    pub fn columns_of(&self, runs: &Range<u64>, names: &[&str]) -> Result<Vec<Column>, DirectoryError> {
+    pub fn columns_of(&self, runs: &Range<u64>, names: &[&str]) -> Result<Vec<ColumnCells>, DirectoryError> {
         let path = self.file(runs);
         let reading = self.reading(runs)?;
         let column = |name: &&str| {

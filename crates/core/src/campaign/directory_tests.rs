@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::campaign::Campaign;
-use crate::campaign::design::{Block, Design};
+use crate::campaign::design::{DesignBlock, PointDesign};
 use crate::metrics::Selection;
 
 const SCENARIO: &str = r#"
@@ -42,19 +42,19 @@ impl Drop for Here {
     }
 }
 
-fn campaign(design: Design) -> Campaign {
+fn campaign(design: PointDesign) -> Campaign {
     Campaign::of(crate::Scenario::parse("u.toml", SCENARIO).expect("a scenario"), "u.toml", design)
         .expect("one")
 }
 
 fn manifest(runs: Range<u64>) -> Manifest {
     let mut manifest =
-        Manifest::new(&campaign(Design::default()), runs, &Selection::ALL).expect("a manifest");
+        Manifest::new(&campaign(PointDesign::default()), runs, &Selection::ALL).expect("a manifest");
     manifest.part = 8;
     manifest
 }
 
-fn columns(directory: &Directory) -> Vec<Option<Column>> {
+fn columns(directory: &Directory) -> Vec<Option<ColumnCells>> {
     let names: Vec<&str> = directory.work().fields().iter().map(|field| field.name.as_str()).collect();
     let names: Vec<&str> = names.into_iter().filter(|name| *name != "seconds").collect();
     directory.columns(&names).expect("read")
@@ -79,9 +79,9 @@ fn parts_in_any_order_are_the_same_rows() {
     }
     let (one, other) = (columns(&one), columns(&worker));
     assert_eq!(one, other);
-    assert_eq!(one[0].as_ref().map(Column::numbers), Some((0..30).map(f64::from).collect()));
+    assert_eq!(one[0].as_ref().map(ColumnCells::numbers), Some((0..30).map(f64::from).collect()));
     // Some gains are not accepted: their rows say so.
-    let Some(Some(Column::Words(errors))) = one.last() else { panic!("no errors") };
+    let Some(Some(ColumnCells::Words(errors))) = one.last() else { panic!("no errors") };
     let failed = errors.iter().flatten().count();
     assert!((1..30).contains(&failed), "{failed}");
     assert!(errors.iter().flatten().all(|error| error.starts_with("u: `law.relay.k_t`")), "{errors:?}");
@@ -136,8 +136,8 @@ fn what_does_not_fit_is_refused() {
     assert_eq!(more.work().manifest.runs(), 0..40);
     assert_eq!(more.missing().expect("read").len(), 4);
     drop(more);
-    let grid = Block::List { key: "duration".to_owned(), values: vec![100.0, 200.0] };
-    let other = campaign(Design::of([grid]));
+    let grid = DesignBlock::List { key: "duration".to_owned(), values: vec![100.0, 200.0] };
+    let other = campaign(PointDesign::of([grid]));
     let other = Manifest::new(&other, 0..2, &Selection::ALL).expect("a manifest");
     let refused = Directory::create(&here.0, other.clone(), false).expect_err("another").to_string();
     assert!(
@@ -158,15 +158,15 @@ fn what_does_not_fit_is_refused() {
 
 #[test]
 fn a_run_is_the_same_whichever_are_made_beside_it() {
-    use crate::campaign::{Sampling, Span};
+    use crate::campaign::{KeyRange, Sampling};
     for (_, sampling) in Sampling::ALL {
         let ranges = vec![
-            Span { key: "law.relay.weak".to_owned(), from: 1e-6, to: 2e-6 },
-            Span { key: "duration".to_owned(), from: 50.0, to: 100.0 },
+            KeyRange { key: "law.relay.weak".to_owned(), from: 1e-6, to: 2e-6 },
+            KeyRange { key: "duration".to_owned(), from: 50.0, to: 100.0 },
         ];
-        let block = Block::Sample { sampling, count: 20, ranges };
-        let list = Block::List { key: "law.relay.strong".to_owned(), values: vec![3e-5, 4e-5] };
-        let design = Design { draws: sampling, hypercube: 20, replicas: 3, blocks: vec![block, list] };
+        let block = DesignBlock::Sample { sampling, count: 20, ranges };
+        let list = DesignBlock::List { key: "law.relay.strong".to_owned(), values: vec![3e-5, 4e-5] };
+        let design = PointDesign { draws: sampling, hypercube: 20, replicas: 3, blocks: vec![block, list] };
         let study = campaign(design);
         assert_eq!(study.design().runs(), Some(120));
         let drawn: Vec<_> = (0..120).map(|number| study.draw(number)).collect();

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::rows::{Column, Rows};
+use super::rows::{ColumnCells, Rows};
 
 const WHY: &str = "Parquet files need the feature `parquet`, which this build left out\n\n\
                    hint: `cargo build --release --features full` has it, and `--table csv` needs none";
@@ -46,7 +46,7 @@ impl Reading {
     }
 
     /// A column.
-    pub fn column(&self, _: &str) -> io::Result<Option<Column>> {
+    pub fn column(&self, _: &str) -> io::Result<Option<ColumnCells>> {
         Err(left_out())
     }
 }

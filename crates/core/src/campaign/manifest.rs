@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::design::Design;
+use super::design::PointDesign;
 use super::{Campaign, part};
 use crate::document::ScenarioError;
 use crate::metrics::Selection;
@@ -41,18 +41,18 @@ pub struct Manifest {
     /// The scenario, which needs no file.
     pub scenario: String,
     /// The points.
-    pub design: Design,
+    pub design: PointDesign,
 }
 
 /// Why a manifest is none of a campaign, or not of this one.
-pub type Wrong = String;
+pub type WrongManifest = String;
 
 impl Manifest {
     /// The manifest of some runs of a campaign.
     ///
     /// # Errors
     /// A campaign that no text can hold.
-    pub fn new(campaign: &Campaign, runs: Range<u64>, selection: &Selection) -> Result<Self, Wrong> {
+    pub fn new(campaign: &Campaign, runs: Range<u64>, selection: &Selection) -> Result<Self, WrongManifest> {
         if campaign.scenario().has_own_parts() {
             return Err("has parts defined by a program, which a file cannot contain".to_owned());
         }
@@ -64,7 +64,7 @@ impl Manifest {
         campaign: &Campaign,
         runs: Range<u64>,
         selection: &Selection,
-    ) -> Result<Self, Wrong> {
+    ) -> Result<Self, WrongManifest> {
         let design = campaign.design().clone();
         if design.runs().is_some_and(|all| runs.end > all) {
             let all = design.runs().unwrap_or_default();
@@ -104,7 +104,7 @@ impl Manifest {
     }
 
     /// Reads a manifest.
-    pub fn parse(text: &str) -> Result<Self, Wrong> {
+    pub fn parse(text: &str) -> Result<Self, WrongManifest> {
         #[derive(Deserialize)]
         struct Form {
             format: Option<u32>,
@@ -173,7 +173,7 @@ impl Manifest {
     }
 
     /// The metrics of its rows.
-    pub fn selection(&self) -> Result<Selection, Wrong> {
+    pub fn selection(&self) -> Result<Selection, WrongManifest> {
         self.metrics.as_ref().map_or(Ok(Selection::ALL), Selection::of)
     }
 

@@ -15,7 +15,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
 
-use super::rows::{Column, Field, Kind, Rows};
+use super::rows::{ColumnCells, ColumnHeading, ColumnKind, Rows};
 
 /// How hard it is compressed: more gains nothing for numbers.
 const LEVEL: i32 = 3;
@@ -32,26 +32,26 @@ fn other(error: ParquetError) -> io::Error {
     }
 }
 
-fn field_type(field: &Field) -> Result<TypePtr, ParquetError> {
+fn field_type(field: &ColumnHeading) -> Result<TypePtr, ParquetError> {
     let leaf = |name: &str, kind| {
         let physical = match kind {
-            Kind::Integers => Physical::INT64,
-            Kind::Numbers | Kind::Lists => Physical::DOUBLE,
-            Kind::Words => Physical::BYTE_ARRAY,
+            ColumnKind::Integers => Physical::INT64,
+            ColumnKind::Numbers | ColumnKind::Lists => Physical::DOUBLE,
+            ColumnKind::Words => Physical::BYTE_ARRAY,
         };
         let leaf = Type::primitive_type_builder(name, physical).with_repetition(Repetition::OPTIONAL);
         let leaf = match kind {
-            Kind::Words => {
+            ColumnKind::Words => {
                 leaf.with_logical_type(Some(LogicalType::String)).with_converted_type(ConvertedType::UTF8)
             }
             _ => leaf,
         };
         Ok::<TypePtr, ParquetError>(Arc::new(leaf.build()?))
     };
-    if field.kind != Kind::Lists {
+    if field.kind != ColumnKind::Lists {
         return leaf(&field.name, field.kind);
     }
-    let element = leaf("element", Kind::Lists)?;
+    let element = leaf("element", ColumnKind::Lists)?;
     let list =
         Type::group_type_builder("list").with_repetition(Repetition::REPEATED).with_fields(vec![element]);
     let whole = Type::group_type_builder(&field.name)
@@ -98,27 +98,27 @@ fn written(rows: &Rows, notes: &[(&str, String)]) -> Result<Vec<u8>, ParquetErro
 
 fn write_column<W: io::Write + Send>(
     group: &mut SerializedRowGroupWriter<'_, W>,
-    column: &Column,
+    column: &ColumnCells,
 ) -> Result<(), ParquetError> {
     let Some(mut writer) = group.next_column()? else { return Ok(()) };
     let there = |there: bool| i16::from(there);
     match column {
-        Column::Integers(cells) => {
+        ColumnCells::Integers(cells) => {
             let values: Vec<i64> = cells.iter().flatten().copied().collect();
             let levels: Vec<i16> = cells.iter().map(|cell| there(cell.is_some())).collect();
             writer.typed::<Int64Type>().write_batch(&values, Some(&levels), None)?;
         }
-        Column::Numbers(cells) => {
+        ColumnCells::Numbers(cells) => {
             let values: Vec<f64> = cells.iter().copied().filter(|cell| !cell.is_nan()).collect();
             let levels: Vec<i16> = cells.iter().map(|cell| there(!cell.is_nan())).collect();
             writer.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
         }
-        Column::Words(cells) => {
+        ColumnCells::Words(cells) => {
             let values: Vec<ByteArray> = cells.iter().flatten().map(|word| word.as_str().into()).collect();
             let levels: Vec<i16> = cells.iter().map(|cell| there(cell.is_some())).collect();
             writer.typed::<ByteArrayType>().write_batch(&values, Some(&levels), None)?;
         }
-        Column::Lists(cells) => {
+        ColumnCells::Lists(cells) => {
             let (mut values, mut levels, mut again) = (Vec::new(), Vec::new(), Vec::new());
             for cell in cells {
                 let Some(list) = cell.as_ref().filter(|list| !list.is_empty()) else {
@@ -159,28 +159,28 @@ impl Reading {
     }
 
     /// The columns.
-    fn fields(&self) -> Vec<Field> {
+    fn fields(&self) -> Vec<ColumnHeading> {
         let schema = self.0.metadata().file_metadata().schema();
         let kind = |field: &Type| {
             if field.is_group() {
-                return Kind::Lists;
+                return ColumnKind::Lists;
             }
             match field.get_physical_type() {
-                Physical::INT64 => Kind::Integers,
-                Physical::DOUBLE => Kind::Numbers,
-                _ => Kind::Words,
+                Physical::INT64 => ColumnKind::Integers,
+                Physical::DOUBLE => ColumnKind::Numbers,
+                _ => ColumnKind::Words,
             }
         };
-        let field = |of: &TypePtr| Field { name: of.name().to_owned(), unit: "", kind: kind(of) };
+        let field = |of: &TypePtr| ColumnHeading { name: of.name().to_owned(), unit: "", kind: kind(of) };
         schema.get_fields().iter().map(field).collect()
     }
 
     /// A column; none where it has no such one.
-    pub fn column(&self, name: &str) -> io::Result<Option<Column>> {
+    pub fn column(&self, name: &str) -> io::Result<Option<ColumnCells>> {
         self.read(name).map_err(other)
     }
 
-    fn read(&self, name: &str) -> Result<Option<Column>, ParquetError> {
+    fn read(&self, name: &str) -> Result<Option<ColumnCells>, ParquetError> {
         let fields = self.fields();
         // Every field has one leaf.
         let Some(place) = fields.iter().position(|field| field.name == name) else { return Ok(None) };
@@ -188,28 +188,28 @@ impl Reading {
         if rows > MOST_ROWS {
             return Err(ParquetError::General(format!("has more than {MOST_ROWS} rows")));
         }
-        let mut all = Column::of(fields[place].kind);
+        let mut all = ColumnCells::of(fields[place].kind);
         for group in 0..self.0.num_row_groups() {
             let group = self.0.get_row_group(group)?;
             let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0).min(rows);
             let column = match (group.get_column_reader(place)?, fields[place].kind) {
-                (ColumnReader::Int64ColumnReader(reader), Kind::Integers) => {
+                (ColumnReader::Int64ColumnReader(reader), ColumnKind::Integers) => {
                     let (values, levels, _) = read_all(reader, rows)?;
-                    Column::Integers(filled(values.into_iter().map(Some), &levels, || None))
+                    ColumnCells::Integers(filled(values.into_iter().map(Some), &levels, || None))
                 }
-                (ColumnReader::DoubleColumnReader(reader), Kind::Numbers) => {
+                (ColumnReader::DoubleColumnReader(reader), ColumnKind::Numbers) => {
                     let (values, levels, _) = read_all(reader, rows)?;
-                    Column::Numbers(filled(values.into_iter(), &levels, || f64::NAN))
+                    ColumnCells::Numbers(filled(values.into_iter(), &levels, || f64::NAN))
                 }
-                (ColumnReader::ByteArrayColumnReader(reader), Kind::Words) => {
+                (ColumnReader::ByteArrayColumnReader(reader), ColumnKind::Words) => {
                     let (values, levels, _) = read_all(reader, rows)?;
                     let words =
                         values.iter().map(|word| Some(String::from_utf8_lossy(word.data()).into_owned()));
-                    Column::Words(filled(words, &levels, || None))
+                    ColumnCells::Words(filled(words, &levels, || None))
                 }
-                (ColumnReader::DoubleColumnReader(reader), Kind::Lists) => {
+                (ColumnReader::DoubleColumnReader(reader), ColumnKind::Lists) => {
                     let (values, levels, again) = read_all(reader, rows)?;
-                    Column::Lists(lists(&values, &levels, &again))
+                    ColumnCells::Lists(lists(&values, &levels, &again))
                 }
                 _ => return Err(ParquetError::General(format!("`{name}` is not a column of a campaign"))),
             };
@@ -265,20 +265,20 @@ mod tests {
 
     #[test]
     fn rows_come_back_as_they_were() {
-        let field = |name: &str, kind| Field { name: name.to_owned(), unit: "", kind };
+        let field = |name: &str, kind| ColumnHeading { name: name.to_owned(), unit: "", kind };
         let fields = [
-            field("run", Kind::Integers),
-            field("x", Kind::Numbers),
-            field("word", Kind::Words),
-            field("list", Kind::Lists),
-            field("nothing", Kind::Words),
+            field("run", ColumnKind::Integers),
+            field("x", ColumnKind::Numbers),
+            field("word", ColumnKind::Words),
+            field("list", ColumnKind::Lists),
+            field("nothing", ColumnKind::Words),
         ];
         let columns = vec![
-            Column::Integers(vec![Some(1), None, Some(i64::MIN)]),
-            Column::Numbers(vec![0.1, f64::INFINITY, -1e-300]),
-            Column::Words(vec![None, Some("é".to_owned()), Some(String::new())]),
-            Column::Lists(vec![None, Some(vec![]), Some(vec![1.0, 2.5])]),
-            Column::Words(vec![None; 3]),
+            ColumnCells::Integers(vec![Some(1), None, Some(i64::MIN)]),
+            ColumnCells::Numbers(vec![0.1, f64::INFINITY, -1e-300]),
+            ColumnCells::Words(vec![None, Some("é".to_owned()), Some(String::new())]),
+            ColumnCells::Lists(vec![None, Some(vec![]), Some(vec![1.0, 2.5])]),
+            ColumnCells::Words(vec![None; 3]),
         ];
         let rows = Rows { fields: Arc::new(fields), columns };
         let file = tempfile(&encode(&rows, &[("a", "b".to_owned())]).expect("encoded"));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use toml::Value as Drawn;
 
-use super::{Campaign, Outcome};
+use super::{Campaign, RunOutcome};
 use crate::metrics::{Gather, Selection, Value};
 
 /// The column of the numbers of the runs, which every table begins with.
@@ -18,7 +18,7 @@ pub const ERROR: &str = "error";
 
 /// What a column holds. Where a run has nothing, the cell is null.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnKind {
     /// Integers.
     Integers,
     /// Numbers.
@@ -31,18 +31,18 @@ pub enum Kind {
 
 /// A column's name, unit and kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Field {
+pub struct ColumnHeading {
     /// The name: of a key, of a metric, or one of those about the run.
     pub name: String,
     /// The unit of a metric.
     pub unit: &'static str,
     /// What it holds.
-    pub kind: Kind,
+    pub kind: ColumnKind,
 }
 
 /// The cells of a column. Two are equal where all bits are; nothing equals nothing.
 #[derive(Clone, Debug)]
-pub enum Column {
+pub enum ColumnCells {
     /// Integers.
     Integers(Vec<Option<i64>>),
     /// Numbers; NaN for none.
@@ -53,7 +53,7 @@ pub enum Column {
     Lists(Vec<Option<Vec<f64>>>),
 }
 
-impl PartialEq for Column {
+impl PartialEq for ColumnCells {
     fn eq(&self, other: &Self) -> bool {
         let bits = |number: &f64| if number.is_nan() { u64::MAX } else { number.to_bits() };
         let list =
@@ -72,46 +72,47 @@ impl PartialEq for Column {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rows {
     /// The columns' names and kinds.
-    pub fields: Arc<[Field]>,
+    pub fields: Arc<[ColumnHeading]>,
     /// Their cells.
-    pub columns: Vec<Column>,
+    pub columns: Vec<ColumnCells>,
 }
 
 impl Campaign {
     /// The columns of the campaign's table. They are known before any run, and no run changes them.
-    pub fn fields(&self, selection: &Selection) -> Arc<[Field]> {
-        let about = |name: &str, kind, unit| Field { name: name.to_owned(), unit, kind };
-        let key =
-            |name: &str| about(name, if self.is_integer(name) { Kind::Integers } else { Kind::Numbers }, "");
+    pub fn fields(&self, selection: &Selection) -> Arc<[ColumnHeading]> {
+        let about = |name: &str, kind, unit| ColumnHeading { name: name.to_owned(), unit, kind };
+        let key = |name: &str| {
+            about(name, if self.is_integer(name) { ColumnKind::Integers } else { ColumnKind::Numbers }, "")
+        };
         let told = selection.of_run(Gather::new(self.scenario()).finish(self.scenario()));
         let metric = |(meaning, value): &(&'static crate::metrics::Meaning, Value)| {
             let kind = match value {
-                Value::Count(_) => Kind::Integers,
-                Value::Number(_) => Kind::Numbers,
-                Value::Word(_) => Kind::Words,
-                Value::Numbers(_) | Value::Quantities(_) => Kind::Lists,
+                Value::Count(_) => ColumnKind::Integers,
+                Value::Number(_) => ColumnKind::Numbers,
+                Value::Word(_) => ColumnKind::Words,
+                Value::Numbers(_) | Value::Quantities(_) => ColumnKind::Lists,
             };
             about(meaning.name, kind, meaning.unit)
         };
-        let mut fields = vec![about(RUN, Kind::Integers, "")];
+        let mut fields = vec![about(RUN, ColumnKind::Integers, "")];
         if self.keys().all(|key| key != SEED) {
-            fields.push(about(SEED, Kind::Integers, ""));
+            fields.push(about(SEED, ColumnKind::Integers, ""));
         }
         fields.extend(self.keys().map(key));
         fields.extend(told.0.iter().map(metric));
-        fields.extend([about(SECONDS, Kind::Numbers, "s"), about(ERROR, Kind::Words, "")]);
+        fields.extend([about(SECONDS, ColumnKind::Numbers, "s"), about(ERROR, ColumnKind::Words, "")]);
         fields.into()
     }
 }
 
-impl Column {
+impl ColumnCells {
     /// An empty one.
-    pub fn of(kind: Kind) -> Self {
+    pub fn of(kind: ColumnKind) -> Self {
         match kind {
-            Kind::Integers => Self::Integers(Vec::new()),
-            Kind::Numbers => Self::Numbers(Vec::new()),
-            Kind::Words => Self::Words(Vec::new()),
-            Kind::Lists => Self::Lists(Vec::new()),
+            ColumnKind::Integers => Self::Integers(Vec::new()),
+            ColumnKind::Numbers => Self::Numbers(Vec::new()),
+            ColumnKind::Words => Self::Words(Vec::new()),
+            ColumnKind::Lists => Self::Lists(Vec::new()),
         }
     }
 
@@ -199,14 +200,14 @@ impl Column {
 
 impl Rows {
     /// No rows yet.
-    pub fn new(fields: Arc<[Field]>) -> Self {
-        let columns = fields.iter().map(|field| Column::of(field.kind)).collect();
+    pub fn new(fields: Arc<[ColumnHeading]>) -> Self {
+        let columns = fields.iter().map(|field| ColumnCells::of(field.kind)).collect();
         Self { fields, columns }
     }
 
     /// How many rows there are.
     pub fn len(&self) -> usize {
-        self.columns.first().map_or(0, Column::len)
+        self.columns.first().map_or(0, ColumnCells::len)
     }
 
     /// Whether there is no row.
@@ -215,13 +216,13 @@ impl Rows {
     }
 
     /// A column.
-    pub fn column(&self, name: &str) -> Option<&Column> {
+    pub fn column(&self, name: &str) -> Option<&ColumnCells> {
         let place = self.fields.iter().position(|field| field.name == name)?;
         self.columns.get(place)
     }
 
     /// The row of a run.
-    pub fn push(&mut self, campaign: &Campaign, outcome: &Outcome) {
+    pub fn push(&mut self, campaign: &Campaign, outcome: &RunOutcome) {
         let keys = outcome.drawn.len();
         let first = self.fields.iter().take_while(|field| [RUN, SEED].contains(&field.name.as_str())).count();
         // A key may be the seed.
@@ -229,13 +230,13 @@ impl Rows {
         let metrics = outcome.metrics.as_ref().ok();
         for (place, (field, column)) in self.fields.iter().zip(&mut self.columns).enumerate() {
             match (field.name.as_str(), column) {
-                (RUN, Column::Integers(cells)) => cells.push(i64::try_from(outcome.number).ok()),
-                (SEED, Column::Integers(cells)) if place < first => {
+                (RUN, ColumnCells::Integers(cells)) => cells.push(i64::try_from(outcome.number).ok()),
+                (SEED, ColumnCells::Integers(cells)) if place < first => {
                     cells.push(i64::try_from(campaign.scenario().seed).ok());
                 }
                 (_, column) if place < first + keys => column.push_drawn(&outcome.drawn[place - first]),
-                (SECONDS, Column::Numbers(cells)) => cells.push(outcome.seconds),
-                (ERROR, Column::Words(cells)) => {
+                (SECONDS, ColumnCells::Numbers(cells)) => cells.push(outcome.seconds),
+                (ERROR, ColumnCells::Words(cells)) => {
                     cells.push(outcome.metrics.as_ref().err().map(ToString::to_string));
                 }
                 (name, column) => match metrics.and_then(|metrics| metrics.get(name)) {

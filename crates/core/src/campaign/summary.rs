@@ -2,7 +2,7 @@
 
 use super::directory::Directory;
 use super::error::DirectoryError;
-use super::rows::{Column, ERROR, Kind, RUN};
+use super::rows::{ColumnCells, ColumnKind, ERROR, RUN};
 use super::work::Work;
 use crate::metrics::{self, goal};
 use crate::statistics::Statistics;
@@ -26,7 +26,7 @@ impl Directory {
     pub fn summary(&self) -> Result<Summary, DirectoryError> {
         let (mut runs, mut failed) = (0, None);
         let about = (self.column(RUN)?, self.column(ERROR)?);
-        if let (Some(Column::Integers(numbers)), Some(Column::Words(errors))) = about {
+        if let (Some(ColumnCells::Integers(numbers)), Some(ColumnCells::Words(errors))) = about {
             runs = numbers.len();
             for (number, error) in numbers.into_iter().zip(errors) {
                 let (Some(number), Some(error)) = (number, error) else { continue };
@@ -44,13 +44,13 @@ impl Work {
     pub fn statistics<E>(
         &self,
         runs: usize,
-        columns: impl Fn(&[&str]) -> Result<Vec<Option<Column>>, E>,
+        columns: impl Fn(&[&str]) -> Result<Vec<Option<ColumnCells>>, E>,
     ) -> Result<Vec<Statistics>, E> {
         let keys: Vec<&str> = self.campaign.keys().collect();
-        let counts = |kind: Kind, name: &str| match kind {
-            Kind::Integers | Kind::Numbers => true,
-            Kind::Words => goal::NAMES.contains(&name),
-            Kind::Lists => false,
+        let counts = |kind: ColumnKind, name: &str| match kind {
+            ColumnKind::Integers | ColumnKind::Numbers => true,
+            ColumnKind::Words => goal::NAMES.contains(&name),
+            ColumnKind::Lists => false,
         };
         let meaning = |name: &str| metrics::meaning(name, Some(self.campaign.scenario()));
         let metrics = self.fields().iter().filter(|field| !keys.contains(&field.name.as_str()));

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use super::error::{DirectoryError, io_of, wrong};
 use super::manifest::Manifest;
 use super::parquet::encode;
-use super::rows::{Field, Rows};
-use super::{Campaign, Outcome, Run, RunError, part};
+use super::rows::{ColumnHeading, Rows};
+use super::{Campaign, CampaignRun, RunError, RunOutcome, part};
 use crate::metrics::{Metrics, Selection};
 use crate::record::{Record, RecordError};
 use crate::sim::SimulationError;
@@ -28,7 +28,7 @@ pub struct Work {
     pub campaign: Arc<Campaign>,
     /// The metrics of its rows.
     pub selection: Selection,
-    fields: Arc<[Field]>,
+    fields: Arc<[ColumnHeading]>,
 }
 
 impl Work {
@@ -53,7 +53,7 @@ impl Work {
     }
 
     /// The columns of the rows.
-    pub fn fields(&self) -> &[Field] {
+    pub fn fields(&self) -> &[ColumnHeading] {
         &self.fields
     }
 
@@ -82,14 +82,15 @@ impl Work {
         runs: Range<u64>,
         threads: usize,
         poll: R,
-        simulate: impl Fn(&Run, &Selection, R) -> Result<Metrics, SimulationError> + Send + Sync + 'static,
+        simulate: impl Fn(&CampaignRun, &Selection, R) -> Result<Metrics, SimulationError> + Send + Sync + 'static,
     ) -> Result<Rows, DirectoryError> {
         let mut rows = self.rows();
         let (selection, record) = (self.selection.clone(), poll.clone());
-        let work =
-            move |run: &Run| -> Result<Metrics, RunError> { Ok(simulate(run, &selection, record.clone())?) };
+        let work = move |run: &CampaignRun| -> Result<Metrics, RunError> {
+            Ok(simulate(run, &selection, record.clone())?)
+        };
         let mut poll = poll;
-        self.campaign.each_beside(runs, threads, &self.selection, work, |outcome: Option<Outcome>| {
+        self.campaign.each_beside(runs, threads, &self.selection, work, |outcome: Option<RunOutcome>| {
             poll.poll().map_err(|_| DirectoryError::Interrupted)?;
             if let Some(outcome) = outcome {
                 let stopped = matches!(

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Quaternion};
 
 use super::dipole::Axial;
 use super::orbit::into;
-use super::{Environment, GravityGradient, Kepler, Seen, Sky, SolarPressure};
+use super::{Environment, GravityGradient, Kepler, Sky, SkySight, SolarPressure};
 use crate::attitude::{Vector, vector};
 use crate::body::craft::Bending;
 use crate::motion::turning::{Heated, Surroundings};
@@ -105,7 +105,7 @@ impl Around {
     }
 
     /// What there is to measure of the sky at a time since the start (s).
-    pub fn seen(&self, t: f64) -> Seen {
+    pub fn seen(&self, t: f64) -> SkySight {
         self.sky.seen(t)
     }
 

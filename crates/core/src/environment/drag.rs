@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::into;
-use super::{Kepler, Place};
+use super::{Kepler, OrbitPosition};
 use crate::attitude::{Vector, vector};
 use crate::document::Fault;
 use crate::quantity::{Finite, Positive};
@@ -74,7 +74,7 @@ impl Drag {
     pub(super) fn torque(
         &self,
         orbit: &Kepler,
-        place: &Place,
+        place: &OrbitPosition,
         attitude: &Quaternion<f64>,
         centre: &Vector,
     ) -> Vector {

@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::{Orbit, into};
-use super::{Place, Sky};
+use super::{OrbitPosition, Sky};
 use crate::attitude::{Attitude, Vector};
 use crate::document::Fault;
 use crate::quantity::Positive;
@@ -40,7 +40,12 @@ impl GravityGradient {
     }
 
     /// The direction to the planet in the axes of a body that faces this way, and n² or mu/R³ (1/s²).
-    pub(super) fn pull(&self, t: f64, attitude: &Quaternion<f64>, place: Option<&Place>) -> (Vector, f64) {
+    pub(super) fn pull(
+        &self,
+        t: f64,
+        attitude: &Quaternion<f64>,
+        place: Option<&OrbitPosition>,
+    ) -> (Vector, f64) {
         match (self.orbit_rate, place) {
             (Some(rate), _) => (Orbit::new(rate, self.local).nadir(t, attitude), rate.get() * rate.get()),
             (None, Some(place)) => (into(attitude, &place.local[2]), place.tide),

@@ -54,7 +54,7 @@ fn earth_radius() -> Positive {
 
 /// Where a body is on its orbit.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct OrbitPosition {
     /// Position from the planet's centre in inertial axes (m).
     pub position: Vector,
     /// Velocity in inertial axes (m/s).
@@ -111,7 +111,7 @@ impl Kepler {
     }
 
     /// Where the body is so many seconds after the start.
-    pub fn at(&self, t: f64) -> Place {
+    pub fn at(&self, t: f64) -> OrbitPosition {
         let (a, e, gravity) = (self.semi_major_axis.get(), self.eccentricity.get(), self.gravity.get());
         let anomaly = eccentric(libm::fmod(self.anomaly.get() + self.mean_motion() * t, TAU), e);
         let (sin, cos) = libm::sincos(anomaly);
@@ -125,7 +125,7 @@ impl Kepler {
         let turning = libm::sqrt(gravity * a) * minor / (radius * radius);
         // r r' = sqrt(mu a) e sin E.
         let climb = anomaly_rate * e * sin;
-        Place {
+        OrbitPosition {
             position,
             velocity,
             local: [(-normal).cross(&nadir), -normal, nadir],

@@ -23,10 +23,10 @@ pub use around::Around;
 pub use dipole::Dipole;
 pub use drag::{Drag, Plate};
 pub use gravity_gradient::GravityGradient;
-pub use kepler::{Kepler, Place};
+pub use kepler::{Kepler, OrbitPosition};
 pub use magnetic_field::MagneticField;
 pub(crate) use orbit::into;
-pub use sky::{Seen, Sky};
+pub use sky::{Sky, SkySight};
 pub use solar_pressure::SolarPressure;
 pub use sun::Sun;
 

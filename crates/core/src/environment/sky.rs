@@ -1,6 +1,6 @@
 //! What is around a body wherever it faces: its place on the orbit, the magnetic field there, the Sun, and the planet's shadow.
 
-use super::{Environment, Kepler, MagneticField, Place};
+use super::{Environment, Kepler, MagneticField, OrbitPosition};
 use crate::attitude::Vector;
 use crate::time::{Instant, Span};
 
@@ -17,7 +17,7 @@ pub struct Sky {
 
 /// What there is to measure of the sky at an instant, in inertial axes.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Seen {
+pub struct SkySight {
     /// The magnetic field (T), if there is one.
     pub field: Option<Vector>,
     /// The direction to the Sun, in the light.
@@ -42,7 +42,7 @@ impl Sky {
     }
 
     /// Where the body is so many seconds after the start, if it is on an orbit.
-    pub fn place(&self, t: f64) -> Option<Place> {
+    pub fn place(&self, t: f64) -> Option<OrbitPosition> {
         self.orbit.as_ref().map(|orbit| orbit.at(t))
     }
 
@@ -68,7 +68,7 @@ impl Sky {
     }
 
     /// The magnetic field at a place, in inertial axes (T), at a time since the start (s).
-    pub(super) fn field(&self, place: &Place, t: f64) -> Option<Vector> {
+    pub(super) fn field(&self, place: &OrbitPosition, t: f64) -> Option<Vector> {
         self.field.as_ref().map(|field| field.at(&place.position, t))
     }
 
@@ -84,8 +84,8 @@ impl Sky {
     }
 
     /// What there is to measure at a time since the start (s).
-    pub fn seen(&self, t: f64) -> Seen {
+    pub fn seen(&self, t: f64) -> SkySight {
         let field = self.field.as_ref().and_then(|_| self.field(&self.place(t)?, t));
-        Seen { field, sun: self.sun.filter(|_| self.is_lit(t)) }
+        SkySight { field, sun: self.sun.filter(|_| self.is_lit(t)) }
     }
 }

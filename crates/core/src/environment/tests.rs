@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Quaternion};
 use super::{Around, Environment, Sky};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::body::Spatial;
-use crate::body::spatial::{Rigid, Turn};
+use crate::body::spatial::{Rigid, RigidTurn};
 use crate::motion::turning::{Acting, Flexible, FreeMode, Rotor, Surroundings, Turning};
 use crate::time::{Instant, Span};
 
@@ -30,7 +30,7 @@ fn around(text: &str, inertia: &Matrix3<f64>) -> Around {
 /// A rigid body that moves one way, begun anew every 20 s as a plant does.
 struct One {
     rigid: Rigid,
-    turn: Turn,
+    turn: RigidTurn,
     around: Around,
     t: f64,
 }

@@ -6,7 +6,7 @@ use crate::time::Instant;
 
 /// The record of it.
 #[derive(Clone, Debug, Default)]
-pub struct Given {
+pub struct GivenRecord {
     moments: [f64; 3],
     since: Instant,
     /// When the record began.
@@ -14,7 +14,7 @@ pub struct Given {
     pulses: Vec<Pulse>,
 }
 
-impl Given {
+impl GivenRecord {
     /// Takes over the reduced moments (rad/s²) from now on.
     pub fn change(&mut self, now: Instant, moments: [f64; 3]) {
         let duration = now.since(self.since).seconds();

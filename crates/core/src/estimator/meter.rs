@@ -39,7 +39,7 @@ pub struct Meter {
 
 /// What a window that ends brings.
 #[derive(Clone, Debug)]
-pub struct Measured {
+pub struct WindowMeans {
     /// What was measured.
     pub row: record::Objective,
     /// The step of the adaptation, with the value before it.
@@ -158,7 +158,7 @@ impl Meter {
     }
 
     /// Closes the window that ends now, and lets the adaptation learn.
-    pub fn close(&mut self, now: Instant) -> Measured {
+    pub fn close(&mut self, now: Instant) -> WindowMeans {
         if self.objective == Objective::TorqueMean && self.count == 0 {
             self.hold(now, self.held.0);
         }
@@ -180,7 +180,7 @@ impl Meter {
         let step = self.search.learn(now, self.index, value);
         (self.sum, self.count, self.index) = (0.0, 0, self.index + 1);
         (self.opened, self.closes) = (now, now + self.window);
-        Measured { row, step }
+        WindowMeans { row, step }
     }
 }
 

@@ -33,10 +33,10 @@ use crate::time::{Instant, Span};
 pub use adaptive::Adaptive;
 pub use attitude::AttitudeFilter;
 pub use envelope::{Envelope, EnvelopeMonitor, Form};
-pub use given::Given;
+pub use given::GivenRecord;
 pub use kalman::{FrequencyTracking, Kalman};
-pub use meter::{Beside, Measured, Meter};
-pub use monitor::{Closed, Monitor};
+pub use meter::{Beside, Meter, WindowMeans};
+pub use monitor::{Monitor, WindowEnd};
 pub use rigid_rate::RigidRate;
 pub use searching::Searching;
 
@@ -107,7 +107,7 @@ pub struct Known<'a> {
     /// The design of adaptive observers.
     pub adaptive: Option<&'a adaptive::ObserverDesign>,
     /// What the sensors are to an attitude filter.
-    pub attitude: Option<&'a attitude::Setting>,
+    pub attitude: Option<&'a attitude::AttitudeSetting>,
 }
 
 /// A sample of the sensor, and what is around it.
@@ -176,7 +176,7 @@ pub trait Estimate: fmt::Debug + Send + Sync {
 
     /// The filter of a body with one angle, and the mean reduced moment (rad/s²) since its last sample, if now is one; none before
     /// the first.
-    fn filter(&mut self, _now: Instant) -> Option<(&mut kalman::Filter, Option<f64>)> {
+    fn filter(&mut self, _now: Instant) -> Option<(&mut kalman::KalmanFilter, Option<f64>)> {
         None
     }
 
@@ -202,7 +202,7 @@ impl Clone for Box<dyn Estimate> {
 
 /// The estimator of a scenario at work.
 pub fn start(known: &Known<'_>, seed: Seed) -> Box<dyn Estimate> {
-    if let Some(sampled) = sampled::AtSamples::new(known, seed) {
+    if let Some(sampled) = sampled::SampledEstimators::new(known, seed) {
         return Box::new(sampled);
     }
     match (known.estimator, known.adaptive) {

@@ -23,7 +23,7 @@ pub struct Monitor {
 
 /// What a window that ends brings.
 #[derive(Clone, Debug)]
-pub struct Closed {
+pub struct WindowEnd {
     /// Its mean.
     pub mean: WindowMean,
     /// The step of the adaptation, with the value before it.
@@ -78,14 +78,14 @@ impl Monitor {
     }
 
     /// Closes the window that ends now, while the law had this tunable number, and lets the adaptation learn.
-    pub fn close(&mut self, now: Instant, state: &State, gain: f64) -> Closed {
+    pub fn close(&mut self, now: Instant, state: &State, gain: f64) -> WindowEnd {
         self.observer.advance(now, state);
         let integral = self.observer.close_window();
         self.conclude(now, integral, gain)
     }
 
     /// The same with the integral of the envelope over the window (rad s).
-    pub fn conclude(&mut self, now: Instant, integral: f64, gain: f64) -> Closed {
+    pub fn conclude(&mut self, now: Instant, integral: f64, gain: f64) -> WindowEnd {
         self.mean = integral / self.window.seconds();
         let mean = WindowMean {
             window: self.index,
@@ -98,7 +98,7 @@ impl Monitor {
         self.closes = now + self.window;
         self.index += 1;
         let step = self.search.as_mut().and_then(|search| search.learn(now, mean.window, mean.mean_rad));
-        Closed { mean, step }
+        WindowEnd { mean, step }
     }
 
     /// The adaptation that learns from it.

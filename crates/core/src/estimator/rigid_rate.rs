@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, Given, Taken};
+use super::{Estimate, GivenRecord, Taken};
 use crate::axes::Each;
 use crate::belief::Belief;
 use crate::quantity::{Finite, Fraction};
@@ -30,7 +30,7 @@ pub struct RateFilter {
     rates: Vec<f64>,
     /// What a steady torque changes from sample to sample (rad/s).
     drifts: Vec<f64>,
-    given: Given,
+    given: GivenRecord,
 }
 
 impl RigidRate {
@@ -40,7 +40,7 @@ impl RigidRate {
             correction: self.correction.get(),
             rates: (0..axes).map(|axis| self.rate.about(axis).get()).collect(),
             drifts: vec![0.0; axes],
-            given: Given::default(),
+            given: GivenRecord::default(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Estimators that act at each sample of an axis: what the actuator gave and the sensor measured become a belief of the motion.
 
-use super::kalman::{Filter, Innovation, Prediction, Setting};
+use super::kalman::{Innovation, KalmanFilter, KalmanSetting, Prediction};
 use super::{Estimate, Estimator, Feeds, Known, Taken};
 use crate::belief::{Belief, Dominant, Reads};
 use crate::body::Drift;
@@ -11,7 +11,7 @@ use crate::time::Instant;
 
 /// The estimators of all axes.
 #[derive(Clone, Debug)]
-pub struct AtSamples(Vec<Track>);
+pub struct SampledEstimators(Vec<Track>);
 
 /// The estimator of one axis at work.
 #[derive(Clone, Debug)]
@@ -37,10 +37,10 @@ enum Eye {
     /// An ideal observer.
     Ideal,
     /// A filter.
-    Filter(Box<Filter>),
+    Filter(Box<KalmanFilter>),
 }
 
-impl AtSamples {
+impl SampledEstimators {
     /// The estimators that a scenario asks for, if they act at samples.
     pub fn new(known: &Known<'_>, seed: Seed) -> Option<Self> {
         let axes = 0..known.axes.len();
@@ -48,7 +48,7 @@ impl AtSamples {
     }
 }
 
-impl Estimate for AtSamples {
+impl Estimate for SampledEstimators {
     fn given(&mut self, now: Instant, moments: [f64; 3]) {
         for (track, moment) in self.0.iter_mut().zip(moments) {
             track.given(now, moment);
@@ -85,7 +85,7 @@ impl Estimate for AtSamples {
         self.0[axis].row(now.seconds(), truth)
     }
 
-    fn filter(&mut self, now: Instant) -> Option<(&mut Filter, Option<f64>)> {
+    fn filter(&mut self, now: Instant) -> Option<(&mut KalmanFilter, Option<f64>)> {
         let [track] = &mut self.0[..] else { return None };
         let impulse = track.impulse + track.moment * now.since(track.since).seconds();
         let Eye::Filter(filter) = &mut track.eye else { return None };
@@ -110,7 +110,7 @@ impl Track {
     fn new(known: &Known<'_>, axis: usize, seed: Seed) -> Option<Self> {
         let model = &known.axes[axis];
         let back_emf = known.back_emf;
-        let setting = Setting {
+        let setting = KalmanSetting {
             body: model,
             back_emf: (back_emf.0 / model.inertia.get(), back_emf.1),
             period: known.sampling?.seconds(),
@@ -221,7 +221,7 @@ impl Track {
     }
 
     /// The true state of a filter's components.
-    fn truth(&self, t: f64, state: &State, filter: &Filter) -> Vec<f64> {
+    fn truth(&self, t: f64, state: &State, filter: &KalmanFilter) -> Vec<f64> {
         let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
         let ratio = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         let slope = |mode: usize| self.drift.as_ref().map_or(0.0, |drift| drift.slope(mode, t));

@@ -31,29 +31,29 @@ pub struct Setup {
 
 impl Setup {
     /// The torque at a place of the cycle (N m).
-    pub fn torque(&self, place: Place, side: f64) -> f64 {
+    pub fn torque(&self, place: CyclePlace, side: f64) -> f64 {
         let [strong, weak] = self.torques;
         match place {
-            Place::Coast => side * weak,
-            Place::Push => -side * strong,
-            Place::Brake => side * strong,
+            CyclePlace::Coast => side * weak,
+            CyclePlace::Push => -side * strong,
+            CyclePlace::Brake => side * strong,
         }
     }
 
     /// The guards of a place of the cycle.
-    pub fn guards(&self, place: Place, side: f64) -> Guards {
+    pub fn guards(&self, place: CyclePlace, side: f64) -> Guards {
         match place {
-            Place::Coast => Guards::two(Guard::at_least(self.edge), Guard::at_most(-self.edge)),
-            Place::Push if side > 0.0 => Guards::one(Guard::at_most(self.back)),
-            Place::Push => Guards::one(Guard::at_least(-self.back)),
-            Place::Brake => Guards::NONE,
+            CyclePlace::Coast => Guards::two(Guard::at_least(self.edge), Guard::at_most(-self.edge)),
+            CyclePlace::Push if side > 0.0 => Guards::one(Guard::at_most(self.back)),
+            CyclePlace::Push => Guards::one(Guard::at_least(-self.back)),
+            CyclePlace::Brake => Guards::NONE,
         }
     }
 }
 
 /// A place of the cycle.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum CyclePlace {
     /// In the dead zone, under the weak torque.
     Coast,
     /// Back from the right boundary.
@@ -64,7 +64,7 @@ pub enum Place {
 
 /// One lane at one instant, out of the mirror. Displacements are from 0, not from an equilibrium.
 #[derive(Clone, Debug, Default)]
-pub struct Sight {
+pub struct LaneSight {
     /// Whole seconds and femtoseconds.
     pub at: (u64, u64),
     pub angle: f64,
@@ -79,11 +79,11 @@ pub struct Sight {
 
 /// A run at a departure, as plain numbers, out of the mirror.
 #[derive(Clone, Debug, Default)]
-pub struct Rest {
+pub struct LaneRest {
     /// The motion that begins.
-    pub place: Option<Place>,
+    pub place: Option<CyclePlace>,
     /// The body.
-    pub from: Sight,
+    pub from: LaneSight,
     /// When the last push began, and until when the envelope was followed.
     pub pushed: (u64, u64),
     pub seen: (u64, u64),
@@ -116,15 +116,15 @@ pub trait Crew {
     /// The next run for a lane, whose last run has ended.
     fn next(&mut self, lane: usize) -> Option<Setup>;
     /// Looks for the first trip of a lane that departs here at this place; nothing within the run.
-    fn search(&mut self, lane: usize, place: Place, from: &Sight) -> Option<Searched>;
+    fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight) -> Option<Searched>;
     /// A lane cannot go on here: its run has to be made alone.
     fn give_up(&mut self, lane: usize);
     /// The law has switched to a place.
-    fn switched(&mut self, lane: usize, to: Place, now: &Sight);
+    fn switched(&mut self, lane: usize, to: CyclePlace, now: &LaneSight);
     /// A window has closed, with this integral of the envelope; answers the braking gain from now on.
     fn closed(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64;
     /// On the motion that departed here, at this place, and ends at an instant, the angle may leave the band (rad).
-    fn strays(&mut self, lane: usize, place: Place, from: &Sight, until: (u64, u64));
+    fn strays(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, until: (u64, u64));
     /// Half the width of the band about the goal (rad).
     fn band(&self, lane: usize) -> f64;
     /// Whether its run must not go on.
@@ -132,5 +132,5 @@ pub trait Crew {
         false
     }
     /// Takes a run back at the last departure before its end.
-    fn take_back(&mut self, _rest: Rest) {}
+    fn take_back(&mut self, _rest: LaneRest) {}
 }

@@ -11,11 +11,11 @@ mod fill;
 mod look;
 
 use super::clock::{Clock, nearest_ticks};
-use super::crew::{Crew, Place, Sight};
-use super::track::{self, Track};
+use super::crew::{Crew, CyclePlace, LaneSight};
+use super::track::{self, PhasorTrack};
 use crate::lanes::{Four, Mask, Real};
 use crate::motion::damping::Damping;
-use crate::motion::guess::{Departure, Found, Level, Oscillator, locate};
+use crate::motion::guess::{Departure, GuessLevel, GuessOscillator, GuessedTrip, locate};
 
 /// Most lanes.
 pub const MOST: usize = 16;
@@ -44,8 +44,8 @@ pub struct Flight<R: Real, D> {
     rate: R,
     /// Displacements from 0; the modes about their equilibria at departure, and at the end of the motion.
     totals: Vec<R>,
-    modes: Vec<Oscillator<R, D>>,
-    moved: Vec<Oscillator<R, D>>,
+    modes: Vec<GuessOscillator<R, D>>,
+    moved: Vec<GuessOscillator<R, D>>,
     excitabilities: Vec<R>,
     fastest: R,
     longest: R,
@@ -58,7 +58,7 @@ pub struct Flight<R: Real, D> {
     /// When the push began, and how long it lasted (s).
     pushed: Clock<R>,
     lasted: R,
-    tracks: Vec<Track<R, D>>,
+    tracks: Vec<PhasorTrack<R, D>>,
     /// What follows those of one run side by side.
     four: Four,
     /// Whether any run has windows.
@@ -72,7 +72,7 @@ pub struct Flight<R: Real, D> {
     active: [bool; MOST],
     /// All lanes as plain numbers, and one of them.
     rows: Vec<[f64; MOST]>,
-    sight: Sight,
+    sight: LaneSight,
 }
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
@@ -80,17 +80,17 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     #[inline(always)]
     pub fn fly<C: Crew>(kind: R, modes: usize, tracks: usize, crew: &mut C) {
         let mut flight = Self::new(kind, modes, tracks);
-        let mut place = Place::Brake;
+        let mut place = CyclePlace::Brake;
         // One place at a time, whose code is here once.
         loop {
             place = match place {
-                Place::Coast if !C::TAKES_BACK || flight.active[0] => Place::Push,
-                Place::Push if !C::TAKES_BACK || flight.active[0] => Place::Brake,
+                CyclePlace::Coast if !C::TAKES_BACK || flight.active[0] => CyclePlace::Push,
+                CyclePlace::Push if !C::TAKES_BACK || flight.active[0] => CyclePlace::Brake,
                 _ => {
                     if !flight.fill(crew) {
                         return;
                     }
-                    Place::Coast
+                    CyclePlace::Coast
                 }
             };
             flight.go(crew, place);
@@ -99,30 +99,30 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
 
     /// The motion of one place, and the switching at its end.
     #[inline(always)]
-    fn go<C: Crew>(&mut self, crew: &mut C, place: Place) {
+    fn go<C: Crew>(&mut self, crew: &mut C, place: CyclePlace) {
         let one = self.angle.of(1.0);
         let (moment, towards, level) = match place {
-            Place::Coast => (self.weak, one, self.edge),
-            Place::Push => (-self.strong, -one, self.back),
-            Place::Brake => (self.strong, one, self.edge),
+            CyclePlace::Coast => (self.weak, one, self.edge),
+            CyclePlace::Push => (-self.strong, -one, self.back),
+            CyclePlace::Brake => (self.strong, one, self.edge),
         };
         self.depart(moment);
-        if place == Place::Push {
+        if place == CyclePlace::Push {
             self.pushed = self.now;
         }
-        let (span, right) = if place == Place::Brake {
+        let (span, right) = if place == CyclePlace::Brake {
             (self.brake(crew), one.le(one))
-        } else if place == Place::Push {
-            self.guarded(crew, place, moment, &[Level { angle: level, towards }])
+        } else if place == CyclePlace::Push {
+            self.guarded(crew, place, moment, &[GuessLevel { angle: level, towards }])
         } else {
-            let other = Level { angle: -self.edge, towards: -towards };
-            self.guarded(crew, place, moment, &[Level { angle: level, towards }, other])
+            let other = GuessLevel { angle: -self.edge, towards: -towards };
+            self.guarded(crew, place, moment, &[GuessLevel { angle: level, towards }, other])
         };
-        if place == Place::Push {
+        if place == CyclePlace::Push {
             self.lasted = span.1;
         }
         // Seen in the mirror, what reaches the left boundary reaches the right one.
-        let mirror = if place == Place::Coast { Some(R::select(right, one, -one)) } else { None };
+        let mirror = if place == CyclePlace::Coast { Some(R::select(right, one, -one)) } else { None };
         self.arrive(crew, place, moment, span, mirror);
         if C::TAKES_BACK && !self.active[0] {
             return;
@@ -130,9 +130,9 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         self.tell(
             crew,
             match place {
-                Place::Coast => Place::Push,
-                Place::Push => Place::Brake,
-                Place::Brake => Place::Coast,
+                CyclePlace::Coast => CyclePlace::Push,
+                CyclePlace::Push => CyclePlace::Brake,
+                CyclePlace::Brake => CyclePlace::Coast,
             },
         );
     }
@@ -177,13 +177,13 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     #[inline(always)]
     fn depart(&mut self, moment: R) {
         for index in 0..self.modes.len() {
-            let Oscillator { frequency, quadrature, damping, .. } = self.modes[index];
+            let GuessOscillator { frequency, quadrature, damping, .. } = self.modes[index];
             let equilibrium = self.excitabilities[index] * moment;
             let displacement = self.totals[index] - equilibrium;
             // Number by number: a copy of the whole would wait for what was just written.
             self.modes[index].equilibrium = equilibrium;
             self.modes[index].displacement = displacement;
-            self.moved[index] = Oscillator { frequency, equilibrium, displacement, quadrature, damping };
+            self.moved[index] = GuessOscillator { frequency, equilibrium, displacement, quadrature, damping };
         }
         for track in &mut self.tracks {
             track.command(moment);
@@ -195,14 +195,14 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     fn guarded<C: Crew, const LEVELS: usize>(
         &mut self,
         crew: &mut C,
-        place: Place,
+        place: CyclePlace,
         moment: R,
-        levels: &[Level<R>; LEVELS],
+        levels: &[GuessLevel<R>; LEVELS],
     ) -> ((Clock<R>, R), R::Mask) {
         let (zero, one) = (moment.of(0.0), moment.of(1.0));
         let (fastest, longest) = (self.fastest, self.longest);
         let from = Departure { angle: self.angle, rate: self.rate, moment, fastest, longest };
-        let found: Found<R> = match &mut self.moved[..] {
+        let found: GuessedTrip<R> = match &mut self.moved[..] {
             // So many modes, which is usual, stay in registers.
             [first, second] if !D::IS_DAMPED => {
                 let mut two = [*first, *second];
@@ -246,7 +246,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             }
             span = span.with_lane(lane, parts);
             after = after.with_lane(lane, seconds);
-            if place == Place::Coast {
+            if place == CyclePlace::Coast {
                 first = first.with_lane(lane, if found.right == (side > 0.0) { 1.0 } else { -1.0 });
             }
             for index in 0..found.modes.len() {
@@ -265,7 +265,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     fn arrive<C: Crew>(
         &mut self,
         crew: &mut C,
-        place: Place,
+        place: CyclePlace,
         moment: R,
         (span, h): (Clock<R>, R),
         mirror: Option<R>,
@@ -355,7 +355,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             // As a rule all go on.
             let is_whole = goes_on.all();
             let before = &mut self.tracks[index];
-            *before = if is_whole { advanced } else { Track::select(goes_on, &advanced, before) };
+            *before = if is_whole { advanced } else { PhasorTrack::select(goes_on, &advanced, before) };
         }
     }
 

@@ -15,7 +15,7 @@ use crate::numerics::trig::FARTHEST;
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-pub use crew::{Crew, Place, Rest, Searched, Setup, Sight};
+pub use crew::{Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup};
 pub use kernel::{Flight, MOST};
 
 /// The body and the law of a scenario whose runs can fly.
@@ -110,19 +110,19 @@ pub fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
 }
 
 /// The state of the law at a place of the cycle.
-pub fn phase(place: Place, side: f64) -> Phase {
+pub fn phase(place: CyclePlace, side: f64) -> Phase {
     match (place, side > 0.0) {
-        (Place::Coast, true) => Phase::WeakRight,
-        (Place::Coast, false) => Phase::WeakLeft,
-        (Place::Push, true) => Phase::RightPush,
-        (Place::Push, false) => Phase::LeftPush,
-        (Place::Brake, true) => Phase::RightBrake,
-        (Place::Brake, false) => Phase::LeftBrake,
+        (CyclePlace::Coast, true) => Phase::WeakRight,
+        (CyclePlace::Coast, false) => Phase::WeakLeft,
+        (CyclePlace::Push, true) => Phase::RightPush,
+        (CyclePlace::Push, false) => Phase::LeftPush,
+        (CyclePlace::Brake, true) => Phase::RightBrake,
+        (CyclePlace::Brake, false) => Phase::LeftBrake,
     }
 }
 
 /// Takes a sight over.
-pub fn see(state: &mut State, sight: &Sight) {
+pub fn see(state: &mut State, sight: &LaneSight) {
     (state.rigid_angle, state.rigid_rate) = (sight.angle, sight.rate);
     for (phase, [displacement, quadrature]) in state.modes.iter_mut().zip(&sight.modes) {
         *phase = motion::Phase { displacement: *displacement, quadrature: *quadrature };

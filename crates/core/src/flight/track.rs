@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
-use crate::lanes::{Four, Mask, Real, Work};
+use crate::lanes::{Four, LaneWork, Mask, Real};
 use crate::motion::damping::{Damping, Undamped};
 use crate::numerics::decay::exp;
 use crate::numerics::swing_damped::damped;
@@ -15,7 +15,7 @@ const SIDE: usize = 4;
 
 /// One mode's phasor.
 #[derive(Copy, Clone, Debug)]
-pub struct Track<R, D> {
+pub struct PhasorTrack<R, D> {
     /// Natural frequency (rad/s).
     pub frequency: R,
     /// Static displacement for each unit of moment (s²).
@@ -29,7 +29,7 @@ pub struct Track<R, D> {
     pub damping: D,
 }
 
-impl<R: Real, D: Damping<R>> Track<R, D> {
+impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
     /// Follows the mode to a time (s), over a span (s), and returns the integral of its envelope over it.
     #[inline(always)]
     pub fn advance(&mut self, time: R, span: R) -> R {
@@ -112,7 +112,7 @@ impl<R: Real, D: Damping<R>> Track<R, D> {
 #[inline(always)]
 pub fn follow<R: Real, D: Damping<R>>(
     four: Four,
-    tracks: &mut [Track<R, D>],
+    tracks: &mut [PhasorTrack<R, D>],
     time: R,
     span: R,
     mut integral: R,
@@ -129,12 +129,12 @@ pub fn follow<R: Real, D: Damping<R>>(
 
 /// At most four undamped modes of one run, which advance to a time (s), over a span (s).
 struct Beside<'a, R, D> {
-    tracks: &'a mut [Track<R, D>],
+    tracks: &'a mut [PhasorTrack<R, D>],
     time: f64,
     span: f64,
 }
 
-impl<R: Real, D: Damping<R>> Work for Beside<'_, R, D> {
+impl<R: Real, D: Damping<R>> LaneWork for Beside<'_, R, D> {
     type Output = [f64; SIDE];
 
     #[inline(always)]
@@ -150,7 +150,7 @@ impl<R: Real, D: Damping<R>> Work for Beside<'_, R, D> {
                 kind.load(&each)
             }};
         }
-        let mut all = Track {
+        let mut all = PhasorTrack {
             frequency: load!(frequency),
             excitability: load!(excitability),
             frame: [load!(frame[0]), load!(frame[1])],

@@ -9,13 +9,13 @@ use crate::belief::Belief;
 
 /// What it takes to turn the body as laws command.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Distribution {
+pub struct TorqueDistribution {
     /// The inertia tensor, without the rotors' own about their axes (kg m²); of a body with one angle the first element
     /// alone counts.
     inertia: Matrix3<f64>,
 }
 
-impl Distribution {
+impl TorqueDistribution {
     /// For a body with one angle and this inertia (kg m²).
     pub fn of_one_angle(inertia: f64) -> Self {
         Self { inertia: Matrix3::from_diagonal_element(inertia) }

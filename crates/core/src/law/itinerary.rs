@@ -6,7 +6,7 @@ use super::{Frame, Target};
 use crate::body::Mode;
 use crate::document::Fault;
 use crate::environment::Sky;
-use crate::manoeuvre::{AttitudeTable, Pose, Profile, Slew, Turn};
+use crate::manoeuvre::{AttitudeTable, Pose, Profile, RestToRest, Slew};
 use crate::quantity::Positive;
 use crate::time::Instant;
 
@@ -30,7 +30,7 @@ struct Leg {
 #[derive(Clone, Debug, PartialEq)]
 enum Path {
     Turn(Slew),
-    Shaped(Turn),
+    Shaped(RestToRest),
     Table(AttitudeTable),
 }
 

@@ -43,7 +43,7 @@ pub use attitude::{AttitudeLaw, Integral};
 pub use b_dot::BDot;
 pub use controls::{Controls, Event};
 pub use damping::{ActiveDamping, DampingGuards, DampingRelay};
-pub use distribution::Distribution;
+pub use distribution::TorqueDistribution;
 pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
 pub use frame::Frame;
 pub use itinerary::Itinerary;
@@ -56,7 +56,7 @@ pub use relay::{Relay, Sides};
 pub use stages::{Stage, Stages};
 pub use state_space::{Commands, Of, StateSpace};
 pub use switching_lines::{SwitchingLines, band};
-pub use tunable::{Tunable, Tuned};
+pub use tunable::{Tunable, TunedNumbers};
 
 /// The kinds of law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

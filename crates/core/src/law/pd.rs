@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule, Tunable,
-    Tuned,
+    TunedNumbers,
 };
 use crate::belief::Belief;
 use crate::quantity::{Finite, NonNegative, Positive};
@@ -43,7 +43,7 @@ pub struct Pd {
     active: bool,
     /// Numbers as an adaptation has tuned them.
     #[serde(skip)]
-    tuned: Tuned,
+    tuned: TunedNumbers,
     /// What was fed back at the last sample.
     #[serde(skip)]
     last: Option<f64>,

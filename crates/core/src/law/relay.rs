@@ -8,7 +8,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Rule, Tunable, Tuned};
+use super::{
+    Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Rule, Tunable, TunedNumbers,
+};
 use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::quantity::{Fraction, NonNegative, Positive};
@@ -37,7 +39,7 @@ pub struct Relay {
     pushed_at: Instant,
     /// Numbers as an adaptation has tuned them.
     #[serde(skip)]
-    tuned: Tuned,
+    tuned: TunedNumbers,
 }
 
 /// Which boundaries of the dead zone push back.

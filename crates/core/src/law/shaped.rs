@@ -5,7 +5,7 @@ use nalgebra::Quaternion;
 use super::Target;
 use crate::body::Mode;
 use crate::document::Fault;
-use crate::manoeuvre::{Profile, Slew, Task, Turn, shaped};
+use crate::manoeuvre::{Profile, RestToRest, Slew, Task, shaped};
 use crate::quantity::Positive;
 
 impl Target {
@@ -18,8 +18,8 @@ impl Target {
     ///
     /// # Errors
     /// The key that does not fit the modes, and why.
-    pub(super) fn turn(&self, ways: [Quaternion<f64>; 2], modes: &[Mode]) -> Result<Turn, Fault> {
-        Turn::new(ways, |angle| {
+    pub(super) fn turn(&self, ways: [Quaternion<f64>; 2], modes: &[Mode]) -> Result<RestToRest, Fault> {
+        RestToRest::new(ways, |angle| {
             let plan = if let (Some(command), Some(duration)) = (&self.command, self.duration) {
                 let task = Task { time: duration.get(), impulse: 0.0, travel: angle };
                 let planned = command.waveform(&task, &command.zeros(modes)?);
@@ -77,7 +77,7 @@ mod tests {
 
     /// What is left of a mode after a turn, in parts of what one push with its largest acceleration leaves: by steps of Simpson's
     /// rule over the poses of the turn, which know nothing of waveforms.
-    fn left(turn: &Turn, mode: &Mode, axis: Vector) -> f64 {
+    fn left(turn: &RestToRest, mode: &Mode, axis: Vector) -> f64 {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
         let damped = w * libm::sqrt(1.0 - zeta * zeta);
         let end = turn.duration();

@@ -3,8 +3,8 @@
 
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
-use super::{AttitudeLaw, Authority, Cause, Control, Distribution, Goal, Itinerary, Rule};
-use crate::actuator::{Actuate, PulseWidth, Setting, Spinning, Wheels};
+use super::{AttitudeLaw, Authority, Cause, Control, Goal, Itinerary, Rule, TorqueDistribution};
+use crate::actuator::{Actuate, PulseWidth, Spinning, TorquerSetting, Wheels};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::belief::Belief;
 use crate::body::Wrench;
@@ -45,7 +45,7 @@ fn wheels(speed: f64) -> Spinning {
          speeds = [{speed}, -{speed}, {speed}, -{speed}]"
     ))
     .unwrap();
-    let setting = |axis| Setting {
+    let setting = |axis| TorquerSetting {
         axis,
         inertia: 1.0,
         planned_inertia: 1.0,
@@ -99,7 +99,7 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
         threshold: 0.0,
     };
     let mut laws: [Box<dyn Control>; 3] = [0, 1, 2].map(|_| law.start(&authority));
-    let distribution = Distribution::of_three_axes(craft.inertia);
+    let distribution = TorqueDistribution::of_three_axes(craft.inertia);
     let table = rows(table);
     let mut met = 0;
     for k in 0..=920 {

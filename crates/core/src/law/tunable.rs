@@ -73,9 +73,9 @@ impl Tunable {
 
 /// The numbers of a law at work as they have been tuned, the last first.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tuned(Vec<(&'static str, f64)>);
+pub struct TunedNumbers(Vec<(&'static str, f64)>);
 
-impl Tuned {
+impl TunedNumbers {
     /// A number, which has another value before it is tuned.
     pub fn of(&self, key: &str, written: f64) -> f64 {
         self.0.iter().find(|(known, _)| *known == key).map_or(written, |(_, value)| *value)

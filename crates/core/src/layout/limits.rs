@@ -1,7 +1,7 @@
 //! Limits of plots whose values are too small for the axes that viewers choose by themselves.
 
 use super::Layout;
-use super::panel::{Panel, topic};
+use super::panel::{LayoutPanel, topic};
 use crate::record::{Column, Columns, Log, LogError};
 
 /// The steps of a viewer's vertical axis are of 0.001 at least, and so its ends: below some of them, a plot is flat.
@@ -15,7 +15,7 @@ impl Layout {
         let mut fitted = self.clone();
         let panels = || self.tabs.iter().flat_map(|tab| &tab.panels);
         let mut topics: Vec<&str> =
-            panels().flat_map(Panel::drawn).map(topic).filter(|name| name.starts_with('/')).collect();
+            panels().flat_map(LayoutPanel::drawn).map(topic).filter(|name| name.starts_with('/')).collect();
         topics.sort_unstable();
         topics.dedup();
         let tables = log.tables(&topics)?;

@@ -22,7 +22,7 @@ use crate::record::{Detail, Summary};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-use panel::Panel;
+use panel::LayoutPanel;
 
 /// Above so many panels a layout has tabs.
 const MOST_PANELS: usize = 8;
@@ -39,7 +39,7 @@ pub struct Layout {
 #[derive(Clone, Debug, PartialEq)]
 struct Tab {
     title: &'static str,
-    panels: Vec<Panel>,
+    panels: Vec<LayoutPanel>,
 }
 
 impl Layout {
@@ -98,9 +98,9 @@ impl Layout {
 }
 
 /// The metrics, page by page.
-fn metrics(scenario: &Scenario) -> impl Iterator<Item = Panel> {
+fn metrics(scenario: &Scenario) -> impl Iterator<Item = LayoutPanel> {
     let pages = Gather::new(scenario).finish(scenario).0.len().div_ceil(Summary::PAGE);
-    (0..pages).map(move |page| Panel::metrics(page, pages))
+    (0..pages).map(move |page| LayoutPanel::metrics(page, pages))
 }
 
 /// The topics of a complete log of a scenario, with the least detail that has each.

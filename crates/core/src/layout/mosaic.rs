@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use super::panel::Panel;
+use super::panel::LayoutPanel;
 
 /// The mosaic of panels, the first of them at the upper left, down the first column and then the second.
-pub fn of(panels: &[&Panel]) -> Value {
+pub fn of(panels: &[&LayoutPanel]) -> Value {
     let total: u32 = panels.iter().map(|panel| panel.weight()).sum();
     if panels.len() <= 2 {
         return column(panels);
@@ -21,7 +21,7 @@ pub fn of(panels: &[&Panel]) -> Value {
 }
 
 /// Panels one below the other.
-fn column(panels: &[&Panel]) -> Value {
+fn column(panels: &[&LayoutPanel]) -> Value {
     let Some((first, rest)) = panels.split_first() else { return Value::Null };
     if rest.is_empty() {
         return json!(first.id());

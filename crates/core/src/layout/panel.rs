@@ -11,7 +11,7 @@ pub const MOST_LINES: usize = 6;
 
 /// A panel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
+pub struct LayoutPanel {
     name: String,
     title: String,
     shows: Shows,
@@ -23,11 +23,11 @@ pub struct Panel {
 #[derive(Clone, Debug, PartialEq)]
 enum Shows {
     /// Values over time.
-    Plot(Vec<Line>),
+    Plot(Vec<PlotLine>),
     /// Values over another value.
-    Plane(Vec<Line>, String),
+    Plane(Vec<PlotLine>, String),
     /// States over time.
-    States(Vec<Line>),
+    States(Vec<PlotLine>),
     /// The last message of a topic.
     Message(String),
     /// Rows of the last message of a topic: viewers show ten.
@@ -40,7 +40,7 @@ enum Shows {
 
 /// A line of a plot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct PlotLine {
     path: String,
     label: String,
     /// Points that are not joined.
@@ -51,11 +51,11 @@ pub struct Line {
 }
 
 /// A line of a value, with its label.
-pub fn line(path: impl Into<String>, label: impl Into<String>) -> Line {
-    Line { path: path.into(), label: label.into(), dots: false, thick: false, color: None }
+pub fn line(path: impl Into<String>, label: impl Into<String>) -> PlotLine {
+    PlotLine { path: path.into(), label: label.into(), dots: false, thick: false, color: None }
 }
 
-impl Line {
+impl PlotLine {
     /// The same as points.
     pub fn dots(self) -> Self {
         Self { dots: true, ..self }
@@ -82,23 +82,23 @@ pub fn topic(path: &str) -> &str {
     path.split_once('.').map_or(path, |(topic, _)| topic)
 }
 
-impl Panel {
+impl LayoutPanel {
     fn new(name: impl Into<String>, title: impl Into<String>, shows: Shows) -> Self {
         Self { name: name.into(), title: title.into(), shows, limits: None }
     }
 
     /// Values over time.
-    pub fn plot(name: &'static str, title: impl Into<String>, lines: Vec<Line>) -> Self {
+    pub fn plot(name: &'static str, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
         Self::new(name, title, Shows::Plot(lines))
     }
 
     /// Values over another value. Its topic must not be that of the values, or viewers show nothing.
-    pub fn plane(name: &'static str, title: impl Into<String>, x: &str, lines: Vec<Line>) -> Self {
+    pub fn plane(name: &'static str, title: impl Into<String>, x: &str, lines: Vec<PlotLine>) -> Self {
         Self::new(name, title, Shows::Plane(lines, x.to_owned()))
     }
 
     /// States over time.
-    pub fn states(name: &'static str, title: impl Into<String>, lines: Vec<Line>) -> Self {
+    pub fn states(name: &'static str, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
         Self::new(name, title, Shows::States(lines))
     }
 
@@ -161,7 +161,7 @@ impl Panel {
 
     /// What is left of it where a log has these topics, if anything.
     pub fn with_topics(&self, has: &impl Fn(&str) -> bool) -> Option<Self> {
-        let kept = |lines: &[Line]| -> Option<Vec<Line>> {
+        let kept = |lines: &[PlotLine]| -> Option<Vec<PlotLine>> {
             // Horizontal lines alone show nothing.
             lines.iter().any(|line| line.topic().is_some_and(has)).then_some(())?;
             Some(lines.iter().filter(|line| line.topic().is_none_or(has)).cloned().collect())
@@ -218,8 +218,8 @@ fn object(value: Value) -> Map<String, Value> {
     }
 }
 
-fn plot(lines: &[Line], x_axis: Value, synced: bool) -> Map<String, Value> {
-    let path = |(index, line): (usize, &Line)| {
+fn plot(lines: &[PlotLine], x_axis: Value, synced: bool) -> Map<String, Value> {
+    let path = |(index, line): (usize, &PlotLine)| {
         let limit = line.topic().is_none();
         json!({
             "value": line.path,
@@ -247,8 +247,8 @@ fn plot(lines: &[Line], x_axis: Value, synced: bool) -> Map<String, Value> {
     config
 }
 
-fn states(lines: &[Line]) -> Map<String, Value> {
-    let path = |line: &Line| json!({ "value": line.path, "label": line.label, "enabled": true, "timestampMethod": "receiveTime" });
+fn states(lines: &[PlotLine]) -> Map<String, Value> {
+    let path = |line: &PlotLine| json!({ "value": line.path, "label": line.label, "enabled": true, "timestampMethod": "receiveTime" });
     let paths: Vec<Value> = lines.iter().map(path).collect();
     object(json!({ "isSynced": true, "showPoints": true, "paths": paths }))
 }

@@ -1,6 +1,6 @@
 //! The panels of a body with one angle.
 
-use super::panel::{Line, MOST_LINES, Panel, line};
+use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
 use super::{Tab, metrics};
 use crate::body::{Output, Planar};
 use crate::estimator::Estimator;
@@ -26,7 +26,8 @@ pub fn feeds_back(scenario: &Scenario) -> bool {
 
 /// The tabs of a scenario.
 pub fn tabs(scenario: &Scenario, body: &Planar) -> Vec<Tab> {
-    let mut log = vec![Panel::log(), Panel::message("arrival", "End of the manoeuvre", "/arrival")];
+    let mut log =
+        vec![LayoutPanel::log(), LayoutPanel::message("arrival", "End of the manoeuvre", "/arrival")];
     log.extend(metrics(scenario));
     vec![
         Tab { title: "Motion", panels: motion(scenario, body) },
@@ -35,17 +36,17 @@ pub fn tabs(scenario: &Scenario, body: &Planar) -> Vec<Tab> {
     ]
 }
 
-fn motion(scenario: &Scenario, body: &Planar) -> Vec<Panel> {
+fn motion(scenario: &Scenario, body: &Planar) -> Vec<LayoutPanel> {
     let relay = scenario.law.switches();
-    let mut panels = vec![Panel::scene(Extent::of(scenario))];
+    let mut panels = vec![LayoutPanel::scene(Extent::of(scenario))];
     if relay {
         let title = "Phase plane: angle (rad) and rate (rad/s)";
         let lines = vec![line("/rate.rate_rad_s", "motion")];
-        panels.push(Panel::plane("phase", title, "/attitude.angle_rad", lines));
+        panels.push(LayoutPanel::plane("phase", title, "/attitude.angle_rad", lines));
     }
     panels.extend([
-        Panel::plot("angle", "Angle (rad)", angles(scenario)),
-        Panel::plot(
+        LayoutPanel::plot("angle", "Angle (rad)", angles(scenario)),
+        LayoutPanel::plot(
             "rate",
             "Rate (rad/s)",
             vec![
@@ -54,17 +55,17 @@ fn motion(scenario: &Scenario, body: &Planar) -> Vec<Panel> {
                 line("/goal.rate_rad_s", "goal"),
             ],
         ),
-        Panel::plot("modes", "Elastic modes (rad)", modes(body)),
-        Panel::plot("outputs", "Observed coordinates", outputs(body)),
-        Panel::plot("torque", torque_title(body), torques(scenario)),
-        Panel::plot("wheel", "Wheel speed (rad/s)", vec![line("/wheel.speed_rad_s", "speed")]),
+        LayoutPanel::plot("modes", "Elastic modes (rad)", modes(body)),
+        LayoutPanel::plot("outputs", "Observed coordinates", outputs(body)),
+        LayoutPanel::plot("torque", torque_title(body), torques(scenario)),
+        LayoutPanel::plot("wheel", "Wheel speed (rad/s)", vec![line("/wheel.speed_rad_s", "speed")]),
     ]);
     let state = if relay { "/command.state" } else { "/law.state" };
-    panels.push(Panel::states("law", "State of the law", vec![line(state, "law")]));
+    panels.push(LayoutPanel::states("law", "State of the law", vec![line(state, "law")]));
     panels
 }
 
-fn angles(scenario: &Scenario) -> Vec<Line> {
+fn angles(scenario: &Scenario) -> Vec<PlotLine> {
     let mut lines = vec![line("/attitude.angle_rad", "hub"), line("/attitude.rigid_rad", "rigid")];
     if scenario.study.sampling.is_some() {
         lines.push(line("/attitude.measured_rad", "measured"));
@@ -79,7 +80,7 @@ fn angles(scenario: &Scenario) -> Vec<Line> {
     lines
 }
 
-fn modes(body: &Planar) -> Vec<Line> {
+fn modes(body: &Planar) -> Vec<PlotLine> {
     let count = body.modes.len();
     let each = (0..count.min(MOST_LINES))
         .map(|mode| line(format!("/modes.modes[{mode}].displacement_rad"), format!("mode {mode}")));
@@ -87,7 +88,7 @@ fn modes(body: &Planar) -> Vec<Line> {
     sum.into_iter().chain(each).collect()
 }
 
-fn outputs(body: &Planar) -> Vec<Line> {
+fn outputs(body: &Planar) -> Vec<PlotLine> {
     let outputs = body.outputs.iter().enumerate().take(MOST_LINES);
     let of = |(index, output): (usize, &Output)| {
         line(format!("/outputs.outputs[{index}].value"), format!("{} ({})", output.name, output.unit))
@@ -95,7 +96,7 @@ fn outputs(body: &Planar) -> Vec<Line> {
     outputs.map(of).collect()
 }
 
-fn torques(scenario: &Scenario) -> Vec<Line> {
+fn torques(scenario: &Scenario) -> Vec<PlotLine> {
     if !scenario.tells_torque() {
         return vec![line("/command.torque_nm", "torque").dots(), line("/law.torque_nm", "sampled")];
     }
@@ -117,8 +118,8 @@ fn torque_title(body: &Planar) -> String {
     format!("{}{rest} ({unit})", first.to_uppercase())
 }
 
-fn estimator(scenario: &Scenario, body: &Planar) -> Vec<Panel> {
-    let mut panels = vec![Panel::plot(
+fn estimator(scenario: &Scenario, body: &Planar) -> Vec<LayoutPanel> {
+    let mut panels = vec![LayoutPanel::plot(
         "envelope",
         "Envelope of the elastic modes (rad)",
         vec![
@@ -129,12 +130,12 @@ fn estimator(scenario: &Scenario, body: &Planar) -> Vec<Panel> {
     )];
     if scenario.law.switches() {
         let lines = vec![line("/envelope_mean.gain", "in each window").thick(), line("/law.gain", "sampled")];
-        panels.push(Panel::plot("gain", "Braking gain k_t", lines));
+        panels.push(LayoutPanel::plot("gain", "Braking gain k_t", lines));
     }
     panels.extend(adaptation(scenario));
     let plot = |name, title: &str, lines: &[(&str, &str)]| {
         let lines = lines.iter().map(|(field, label)| line(format!("/estimator.{field}"), *label));
-        Panel::plot(name, title, lines.collect())
+        LayoutPanel::plot(name, title, lines.collect())
     };
     panels.extend([
         plot(
@@ -143,9 +144,9 @@ fn estimator(scenario: &Scenario, body: &Planar) -> Vec<Panel> {
             &[("frequency_rad_s", "as the law reads it"), ("true_frequency_rad_s", "true")],
         ),
         plot("deviation", "Its standard deviation (rad/s)", &[("frequency_sd_rad_s", "standard deviation")]),
-        Panel::plot("dominant", "Dominant mode (rad)", dominant(scenario, body)),
+        LayoutPanel::plot("dominant", "Dominant mode (rad)", dominant(scenario, body)),
         plot("nis", "NIS and NEES", &[("nis", "NIS"), ("nees", "NEES")]),
-        Panel::states(
+        LayoutPanel::states(
             "lock",
             "Lock and gate",
             vec![
@@ -159,9 +160,9 @@ fn estimator(scenario: &Scenario, body: &Planar) -> Vec<Panel> {
 }
 
 /// What an adaptation decides; its objective, unless that is the envelope, and the number that it tunes.
-pub fn adaptation(scenario: &Scenario) -> Vec<Panel> {
+pub fn adaptation(scenario: &Scenario) -> Vec<LayoutPanel> {
     let search =
-        Panel::states("search", "Search for the gain", vec![line("/adaptation.decision", "decision")]);
+        LayoutPanel::states("search", "Search for the gain", vec![line("/adaptation.decision", "decision")]);
     let Some(adaptation) = scenario.adaptation.as_ref().filter(|of| of.window().is_some()) else {
         return vec![search];
     };
@@ -170,8 +171,8 @@ pub fn adaptation(scenario: &Scenario) -> Vec<Panel> {
     let title =
         if unit.is_empty() { format!("Objective: {name}") } else { format!("Objective: {name} ({unit})") };
     vec![
-        Panel::plot("objective", &title, vec![line("/objective.value", "in each window")]),
-        Panel::plot(
+        LayoutPanel::plot("objective", &title, vec![line("/objective.value", "in each window")]),
+        LayoutPanel::plot(
             "tuned",
             format!("Tuned number: {tunes}"),
             vec![line("/objective.gain", "in each window")],
@@ -181,7 +182,7 @@ pub fn adaptation(scenario: &Scenario) -> Vec<Panel> {
 }
 
 /// The dominant mode, as the law reads it and as it really is.
-fn dominant(scenario: &Scenario, body: &Planar) -> Vec<Line> {
+fn dominant(scenario: &Scenario, body: &Planar) -> Vec<PlotLine> {
     let mut lines = vec![line("/estimator.displacement_rad", "as the law reads it")];
     let excitability = |mode: usize| body.modes[mode].excitability().abs();
     let modes = 0..body.modes.len();

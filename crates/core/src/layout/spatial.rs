@@ -1,6 +1,6 @@
 //! The panels of a body with three axes.
 
-use super::panel::{Line, MOST_LINES, Panel, line};
+use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
 use super::planar::adaptation;
 use super::{Tab, metrics};
 use crate::attitude::AXES;
@@ -12,31 +12,39 @@ use crate::scene::Extent;
 /// The tabs of a scenario.
 pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     let mut motion = vec![
-        Panel::scene(Extent::of(scenario)),
-        Panel::plot("error", "Beyond the target (rad)", errors(scenario)),
-        Panel::plot(
+        LayoutPanel::scene(Extent::of(scenario)),
+        LayoutPanel::plot("error", "Beyond the target (rad)", errors(scenario)),
+        LayoutPanel::plot(
             "rigid",
             "Rigid rates (rad/s)",
             rates(&[("rigid_rad_s", ""), ("believed_rad_s", ", believed")]),
         ),
-        Panel::plot("elastic", "Elastic rates at the sensor (rad/s)", rates(&[("elastic_rad_s", "")])),
+        LayoutPanel::plot("elastic", "Elastic rates at the sensor (rad/s)", rates(&[("elastic_rad_s", "")])),
     ];
     if !scenario.study.jets_alone {
-        motion.push(Panel::plot("torques", "Torques of the actuator (N m)", torques("applied_nm")));
+        motion.push(LayoutPanel::plot("torques", "Torques of the actuator (N m)", torques("applied_nm")));
     }
     if scenario.study.fires() {
         let pulses = AXES.iter().map(|axis| line(format!("/jets.{axis}_on_s"), *axis).dots());
-        motion.push(Panel::plot("jets", "Pulses of the jets (s)", pulses.collect()));
-        motion.push(Panel::plot("fuel", "Propellant (kg)", vec![line("/jets.fuel_kg", "used")]));
+        motion.push(LayoutPanel::plot("jets", "Pulses of the jets (s)", pulses.collect()));
+        motion.push(LayoutPanel::plot("fuel", "Propellant (kg)", vec![line("/jets.fuel_kg", "used")]));
     }
     if scenario.environment.is_some() {
-        motion.push(Panel::plot("around", "Torques of the surroundings (N m)", torques("disturbance_nm")));
+        motion.push(LayoutPanel::plot(
+            "around",
+            "Torques of the surroundings (N m)",
+            torques("disturbance_nm"),
+        ));
     }
     if scenario.environment.as_ref().is_some_and(|around| around.magnetic_field.is_some()) {
-        motion.push(Panel::plot("field", "Magnetic field (T)", along("/orbit", "field_t")));
+        motion.push(LayoutPanel::plot("field", "Magnetic field (T)", along("/orbit", "field_t")));
     }
     if scenario.actuator.magnetorquers().is_some() {
-        motion.push(Panel::plot("moments", "Magnetic moments (A m²)", along("/magnetorquers", "moment_am2")));
+        motion.push(LayoutPanel::plot(
+            "moments",
+            "Magnetic moments (A m²)",
+            along("/magnetorquers", "moment_am2"),
+        ));
     }
     for (index, accelerometer) in scenario.sensor.accelerometers().take(1) {
         let (count, name) = (accelerometer.axis_count(), &scenario.study.sensed_at[index]);
@@ -44,41 +52,41 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
             line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {}", axis + 1))
         };
         let title = format!("Specific force at {name} (m/s²)");
-        motion.push(Panel::plot("accelerations", &title, (0..count).map(axis).collect()));
+        motion.push(LayoutPanel::plot("accelerations", &title, (0..count).map(axis).collect()));
     }
     if scenario.study.wheels.is_some() {
-        motion.push(Panel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
+        motion.push(LayoutPanel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }
     motion.extend(gimbals(scenario));
     if scenario.study.moving.is_some() {
         let along = ["x", "y", "z"].map(|axis| line(format!("/position.{axis}_m"), axis));
-        motion.push(Panel::plot("position", "Position (m)", along.into()));
+        motion.push(LayoutPanel::plot("position", "Position (m)", along.into()));
     }
     if scenario.study.bearings.iter().any(Bearing::grips) {
-        let each = |field: &str| -> Vec<Line> {
+        let each = |field: &str| -> Vec<PlotLine> {
             let of = |wheel: usize| {
                 line(format!("/bearings.wheels[{wheel}].{field}"), format!("wheel {}", wheel + 1))
             };
             (0..scenario.study.bearings.len().min(MOST_LINES)).map(of).collect()
         };
-        motion.push(Panel::plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
-        motion.push(Panel::states("sliding", "Which way wheels turn", each("sliding")));
+        motion.push(LayoutPanel::plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
+        motion.push(LayoutPanel::states("sliding", "Which way wheels turn", each("sliding")));
     }
     if let Some(drives) = &scenario.study.drives {
         let of =
             |drive: usize| line(format!("/drives.drives[{drive}].angle_rad"), format!("drive {}", drive + 1));
         let angles = (0..drives.courses.count().min(MOST_LINES)).map(of).collect();
-        motion.push(Panel::plot("drives", "Angles of the drives (rad)", angles));
+        motion.push(LayoutPanel::plot("drives", "Angles of the drives (rad)", angles));
     }
-    let mut elastic = vec![Panel::plot("energy", "Elastic energy (J)", energies(scenario, body))];
+    let mut elastic = vec![LayoutPanel::plot("energy", "Elastic energy (J)", energies(scenario, body))];
     if scenario.study.drives.is_some() {
         let of = |mode: usize| line(format!("/drives.modes[{mode}].frequency_rad_s"), format!("mode {mode}"));
         let each = (0..body.modes.len().min(MOST_LINES)).map(of).collect();
-        elastic.push(Panel::plot("drifting", "Natural frequencies (rad/s)", each));
+        elastic.push(LayoutPanel::plot("drifting", "Natural frequencies (rad/s)", each));
     }
     if let Some(plan) = &scenario.study.adaptive {
         let tracked: Vec<usize> = plan.axes.iter().map(|design| design.modes.len()).collect();
-        elastic.push(Panel::plot(
+        elastic.push(LayoutPanel::plot(
             "frequencies",
             "Natural frequencies, estimated and true (rad/s)",
             frequencies(&tracked),
@@ -86,7 +94,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     }
     let channels = |field: &str| {
         let channel = |(index, axis)| line(format!("/tracking.channels[{index}].{field}"), axis);
-        AXES.into_iter().enumerate().map(channel).collect::<Vec<Line>>()
+        AXES.into_iter().enumerate().map(channel).collect::<Vec<PlotLine>>()
     };
     if scenario.study.authorities.iter().any(|authority| authority.threshold > 0.0) {
         let mut lines = channels("acted_on_rad_s");
@@ -96,19 +104,19 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
                 lines.push(line(value.to_string(), format!("{sign} threshold of {axis}")));
             }
         }
-        elastic.push(Panel::plot("damping", "Elastic rates that damping acts on (rad/s)", lines));
-        elastic.push(Panel::states("latched", "Active damping: the threshold", channels("latched")));
-        elastic.push(Panel::states("resting", "Active damping: the watchdog", channels("resting")));
+        elastic.push(LayoutPanel::plot("damping", "Elastic rates that damping acts on (rad/s)", lines));
+        elastic.push(LayoutPanel::states("latched", "Active damping: the threshold", channels("latched")));
+        elastic.push(LayoutPanel::states("resting", "Active damping: the watchdog", channels("resting")));
     }
     elastic.extend(envelope(scenario));
     if scenario.study.adaptive.is_some() {
-        elastic.push(Panel::states("trusted", "Observers", channels("trusted")));
+        elastic.push(LayoutPanel::states("trusted", "Observers", channels("trusted")));
     }
     together(scenario, motion, elastic)
 }
 
 /// The panels of control moment gyros, if there are any.
-fn gimbals(scenario: &Scenario) -> Vec<Panel> {
+fn gimbals(scenario: &Scenario) -> Vec<LayoutPanel> {
     if scenario.study.gimbals.is_empty() {
         return Vec::new();
     }
@@ -118,13 +126,13 @@ fn gimbals(scenario: &Scenario) -> Vec<Panel> {
     let angles = (0..scenario.study.gimbals.len().min(MOST_LINES)).map(of).collect();
     let measure = vec![line("/control_moment_gyros.singularity", "measure")];
     vec![
-        Panel::plot("gimbals", "Angles of the gimbals (rad)", angles),
-        Panel::plot("singularity", "Singularity measure of the gimbals", measure),
+        LayoutPanel::plot("gimbals", "Angles of the gimbals (rad)", angles),
+        LayoutPanel::plot("singularity", "Singularity measure of the gimbals", measure),
     ]
 }
 
 /// The tabs, with the panels of the motion and of the modes.
-fn together(scenario: &Scenario, motion: Vec<Panel>, elastic: Vec<Panel>) -> Vec<Tab> {
+fn together(scenario: &Scenario, motion: Vec<LayoutPanel>, elastic: Vec<LayoutPanel>) -> Vec<Tab> {
     let mut tabs = vec![Tab { title: "Motion", panels: motion }];
     if scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some()) {
         tabs.push(Tab { title: "Attitude filter", panels: filter() });
@@ -138,24 +146,24 @@ fn together(scenario: &Scenario, motion: Vec<Panel>, elastic: Vec<Panel>) -> Vec
 }
 
 /// The journal, and the metrics.
-fn log(scenario: &Scenario) -> Vec<Panel> {
-    let mut log = vec![Panel::log()];
+fn log(scenario: &Scenario) -> Vec<LayoutPanel> {
+    let mut log = vec![LayoutPanel::log()];
     log.extend(metrics(scenario));
     log
 }
 
 /// The envelope with its window means, if there is a monitor.
-fn envelope(scenario: &Scenario) -> Option<Panel> {
+fn envelope(scenario: &Scenario) -> Option<LayoutPanel> {
     scenario.estimator.as_ref()?.envelope()?;
     let lines = vec![
         line("/envelope_mean.mean_rad", "window mean").thick(),
         line("/envelope.envelope_rad", "envelope"),
     ];
-    Some(Panel::plot("envelope", "Envelope of the elastic modes (rad)", lines))
+    Some(LayoutPanel::plot("envelope", "Envelope of the elastic modes (rad)", lines))
 }
 
 /// Errors of an attitude filter beside its own standard deviations, and whether they fit.
-fn filter() -> Vec<Panel> {
+fn filter() -> Vec<LayoutPanel> {
     let beside = |field: &str, deviation: &str| {
         let axis = |(index, axis): (usize, &str)| {
             let at = |field: &str| format!("/attitude_filter.axes[{index}].{field}");
@@ -169,25 +177,29 @@ fn filter() -> Vec<Panel> {
     let consistency =
         vec![line("/attitude_filter.nees", "NEES, about 6"), line("/attitude_filter.nis", "NIS, about 3")];
     vec![
-        Panel::plot("angles", "Errors of the attitude (rad)", beside("angle_error_rad", "angle_sd_rad")),
-        Panel::plot(
+        LayoutPanel::plot(
+            "angles",
+            "Errors of the attitude (rad)",
+            beside("angle_error_rad", "angle_sd_rad"),
+        ),
+        LayoutPanel::plot(
             "biases",
             "Errors of the gyro's bias (rad/s)",
             beside("bias_error_rad_s", "bias_sd_rad_s"),
         ),
-        Panel::plot("consistency", "Consistency", consistency),
+        LayoutPanel::plot("consistency", "Consistency", consistency),
     ]
 }
 
 /// The speed of each wheel.
-fn wheels(scenario: &Scenario) -> Vec<Line> {
+fn wheels(scenario: &Scenario) -> Vec<PlotLine> {
     let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len()).min(MOST_LINES);
     (0..count)
         .map(|wheel| line(format!("/wheels.wheels[{wheel}].speed_rad_s"), format!("wheel {}", wheel + 1)))
         .collect()
 }
 
-fn errors(scenario: &Scenario) -> Vec<Line> {
+fn errors(scenario: &Scenario) -> Vec<PlotLine> {
     let zone = scenario.study.zones(scenario)[0];
     let errors = AXES.iter().map(|axis| line(format!("/pointing.{axis}_error_rad"), *axis));
     let ends =
@@ -195,18 +207,18 @@ fn errors(scenario: &Scenario) -> Vec<Line> {
     errors.chain(ends.map(|(label, value)| line(value.to_string(), label))).collect()
 }
 
-fn torques(field: &str) -> Vec<Line> {
+fn torques(field: &str) -> Vec<PlotLine> {
     let axis = |(index, axis)| line(format!("/torques.axes[{index}].{field}"), axis);
     AXES.into_iter().enumerate().map(axis).collect()
 }
 
 /// A field of a topic along each axis.
-fn along(topic: &str, field: &str) -> Vec<Line> {
+fn along(topic: &str, field: &str) -> Vec<PlotLine> {
     let axis = |(index, axis)| line(format!("{topic}.axes[{index}].{field}"), axis);
     ["x", "y", "z"].into_iter().enumerate().map(axis).collect()
 }
 
-fn rates(fields: &[(&str, &str)]) -> Vec<Line> {
+fn rates(fields: &[(&str, &str)]) -> Vec<PlotLine> {
     let of = |(field, remark): &(&str, &str)| {
         let axis = |(index, axis)| line(format!("/rates.axes[{index}].{field}"), format!("{axis}{remark}"));
         AXES.into_iter().enumerate().map(axis).collect::<Vec<_>>()
@@ -215,7 +227,7 @@ fn rates(fields: &[(&str, &str)]) -> Vec<Line> {
 }
 
 /// The energy of all modes, and of those that the jets excite most.
-fn energies(scenario: &Scenario, body: &Spatial) -> Vec<Line> {
+fn energies(scenario: &Scenario, body: &Spatial) -> Vec<PlotLine> {
     let groups = || scenario.study.groups.iter().flatten().flatten();
     let push = |mode: usize| groups().map(|group| group.push.forces[mode].abs()).fold(0.0, f64::max);
     let excited = |mode: &usize| push(*mode) / body.modes[*mode].frequency.get();
@@ -230,7 +242,7 @@ fn energies(scenario: &Scenario, body: &Spatial) -> Vec<Line> {
 }
 
 /// The frequencies of the first tracked modes, each beside what it really is.
-fn frequencies(tracked: &[usize]) -> Vec<Line> {
+fn frequencies(tracked: &[usize]) -> Vec<PlotLine> {
     let named = AXES.into_iter().zip(tracked).flat_map(|(axis, count)| (0..*count).map(move |n| (axis, n)));
     let of = |(index, (axis, n)): (usize, (&str, usize))| {
         let at = |field: &str| format!("/tracking.trackers[{index}].{field}");

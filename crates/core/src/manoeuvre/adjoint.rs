@@ -10,7 +10,7 @@ use super::suppression::Zero;
 use super::task::Task;
 use crate::numerics::phasor::Phasor;
 use crate::numerics::phi::{exp, moment};
-use crate::waveform::{Shape, Term, Waveform};
+use crate::waveform::{Term, TermShape, Waveform};
 
 /// Re(exp(pole rho) sum c\[n\] rho^n).
 struct Function {
@@ -125,7 +125,7 @@ impl Adjoint {
     pub fn waveform(&self, weights: &DVector<f64>) -> Waveform {
         let term = |shape| Term { from: 0.0, to: self.time, shape };
         let slope = weights[1] / self.time;
-        let mut terms = vec![term(Shape::Polynomial(vec![weights[0] + 0.5 * weights[1], -slope]))];
+        let mut terms = vec![term(TermShape::Polynomial(vec![weights[0] + 0.5 * weights[1], -slope]))];
         for (pair, weights) in
             self.functions[2..].chunks_exact(2).zip(weights.as_slice()[2..].chunks_exact(2))
         {
@@ -133,7 +133,7 @@ impl Adjoint {
             let power = f.coefficients.len() - 1;
             let c = Phasor::new(weights[0], -weights[1]) * exp(f.pole);
             if power == 0 && f.pole.re == 0.0 {
-                terms.push(term(Shape::Harmonic {
+                terms.push(term(TermShape::Harmonic {
                     frequency: f.pole.im / self.time,
                     cosine: c.re,
                     sine: c.im,
@@ -147,7 +147,7 @@ impl Adjoint {
                 coefficients.push(c * binomial);
                 binomial *= -((power - k) as f64) / (k + 1) as f64 / self.time;
             }
-            terms.push(term(Shape::Exponential { pole: -f.pole / self.time, coefficients }));
+            terms.push(term(TermShape::Exponential { pole: -f.pole / self.time, coefficients }));
         }
         Waveform { terms }
     }

@@ -1,7 +1,7 @@
 //! The command that turns a rigid body with the least peak: full one way, then full the other.
 
 use super::task::Task;
-use crate::waveform::{Shape, Term, Waveform};
+use crate::waveform::{Term, TermShape, Waveform};
 
 /// The command: A until a switching, -A after it.
 ///
@@ -29,7 +29,7 @@ pub fn plan(task: &Task) -> Waveform {
 pub fn pieces(times: &[f64], first: f64) -> Waveform {
     let piece = |(index, ends): (usize, &[f64])| {
         let value = if index % 2 == 0 { first } else { -first };
-        Term { from: ends[0], to: ends[1], shape: Shape::Polynomial(vec![value]) }
+        Term { from: ends[0], to: ends[1], shape: TermShape::Polynomial(vec![value]) }
     };
     Waveform { terms: times.windows(2).enumerate().map(piece).collect() }
 }

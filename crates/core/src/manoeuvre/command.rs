@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::series::{self, Coefficients, Family};
+use super::series::{self, SeriesCoefficients, SeriesFamily};
 use super::suppression::{self, Suppression, Zero};
 use super::task::Task;
 use super::{bang_bang, minimum_energy, minimum_peak, polynomial};
@@ -80,14 +80,18 @@ impl Command {
     }
 
     /// The command that does a task and has these zeros; its amplitudes if it is a series.
-    pub fn waveform(&self, task: &Task, zeros: &[Zero]) -> Result<(Waveform, Option<Coefficients>), Fault> {
+    pub fn waveform(
+        &self,
+        task: &Task,
+        zeros: &[Zero],
+    ) -> Result<(Waveform, Option<SeriesCoefficients>), Fault> {
         let series = |family| {
             let (waveform, coefficients) = series::plan(family, task, zeros);
             Ok((waveform, Some(coefficients)))
         };
         match self {
-            Self::Sine(_) => series(Family::Sine),
-            Self::Cosine(_) => series(Family::Cosine),
+            Self::Sine(_) => series(SeriesFamily::Sine),
+            Self::Cosine(_) => series(SeriesFamily::Cosine),
             Self::BangBang(_) => Ok((bang_bang::plan(task), None)),
             Self::MinimumEnergy(_) => Ok((minimum_energy::plan(task, zeros)?, None)),
             Self::MinimumPeak(_) => Ok((minimum_peak::plan(task, zeros)?, None)),

@@ -2,14 +2,14 @@
 
 use super::Plan;
 use super::extremum::Peak;
-use super::history::{History, torque};
+use super::history::{ModalHistory, torque};
 use super::plan::fastest;
 use crate::body::{Drive, Planar};
 use crate::numerics::quadrature::integral;
 
 /// What a command or a torque costs, in its unit.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Effort {
+pub struct PlanEffort {
     /// The largest absolute value, and when.
     pub peak: Peak,
     /// The root of its mean square over the manoeuvre.
@@ -20,7 +20,7 @@ pub struct Effort {
     pub initial: f64,
 }
 
-impl Effort {
+impl PlanEffort {
     /// That of the command.
     pub fn of_command(plan: &Plan) -> Self {
         let command = &plan.waveform;
@@ -34,7 +34,7 @@ impl Effort {
         match body.drive {
             Drive::Torque => Self::of_command(plan),
             Drive::Motion => {
-                let history = History::new(body, &plan.waveform, 1.0);
+                let history = ModalHistory::new(body, &plan.waveform, 1.0);
                 let panel = (4.0 / fastest(body, &plan.waveform)).max(plan.time / 2e3);
                 Self::new(plan, plan.peak_torque(body), panel, |middle, t| torque(body, &history, middle, t))
             }

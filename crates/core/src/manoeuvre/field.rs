@@ -4,10 +4,10 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::command::{BangBang, Command, MinimumPeak, Polynomial};
-use super::effort::Effort;
+use super::effort::PlanEffort;
 use super::polynomial::DEGREES;
 use super::report::residuals_to_json;
-use super::residual::{Residual, residuals};
+use super::residual::{FinalResidual, residuals};
 use super::shaper::{ExtraInsensitive, Shaped, Shaper};
 use super::suppression::{Suppression, Target};
 use super::{Manoeuvre, Plan};
@@ -32,34 +32,34 @@ pub struct Rival {
 
 /// What a command of the field comes to.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct CommandCost {
     /// What the command is called.
     pub name: String,
     /// The plan and what it comes to, or why there is none: the key, and what is wrong with it.
-    pub outcome: Result<Outcome, Fault>,
+    pub outcome: Result<FieldOutcome, Fault>,
 }
 
 /// A plan of the field, what it costs and what it leaves.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct FieldOutcome {
     /// The plan.
     pub plan: Plan,
     /// What the torque on the hub costs (N m).
-    pub torque: Effort,
+    pub torque: PlanEffort,
     /// What is left in each coordinate.
-    pub residuals: Vec<Residual>,
+    pub residuals: Vec<FinalResidual>,
 }
 
 /// What is the same for the whole field.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Common {
+pub enum FieldCommon {
     /// The time (s).
     Time(Span),
     /// The peak torque (N m): each command has its own time.
     PeakTorque(Positive),
 }
 
-impl Common {
+impl FieldCommon {
     /// A peak torque that is asked for, else the manoeuvre's time, else the peak torque that its own time comes from.
     pub fn of(manoeuvre: &Manoeuvre, asked: Option<Positive>, plan: &Plan) -> Self {
         match (asked, manoeuvre.time, manoeuvre.peak_torque) {
@@ -190,30 +190,30 @@ fn shapers(modes: &[usize]) -> Vec<(&'static str, Shaper)> {
 }
 
 /// What the field comes to on a body, in its order: the manoeuvre with each command in turn.
-pub fn compare(manoeuvre: &Manoeuvre, common: Common, body: &Planar, band: f64) -> Vec<Row> {
+pub fn compare(manoeuvre: &Manoeuvre, common: FieldCommon, body: &Planar, band: f64) -> Vec<CommandCost> {
     let (time, peak_torque) = match common {
-        Common::Time(time) => (Some(time), None),
-        Common::PeakTorque(peak) => (None, Some(peak)),
+        FieldCommon::Time(time) => (Some(time), None),
+        FieldCommon::PeakTorque(peak) => (None, Some(peak)),
     };
     let row = |rival: Rival| {
         let Rival { name, command, shaper } = rival;
         let outcome = Manoeuvre { time, peak_torque, command, shaper, ..manoeuvre.clone() }.plan(body);
-        let outcome = outcome.map(|plan| Outcome {
-            torque: Effort::of_torque(&plan, body),
+        let outcome = outcome.map(|plan| FieldOutcome {
+            torque: PlanEffort::of_torque(&plan, body),
             residuals: residuals(&plan, body, band),
             plan,
         });
-        Row { name, outcome }
+        CommandCost { name, outcome }
     };
     field(body).into_par_iter().map(row).collect()
 }
 
-impl Row {
+impl CommandCost {
     /// The row as a JSON object whose keys end with their units.
     pub fn to_json(&self) -> Value {
         match &self.outcome {
             Err(fault) => json!({"command": self.name, "refused": fault.to_string()}),
-            Ok(Outcome { plan, torque, residuals }) => {
+            Ok(FieldOutcome { plan, torque, residuals }) => {
                 let mut object = json!({
                     "command": self.name,
                     "time_s": plan.time,

@@ -6,7 +6,7 @@ use crate::numerics::phasor::Phasor;
 use crate::waveform::Waveform;
 
 /// Modes that rest at the start of a command.
-pub struct History<'a> {
+pub struct ModalHistory<'a> {
     command: &'a Waveform,
     inertia: f64,
     modes: Vec<Driven>,
@@ -22,9 +22,9 @@ struct Driven {
 }
 
 /// Displacement, rate and acceleration of a mode.
-pub type Motion = [f64; 3];
+pub type ModalMotion = [f64; 3];
 
-impl<'a> History<'a> {
+impl<'a> ModalHistory<'a> {
     /// The modes of a body, with all frequencies times a factor.
     pub fn new(body: &Planar, command: &'a Waveform, factor: f64) -> Self {
         let inertia = body.commanded_inertia();
@@ -39,7 +39,7 @@ impl<'a> History<'a> {
 
     /// Displacement (rad), rate and acceleration of each mode at a time (s); the acceleration is that of the piece of
     /// the command around `middle`.
-    pub fn at(&self, middle: f64, t: f64) -> Vec<Motion> {
+    pub fn at(&self, middle: f64, t: f64) -> Vec<ModalMotion> {
         let moment = self.command.on_piece(middle, t) / self.inertia;
         let motion = |mode: &Driven| {
             let z = self.command.response(mode.pole, 0.0, t);
@@ -61,7 +61,7 @@ impl<'a> History<'a> {
 }
 
 /// The torque on the hub (N m) at a time: the command itself, or what makes the hub move so.
-pub fn torque(body: &Planar, history: &History, middle: f64, t: f64) -> f64 {
+pub fn torque(body: &Planar, history: &ModalHistory, middle: f64, t: f64) -> f64 {
     let command = history.command.on_piece(middle, t);
     match body.drive {
         Drive::Torque => command,

@@ -33,18 +33,18 @@ use crate::time::Span;
 
 pub use attitude_table::{AttitudeAt, AttitudeTable};
 pub use command::{BangBang, Command, MinimumPeak, Polynomial};
-pub use effort::Effort;
+pub use effort::PlanEffort;
 pub use extremum::Peak;
-pub use field::{Common, Outcome, Rival, Row, compare, field};
+pub use field::{CommandCost, FieldCommon, FieldOutcome, Rival, compare, field};
 pub use plan::Plan;
-pub use report::{Report, Tuned};
-pub use residual::Residual;
-pub use series::Coefficients;
+pub use report::{Report, RestTimes};
+pub use residual::FinalResidual;
+pub use series::SeriesCoefficients;
 pub use shaper::{ExtraInsensitive, Impulse, Shaped, Shaper, shaped};
 pub use slew::{Pose, Profile, Slew};
 pub use suppression::{Suppression, Target};
 pub use task::Task;
-pub use turn::Turn;
+pub use turn::RestToRest;
 
 use planner::Planner;
 

@@ -1,9 +1,9 @@
 //! A planned manoeuvre: the command, and what it promises.
 
 use super::extremum::{self, Peak};
-use super::history::{History, torque};
+use super::history::{ModalHistory, torque};
 use super::residual;
-use super::series::Coefficients;
+use super::series::SeriesCoefficients;
 use crate::body::{Drive, Planar};
 use crate::waveform::Waveform;
 
@@ -21,7 +21,7 @@ pub struct Plan {
     /// Rate of the rigid body after (rad/s).
     pub end_rate: f64,
     /// The amplitudes, if the command is a series that no shaper changes.
-    pub coefficients: Option<Coefficients>,
+    pub coefficients: Option<SeriesCoefficients>,
 }
 
 impl Plan {
@@ -45,7 +45,7 @@ impl Plan {
         match body.drive {
             Drive::Torque => self.peak(),
             Drive::Motion => {
-                let history = History::new(body, &self.waveform, 1.0);
+                let history = ModalHistory::new(body, &self.waveform, 1.0);
                 let step = extremum::sampling(fastest(body, &self.waveform)).max(self.time / 2e4);
                 extremum::largest(&self.waveform.breaks(), step, |middle, t| {
                     torque(body, &history, middle, t)
@@ -57,7 +57,7 @@ impl Plan {
     /// The torque on the hub (N m) over the manoeuvre: times (s) and values at most `step` seconds apart, with both limits
     /// where it jumps.
     pub fn torque(&self, body: &Planar, step: f64) -> Vec<(f64, f64)> {
-        let history = History::new(body, &self.waveform, 1.0);
+        let history = ModalHistory::new(body, &self.waveform, 1.0);
         let mut line = Vec::new();
         for piece in self.waveform.breaks().windows(2) {
             let (from, length) = (piece[0], piece[1] - piece[0]);
@@ -69,7 +69,7 @@ impl Plan {
         line
     }
 
-    /// What is left in the hub's angle and in each output, as of a [`Residual`](super::Residual), of a body whose
+    /// What is left in the hub's angle and in each output, as of a [`Residual`](super::FinalResidual), of a body whose
     /// frequencies are all `factor` times its own. Gains and weights stay as they are.
     pub fn left(&self, body: &Planar, factor: f64) -> Vec<f64> {
         residual::left(self, body, &residual::coordinates(body), factor)

@@ -1,7 +1,7 @@
 //! Commands whose angle is the smooth polynomial of an odd degree.
 
 use super::task::Task;
-use crate::waveform::{Shape, Term, Waveform};
+use crate::waveform::{Term, TermShape, Waveform};
 
 /// The degrees that the angle may have.
 pub const DEGREES: [u32; 6] = [3, 5, 7, 9, 11, 13];
@@ -31,5 +31,5 @@ pub fn plan(task: &Task, degree: u32) -> Waveform {
         *c *= scale;
         scale /= t;
     }
-    Waveform { terms: vec![Term { from: 0.0, to: t, shape: Shape::Polynomial(coefficients) }] }
+    Waveform { terms: vec![Term { from: 0.0, to: t, shape: TermShape::Polynomial(coefficients) }] }
 }

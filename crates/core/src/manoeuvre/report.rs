@@ -3,14 +3,14 @@
 use serde_json::{Value, json};
 
 use super::Plan;
-use super::effort::Effort;
+use super::effort::PlanEffort;
 use super::extremum::{self, Peak};
-use super::history::History;
+use super::history::ModalHistory;
 use super::plan::fastest;
-use super::residual::{Residual, coordinates, residuals};
+use super::residual::{FinalResidual, coordinates, residuals};
 use super::timing::{Single, tuned};
 use crate::body::{Drive, Planar};
-use crate::waveform::Shape;
+use crate::waveform::TermShape;
 
 /// Times are tuned to so many modes of the lowest frequencies.
 const TUNED: usize = 3;
@@ -19,9 +19,9 @@ const TUNED: usize = 3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// What the command costs, in its unit.
-    pub command: Effort,
+    pub command: PlanEffort,
     /// What the torque on the hub costs (N m): the same, unless the hub's motion is commanded.
-    pub torque: Effort,
+    pub torque: PlanEffort,
     /// The hub's angle at the end less the target (rad).
     pub angle_error: f64,
     /// The hub's rate at the end less the target (rad/s).
@@ -31,16 +31,16 @@ pub struct Report {
     /// The band of the frequencies, relative to them.
     pub band: f64,
     /// What is left in each coordinate.
-    pub residuals: Vec<Residual>,
+    pub residuals: Vec<FinalResidual>,
     /// The largest elastic deflection of each coordinate during the manoeuvre, in the same order.
     pub deflections: Vec<Peak>,
     /// Times near the planned one to which a single harmonic is tuned.
-    pub tuned: Vec<Tuned>,
+    pub tuned: Vec<RestTimes>,
 }
 
 /// The times nearest to the planned one (s) for which a single harmonic leaves a mode at rest.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Tuned {
+pub struct RestTimes {
     /// Index of the mode.
     pub mode: usize,
     /// For a sine, below and above.
@@ -53,7 +53,7 @@ impl Report {
     /// The report of a plan on a body whose frequencies are known to within a relative band.
     pub fn new(plan: &Plan, body: &Planar, band: f64) -> Self {
         let command = &plan.waveform;
-        let history = History::new(body, command, 1.0);
+        let history = ModalHistory::new(body, command, 1.0);
         let end = history.at(plan.time, plan.time);
         let sight: [f64; 2] = match body.drive {
             Drive::Torque => end.iter().fold([0.0; 2], |sum, [x, rate, _]| [sum[0] + x, sum[1] + rate]),
@@ -74,8 +74,8 @@ impl Report {
             })
         };
         Self {
-            command: Effort::of_command(plan),
-            torque: Effort::of_torque(plan, body),
+            command: PlanEffort::of_command(plan),
+            torque: PlanEffort::of_torque(plan, body),
             angle_error: angle - plan.angle + sight[0],
             rate_error: rate - plan.end_rate + sight[1],
             energy: energy.sum(),
@@ -137,8 +137,8 @@ impl Report {
 }
 
 /// Adds what is left in each coordinate to an object.
-pub fn residuals_to_json(object: &mut Value, residuals: &[Residual]) {
-    let by_name = |value: &dyn Fn(&Residual) -> f64| -> Value {
+pub fn residuals_to_json(object: &mut Value, residuals: &[FinalResidual]) {
+    let by_name = |value: &dyn Fn(&FinalResidual) -> f64| -> Value {
         residuals.iter().map(|r| (r.name.clone(), json!(value(r)))).collect()
     };
     object["residual_rad"] = by_name(&|r| r.nominal);
@@ -147,8 +147,8 @@ pub fn residuals_to_json(object: &mut Value, residuals: &[Residual]) {
 }
 
 fn harmonics(plan: &Plan) -> Vec<Value> {
-    let harmonic = |shape: &Shape| match shape {
-        Shape::Harmonic { frequency, cosine, sine } => {
+    let harmonic = |shape: &TermShape| match shape {
+        TermShape::Harmonic { frequency, cosine, sine } => {
             Some(json!({"frequency_rad_s": frequency, "cosine": cosine, "sine": sine}))
         }
         _ => None,
@@ -156,14 +156,14 @@ fn harmonics(plan: &Plan) -> Vec<Value> {
     plan.waveform.terms.iter().filter_map(|term| harmonic(&term.shape)).collect()
 }
 
-fn tuned_times(plan: &Plan, body: &Planar) -> Vec<Tuned> {
+fn tuned_times(plan: &Plan, body: &Planar) -> Vec<RestTimes> {
     let mut order: Vec<usize> = (0..body.modes.len()).collect();
     order.sort_by(|a, b| body.modes[*a].frequency.get().total_cmp(&body.modes[*b].frequency.get()));
     order.truncate(TUNED);
     let rest = plan.start_rate == plan.end_rate;
     let of = |mode: usize| {
         let w = body.modes[mode].frequency.get();
-        Tuned {
+        RestTimes {
             mode,
             sine: tuned(Single::Sine, w, plan.time),
             cosine: rest.then(|| tuned(Single::Cosine, w, plan.time)),

@@ -1,6 +1,6 @@
 //! What the modes still do after a manoeuvre, as planned and with other frequencies.
 
-use super::history::History;
+use super::history::ModalHistory;
 use super::{Plan, extremum};
 use crate::body::{Drive, Planar};
 
@@ -9,7 +9,7 @@ pub const NEAR: f64 = 0.05;
 
 /// What is left in a coordinate after the manoeuvre.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Residual {
+pub struct FinalResidual {
     /// Name of the coordinate: `angle` is the hub's, the others are outputs of the body.
     pub name: String,
     /// Its unit.
@@ -47,7 +47,7 @@ pub fn coordinates(body: &Planar) -> Vec<Coordinate> {
 
 /// The sum of the modes' amplitudes in each coordinate after the manoeuvre, with all frequencies times a factor.
 pub fn left(plan: &Plan, body: &Planar, coordinates: &[Coordinate], factor: f64) -> Vec<f64> {
-    let amplitudes = History::new(body, &plan.waveform, factor).amplitudes(plan.time);
+    let amplitudes = ModalHistory::new(body, &plan.waveform, factor).amplitudes(plan.time);
     let sum = |c: &Coordinate| c.weights.iter().zip(&amplitudes).map(|(w, a)| w.abs() * a).sum();
     coordinates.iter().map(sum).collect()
 }
@@ -56,7 +56,7 @@ pub fn left(plan: &Plan, body: &Planar, coordinates: &[Coordinate], factor: f64)
 ///
 /// Over the factor of the frequencies, an amplitude turns as fast as the fastest mode does within the manoeuvre's time: the
 /// largest one is found as that of a motion is, on samples that no crest falls between, and refined to rounding.
-pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<Residual> {
+pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<FinalResidual> {
     let coordinates = coordinates(body);
     let sums = |factor: f64| left(plan, body, &coordinates, factor);
     let fastest = body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
@@ -67,7 +67,7 @@ pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<Residual> {
         each.into_iter().map(|peak| peak.value).collect()
     };
     let (nominal, near, worst) = (sums(1.0), worst(NEAR), worst(band));
-    let told = coordinates.into_iter().enumerate().map(|(i, c)| Residual {
+    let told = coordinates.into_iter().enumerate().map(|(i, c)| FinalResidual {
         name: c.name,
         unit: c.unit,
         nominal: nominal[i],

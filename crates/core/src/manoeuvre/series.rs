@@ -22,11 +22,11 @@ use std::f64::consts::PI;
 use super::suppression::Zero;
 use super::task::Task;
 use crate::numerics::phasor::Phasor;
-use crate::waveform::{Shape, Term, Waveform};
+use crate::waveform::{Term, TermShape, Waveform};
 
 /// The amplitudes of a series, in units of the command.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Coefficients {
+pub struct SeriesCoefficients {
     /// The constant A0.
     pub constant: f64,
     /// Those of sin(k sigma t), or of cos((k - 1/2) sigma t), k = 1, 2, ...: antisymmetric about T/2.
@@ -37,7 +37,7 @@ pub struct Coefficients {
 
 /// What the series is made of.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Family {
+pub enum SeriesFamily {
     /// sin(k sigma t): the command begins and ends at zero.
     Sine,
     /// cos((k - 1/2) sigma t): smaller for the same travel.
@@ -45,7 +45,7 @@ pub enum Family {
 }
 
 /// The command, and the amplitudes to report.
-pub fn plan(family: Family, task: &Task, zeros: &[Zero]) -> (Waveform, Coefficients) {
+pub fn plan(family: SeriesFamily, task: &Task, zeros: &[Zero]) -> (Waveform, SeriesCoefficients) {
     let sigma = 2.0 * PI / task.time;
     let constant = task.mean();
     // The even series is no longer symmetric with damping: it travels too.
@@ -55,14 +55,14 @@ pub fn plan(family: Family, task: &Task, zeros: &[Zero]) -> (Waveform, Coefficie
     // k and the phasor c of each harmonic Re(c exp(i kappa t)).
     let count = zeros.len();
     let (half, carry): (f64, Vec<Phasor>) = match family {
-        Family::Sine => {
+        SeriesFamily::Sine => {
             let at = |k| {
                 Phasor::new(0.0, -travel / task.time * k as f64 * sigma)
                     * gain(k, count + 1, 0.0, sigma, zeros)
             };
             (0.0, (1..=count + 1).map(at).collect())
         }
-        Family::Cosine => {
+        SeriesFamily::Cosine => {
             let at = |k| {
                 let kappa = (k as f64 - 0.5) * sigma;
                 gain(k, count + 1, 0.5, sigma, zeros) * (0.5 * travel * kappa * kappa)
@@ -79,16 +79,16 @@ pub fn plan(family: Family, task: &Task, zeros: &[Zero]) -> (Waveform, Coefficie
     let mut terms = Vec::new();
     let mut push = |shape| terms.push(Term { from: 0.0, to: task.time, shape });
     if constant != 0.0 {
-        push(Shape::Polynomial(vec![constant]));
+        push(TermShape::Polynomial(vec![constant]));
     }
     let mut harmonics = |half: f64, phasors: &[Phasor]| {
         for (index, c) in phasors.iter().enumerate() {
             let frequency = ((index + 1) as f64 - half) * sigma;
-            push(Shape::Harmonic { frequency, cosine: c.re, sine: -c.im });
+            push(TermShape::Harmonic { frequency, cosine: c.re, sine: -c.im });
         }
     };
     let coefficients = match family {
-        Family::Sine => {
+        SeriesFamily::Sine => {
             let zip = |k: usize| carry[k] + even.get(k).copied().unwrap_or_default();
             let all: Vec<Phasor> = (0..carry.len()).map(zip).collect();
             harmonics(half, &all);
@@ -96,13 +96,13 @@ pub fn plan(family: Family, task: &Task, zeros: &[Zero]) -> (Waveform, Coefficie
             if zeros.iter().all(|zero| zero.damping == 0.0) {
                 even.truncate(if constant == 0.0 { 0 } else { count });
             }
-            Coefficients { constant, odd: all.iter().map(|c| -c.im).collect(), even }
+            SeriesCoefficients { constant, odd: all.iter().map(|c| -c.im).collect(), even }
         }
-        Family::Cosine => {
+        SeriesFamily::Cosine => {
             harmonics(half, &carry);
             harmonics(0.0, &even);
             let real = |c: &[Phasor]| c.iter().map(|c| c.re).collect();
-            Coefficients { constant, odd: real(&carry), even: real(&even) }
+            SeriesCoefficients { constant, odd: real(&carry), even: real(&even) }
         }
     };
     (Waveform { terms }, coefficients)

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::{Vector, rotation};
 use crate::environment::into;
-use crate::waveform::{Shape, Term, Waveform};
+use crate::waveform::{Term, TermShape, Waveform};
 
 /// How the rate of a slew rises to its limit and falls.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -123,11 +123,11 @@ impl Slew {
             let (to, most) = (from + self.rise, sign * self.acceleration);
             let term = |shape| Term { from, to, shape };
             match self.profile {
-                Profile::Trapezoid => vec![term(Shape::Polynomial(vec![most]))],
+                Profile::Trapezoid => vec![term(TermShape::Polynomial(vec![most]))],
                 Profile::Versine => {
                     let frequency = 2.0 * std::f64::consts::PI / self.rise;
-                    let falling = Shape::Harmonic { frequency, cosine: -0.5 * most, sine: 0.0 };
-                    vec![term(Shape::Polynomial(vec![0.5 * most])), term(falling)]
+                    let falling = TermShape::Harmonic { frequency, cosine: -0.5 * most, sine: 0.0 };
+                    vec![term(TermShape::Polynomial(vec![0.5 * most])), term(falling)]
                 }
             }
         };

@@ -12,7 +12,7 @@ const PLACES: u32 = 200;
 
 /// A turn from rest to rest.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Turn {
+pub struct RestToRest {
     from: Quaternion<f64>,
     to: Quaternion<f64>,
     /// The axis, the same in both attitudes.
@@ -21,7 +21,7 @@ pub struct Turn {
     acceleration: Waveform,
 }
 
-impl Turn {
+impl RestToRest {
     /// The turn on the shorter way, with the acceleration (rad/s²) that is planned for its angle (rad).
     ///
     /// # Errors

@@ -1,8 +1,8 @@
 //! What an adaptation comes to: its objective over the windows, and the number that it tunes.
 
 use super::{
-    GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, Meaning, OBJECTIVE_FINAL, OBJECTIVE_INITIAL,
-    OBJECTIVE_LATE, OBJECTIVE_WINDOWS, Told, Value,
+    GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, Meaning, MetricValue, OBJECTIVE_FINAL,
+    OBJECTIVE_INITIAL, OBJECTIVE_LATE, OBJECTIVE_WINDOWS, Value,
 };
 use crate::adaptation::{Decision, Objective};
 use crate::record::Sample;
@@ -72,9 +72,9 @@ impl Adapted {
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(self) -> Vec<Told> {
+    pub fn finish(self) -> Vec<MetricValue> {
         let Self { windows, frozen_at, gain: [first, last], .. } = self;
-        let mut metrics: Vec<Told> = Vec::new();
+        let mut metrics: Vec<MetricValue> = Vec::new();
         if let Some([all, initial, late, end]) = self.meanings {
             let begun_late: Vec<f64> =
                 windows.iter().filter(|(from, _)| *from >= 0.5 * self.duration).map(|(_, of)| *of).collect();

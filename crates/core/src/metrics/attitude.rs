@@ -1,6 +1,6 @@
 //! How well an attitude filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
-use super::{ATTITUDE_ERROR, BIAS_ERROR, Meaning, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Told, Value};
+use super::{ATTITUDE_ERROR, BIAS_ERROR, Meaning, MetricValue, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Value};
 use crate::estimator::Estimator;
 use crate::record::{AttitudeEstimate, AxisEstimate, Use};
 use crate::scenario::Scenario;
@@ -16,7 +16,7 @@ const INSIDE_OF_TWO: [f64; 2] = [0.075_953_423_952_869_69, 11.066_638_362_341_81
 
 /// Gathers the samples of a filter.
 #[derive(Clone, Debug)]
-pub struct Known {
+pub struct AttitudeMetrics {
     assess: [f64; 2],
     /// Whether a program brought it.
     own: bool,
@@ -29,7 +29,7 @@ pub struct Known {
     squares: [f64; 2],
 }
 
-impl Known {
+impl AttitudeMetrics {
     /// An empty gathering for runs of a scenario with an attitude filter, or with one that a program brought, which may tell of
     /// an attitude.
     pub fn new(scenario: &Scenario) -> Option<Self> {
@@ -70,7 +70,7 @@ impl Known {
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(self) -> Vec<Told> {
+    pub fn finish(self) -> Vec<MetricValue> {
         // 0/0 of no samples: no number.
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
         let [attitude, bias] = self.squares.map(|sum| Value::Number(libm::sqrt(sum / all)));

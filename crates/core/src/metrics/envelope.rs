@@ -1,6 +1,8 @@
 //! The envelope over windows, of runs whose law is no relay of one angle.
 
-use super::{ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, Meaning, REDUCTION, Told, Value, WINDOW_MEANS};
+use super::{
+    ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, Meaning, MetricValue, REDUCTION, Value, WINDOW_MEANS,
+};
 use crate::record::WindowMean;
 use crate::scenario::Scenario;
 
@@ -57,7 +59,7 @@ impl Windows {
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(&self) -> [Told; 5] {
+    pub fn finish(&self) -> [MetricValue; 5] {
         let late = self.since(0.5 * self.duration).unwrap_or(f64::NAN);
         [
             (&WINDOW_MEANS, Value::Numbers(self.means.clone())),

@@ -1,8 +1,8 @@
 //! How well a Kalman filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
 use super::{
-    FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, Meaning, NEES_MEAN, NIS_INSIDE,
-    NIS_MEAN, Told, Value,
+    FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, Meaning, MetricValue, NEES_MEAN,
+    NIS_INSIDE, NIS_MEAN, Value,
 };
 use crate::record::{Estimate, Lock, Use};
 use crate::scenario::Scenario;
@@ -18,7 +18,7 @@ const INSIDE: [[f64; 2]; 2] =
 
 /// Gathers the samples of a filter.
 #[derive(Clone, Debug)]
-pub struct Filter {
+pub struct FilterMetrics {
     assess: [f64; 2],
     states: f64,
     measurements: usize,
@@ -33,7 +33,7 @@ pub struct Filter {
     lost_at: Option<f64>,
 }
 
-impl Filter {
+impl FilterMetrics {
     /// An empty gathering for runs of a scenario with a filter.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let estimator = scenario.estimator.as_ref().filter(|estimator| estimator.filters())?;
@@ -88,7 +88,7 @@ impl Filter {
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(self) -> [Told; 7] {
+    pub fn finish(self) -> [MetricValue; 7] {
         // 0/0 of no samples: no number.
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
         let largest = if self.count.0 > 0 { self.largest } else { f64::NAN };

@@ -1,6 +1,6 @@
 //! Whether a run meets its goal: inside a band about it, without a break, up to the end.
 
-use super::{GOAL, GOAL_BAND, Meaning, REQUIREMENT, TIME_OUTSIDE, Told, Value};
+use super::{GOAL, GOAL_BAND, Meaning, MetricValue, REQUIREMENT, TIME_OUTSIDE, Value};
 use crate::numerics::polynomial::Polynomial;
 
 /// The goal is met if the run ends with so much of its time inside the band.
@@ -92,7 +92,7 @@ impl Verdict {
     }
 
     /// The metrics of a run that ends at a time (s).
-    pub fn finish(self, end: f64) -> [Told; 3] {
+    pub fn finish(self, end: f64) -> [MetricValue; 3] {
         // Of what is no number, no comparison holds.
         let (word, band, outside) = if self.band > 0.0 && self.from < end {
             let met = end - self.last >= LAST * (end - self.from);

@@ -17,18 +17,18 @@ use crate::record::{self, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-pub use record::measured::{Meaning, Metrics, Quantity, Told, Value};
+pub use record::measured::{Meaning, MetricValue, Metrics, Quantity, Value};
 
 pub use envelope::TOLD as OF_ENVELOPE;
 pub use selection::Selection;
 
 use adapted::Adapted;
-use attitude::Known;
+use attitude::AttitudeMetrics;
 use envelope::Windows;
-use filter::Filter;
+use filter::FilterMetrics;
 use rotation::Rotation;
-pub use rotation::{Courses, Passed};
-use spatial::Spatial;
+pub use rotation::{MotionMetrics, Passed};
+use spatial::SpatialMetrics;
 use switchings::Switchings;
 use tracking::Tracked;
 
@@ -212,8 +212,8 @@ pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meani
 #[derive(Clone, Debug)]
 pub struct Gather {
     kind: Kind,
-    filter: Option<Filter>,
-    known: Option<Known>,
+    filter: Option<FilterMetrics>,
+    known: Option<AttitudeMetrics>,
     adapted: Option<Adapted>,
     windows: Option<Windows>,
     tracked: Tracked,
@@ -227,7 +227,7 @@ enum Kind {
     /// Of a rotation, under a manoeuvre or a PD law.
     Rotation(Box<Rotation>),
     /// Of a spatial body.
-    Spatial(Box<Spatial>),
+    Spatial(Box<SpatialMetrics>),
 }
 
 impl Gather {
@@ -239,7 +239,7 @@ impl Gather {
     /// The same for some of the metrics: what only the others need is not computed.
     pub fn of(scenario: &Scenario, selection: &Selection) -> Self {
         let kind = match scenario.model.axes() {
-            Axes::Three(_) => Kind::Spatial(Box::new(Spatial::new(scenario))),
+            Axes::Three(_) => Kind::Spatial(Box::new(SpatialMetrics::new(scenario))),
             Axes::One(body) if scenario.law.switches() => {
                 Kind::Switchings(Box::new(Switchings::new(scenario, body, selection)))
             }
@@ -247,8 +247,8 @@ impl Gather {
         };
         Self {
             kind,
-            filter: Filter::new(scenario).filter(|_| selection.wants_any(filter::TOLD)),
-            known: Known::new(scenario).filter(|_| selection.wants_any(attitude::TOLD)),
+            filter: FilterMetrics::new(scenario).filter(|_| selection.wants_any(filter::TOLD)),
+            known: AttitudeMetrics::new(scenario).filter(|_| selection.wants_any(attitude::TOLD)),
             adapted: Adapted::new(scenario),
             windows: Windows::alone(scenario),
             tracked: Tracked::new(scenario),
@@ -276,8 +276,8 @@ impl Gather {
             Kind::Spatial(spatial) => spatial.finish(),
         };
         metrics.extend(self.tracked.finish());
-        metrics.extend(self.filter.into_iter().flat_map(Filter::finish));
-        metrics.extend(self.known.into_iter().flat_map(Known::finish));
+        metrics.extend(self.filter.into_iter().flat_map(FilterMetrics::finish));
+        metrics.extend(self.known.into_iter().flat_map(AttitudeMetrics::finish));
         metrics.extend(self.windows.iter().flat_map(Windows::finish));
         metrics.extend(self.adapted.into_iter().flat_map(Adapted::finish));
         Metrics(metrics)

@@ -7,11 +7,11 @@ mod beside;
 use super::goal::{self, Verdict};
 use super::{
     ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, Meaning,
-    OUTPUT_RESIDUALS, OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_ACCELERATION, PEAK_FEEDBACK,
+    MetricValue, OUTPUT_RESIDUALS, OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_ACCELERATION, PEAK_FEEDBACK,
     PEAK_FEEDBACK_ACCELERATION, PEAK_OUTPUTS, PEAK_TORQUE, Quantity, RESIDUAL_ENERGY,
-    RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME, SPECTRAL_RADIUS, Selection, Told, Value,
+    RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME, SPECTRAL_RADIUS, Selection, Value,
 };
-use crate::analysis::sampled_loop::{Held, Loop};
+use crate::analysis::sampled_loop::{DiscreteBody, Loop};
 use crate::body::Planar;
 use crate::law::{Goal, Law, Promise};
 use crate::motion::Stretch;
@@ -20,7 +20,7 @@ use crate::record::{Arrival, Course, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-pub use beside::{Courses, Passed};
+pub use beside::{MotionMetrics, Passed};
 
 /// What is late in a run (s).
 const LATE: f64 = 5.0;
@@ -109,11 +109,11 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
         drift.kinks().into_iter().filter(move |kink| *kink < end).chain(even)
     });
     let all: Vec<Vec<f64>> = drifting.chain([end]).map(ratios).collect();
-    let of = |(held, ratios): (Held<'_>, &Vec<f64>)| {
+    let of = |(held, ratios): (DiscreteBody<'_>, &Vec<f64>)| {
         let gain = law.extra_gain(sampled.frequency() * ratios[sampled.dominant]);
         held.closed(gain).spectral_radius()
     };
-    Held::several(&sampled, &all).into_iter().zip(&all).map(of).fold(f64::NAN, f64::max)
+    DiscreteBody::several(&sampled, &all).into_iter().zip(&all).map(of).fold(f64::NAN, f64::max)
 }
 
 impl Rotation {
@@ -143,7 +143,7 @@ impl Rotation {
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(self) -> Vec<Told> {
+    pub fn finish(self) -> Vec<MetricValue> {
         let mut metrics = Vec::new();
         let (acceleration, unit_inertia) = self.reduced;
         if self.planned {

@@ -4,11 +4,11 @@ use super::goal::{self, Verdict};
 use super::{
     ACCELERATION, BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS,
     FRICTION_HEAT, FUEL, GIMBAL_RATE, GYRO_MOMENTUM_END, GYRO_MOMENTUM_PEAK, MOMENTUM_END, MOMENTUM_PEAK,
-    POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, SINGULARITY, TORQUE_ERROR, Told, VISIBLE_END,
+    MetricValue, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, SINGULARITY, TORQUE_ERROR, VISIBLE_END,
     VISIBLE_PEAK, Value, WHEEL_STOPS, ZERO_CROSSINGS,
 };
 use crate::quantity::Positive;
-use crate::record::{Accelerations, Cycle, Sliding, Steered, WheelEvent};
+use crate::record::{Accelerations, Sliding, SpatialCycle, Steered, WheelEvent};
 use crate::scenario::{Pointing, Scenario};
 use crate::time::Instant;
 
@@ -17,7 +17,7 @@ const LATE: f64 = 200.0;
 
 /// Gathers the cycles of a run.
 #[derive(Clone, Debug)]
-pub struct Spatial {
+pub struct SpatialMetrics {
     /// From when on a cycle is late (s).
     late: f64,
     /// Whether there are jets, whose propellant and pulses count.
@@ -58,7 +58,7 @@ pub struct Spatial {
     end: f64,
 }
 
-impl Spatial {
+impl SpatialMetrics {
     /// An empty gathering for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         let end = Instant::START + scenario.duration;
@@ -98,7 +98,7 @@ impl Spatial {
     }
 
     /// Takes a cycle.
-    pub fn see(&mut self, now: Instant, cycle: &Cycle) {
+    pub fn see(&mut self, now: Instant, cycle: &SpatialCycle) {
         let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
         let norm = |of: [f64; 3]| of.iter().map(|value| value * value).sum::<f64>();
         self.fuel = cycle.jets.fuel_kg;
@@ -156,7 +156,7 @@ impl Spatial {
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(mut self) -> Vec<Told> {
+    pub fn finish(mut self) -> Vec<MetricValue> {
         if let Some(since) = self.outside {
             self.verdict.outside(since, self.end);
         }
@@ -197,7 +197,7 @@ impl Spatial {
                 (&GYRO_MOMENTUM_END, Value::Number(self.stored[1])),
             ]
         });
-        let mut pointing: Vec<Told> = Vec::new();
+        let mut pointing: Vec<MetricValue> = Vec::new();
         if let Some(asked) = &self.asked {
             // 0/0 of no cycles: no number.
             let rms = libm::sqrt(self.pointing.0 / self.pointing.1 as f64);

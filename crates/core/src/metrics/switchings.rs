@@ -6,7 +6,7 @@ use super::{
     CYCLE_DUTY, CYCLE_IMPULSE, CYCLE_KIND, CYCLE_MULTIPLIER_ARGUMENTS, CYCLE_MULTIPLIER_MAX,
     CYCLE_MULTIPLIERS, CYCLE_ORDER, CYCLE_PERIOD, CYCLE_REDUCED_IMPULSE, CYCLE_SYMMETRIC, DUTY,
     ENVELOPE_FROZEN, FROZEN_REDUCTION, GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, IMPULSE,
-    Meaning, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS, Selection, Told, Value,
+    Meaning, MetricValue, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS, Selection, Value,
 };
 use crate::adaptation::Objective;
 use crate::analysis::cycle::CycleWatch;
@@ -98,7 +98,7 @@ impl Switchings {
     }
 
     /// The metrics of the run that has ended.
-    pub fn finish(mut self, scenario: &Scenario) -> Vec<Told> {
+    pub fn finish(mut self, scenario: &Scenario) -> Vec<MetricValue> {
         self.switch(Instant::START + scenario.duration, 0.0, false);
         let hours = self.duration / 3600.0;
         let mut metrics = vec![
@@ -122,7 +122,7 @@ impl Switchings {
         metrics
     }
 
-    fn frozen(&self) -> [Told; 3] {
+    fn frozen(&self) -> [MetricValue; 3] {
         let level = if self.frozen_at.is_nan() {
             f64::NAN
         } else {
@@ -153,7 +153,7 @@ impl Switchings {
     }
 }
 
-fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<Told> {
+fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<MetricValue> {
     let cycle = watch.cycle();
     let cycle = cycle.as_ref();
     let number = |value: Option<f64>| Value::Number(value.unwrap_or(f64::NAN));

@@ -2,7 +2,7 @@
 
 use super::{
     DAMPING_CYCLES, DAMPING_PAUSES, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, INFLUENCE_ERRORS,
-    INFLUENCE_ESTIMATES, TRACKING_ERROR, Told, Value,
+    INFLUENCE_ESTIMATES, MetricValue, TRACKING_ERROR, Value,
 };
 use crate::estimator::Estimator;
 use crate::record::{TrackedMode, Tracking, Watch};
@@ -41,7 +41,7 @@ impl Tracked {
     }
 
     /// The metrics of the run that has ended; none without an adaptive observer.
-    pub fn finish(self) -> Vec<Told> {
+    pub fn finish(self) -> Vec<MetricValue> {
         let Some(last) = self.last else { return Vec::new() };
         let list = |of: &dyn Fn(&TrackedMode) -> f64| Value::Numbers(last.iter().map(of).collect());
         vec![

@@ -8,7 +8,7 @@ use crate::label::Labels;
 
 /// How much a line of the log matters.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Level {
+pub enum LogLevel {
     /// Unknown severity.
     Unknown,
     /// For debugging.
@@ -23,7 +23,7 @@ pub enum Level {
     Fatal,
 }
 
-impl Level {
+impl LogLevel {
     /// The enumeration as a log column.
     pub const LABELS: Labels = Labels {
         name: "Log.Level",
@@ -75,7 +75,7 @@ impl LineType {
     };
 }
 
-label_cells!(Level, Deleted, LineType);
+label_cells!(LogLevel, Deleted, LineType);
 
 rows! {
     package "foxglove";
@@ -85,7 +85,7 @@ rows! {
         /// Time of the message.
         timestamp: Stamp,
         /// Severity.
-        level: Level,
+        level: LogLevel,
         /// Text of the message.
         message: String,
         /// Source of the message.

@@ -15,7 +15,7 @@ use thiserror::Error;
 use super::bounds::{outer, parsed, walk};
 use super::budget::Budget;
 use super::shape::Schema;
-use super::table::Table;
+use super::table::TopicTable;
 use super::topics::TOPICS;
 use super::{COMMANDS, Columns};
 
@@ -224,7 +224,7 @@ impl Log {
 
     /// The rows of several topics in one pass through the log; nothing for a topic that it does not have.
     pub fn tables(&self, topics: &[&str]) -> Result<Vec<Option<Columns>>, LogError> {
-        let mut tables: Vec<Option<Table>> = topics.iter().map(|_| None).collect();
+        let mut tables: Vec<Option<TopicTable>> = topics.iter().map(|_| None).collect();
         let mut budget = Budget::of_file(self.bytes.len());
         let mut schemas = BTreeMap::new();
         let mut channels: BTreeMap<u16, Channel> = BTreeMap::new();
@@ -261,13 +261,13 @@ impl Log {
         if let Some((topic, why)) = undecodable {
             return Err(LogError::Undecodable { path: self.path.clone(), topic, why });
         }
-        Ok(tables.into_iter().map(|table| table.map(Table::into_columns)).collect())
+        Ok(tables.into_iter().map(|table| table.map(TopicTable::into_columns)).collect())
     }
 }
 
 /// Takes a message of a topic into its table.
 fn take(
-    table: &mut Option<Table>,
+    table: &mut Option<TopicTable>,
     channel: &Channel,
     schema: Option<&Arc<Schema>>,
     data: &[u8],
@@ -285,7 +285,7 @@ fn take(
                     "only protobuf messages are read, and these are `{message}` with a schema in `{schema}`"
                 ));
             }
-            none.insert(Table::of(Arc::clone(schema))?)
+            none.insert(TopicTable::of(Arc::clone(schema))?)
         }
     };
     table.push(time, data, budget)

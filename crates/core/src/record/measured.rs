@@ -40,11 +40,11 @@ pub struct Quantity {
 }
 
 /// A metric and its value.
-pub type Told = (&'static Meaning, Value);
+pub type MetricValue = (&'static Meaning, Value);
 
 /// The metrics of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Metrics(pub Vec<Told>);
+pub struct Metrics(pub Vec<MetricValue>);
 
 impl Metrics {
     /// The value of a metric.

@@ -1,6 +1,6 @@
 //! Messages: the rows of a run as the bytes that every log of it holds, wherever they go.
 
-use super::foxglove::{Level, Log};
+use super::foxglove::{Log, LogLevel};
 use super::measured::Metrics;
 use super::proto::Encoder;
 use super::row::{Stamp, TopicRow};
@@ -129,7 +129,7 @@ impl<M: Messages> Encode<M> {
         if end != RunEnd::Complete {
             let timestamp = Stamp(self.epoch_ns + self.last.nanoseconds());
             let message = format!("the run {} at {} s", end.verb(), self.last.seconds());
-            let (level, name) = (Level::Warning, "run".to_owned());
+            let (level, name) = (LogLevel::Warning, "run".to_owned());
             self.take(self.last, &Log { timestamp, level, message, name })?;
         }
         Ok((self.to, self.last))

@@ -37,7 +37,7 @@ pub use mcap::{LogFile, McapLog};
 pub use message::{Attachment, COMMANDS, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;
-pub use spatial::{Cycle, SpatialMotion, Steered};
+pub use spatial::{SpatialCycle, SpatialMotion, Steered};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use topics::{
     Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
@@ -83,7 +83,7 @@ pub enum Sample<'a> {
     /// A failure of a sensor or an actuator began or ended.
     Fault(&'a FaultEvent),
     /// A cycle of a body with three axes began.
-    Cycle(&'a Cycle),
+    Cycle(&'a SpatialCycle),
     /// What adaptive observers know after a cycle's sample.
     Tracking(&'a Tracking),
     /// The motion of a spatial body at one instant, at each period of a dense record.
@@ -250,7 +250,7 @@ trait TakeRow {
             Sample::Scene(scene) => self.take(now, scene),
             Sample::Frames(frames) => self.take(now, frames),
             Sample::Plumes(plumes) => self.take(now, plumes),
-            Sample::Cycle(Cycle { pulses: 0, .. }) => Ok(()),
+            Sample::Cycle(SpatialCycle { pulses: 0, .. }) => Ok(()),
             Sample::Cycle(cycle) => {
                 self.take(now, &cycle.jets)?;
                 if cycle.thrusters.is_empty() {

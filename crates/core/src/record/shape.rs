@@ -9,7 +9,7 @@ use prost_types::{DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto
 use super::budget::Budget;
 use super::descriptor::{Content, Pool, is_group, is_list};
 use super::topics::label_of;
-use super::wire::{Raw, Wire};
+use super::wire::{Raw, WireMessage};
 use super::{Column, Columns};
 
 /// How the messages of a log are encoded.
@@ -33,7 +33,7 @@ const DEEPEST: usize = 32;
 const MOST_LABELS: usize = 255;
 
 /// Where the fields of a message go.
-pub struct Shape {
+pub struct MessageShape {
     /// By their numbers.
     fields: Vec<(u32, Place)>,
 }
@@ -45,9 +45,9 @@ enum Place {
     /// Each of its values into a row within the row.
     List(usize, Scalar),
     /// Its own fields into the same row.
-    Inner(Shape),
+    Inner(MessageShape),
     /// Each of its messages into a row within the row. The entries of a map are messages too.
-    Rows(usize, Shape),
+    Rows(usize, MessageShape),
 }
 
 /// What a field holds.
@@ -75,7 +75,7 @@ enum Scalar {
     Time,
 }
 
-impl Shape {
+impl MessageShape {
     /// Where the messages of a schema go, and the empty columns.
     pub fn of(schema: &Schema) -> Result<(Self, Columns), String> {
         if schema.encoding != "protobuf" {
@@ -99,7 +99,7 @@ impl Shape {
 
     /// Puts a message into a row that was begun.
     pub fn fill(&self, columns: &mut Columns, message: &[u8], budget: &mut Budget) -> Result<(), String> {
-        let mut wire = Wire::of(message);
+        let mut wire = WireMessage::of(message);
         while let Some((number, raw)) = wire.field()? {
             let Ok(index) = self.fields.binary_search_by_key(&number, |(number, _)| *number) else {
                 continue;
@@ -118,7 +118,7 @@ impl Shape {
                     scalar.set(column, raw, budget)?.ok_or_else(wrong)?;
                 }
                 (Place::List(place, scalar), Raw::Block(packed)) if scalar.packs() => {
-                    let mut packed = Wire::of(packed);
+                    let mut packed = WireMessage::of(packed);
                     while !packed.is_empty() {
                         let raw = scalar.next(&mut packed).ok_or_else(wrong)?;
                         let within = another(columns, *place);
@@ -181,7 +181,7 @@ impl<'a> Maker<'a> {
         before: &str,
         path: &str,
         (name, message): (&'a str, &'a DescriptorProto),
-    ) -> Result<Shape, String> {
+    ) -> Result<MessageShape, String> {
         if self.above.contains(&name) {
             let field = path.trim_end_matches('.');
             return Err(format!("field `{field}` is a `{name}` within itself, which has no columns"));
@@ -212,7 +212,7 @@ impl<'a> Maker<'a> {
         }
         self.above.pop();
         fields.sort_by_key(|(number, _)| *number);
-        Ok(Shape { fields })
+        Ok(MessageShape { fields })
     }
 
     fn place(
@@ -292,7 +292,7 @@ impl Scalar {
     }
 
     /// The next value of a list in one block.
-    fn next<'a>(&self, wire: &mut Wire<'a>) -> Option<Raw<'a>> {
+    fn next<'a>(&self, wire: &mut WireMessage<'a>) -> Option<Raw<'a>> {
         match self {
             Self::Double | Self::SignedFixed64 | Self::Fixed64 => wire.fixed64().map(Raw::Fixed64),
             Self::Float | Self::SignedFixed32 | Self::Fixed32 => wire.fixed32().map(Raw::Fixed32),
@@ -349,7 +349,7 @@ fn put<T>(values: &mut [T], value: T) -> Option<()> {
 /// A date or a span of time in seconds.
 fn seconds(time: &[u8]) -> Result<f64, String> {
     let (mut whole, mut past) = (0, 0);
-    let mut wire = Wire::of(time);
+    let mut wire = WireMessage::of(time);
     while let Some((number, raw)) = wire.field()? {
         match (number, raw) {
             (1, Raw::Varint(n)) => whole = n as i64,

@@ -7,7 +7,7 @@ use super::{
 
 /// A cycle of a spatial loop, after its law has decided.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cycle {
+pub struct SpatialCycle {
     /// What the jets do in it.
     pub jets: Jets,
     /// Of thrusters that act by themselves, the on-time of each (s).

@@ -1,6 +1,6 @@
 //! The metrics of a run in words, for the tables of viewers.
 
-use super::measured::{Metrics, Told, Value};
+use super::measured::{MetricValue, Metrics, Value};
 use super::{MetricLine, MetricPage, Summary};
 
 /// Of a longer list no more values are written.
@@ -12,12 +12,12 @@ impl Summary {
 
     /// What metrics come to.
     pub fn of(metrics: &Metrics) -> Self {
-        let page = |page: &[Told]| MetricPage { metrics: page.iter().map(line).collect() };
+        let page = |page: &[MetricValue]| MetricPage { metrics: page.iter().map(line).collect() };
         Self { pages: metrics.0.chunks(Self::PAGE).map(page).collect() }
     }
 }
 
-fn line((meaning, value): &Told) -> MetricLine {
+fn line((meaning, value): &MetricValue) -> MetricLine {
     let value = match value {
         Value::Count(count) => count.to_string(),
         Value::Number(value) => number(*value),

@@ -3,21 +3,21 @@
 use std::sync::Arc;
 
 use super::budget::Budget;
-use super::shape::{Schema, Shape, begin};
+use super::shape::{MessageShape, Schema, begin};
 use super::{Column, Columns};
 
 /// The rows of one topic as they are read.
-pub struct Table {
+pub struct TopicTable {
     schema: Arc<Schema>,
-    shape: Shape,
+    shape: MessageShape,
     columns: Columns,
     times: Vec<f64>,
 }
 
-impl Table {
+impl TopicTable {
     /// An empty table for the messages of a schema.
     pub fn of(schema: Arc<Schema>) -> Result<Self, String> {
-        let (shape, columns) = Shape::of(&schema)?;
+        let (shape, columns) = MessageShape::of(&schema)?;
         Ok(Self { schema, shape, columns, times: Vec::new() })
     }
 

@@ -2,7 +2,7 @@
 
 /// What is still to be read of a message.
 #[derive(Copy, Clone)]
-pub struct Wire<'a>(&'a [u8]);
+pub struct WireMessage<'a>(&'a [u8]);
 
 /// A field's value as the wire has it.
 #[derive(Copy, Clone)]
@@ -19,7 +19,7 @@ pub enum Raw<'a> {
     Group,
 }
 
-impl<'a> Wire<'a> {
+impl<'a> WireMessage<'a> {
     /// The wire of a message.
     pub fn of(bytes: &'a [u8]) -> Self {
         Self(bytes)

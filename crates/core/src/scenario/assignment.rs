@@ -1,7 +1,7 @@
 //! Several actuators: which go together, and whether their shares make the whole of what laws demand.
 
 use super::Written;
-use crate::actuator::{Actuator, Assigned, Member, Task, Unloading};
+use crate::actuator::{Actuator, ActuatorMember, ActuatorTask, Assigned, Unloading};
 use crate::attitude::AXES;
 use crate::document::Fault;
 use crate::law::Law;
@@ -47,10 +47,10 @@ impl Written {
     }
 
     /// Two actuators where there can be one.
-    fn twin_fault(&self, members: &[Member<'_>]) -> Option<Fault> {
+    fn twin_fault(&self, members: &[ActuatorMember<'_>]) -> Option<Fault> {
         for (index, member) in members.iter().enumerate() {
             let before = &members[..index];
-            let is_alike = |other: &&Member<'_>| other.kind.kind() == member.kind.kind();
+            let is_alike = |other: &&ActuatorMember<'_>| other.kind.kind() == member.kind.kind();
             let why = match &*member.kind {
                 Actuator::Wheels(_) => "write all wheels in one `wheels`, by their `axes`",
                 Actuator::ControlMomentGyros(_) => {
@@ -64,7 +64,7 @@ impl Written {
                                    `[actuator.wheels]` on a body with three axes";
                         return Some(Fault::new(format!("{}.rotor", member.key), why));
                     }
-                    let meets = |other: &Member<'_>| {
+                    let meets = |other: &ActuatorMember<'_>| {
                         (0..self.axis_count()).find(|axis| other.share(*axis) * member.share(*axis) > 0.0)
                     };
                     if before.iter().filter(is_alike).find_map(meets).is_none() {
@@ -85,7 +85,7 @@ impl Written {
     }
 
     /// A phase where the first period would be missed.
-    fn phase_fault(&self, members: &[Member<'_>]) -> Option<Fault> {
+    fn phase_fault(&self, members: &[ActuatorMember<'_>]) -> Option<Fault> {
         let planned = (0..self.axis_count()).any(|axis| matches!(self.law.about(axis), Law::PhasePlane(_)));
         members.iter().find_map(|member| {
             let at = |why: &str| Some(Fault::new(format!("{}.phase", member.key), why));
@@ -110,9 +110,9 @@ impl Written {
     }
 
     /// Shares that are not the whole of what laws demand.
-    fn share_fault(&self, members: &[Member<'_>]) -> Option<Fault> {
+    fn share_fault(&self, members: &[ActuatorMember<'_>]) -> Option<Fault> {
         for (axis, name) in AXES.iter().enumerate().take(self.axis_count()) {
-            let serving: Vec<&Member<'_>> =
+            let serving: Vec<&ActuatorMember<'_>> =
                 members.iter().filter(|member| member.share(axis) > 0.0).collect();
             let about = if self.axis_count() == 1 { String::new() } else { format!(" about {name}") };
             let Some(last) = serving.last() else {
@@ -142,15 +142,15 @@ impl Written {
 }
 
 /// What of unloading does not fit.
-fn unloading_fault(actuators: &Parts<Assigned>, members: &[Member<'_>]) -> Option<Fault> {
+fn unloading_fault(actuators: &Parts<Assigned>, members: &[ActuatorMember<'_>]) -> Option<Fault> {
     if let Some((wheels, key)) = actuators.wheels()
         && let Some(fault) = wheels.unloading.as_deref().and_then(Unloading::inconsistency)
     {
         return Some(fault.within(&format!("{key}.unloading")));
     }
     let mut unloaders = members.iter().filter_map(|member| match &member.task {
-        Task::Unloads(unloads) => Some((member, unloads)),
-        Task::Executes(_) => None,
+        ActuatorTask::Unloads(unloads) => Some((member, unloads)),
+        ActuatorTask::Executes(_) => None,
     });
     let (member, unloads) = unloaders.next()?;
     let how = member.unloads_key();

@@ -2,7 +2,7 @@
 
 use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
-use crate::actuator::{Actuator, Member, Wheel};
+use crate::actuator::{Actuator, ActuatorMember, Wheel};
 use crate::attitude::vector;
 use crate::body::craft::Limit;
 use crate::body::{Axes, Drive, Planar};
@@ -304,7 +304,7 @@ impl Scenario {
             if !self.disturbance.is_empty() {
                 return at("disturbance[0]", moves.to_owned());
             }
-            let thrusters = |member: &Member<'_>| matches!(&*member.kind, Actuator::Thrusters(_));
+            let thrusters = |member: &ActuatorMember<'_>| matches!(&*member.kind, Actuator::Thrusters(_));
             if let Some(member) = self.actuator.members().into_iter().find(thrusters) {
                 return at(&member.key, moves.to_owned());
             }

@@ -2,7 +2,7 @@
 //! yes.
 
 use super::Scenario;
-use crate::actuator::{Task, Unloads};
+use crate::actuator::{ActuatorTask, Unloads};
 use crate::attitude::vector;
 use crate::body::Spatial;
 use crate::body::spatial::{LONGEST_TURN, Periodic};
@@ -224,7 +224,7 @@ impl Scenario {
             if let Some(period) = member.kind.period() {
                 each(format!("{}.period", member.key), duration, period);
             }
-            if let Task::Unloads(Unloads { period: Some(period), .. }) = &member.task {
+            if let ActuatorTask::Unloads(Unloads { period: Some(period), .. }) = &member.task {
                 each(format!("{}.period", member.unloads_key()), duration, *period);
             }
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Scenario;
 use crate::body::{Coupled, Coupling, Planar};
 use crate::document::Fault;
-use crate::motion::linear::Linear;
+use crate::motion::linear::LinearFlow;
 use crate::structure::TOO_FAR_APART;
 
 /// More modes than these are not taken apart into the poles of their coupled motion.
@@ -30,7 +30,7 @@ impl Scenario {
     }
 
     /// The flow by poles of a body that a damping matrix couples, or a wheel under a law that switches at crossings.
-    pub(super) fn flow(&self) -> Result<Option<Arc<Linear>>, Fault> {
+    pub(super) fn flow(&self) -> Result<Option<Arc<LinearFlow>>, Fault> {
         let Some(body) = self.model.planar() else { return Ok(None) };
         let wheel = self.actuator.wheel().map(|(_, key)| key);
         let crosses = self.law.switches() && self.study.sampling.is_none();

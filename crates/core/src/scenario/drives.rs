@@ -11,7 +11,7 @@ use crate::body::craft::{Appendage, Drive, Piece, Track};
 use crate::document::Fault;
 use crate::environment::{Sky, into};
 use crate::law::Frame;
-use crate::motion::turning::{Angles, Driven};
+use crate::motion::turning::{Angles, DrivenSpacecraft};
 use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
 
@@ -31,7 +31,7 @@ const LOOKS: u32 = 4096;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drives {
     /// What they turn.
-    pub driven: Arc<Driven>,
+    pub driven: Arc<DrivenSpacecraft>,
     /// How.
     pub courses: Arc<Courses>,
 }

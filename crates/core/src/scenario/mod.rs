@@ -31,7 +31,7 @@ use crate::body::{Body, Model, Planar};
 use crate::document::{Document, Fault, ScenarioError};
 use crate::law::{Goal, Law, Promise};
 use crate::manoeuvre::Plan;
-use crate::motion::linear::Linear;
+use crate::motion::linear::LinearFlow;
 use crate::time::{Instant, Span};
 
 pub use cost::{Cost, MOST_RUNS};
@@ -53,7 +53,7 @@ pub struct Scenario {
     /// The plan of the manoeuvre.
     pub plan: Option<Plan>,
     /// The exact flow of a body whose modes are coupled, where the motion is in closed form.
-    pub linear: Option<Arc<Linear>>,
+    pub linear: Option<Arc<LinearFlow>>,
     /// What the parts come to together.
     pub study: Study,
 }

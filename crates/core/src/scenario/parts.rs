@@ -1,7 +1,7 @@
 //! Which parts go together: what does not is refused here, with the reason and what would do.
 
 use super::Written;
-use crate::actuator::{Actuator, Task};
+use crate::actuator::{Actuator, ActuatorTask};
 use crate::body::Model;
 use crate::disturbance::Disturbance;
 use crate::document::Fault;
@@ -264,7 +264,7 @@ impl Written {
             return Some(Fault::new(format!("{of}.period"), why));
         }
         let acting = self.actuator.members().into_iter().find(|member| {
-            matches!(&*member.kind, Actuator::Jets(_)) && matches!(member.task, Task::Executes(_))
+            matches!(&*member.kind, Actuator::Jets(_)) && matches!(member.task, ActuatorTask::Executes(_))
         })?;
         let Actuator::Jets(jets) = &*acting.kind else { return None };
         let at = |key: &str, why: String| Some(Fault::new(format!("{}.{key}", acting.key), why));

@@ -4,17 +4,17 @@ use nalgebra::{Cholesky, Matrix3};
 
 use super::{Drives, Scenario, Written};
 use crate::actuator::{
-    Actuate, Actuator, Allocation, Firing, Group, GyroAxes, Member, Nozzle, Opposes, Setting, Several, Task,
-    Torquers,
+    Actuate, Actuator, ActuatorMember, ActuatorTask, Allocation, Firing, FiringGroup, GyroAxes, OpenThruster,
+    Opposes, Several, TorquerSetting, Torquers,
 };
 use crate::attitude::{Vector, beyond, tensor};
-use crate::body::craft::{Moving, Rotor};
+use crate::body::craft::{HubRotor, Moving};
 use crate::body::{Axes, Drive, Mode, Model, Planar, Spatial};
 use crate::document::Fault;
 use crate::environment::Around;
 use crate::estimator::{Estimator, adaptive, attitude};
-use crate::law::{Authority, Distribution, Itinerary};
-use crate::motion::turning::{Bearing, Common};
+use crate::law::{Authority, Itinerary, TorqueDistribution};
+use crate::motion::turning::{Bearing, CommonSteps};
 use crate::quantity::{Finite, Positive};
 use crate::random::Seed;
 use crate::time::{Instant, Span};
@@ -50,15 +50,15 @@ pub struct Study {
     /// The way to the targets.
     pub way: Itinerary,
     /// What each group of jets by which laws act does: for each axis, plus and minus.
-    pub groups: Option<[[Group; 2]; 3]>,
+    pub groups: Option<[[FiringGroup; 2]; 3]>,
     /// What each thruster of jets does, whether laws act by them or they unload wheels.
-    pub nozzles: Vec<Nozzle>,
+    pub nozzles: Vec<OpenThruster>,
     /// About which axes jets are the only actuator.
     pub fired: [bool; 3],
     /// Whether jets are the only actuator of all.
     pub jets_alone: bool,
     /// What each group of jets that unload wheels does.
-    pub unloading: Option<[[Group; 2]; 3]>,
+    pub unloading: Option<[[FiringGroup; 2]; 3]>,
     /// How a torque is allocated to wheels about axes of their own.
     pub wheels: Option<Allocation>,
     /// The axes of control moment gyros with their gimbals at angle 0.
@@ -70,9 +70,9 @@ pub struct Study {
     /// The adaptive observers.
     pub adaptive: Option<Box<adaptive::ObserverDesign>>,
     /// What the sensors are to an attitude filter.
-    pub attitude: Option<attitude::Setting>,
+    pub attitude: Option<attitude::AttitudeSetting>,
     /// What the motions of all runs have in common.
-    pub common: Common,
+    pub common: CommonSteps,
     /// How near to its target the law of each axis promises to keep the body (rad), if it does.
     pub bands: Vec<Option<f64>>,
 }
@@ -111,7 +111,7 @@ impl Study {
             }
             let members = written.actuator.members();
             let part = |share: f64| share > 0.0 && share < 1.0 - ROUNDING;
-            let fires = |member: &&Member<'_>| matches!(&*member.kind, Actuator::Jets(_));
+            let fires = |member: &&ActuatorMember<'_>| matches!(&*member.kind, Actuator::Jets(_));
             if members.iter().filter(fires).any(|member| (0..3).any(|axis| part(member.share(axis)))) {
                 return at(
                     "predicts what one actuator about each axis does: it needs jets with all of the demand about theirs",
@@ -161,8 +161,8 @@ impl Study {
         for member in written.actuator.members() {
             let Actuator::Jets(jets) = &*member.kind else { continue };
             let (acts, groups) = match &member.task {
-                Task::Executes(shares) => (shares.map(|share| share > 0.0), &mut self.groups),
-                Task::Unloads(_) => ([true; 3], &mut self.unloading),
+                ActuatorTask::Executes(shares) => (shares.map(|share| share > 0.0), &mut self.groups),
+                ActuatorTask::Unloads(_) => ([true; 3], &mut self.unloading),
             };
             *groups = Some(jets.groups_on(body, acts).map_err(|fault| fault.within(&member.key))?);
             self.nozzles = jets.nozzles_on(body);
@@ -224,7 +224,7 @@ impl Study {
     }
 
     /// What is measured of a body with three axes, and what its actuators do to it.
-    pub fn measured(&self, body: &Spatial) -> adaptive::Measured {
+    pub fn measured(&self, body: &Spatial) -> adaptive::MeasuredRates {
         let (seen, hub) = (rotations(body, &self.sensed_at[0]), rotations(body, &self.acts_at));
         let tensor = body.tensor();
         let input = |axis: usize| {
@@ -239,9 +239,9 @@ impl Study {
             };
             let turned = Cholesky::new(tensor).map_or_else(Vector::zeros, |of| of.solve(&torque));
             let turning = turned.iter().map(|rate| rate / acceleration).collect();
-            adaptive::Input { forces, acceleration, turning }
+            adaptive::ActuatorInput { forces, acceleration, turning }
         };
-        adaptive::Measured {
+        adaptive::MeasuredRates {
             frequencies: body.modes.iter().map(|mode| mode.frequency).collect(),
             seen: (0..3).map(|axis| seen.iter().map(|rotation| rotation[axis]).collect()).collect(),
             inputs: (0..3).map(input).collect(),
@@ -254,12 +254,12 @@ impl Study {
     }
 
     /// What turns the body as laws command.
-    pub fn distribution(&self, scenario: &Scenario) -> Distribution {
+    pub fn distribution(&self, scenario: &Scenario) -> TorqueDistribution {
         match scenario.model.axes() {
-            Axes::One(body) => Distribution::of_one_angle(body.commanded_inertia()),
-            Axes::Three(body) => {
-                Distribution::of_three_axes(scenario.law.inertia().map_or_else(|| body.tensor(), tensor))
-            }
+            Axes::One(body) => TorqueDistribution::of_one_angle(body.commanded_inertia()),
+            Axes::Three(body) => TorqueDistribution::of_three_axes(
+                scenario.law.inertia().map_or_else(|| body.tensor(), tensor),
+            ),
         }
     }
 
@@ -267,7 +267,7 @@ impl Study {
     pub fn actuator(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Actuate> {
         let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
         let manoeuvre = scenario.manoeuvre.as_ref();
-        let setting = |(axis, model): (usize, &Planar)| Setting {
+        let setting = |(axis, model): (usize, &Planar)| TorquerSetting {
             axis,
             inertia: model.commanded_inertia(),
             planned_inertia: manoeuvre.map_or(model, |of| of.planned_for(model)).commanded_inertia(),
@@ -276,17 +276,18 @@ impl Study {
             waveform: waveform.clone(),
             share: 1.0,
         };
-        let settings: Vec<Setting> = self.axes.iter().enumerate().map(setting).collect();
+        let settings: Vec<TorquerSetting> = self.axes.iter().enumerate().map(setting).collect();
         if let Some(kind) = scenario.actuator.alone() {
             return self.start(scenario, kind, settings, self.groups.as_ref(), seed);
         }
         let members = scenario.actuator.members();
-        let start = |member: &Member<'_>| {
+        let start = |member: &ActuatorMember<'_>| {
             let (share, groups) = match &member.task {
-                Task::Executes(shares) => (*shares, self.groups.as_ref()),
-                Task::Unloads(_) => ([1.0; 3], self.unloading.as_ref()),
+                ActuatorTask::Executes(shares) => (*shares, self.groups.as_ref()),
+                ActuatorTask::Unloads(_) => ([1.0; 3], self.unloading.as_ref()),
             };
-            let own = settings.iter().map(|of| Setting { share: share[of.axis], ..of.clone() }).collect();
+            let own =
+                settings.iter().map(|of| TorquerSetting { share: share[of.axis], ..of.clone() }).collect();
             self.start(scenario, &member.kind, own, groups, seed)
         };
         let started = members.iter().map(|member| (&*member.kind, &member.task, start(member))).collect();
@@ -298,8 +299,8 @@ impl Study {
         &self,
         scenario: &Scenario,
         kind: &Actuator,
-        settings: Vec<Setting>,
-        groups: Option<&[[Group; 2]; 3]>,
+        settings: Vec<TorquerSetting>,
+        groups: Option<&[[FiringGroup; 2]; 3]>,
         seed: Seed,
     ) -> Box<dyn Actuate> {
         match (kind, groups, &self.wheels) {
@@ -331,7 +332,7 @@ fn surroundings(written: &Written, model: &Model, body: &Spatial) -> Result<Opti
         Some((wheels, key)) => wheels.rotors().map_err(|fault| fault.within(&key))?,
         None => Vec::new(),
     };
-    let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
+    let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::spinning).sum();
     let centre = model.craft().map_or_else(Vector::zeros, |craft| craft.centre);
     let around = Around::new(environment, written.sky(), [body.tensor(), spinning], &centre);
     Ok(Some(around.warming(bendings)))
@@ -343,12 +344,12 @@ fn rotations(body: &Spatial, point: &str) -> Vec<Vector> {
 }
 
 /// What is measured of a body with one angle: the modes show in the angle as they are.
-fn of_one_angle(model: &Planar) -> adaptive::Measured {
+fn of_one_angle(model: &Planar) -> adaptive::MeasuredRates {
     let visible = if model.drive == Drive::Torque { 1.0 } else { 0.0 };
-    adaptive::Measured {
+    adaptive::MeasuredRates {
         frequencies: model.modes.iter().map(|mode| mode.frequency).collect(),
         seen: vec![vec![visible; model.modes.len()]],
-        inputs: vec![adaptive::Input {
+        inputs: vec![adaptive::ActuatorInput {
             forces: model.modes.iter().map(|mode| mode.gain.get()).collect(),
             acceleration: 1.0,
             turning: vec![1.0],

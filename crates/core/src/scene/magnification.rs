@@ -2,13 +2,13 @@
 //!
 //! A run does not know its largest motion beforehand. What its actuator can do, and how it begins, give the order of magnitude.
 
-use crate::actuator::{Actuator, Member};
+use crate::actuator::{Actuator, ActuatorMember};
 use crate::attitude::{Vector, turned};
 use crate::body::spatial::SpatialMode;
 use crate::body::{Mode, Planar, Spatial};
 use crate::disturbance::Disturbance;
 use crate::law::{Commands, Frame, Law};
-use crate::motion::turning::Line;
+use crate::motion::turning::HarmonicLine;
 use crate::quantity::{Finite, Positive};
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -125,7 +125,7 @@ pub fn largest(scenario: &Scenario, body: &Planar) -> f64 {
         }
         _ => 0.0,
     };
-    let of = |member: Member<'_>| match &*member.kind {
+    let of = |member: ActuatorMember<'_>| match &*member.kind {
         Actuator::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.shaped(by_law)),
         Actuator::Thrusters(thrusters) => thrusters.torque.about(0).get(),
         _ => planned.max(by_law),
@@ -215,7 +215,7 @@ fn shaken(scenario: &Scenario, index: usize, mode: &SpatialMode, hub: &Vector) -
     let bias = wheels.speed_bias.map_or(f64::INFINITY, |bias| bias.speed.get().abs());
     let slowest = wheels.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::min);
     let fastest = wheels.fastest();
-    let of = |line: &Line| {
+    let of = |line: &HarmonicLine| {
         let push = [0, 1].map(|part| line.forces[part][index] + hub.dot(&line.torque[part]));
         let size = libm::hypot(push[0], push[1]);
         let speed = w / line.order;

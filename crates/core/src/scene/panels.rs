@@ -25,7 +25,7 @@ enum Bends {
 
 /// The panels of a body.
 #[derive(Clone, Debug)]
-pub struct Panels {
+pub struct ScenePanels {
     /// Distance of the first section from the axis (m).
     pub root: f64,
     /// Lengths of the sections (m), from the hub outwards.
@@ -37,7 +37,7 @@ pub struct Panels {
     bends: Bends,
 }
 
-impl Panels {
+impl ScenePanels {
     /// Those of a scenario's body.
     pub fn of(scenario: &Scenario, body: &Planar) -> Self {
         let reached = displacements(scenario, body);

@@ -2,13 +2,13 @@
 
 use super::Extent;
 use super::magnification::{angle, bending, largest, turning};
-use super::panels::Panels;
+use super::panels::ScenePanels;
 use super::part::{
     BODY, GOAL, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, line, scene, words,
 };
-use super::plume::{Burning, Nozzle};
+use super::plume::{Burning, ScenePlume};
 use super::pose::{about_z, attitude};
-use super::wheel::{Wheel, disc};
+use super::wheel::{SceneWheel, disc};
 use crate::attitude::Vector;
 use crate::body::Planar;
 use crate::motion::Phase;
@@ -45,8 +45,8 @@ pub struct PlanarScene {
     bending: f64,
     turning: f64,
     goal: Option<f64>,
-    panels: Panels,
-    wheel: Option<Wheel>,
+    panels: ScenePanels,
+    wheel: Option<SceneWheel>,
     plumes: Option<Burning>,
     /// The largest torque so far (N m).
     largest: f64,
@@ -57,7 +57,7 @@ impl PlanarScene {
     /// The scene of a scenario.
     pub fn new(scenario: &Scenario, body: &Planar) -> Self {
         let spec = &scenario.log.scene;
-        let panels = Panels::of(scenario, body);
+        let panels = ScenePanels::of(scenario, body);
         let period = spec.period(scenario.log_period());
         let mut scene = Self {
             period,
@@ -65,7 +65,7 @@ impl PlanarScene {
             turning: spec.turning.map_or_else(|| turning(angle(scenario, body)), Positive::get),
             goal: scenario.plan.as_ref().map(|_| scenario.goal().angle),
             panels,
-            wheel: Wheel::of(scenario, body, period),
+            wheel: SceneWheel::of(scenario, body, period),
             plumes: None,
             largest: largest(scenario, body),
             frames: FrameTransforms { transforms: Vec::new() },
@@ -85,7 +85,7 @@ impl PlanarScene {
     /// Two pairs of thrusters, each a couple about z: those that push to positive rates first.
     fn thrusters(&self) -> Burning {
         let half = self.half();
-        let side = |name: &str, y: f64, x: f64| Nozzle {
+        let side = |name: &str, y: f64, x: f64| ScenePlume {
             frame: BODY.to_owned(),
             name: name.to_owned(),
             at: Vector::new(0.6 * half * x, 1.15 * half * y, 0.0),

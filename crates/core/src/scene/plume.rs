@@ -7,7 +7,7 @@ use crate::record::row::Stamp;
 
 /// A nozzle: its frame, where its plume begins, and the direction in which it leaves.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Nozzle {
+pub struct ScenePlume {
     /// The frame to which it is fixed.
     pub frame: String,
     /// Its name.
@@ -21,7 +21,7 @@ pub struct Nozzle {
 /// The plumes of some nozzles at work.
 #[derive(Clone, Debug)]
 pub struct Burning {
-    nozzles: Vec<Nozzle>,
+    nozzles: Vec<ScenePlume>,
     /// Length of a full plume (m).
     length: f64,
     /// How much each nozzle gives, as a part of a full plume, as logged last.
@@ -30,12 +30,12 @@ pub struct Burning {
 
 impl Burning {
     /// Nozzles that have not been logged yet.
-    pub fn new(nozzles: Vec<Nozzle>, length: f64) -> Self {
+    pub fn new(nozzles: Vec<ScenePlume>, length: f64) -> Self {
         Self { nozzles, length, told: None }
     }
 
     /// The nozzles.
-    pub fn nozzles(&self) -> &[Nozzle] {
+    pub fn nozzles(&self) -> &[ScenePlume] {
         &self.nozzles
     }
 

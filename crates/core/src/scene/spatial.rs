@@ -8,13 +8,13 @@ use nalgebra::Quaternion;
 use super::Extent;
 use super::magnification::{bending, modal, spatial_angle, turning};
 use super::part::{BODY, BOOM, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, scene, words};
-use super::plume::{Burning, Nozzle};
+use super::plume::{Burning, ScenePlume};
 use super::pose::{about, attitude, from_z, limited, magnified, place};
 use crate::actuator::Pair;
 use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
 use crate::motion::Phase;
-use crate::motion::turning::Panel;
+use crate::motion::turning::DrivenPanel;
 use crate::quantity::Positive;
 use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
 use crate::record::row::Stamp;
@@ -87,7 +87,7 @@ impl SpatialScene {
         let points: Vec<Point> = body.points.iter().map(point).collect();
         let farthest = points.iter().map(|point| point.at.norm()).fold(0.0, f64::max);
         let size = if farthest > NEAR { farthest } else { SIZE };
-        let nozzles = thrusters.iter().map(|thruster| Nozzle {
+        let nozzles = thrusters.iter().map(|thruster| ScenePlume {
             frame: point_frame(&thruster.point),
             name: thruster.name.clone(),
             at: vector(&thruster.offset),
@@ -264,7 +264,7 @@ impl SpatialScene {
 /// The drives that turn the wings: the first two, or the only one turns both.
 fn wings(scenario: &Scenario) -> [Option<(usize, f64)>; 2] {
     let Some(drives) = &scenario.study.drives else { return [None; 2] };
-    let axis = |panel: &Panel| {
+    let axis = |panel: &DrivenPanel| {
         let (about, drive) = panel.drive?;
         Some((drive, if (panel.axes * about).y < 0.0 { -1.0 } else { 1.0 }, panel.root.y))
     };

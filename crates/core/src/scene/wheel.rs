@@ -15,7 +15,7 @@ const ROTOR: f64 = 0.02;
 
 /// A wheel: its speed at the start (rad/s), and how many times as much as the body it turns the other way.
 #[derive(Clone, Debug)]
-pub struct Wheel {
+pub struct SceneWheel {
     speed: f64,
     ratio: f64,
     /// How many times slower it is drawn than it turns.
@@ -24,7 +24,7 @@ pub struct Wheel {
     from: (f64, f64),
 }
 
-impl Wheel {
+impl SceneWheel {
     /// That of a scenario, if it has one, for frames with this period.
     pub fn of(scenario: &Scenario, body: &Planar, period: Span) -> Option<Self> {
         let (wheel, _) = scenario.actuator.wheel()?;

@@ -104,7 +104,7 @@ impl Accelerometer {
 
 /// What is measured along an axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Felt {
+pub struct MeasuredAcceleration {
     /// As it is told (m/s²).
     pub measured: f64,
     /// As it is (m/s²).
@@ -124,7 +124,7 @@ pub struct Accelerating {
     /// When it samples next.
     exposes: Instant,
     /// What was sampled, and when it is told.
-    waiting: VecDeque<(Instant, Vec<Felt>)>,
+    waiting: VecDeque<(Instant, Vec<MeasuredAcceleration>)>,
     /// What was measured last.
     last: Option<Vec<f64>>,
 }
@@ -155,7 +155,7 @@ impl Accelerating {
             let found = scaled + bias[index] + spec.noise.about(index).get() * draws[1];
             let quantum = spec.resolution.about(index).get();
             let measured = if quantum > 0.0 { libm::round(found / quantum) * quantum } else { found };
-            felt.push(Felt { measured, exact, bias: bias[index] });
+            felt.push(MeasuredAcceleration { measured, exact, bias: bias[index] });
         }
         match spec.faults.iter().find(|fault| fault.outage().lasts(now)) {
             Some(Fault::Silent(_)) => return,
@@ -171,7 +171,7 @@ impl Accelerating {
     }
 
     /// What is told now.
-    pub fn told(&mut self, now: Instant) -> Option<Vec<Felt>> {
+    pub fn told(&mut self, now: Instant) -> Option<Vec<MeasuredAcceleration>> {
         self.waiting.front().filter(|(told, _)| *told <= now)?;
         self.waiting.pop_front().map(|(_, felt)| felt)
     }
@@ -188,7 +188,11 @@ mod tests {
         spec.start(Seed { scenario: 3, run: 0 }, 0)
     }
 
-    fn run(at_work: &mut Accelerating, samples: usize, force: Vector) -> Vec<(f64, Vec<Felt>)> {
+    fn run(
+        at_work: &mut Accelerating,
+        samples: usize,
+        force: Vector,
+    ) -> Vec<(f64, Vec<MeasuredAcceleration>)> {
         let mut told = Vec::new();
         for _ in 0..samples {
             let now = at_work.due();

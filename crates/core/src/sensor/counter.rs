@@ -108,7 +108,7 @@ mod tests {
                 rate,
                 rigid: rate,
                 turned: rate.map(|rate| rate * t),
-                sky: crate::environment::Seen::default(),
+                sky: crate::environment::SkySight::default(),
             };
             let now = Instant::START + Span::from_seconds(t);
             told.push(gyro.read(now, &truth, None).unwrap().rate.unwrap());

@@ -9,7 +9,7 @@ use super::{Fault, Sense};
 use crate::attitude::Vector;
 use crate::axes::Each;
 use crate::document;
-use crate::environment::Seen;
+use crate::environment::SkySight;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Seed;
 use crate::time::Span;
@@ -73,7 +73,7 @@ impl Magnetometer {
 impl Measures for Magnetometer {
     const STREAM: &'static str = "magnetometer";
 
-    fn of(&self, sky: &Seen) -> Option<Vector> {
+    fn of(&self, sky: &SkySight) -> Option<Vector> {
         sky.field
     }
 

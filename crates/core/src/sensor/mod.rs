@@ -20,18 +20,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::{AXES, Vector, beyond, rotation};
 use crate::document;
-use crate::environment::Seen;
+use crate::environment::SkySight;
 use crate::own::{Halt, Own};
 use crate::parts::Parts;
 use crate::quantity::Positive;
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
-pub use accelerometer::{Accelerating, Accelerometer, Felt};
+pub use accelerometer::{Accelerating, Accelerometer, MeasuredAcceleration};
 pub use gyro::{AtCycles, Gyro};
 pub use instrument::Instrument;
 pub use magnetometer::Magnetometer;
-pub use sampled::{AtSamples, Fault, Sampled};
+pub use sampled::{Fault, Sampled, SampledSensor};
 pub use star_tracker::StarTracker;
 pub use sun_sensor::SunSensor;
 pub use tachometer::{Counting, Tachometer};
@@ -135,7 +135,7 @@ pub struct Truth {
     /// The integral of `rate` (rad), but for a constant: what a gyro that counts angles has counted.
     pub turned: [f64; 3],
     /// What there is of the sky.
-    pub sky: Seen,
+    pub sky: SkySight,
 }
 
 impl Truth {
@@ -156,12 +156,12 @@ pub struct Reading {
     /// Rates (rad/s), of a sensor that measures them.
     pub rate: Option<[f64; 3]>,
     /// A vector, of a sensor that measures one.
-    pub sight: Option<Sight>,
+    pub sight: Option<VectorSight>,
 }
 
 /// A vector that was measured.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Sight {
+pub struct VectorSight {
     /// In the body's axes, as measured.
     pub vector: Vector,
     /// What it is in inertial axes.

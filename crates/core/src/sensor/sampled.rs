@@ -65,9 +65,9 @@ impl Fault {
 
 impl Sampled {
     /// The sensor in a run of a body with so many axes, after so many others of its kind.
-    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> AtSamples {
+    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> SampledSensor {
         let draws = |axis: usize| stream("sensor", (axis, axes), ordinal, seed);
-        AtSamples { sampled: self.clone(), noise: (0..axes).map(draws).collect() }
+        SampledSensor { sampled: self.clone(), noise: (0..axes).map(draws).collect() }
     }
 
     /// Standard deviation of the measured angle (rad), that of its quantisation included.
@@ -88,12 +88,12 @@ impl Sampled {
 
 /// The sensor at work: each axis has a stream of noise of its own.
 #[derive(Clone, Debug)]
-pub struct AtSamples {
+pub struct SampledSensor {
     sampled: Sampled,
     noise: Vec<Stream>,
 }
 
-impl Sense for AtSamples {
+impl Sense for SampledSensor {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         let Self { sampled, noise } = self;
         // Draws are made in a failure too: those after it do not depend on it.

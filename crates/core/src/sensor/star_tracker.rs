@@ -126,7 +126,7 @@ mod tests {
 
     fn truth(attitude: Quaternion<f64>, elastic: [f64; 3], rate: [f64; 3]) -> Truth {
         let orientation = Orientation::Attitude(attitude);
-        let sky = crate::environment::Seen::default();
+        let sky = crate::environment::SkySight::default();
         Truth { orientation, elastic, rate, rigid: rate, turned: [0.0; 3], sky }
     }
 

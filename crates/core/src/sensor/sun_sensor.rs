@@ -9,7 +9,7 @@ use super::{Fault, Sense};
 use crate::attitude::{Vector, vector};
 use crate::axes::Each;
 use crate::document;
-use crate::environment::Seen;
+use crate::environment::SkySight;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Seed;
 use crate::time::Span;
@@ -90,7 +90,7 @@ impl SunSensor {
 impl Measures for SunSensor {
     const STREAM: &'static str = "sun sensor";
 
-    fn of(&self, sky: &Seen) -> Option<Vector> {
+    fn of(&self, sky: &SkySight) -> Option<Vector> {
         sky.sun
     }
 
@@ -129,7 +129,7 @@ mod tests {
     use crate::time::Instant;
 
     fn truth(attitude: Quaternion<f64>, sun: Option<Vector>) -> Truth {
-        let sky = Seen { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun };
+        let sky = SkySight { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun };
         let [elastic, rate] = [[0.0; 3]; 2];
         Truth { orientation: Orientation::Attitude(attitude), elastic, rate, rigid: rate, turned: rate, sky }
     }

@@ -5,11 +5,11 @@ use std::fmt;
 use nalgebra::Matrix3;
 
 use super::late::{Late, failing};
-use super::{Fault, Orientation, Reading, Sense, Sight, Truth, stream};
+use super::{Fault, Orientation, Reading, Sense, Truth, VectorSight, stream};
 use crate::attitude::Vector;
 use crate::axes::Each;
 use crate::document;
-use crate::environment::{Seen, into};
+use crate::environment::{SkySight, into};
 use crate::quantity::{Finite, NonNegative};
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
@@ -63,7 +63,7 @@ pub(super) trait Measures: Clone + fmt::Debug + Send + Sync + 'static {
     const STREAM: &'static str;
 
     /// The vector that there is to measure, in inertial axes.
-    fn of(&self, sky: &Seen) -> Option<Vector>;
+    fn of(&self, sky: &SkySight) -> Option<Vector>;
 
     /// What is told of a vector that is this in the sensor's axes and measured as this; nothing of what it does not see.
     fn told(&self, exact: &Vector, measured: Vector) -> Option<Vector>;
@@ -109,7 +109,7 @@ impl<S: Measures> Looking<S> {
         let seen = self.sensor.of(&truth.sky).and_then(|inertial| {
             let exact = into(&attitude, &inertial);
             let vector = self.sensor.told(&exact, self.errors.measured(&exact, &draws))?;
-            let sight = Sight { vector, inertial, is_direction: self.sensor.is_direction() };
+            let sight = VectorSight { vector, inertial, is_direction: self.sensor.is_direction() };
             Some(Reading { at: truth.orientation, rate: None, sight: Some(sight) })
         });
         failing(self.sensor.faults(), now, seen, last)

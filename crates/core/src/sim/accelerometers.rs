@@ -5,7 +5,7 @@ use super::{Simulation, SimulationError};
 use crate::random::Seed;
 use crate::record::{Acceleration, Accelerations, Record, Sample};
 use crate::scenario::Scenario;
-use crate::sensor::{Accelerating, Accelerometer, Felt};
+use crate::sensor::{Accelerating, Accelerometer, MeasuredAcceleration};
 use crate::time::Instant;
 
 /// The accelerometers at work, each with its place among the sensors.
@@ -44,7 +44,7 @@ impl Simulation {
                 sensor.sample(now, &plant.specific_force(mount));
             }
             while let Some(felt) = sensor.told(now) {
-                let axis = |felt: &Felt| Acceleration {
+                let axis = |felt: &MeasuredAcceleration| Acceleration {
                     measured_m_s2: felt.measured,
                     true_m_s2: felt.exact,
                     bias_m_s2: felt.bias,

@@ -3,7 +3,7 @@
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
 use crate::body::Lent;
-use crate::estimator::kalman::Filter;
+use crate::estimator::kalman::KalmanFilter;
 use crate::record::Record;
 use crate::sensor::Truth;
 use crate::time::Instant;
@@ -77,7 +77,7 @@ impl Simulation {
     }
 
     /// The filter, and the mean reduced moment since its last sample (rad/s²).
-    pub(crate) fn filter(&mut self) -> Option<(&mut Filter, Option<f64>)> {
+    pub(crate) fn filter(&mut self) -> Option<(&mut KalmanFilter, Option<f64>)> {
         self.estimator.filter(self.now)
     }
 

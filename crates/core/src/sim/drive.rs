@@ -5,17 +5,17 @@ use crate::belief::Belief;
 use crate::body::{Drift, Wrench};
 use crate::disturbance::{Disturbance, Disturbing};
 use crate::environment::Around;
-use crate::law::{Command, Distribution};
+use crate::law::{Command, TorqueDistribution};
 use crate::random::Seed;
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
 /// All that acts on the body.
 #[derive(Clone, Debug)]
-pub struct Drive {
+pub struct Loads {
     /// The actuator at work.
     pub actuator: Box<dyn Actuate>,
-    distribution: Distribution,
+    distribution: TorqueDistribution,
     disturbances: Vec<Disturbing>,
     /// The instants, latest first, at which the waveform breaks, a disturbance or what is around changes, the drift has a kink, or
     /// drives have turned so far that other modes carry the motion on.
@@ -25,7 +25,7 @@ pub struct Drive {
     wrench: Wrench,
 }
 
-impl Drive {
+impl Loads {
     /// The drive of a scenario, before its start.
     pub fn new(scenario: &Scenario, seed: Seed) -> Self {
         let at = |t: f64| Instant::START + Span::from_seconds(t);

@@ -3,7 +3,7 @@
 use crate::attitude::{AXES, angles};
 use crate::belief::Damped;
 use crate::law::Frame;
-use crate::record::foxglove::Level;
+use crate::record::foxglove::LogLevel;
 use crate::record::row::Stamp;
 use crate::record::{Adaptation, Arrival, Record, RecordError, Sliding, WheelEvent};
 use crate::scenario::Scenario;
@@ -51,17 +51,17 @@ impl Events {
 
     /// The run begins.
     pub fn begin(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
-        self.journal.tell(now, (Level::Info, "run"), self.opening.clone(), record)
+        self.journal.tell(now, (LogLevel::Info, "run"), self.opening.clone(), record)
     }
 
     /// The run ends.
     pub fn end(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
-        self.journal.tell(now, (Level::Info, "run"), "the end of the run".to_owned(), record)
+        self.journal.tell(now, (LogLevel::Info, "run"), "the end of the run".to_owned(), record)
     }
 
     /// The run is left before its end.
     pub fn left(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
-        self.journal.tell(now, (Level::Info, "run"), "the run is left before its end".to_owned(), record)
+        self.journal.tell(now, (LogLevel::Info, "run"), "the run is left before its end".to_owned(), record)
     }
 
     /// The manoeuvre ends.
@@ -70,7 +70,7 @@ impl Events {
             "the manoeuvre ends {:.3e} rad from its goal, with a vibration of {:.3e} rad",
             row.angle_error_rad, row.angle_residual_rad
         );
-        self.journal.tell(now, (Level::Info, "manoeuvre"), line, record)
+        self.journal.tell(now, (LogLevel::Info, "manoeuvre"), line, record)
     }
 
     /// The adaptation takes a step.
@@ -82,7 +82,7 @@ impl Events {
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
         let line = adapted(row.window, row.decision, before, row.gain);
-        self.journal.tell(now, (Level::Info, "adaptation"), line, record)
+        self.journal.tell(now, (LogLevel::Info, "adaptation"), line, record)
     }
 
     /// Filters of so many axes lose the body, or follow it again.
@@ -96,9 +96,9 @@ impl Events {
         let before = std::mem::replace(&mut self.lost, lost);
         for axis in (0..3).filter(|axis| before[*axis] != lost[*axis]) {
             let (level, line) = if lost[axis] {
-                (Level::Warning, "the filter has lost the body")
+                (LogLevel::Warning, "the filter has lost the body")
             } else {
-                (Level::Info, "the filter follows the body again")
+                (LogLevel::Info, "the filter follows the body again")
             };
             let line = if axes == 1 { line.to_owned() } else { format!("{}: {line}", AXES[axis]) };
             self.journal.tell(now, (level, "estimator"), line, record)?;
@@ -114,7 +114,7 @@ impl Events {
         error: [f64; 3],
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
-        let manoeuvre = (Level::Info, "manoeuvre");
+        let manoeuvre = (LogLevel::Info, "manoeuvre");
         if self.target != Some(target) {
             self.target = Some(target);
             let (frame, attitude) = target;
@@ -145,14 +145,14 @@ impl Events {
             _ => "passes through zero speed",
         };
         let line = format!("wheel {} {what}", event.wheel + 1);
-        self.journal.tell(now, (Level::Info, "wheels"), line, record)
+        self.journal.tell(now, (LogLevel::Info, "wheels"), line, record)
     }
 
     /// A failure of a part begins or ends.
     pub fn failed(
         &self,
         now: Instant,
-        what: (Level, &str),
+        what: (LogLevel, &str),
         line: String,
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
@@ -167,7 +167,7 @@ impl Events {
         trusted: [bool; 3],
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
-        let (debug, info, warning) = (Level::Debug, Level::Info, Level::Warning);
+        let (debug, info, warning) = (LogLevel::Debug, LogLevel::Info, LogLevel::Warning);
         for (axis, name) in AXES.into_iter().enumerate() {
             let changed = |before: &mut bool, now: bool| std::mem::replace(before, now) != now;
             let Damped { latched, resting, .. } = damped[axis];

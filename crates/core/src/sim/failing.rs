@@ -1,7 +1,7 @@
 //! Failures of sensors and actuators as they begin and end, for log and journal.
 
 use super::Simulation;
-use crate::record::foxglove::Level;
+use crate::record::foxglove::LogLevel;
 use crate::record::{Command, FaultEvent, Onset, Record, RecordError, Sample};
 use crate::scenario::{Failing, Scenario};
 use crate::time::Instant;
@@ -44,8 +44,8 @@ impl Simulation {
             let (time_s, time_whole_s, time_fs) = Command::times(now);
             let whose = if of.is_empty() { String::new() } else { format!("{of}: ") };
             let (level, line) = match onset {
-                Onset::Begins => (Level::Warning, format!("{whose}`{fault}` begins")),
-                Onset::Ends => (Level::Info, format!("{whose}`{fault}` ends")),
+                Onset::Begins => (LogLevel::Warning, format!("{whose}`{fault}` begins")),
+                Onset::Ends => (LogLevel::Info, format!("{whose}`{fault}` ends")),
             };
             let event = FaultEvent {
                 time_s,

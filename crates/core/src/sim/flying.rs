@@ -7,8 +7,8 @@ mod damped;
 
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
-use crate::flight::{Crew, Flight, Place, Rest, Searched, Setup, Sight, instant, phase, see};
-use crate::lanes::{Processor, Real, Work};
+use crate::flight::{Crew, CyclePlace, Flight, LaneRest, LaneSight, Searched, Setup, instant, phase, see};
+use crate::lanes::{LaneWork, Processor, Real};
 use crate::law::Command;
 use crate::motion::damping::Undamped;
 use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
@@ -26,7 +26,7 @@ struct Alone<'a> {
     /// Whether it goes on elsewhere, and why it does not go on at all.
     stopped: bool,
     failed: Option<SimulationError>,
-    rest: Rest,
+    rest: LaneRest,
 }
 
 impl Simulation {
@@ -43,7 +43,7 @@ impl Simulation {
         let Some(setup) = self.quick.flight.take() else { return Ok(()) };
         let setup = Setup { end: until.parts(), ..*setup };
         let listens = record.switchings();
-        let (failed, rest) = (None, Rest::default());
+        let (failed, rest) = (None, LaneRest::default());
         let mut crew =
             Alone { run: self, record, setup, waits: true, listens, band, stopped: false, failed, rest };
         crew.fly();
@@ -53,7 +53,7 @@ impl Simulation {
     }
 
     /// Takes the run over at a departure.
-    fn land(&mut self, rest: &Rest, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn land(&mut self, rest: &LaneRest, record: &mut impl Record) -> Result<(), SimulationError> {
         let (Some(place), now) = (rest.place, instant(rest.from.at)) else { return Ok(()) };
         if now == Instant::START {
             return Ok(());
@@ -75,7 +75,7 @@ impl Simulation {
     }
 
     /// Begins a motion at what was seen, under a torque (N m).
-    fn set_off(&mut self, from: &Sight, torque: f64) {
+    fn set_off(&mut self, from: &LaneSight, torque: f64) {
         self.exerted = Exerted { constant: torque, feedback: torque, back_emf: (0.0, false) };
         if let Plant::Planar(plant) = &mut self.plant {
             plant.put(instant(from.at), |state| see(state, from));
@@ -102,7 +102,7 @@ impl Alone<'_> {
         }
     }
 
-    fn tell(&mut self, to: Place, now: &Sight) -> Result<(), RecordError> {
+    fn tell(&mut self, to: CyclePlace, now: &LaneSight) -> Result<(), RecordError> {
         self.record.poll()?;
         let at = instant(now.at);
         let Plant::Planar(plant) = &mut self.run.plant else { return Ok(()) };
@@ -114,7 +114,7 @@ impl Alone<'_> {
             time_whole_s,
             time_fs,
             state: phase(to, now.side),
-            cause: if to == Place::Coast { Trigger::Timeout } else { Trigger::Guard },
+            cause: if to == CyclePlace::Coast { Trigger::Timeout } else { Trigger::Guard },
             torque_nm: self.setup.torque(to, now.side),
             angle_rad: sensed.angle,
             rate_rad_s: sensed.rate,
@@ -124,7 +124,7 @@ impl Alone<'_> {
     }
 }
 
-impl Work for &mut Alone<'_> {
+impl LaneWork for &mut Alone<'_> {
     type Output = ();
 
     #[allow(clippy::inline_always, reason = "a function of its own would lack the processor's instructions")]
@@ -150,7 +150,7 @@ impl Crew for Alone<'_> {
         (lane == 0 && std::mem::take(&mut self.waits)).then(|| self.setup.clone())
     }
 
-    fn search(&mut self, _: usize, place: Place, from: &Sight) -> Option<Searched> {
+    fn search(&mut self, _: usize, place: CyclePlace, from: &LaneSight) -> Option<Searched> {
         self.run.set_off(from, self.setup.torque(place, from.side));
         let horizon = instant(self.setup.end).since(instant(from.at));
         let guards = self.setup.guards(place, from.side);
@@ -176,7 +176,7 @@ impl Crew for Alone<'_> {
         self.stopped = true;
     }
 
-    fn switched(&mut self, _: usize, to: Place, now: &Sight) {
+    fn switched(&mut self, _: usize, to: CyclePlace, now: &LaneSight) {
         let told = self.tell(to, now);
         self.keep(told);
     }
@@ -194,7 +194,7 @@ impl Crew for Alone<'_> {
         learned.unwrap_or(gain)
     }
 
-    fn strays(&mut self, _: usize, place: Place, from: &Sight, until: (u64, u64)) {
+    fn strays(&mut self, _: usize, place: CyclePlace, from: &LaneSight, until: (u64, u64)) {
         self.run.set_off(from, self.setup.torque(place, from.side));
         let Plant::Planar(plant) = &self.run.plant else { return };
         let told = plant.tell_course(instant(until), &self.run.exerted, &mut self.record);
@@ -209,7 +209,7 @@ impl Crew for Alone<'_> {
         self.stopped || self.failed.is_some()
     }
 
-    fn take_back(&mut self, rest: Rest) {
+    fn take_back(&mut self, rest: LaneRest) {
         self.rest = rest;
     }
 }

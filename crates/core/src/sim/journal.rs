@@ -1,7 +1,7 @@
 //! The journal: what happened in a run, line by line, for people.
 
 use crate::adaptation::Decision;
-use crate::record::foxglove::{Level, Log};
+use crate::record::foxglove::{Log, LogLevel};
 use crate::record::row::Stamp;
 use crate::record::{Record, RecordError, Sample};
 use crate::scenario::Scenario;
@@ -23,7 +23,7 @@ impl Journal {
     pub fn tell(
         self,
         now: Instant,
-        (level, name): (Level, &str),
+        (level, name): (LogLevel, &str),
         message: String,
         record: &mut impl Record,
     ) -> Result<(), RecordError> {

@@ -5,7 +5,7 @@ use super::telling::Telling;
 use super::{Simulation, SimulationError};
 use crate::adaptation::Objective;
 use crate::attitude::Vector;
-use crate::estimator::{Beside, Closed, Measured, Meter, Monitor, Searching};
+use crate::estimator::{Beside, Meter, Monitor, Searching, WindowEnd, WindowMeans};
 use crate::law::Phase;
 use crate::record::{Record, RecordError, Sample};
 use crate::sensor::Truth;
@@ -145,7 +145,12 @@ impl Simulation {
 
 impl Telling {
     /// A window that ended, and what the adaptation made of it.
-    pub fn window(&self, now: Instant, closed: &Closed, record: &mut impl Record) -> Result<(), RecordError> {
+    pub fn window(
+        &self,
+        now: Instant,
+        closed: &WindowEnd,
+        record: &mut impl Record,
+    ) -> Result<(), RecordError> {
         record.record(now, Sample::Window(&closed.mean))?;
         let Some((row, before)) = &closed.step else { return Ok(()) };
         record.record(now, Sample::Adaptation(row))?;
@@ -156,7 +161,7 @@ impl Telling {
     pub fn objective(
         &self,
         now: Instant,
-        measured: &Measured,
+        measured: &WindowMeans,
         record: &mut impl Record,
     ) -> Result<(), RecordError> {
         record.record(now, Sample::Objective(&measured.row))?;

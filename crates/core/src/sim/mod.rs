@@ -36,10 +36,10 @@ use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 
-use drive::Drive;
+use drive::Loads;
 pub use error::SimulationError;
 pub(crate) use plant::Exerted;
-pub use sight::{Field, Group};
+pub use sight::{LookField, LookGroup};
 pub use stepping::Occasion;
 
 use plain::Quick;
@@ -73,7 +73,7 @@ pub struct Simulation {
     next_target: Option<Instant>,
     beliefs: Vec<Belief>,
     laws: Controls,
-    drive: Drive,
+    drive: Loads,
     /// The torques of the present motion.
     exerted: Exerted,
     /// The instant and index of the guard that trips next, as long as the hold lasts.
@@ -115,7 +115,7 @@ impl Simulation {
             next_target: reference.next_target(Instant::START),
             beliefs: vec![Belief::default(); axes],
             laws: Controls::new(&scenario.law, &study.authorities),
-            drive: Drive::new(scenario, seed),
+            drive: Loads::new(scenario, seed),
             exerted: Exerted::default(),
             trip: None,
             decisions: 0,

@@ -9,7 +9,7 @@ use crate::sensor::Truth;
 
 /// What the numbers of a field are to the control system.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Group {
+pub enum LookGroup {
     /// What is so.
     State,
     /// What the sensors measured last; not a number before.
@@ -20,9 +20,9 @@ pub enum Group {
 
 /// A quantity in the row of [`Simulation::look`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Field {
+pub struct LookField {
     /// What it is to the control system.
-    pub group: Group,
+    pub group: LookGroup,
     /// Its name within the group.
     pub name: &'static str,
     /// Its unit.
@@ -31,7 +31,7 @@ pub struct Field {
     pub count: Option<usize>,
 }
 
-impl Field {
+impl LookField {
     /// How many numbers it takes in the row.
     pub fn width(&self) -> usize {
         self.count.unwrap_or(1)
@@ -60,9 +60,9 @@ impl Simulation {
     }
 
     /// The fields of a row, in its order, of a run of this scenario.
-    pub fn fields(&self, scenario: &Scenario) -> Vec<Field> {
-        let field = |group, name, unit, count| Field { group, name, unit, count };
-        let state = |name, unit, count| field(Group::State, name, unit, count);
+    pub fn fields(&self, scenario: &Scenario) -> Vec<LookField> {
+        let field = |group, name, unit, count| LookField { group, name, unit, count };
+        let state = |name, unit, count| field(LookGroup::State, name, unit, count);
         let mut fields = match &self.plant {
             Plant::Planar(plant) => {
                 let modes = Some(plant.state().modes.len());
@@ -105,7 +105,7 @@ impl Simulation {
         }
         let count = (self.beliefs.len() > 1).then_some(3);
         let angle = if count.is_some() { "error" } else { "angle" };
-        for group in [Group::Measured, Group::Believed] {
+        for group in [LookGroup::Measured, LookGroup::Believed] {
             fields.push(field(group, angle, "rad", count));
             fields.push(field(group, "rate", "rad/s", count));
         }

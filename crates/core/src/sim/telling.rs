@@ -8,10 +8,10 @@ use super::plant::{Plant, SpatialPlant};
 use super::reference::Reference;
 use super::{Simulation, SimulationError};
 use crate::law::{Cause, Phase};
-use crate::motion::turning::{Slip, Turned};
+use crate::motion::turning::{Slip, SlippedRotor};
 use crate::record::{
-    self, AxisRate, Command, Cycle, Estimates, GoalMotion, Jets, Motion, Rates, Record, RecordError, Sample,
-    SpatialMotion, Torques, Trigger, Wheels,
+    self, AxisRate, Command, Estimates, GoalMotion, Jets, Motion, Rates, Record, RecordError, Sample,
+    SpatialCycle, SpatialMotion, Torques, Trigger, Wheels,
 };
 use crate::scenario::Scenario;
 use crate::scene::Scene;
@@ -266,7 +266,7 @@ impl Simulation {
             // Jets may have cycles of their own, which are longer.
             let pulses = pulses - std::mem::replace(&mut self.telling.pulses, pulses);
             let (elastic_energy_j, visible_energy_j) = plant.elastic_energies();
-            let cycle = Cycle {
+            let cycle = SpatialCycle {
                 jets: Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg },
                 thrusters,
                 pulses,
@@ -300,7 +300,7 @@ impl Simulation {
 
     /// The bearings of wheels, if they have any.
     fn bearings(&self, plant: &SpatialPlant) -> Option<record::Bearings> {
-        let of = |(wheel, known_rad_s): (Turned, f64)| record::BearingMotion {
+        let of = |(wheel, known_rad_s): (SlippedRotor, f64)| record::BearingMotion {
             sliding: wheel.slip.into(),
             friction_nm: wheel.friction,
             heat_j: wheel.heat,

@@ -13,7 +13,7 @@ pub struct Mistake {
     /// Where the document comes from.
     pub origin: String,
     /// Its place in the text, if it has one.
-    pub place: Option<Place>,
+    pub place: Option<TextPlace>,
     /// The path of the key that it is about, such as `law.relay.k_t`; none for the document as a whole.
     pub key: Option<String>,
     /// What is wrong.
@@ -24,7 +24,7 @@ pub struct Mistake {
 
 /// A place in a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct TextPlace {
     /// The line, from 1.
     pub line: usize,
     /// The character in the line, from 1.
@@ -48,11 +48,11 @@ impl Mistake {
     /// The mistake at this place of a text.
     #[must_use]
     pub fn at(self, text: &str, span: &Range<usize>) -> Self {
-        Self { place: Some(Place::of(text, span)), ..self }
+        Self { place: Some(TextPlace::of(text, span)), ..self }
     }
 }
 
-impl Place {
+impl TextPlace {
     fn of(text: &str, span: &Range<usize>) -> Self {
         let start = span.start.min(text.len());
         let before = &text[..start];
@@ -77,7 +77,7 @@ impl fmt::Display for Mistake {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { origin, place, message, .. } = self;
         match place {
-            Some(Place { line, column, quoted }) => {
+            Some(TextPlace { line, column, quoted }) => {
                 write!(f, "{origin}:{line}:{column}: {message}\n{quoted}")
             }
             None => write!(f, "{origin}: {message}"),

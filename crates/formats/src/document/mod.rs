@@ -21,7 +21,7 @@ use toml::de::DeTable;
 use toml::{Table, Value};
 
 pub use fault::Fault;
-pub use mistake::{Mistake, Place};
+pub use mistake::{Mistake, TextPlace};
 pub use nearest::meant as nearest;
 pub use quantity::unit_at;
 pub use reader::{DATE, read_value};

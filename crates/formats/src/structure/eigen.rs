@@ -17,7 +17,7 @@ use super::reduced::{Reduced, Unsolved, is_definite};
 pub const SMALL: usize = 100;
 
 /// The modes: natural frequencies (rad/s), increasing, and for each the values of some linear functionals.
-pub struct Modes {
+pub struct EigenModes {
     /// Natural frequencies (rad/s), increasing.
     pub frequencies: Vec<f64>,
     /// One row for each mode: c' x for each functional c, with x' M x = 1.
@@ -29,7 +29,7 @@ pub fn modes(
     stiffness: DMatrix<f64>,
     mass: DMatrix<f64>,
     functionals: &DMatrix<f64>,
-) -> Result<Modes, Unsolved> {
+) -> Result<EigenModes, Unsolved> {
     let order = stiffness.nrows();
     let reduced = if order <= SMALL {
         small(stiffness, mass, functionals)?
@@ -43,7 +43,7 @@ pub fn modes(
         falling.iter().map(|n| 1.0 / libm::sqrt(reduced.squares[*n].max(f64::MIN_POSITIVE))).collect();
     let values =
         DMatrix::from_fn(order, functionals.ncols(), |n, c| frequencies[n] * reduced.values[(falling[n], c)]);
-    Ok(Modes { frequencies, values })
+    Ok(EigenModes { frequencies, values })
 }
 
 /// The eigenvalues of a symmetric matrix, increasing; none if an element is not finite. Its lower half is read.

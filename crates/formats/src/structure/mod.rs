@@ -47,7 +47,7 @@ pub struct Structure {
 
 /// Whether the hub turns with the modes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Hub {
+pub enum HubState {
     /// It turns freely, and a torque drives it.
     Free,
     /// It is held, or moved as commanded.
@@ -171,7 +171,7 @@ impl Structure {
     ///
     /// # Errors
     /// A matrix that is not positive definite.
-    pub fn modes(&self, hub: Hub, observed: &[Vec<f64>]) -> Result<Modes, Fault> {
+    pub fn modes(&self, hub: HubState, observed: &[Vec<f64>]) -> Result<Modes, Fault> {
         let elastic: Vec<usize> = (0..self.mass.nrows()).filter(|i| *i != self.hub).collect();
         let order = elastic.len();
         let momenta = &self.mass * &self.rotation;
@@ -183,7 +183,7 @@ impl Structure {
         let block =
             |matrix: &DMatrix<f64>| DMatrix::from_fn(order, order, |i, j| matrix[(elastic[i], elastic[j])]);
         let mut mass = block(&self.mass);
-        if hub == Hub::Free {
+        if hub == HubState::Free {
             mass.ger(-1.0 / inertia, &coupling, &coupling, 1.0);
         }
         let functionals = DMatrix::from_fn(order, 1 + observed.len(), |i, column| match column {
@@ -204,18 +204,18 @@ impl Structure {
                 )),
         })?;
         let couplings = solved.values.column(0);
-        if hub == Hub::Held && couplings.norm_squared() >= inertia {
+        if hub == HubState::Held && couplings.norm_squared() >= inertia {
             return fault("mass", format!("{DEFINITE}, and is not"));
         }
         let rigid: Vec<f64> = observed.iter().map(|weights| dot(weights, self.rotation.as_slice())).collect();
         let participations: Vec<f64> = match hub {
-            Hub::Free => couplings.iter().map(|coupling| -coupling / inertia).collect(),
-            Hub::Held => couplings.iter().copied().collect(),
+            HubState::Free => couplings.iter().map(|coupling| -coupling / inertia).collect(),
+            HubState::Held => couplings.iter().copied().collect(),
         };
         // A free mode moves the hub too, and with it all that turns with the hub.
         let turns = |n: usize, rigid: f64| match hub {
-            Hub::Free => rigid * participations[n],
-            Hub::Held => 0.0,
+            HubState::Free => rigid * participations[n],
+            HubState::Held => 0.0,
         };
         let shape = |(c, rigid): (usize, &f64)| {
             (0..order).map(|n| solved.values[(n, c + 1)] + turns(n, *rigid)).collect()

@@ -23,7 +23,7 @@ const COMPONENTS: [&str; 6] = ["tx", "ty", "tz", "rx", "ry", "rz"];
 pub const MOST_MODES: usize = 200;
 
 /// A mode as a line of a table gives it.
-pub trait Row: Clone + Serialize + DeserializeOwned + JsonSchema {
+pub trait ModeRow: Clone + Serialize + DeserializeOwned + JsonSchema {
     /// What a schema calls a list of such modes.
     const LIST: &'static str;
     /// The files that hold such modes, by the ends of their names.
@@ -35,14 +35,14 @@ pub trait Row: Clone + Serialize + DeserializeOwned + JsonSchema {
     fn of(frequency: Frequency) -> Self;
 
     /// What every kind of mode has.
-    fn common(&mut self) -> Common<'_>;
+    fn common(&mut self) -> ModeCommon<'_>;
 
     /// Sets the number of a column, given by its place in [`Self::OWN`].
     fn set_own(&mut self, column: usize, value: Finite);
 }
 
 /// What every kind of mode has beside its frequency.
-pub struct Common<'a> {
+pub struct ModeCommon<'a> {
     /// Damping ratio.
     pub damping: &'a mut NonNegative,
     /// Modal displacement at the start.
@@ -66,7 +66,7 @@ enum Column {
     Damping,
     Displacement,
     Rate,
-    /// A column of this kind of mode alone, by its place in [`Row::OWN`].
+    /// A column of this kind of mode alone, by its place in [`ModeRow::OWN`].
     Own(usize),
     /// A component of the shape at a point, by its place in [`COMPONENTS`].
     Shape(String, usize),
@@ -84,7 +84,7 @@ impl<M> From<Vec<M>> for ModeTable<M> {
     }
 }
 
-impl<M: Row> ModeTable<M> {
+impl<M: ModeRow> ModeTable<M> {
     /// Makes the path of the file absolute: a relative one begins at a directory.
     pub fn locate(&mut self, directory: &Path) {
         if let Some(file) = &mut self.file
@@ -140,7 +140,7 @@ impl<M> Deref for ModeTable<M> {
 }
 
 /// Reads a table of modes: a header that names the columns, then a mode a line.
-fn read_file<M: Row>(path: &Path) -> Result<Vec<M>, String> {
+fn read_file<M: ModeRow>(path: &Path) -> Result<Vec<M>, String> {
     let records = csv::records(path, 1 + LARGEST, "lines")?;
     let Some(((line, header), rows)) = records.split_first() else {
         return Err("must have a header".to_owned());
@@ -198,7 +198,7 @@ impl Column {
         })
     }
 
-    fn set<M: Row>(&self, mode: &mut M, field: &str) -> Result<(), String> {
+    fn set<M: ModeRow>(&self, mode: &mut M, field: &str) -> Result<(), String> {
         match self {
             Self::Frequency => {}
             Self::Damping => *mode.common().damping = number(field)?,
@@ -233,7 +233,7 @@ impl<M: Serialize> Serialize for ModeTable<M> {
     }
 }
 
-impl<'de, M: Row> Deserialize<'de> for ModeTable<M> {
+impl<'de, M: ModeRow> Deserialize<'de> for ModeTable<M> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(TableOrFile(PhantomData))
     }
@@ -241,7 +241,7 @@ impl<'de, M: Row> Deserialize<'de> for ModeTable<M> {
 
 struct TableOrFile<M>(PhantomData<M>);
 
-impl<'de, M: Row> Visitor<'de> for TableOrFile<M> {
+impl<'de, M: ModeRow> Visitor<'de> for TableOrFile<M> {
     type Value = ModeTable<M>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -258,7 +258,7 @@ impl<'de, M: Row> Visitor<'de> for TableOrFile<M> {
     }
 }
 
-impl<M: Row> JsonSchema for ModeTable<M> {
+impl<M: ModeRow> JsonSchema for ModeTable<M> {
     fn schema_name() -> Cow<'static, str> {
         M::LIST.into()
     }

@@ -6,7 +6,7 @@ use pulp::aarch64::Neon;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::V3;
 
-use super::real::Work;
+use super::real::LaneWork;
 use super::register::Vectorized;
 
 /// The instructions by which this processor does something to four numbers.
@@ -40,7 +40,7 @@ impl Four {
     }
 
     /// Does some work over four lanes.
-    pub fn run<W: Work>(self, work: W) -> W::Output {
+    pub fn run<W: LaneWork>(self, work: W) -> W::Output {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(simd) => Simd::vectorize(simd, Vectorized::<W, 1>(work)),

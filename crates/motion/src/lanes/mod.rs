@@ -17,4 +17,4 @@ mod tests;
 
 pub use four::Four;
 pub use processor::Processor;
-pub use real::{Mask, Real, Work};
+pub use real::{LaneWork, Mask, Real};

@@ -6,7 +6,7 @@ use pulp::aarch64::Neon;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::{V3, V4};
 
-use super::real::Work;
+use super::real::LaneWork;
 use super::register::{Alone, Vectorized};
 
 /// Instructions for lanes that this processor has.
@@ -66,7 +66,7 @@ impl Processor {
     }
 
     /// Does some work over numbers, one at a time, with the instructions of the best processor that this one can be.
-    pub fn run_alone<W: Work>(work: W) -> W::Output {
+    pub fn run_alone<W: LaneWork>(work: W) -> W::Output {
         // Those of AVX-512 add nothing to one number.
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = V3::try_new() {
@@ -76,7 +76,7 @@ impl Processor {
     }
 
     /// Does some work over lanes of N registers.
-    pub fn run<const N: usize, W: Work>(self, work: W) -> W::Output {
+    pub fn run<const N: usize, W: LaneWork>(self, work: W) -> W::Output {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx512(simd) => Simd::vectorize(simd, Vectorized::<W, N>(work)),

@@ -64,7 +64,7 @@ pub trait Real:
     fn quadrant(self) -> (Self, Self::Mask, Self::Mask);
 
     /// Runs some work as a function of its own, for what is too long to stand where it is called.
-    fn apart<W: Work>(self, work: W) -> W::Output;
+    fn apart<W: LaneWork>(self, work: W) -> W::Output;
 
     /// Where this is greater; nowhere beside NaN.
     #[inline(always)]
@@ -131,7 +131,7 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
 }
 
 /// Work over numbers of any kind.
-pub trait Work {
+pub trait LaneWork {
     /// What comes of it.
     type Output;
 
@@ -192,7 +192,7 @@ impl Real for f64 {
     }
 
     #[inline(never)]
-    fn apart<W: Work>(self, work: W) -> W::Output {
+    fn apart<W: LaneWork>(self, work: W) -> W::Output {
         work.run(self)
     }
 }

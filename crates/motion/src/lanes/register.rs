@@ -7,7 +7,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use pulp::{Simd, WithSimd};
 
-use super::real::{Mask, Real, WHOLE, Work};
+use super::real::{LaneWork, Mask, Real, WHOLE};
 
 /// The digit of a number's sign.
 const SIGN: u64 = 1 << 63;
@@ -166,7 +166,7 @@ impl<S: Simd, const N: usize> Real for Lanes<S, N> {
     }
 
     #[inline(always)]
-    fn apart<W: Work>(self, work: W) -> W::Output {
+    fn apart<W: LaneWork>(self, work: W) -> W::Output {
         self.simd.vectorize(Vectorized::<W, N>(work))
     }
 }
@@ -224,7 +224,7 @@ impl<S: Simd, const N: usize> Mask for LaneMask<S, N> {
 /// Work that a processor's instructions are chosen for.
 pub(super) struct Vectorized<W, const N: usize>(pub W);
 
-impl<W: Work, const N: usize> WithSimd for Vectorized<W, N> {
+impl<W: LaneWork, const N: usize> WithSimd for Vectorized<W, N> {
     type Output = W::Output;
 
     #[inline(always)]
@@ -236,7 +236,7 @@ impl<W: Work, const N: usize> WithSimd for Vectorized<W, N> {
 /// Work over single numbers.
 pub(super) struct Alone<W>(pub W);
 
-impl<W: Work> WithSimd for Alone<W> {
+impl<W: LaneWork> WithSimd for Alone<W> {
     type Output = W::Output;
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Every operation in every lane of every width is that of f64, to the bit.
 
 use super::register::Lanes;
-use super::{Mask, Processor, Real, Work};
+use super::{LaneWork, Mask, Processor, Real};
 
 /// What arithmetic stumbles over.
 const ODD: [f64; 28] = [
@@ -71,7 +71,7 @@ fn results<R: Real>(a: R, b: R) -> Vec<R> {
 
 struct Pairs;
 
-impl Work for Pairs {
+impl LaneWork for Pairs {
     type Output = usize;
 
     #[inline(always)]
@@ -126,7 +126,7 @@ fn integers_and_quarters_are_as_arithmetic_has_them() {
 
 struct Chosen;
 
-impl Work for Chosen {
+impl LaneWork for Chosen {
     type Output = ();
 
     #[inline(always)]
@@ -147,7 +147,7 @@ impl Work for Chosen {
 /// The number in a lane, by a function of its own.
 struct Lane(usize);
 
-impl Work for Lane {
+impl LaneWork for Lane {
     type Output = f64;
 
     #[inline(always)]

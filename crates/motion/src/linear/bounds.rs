@@ -1,14 +1,14 @@
 //! What the second and third derivative of an output cannot exceed from now on.
 
-use super::flow::{Cluster, Linear};
-use super::segment::{Seen, Segment};
+use super::flow::{Cluster, LinearFlow};
+use super::segment::{LinearSegment, LinearSight};
 use crate::numerics::phasor::{Phasor, abs};
 use nalgebra::DVector;
 
-impl Linear {
+impl LinearFlow {
     /// Renews the bounds from the shrinkage e^(sigma h) of each pole, for departures with these residues. They hold for
     /// `seen.window` seconds.
-    pub(super) fn bound(&self, segment: &Segment, seen: &mut Seen) {
+    pub(super) fn bound(&self, segment: &LinearSegment, seen: &mut LinearSight) {
         let count = self.poles.len();
         seen.window = self.window;
         let mut beaten = f64::INFINITY;

@@ -5,7 +5,7 @@
 
 use nalgebra::{Cholesky, DMatrix};
 
-use super::form::{Form, System};
+use super::form::{StateForm, System};
 
 /// A plant M q'' + (D + G) q' + K q = B u with outputs y = C q.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct SecondOrder {
 impl SecondOrder {
     /// The plant in energy coordinates, or where a stiffness is negative in balanced ones; its state is x = (q, q').
     /// None if the mass matrix is not positive definite.
-    pub fn form(&self) -> Option<Form> {
+    pub fn form(&self) -> Option<StateForm> {
         let mass = Cholesky::new(self.mass.clone())?;
         let order = self.mass.nrows();
         let (rigid, elastic): (Vec<usize>, Vec<usize>) =
@@ -42,7 +42,7 @@ impl SecondOrder {
         mass: &DMatrix<f64>,
         stiffness: &DMatrix<f64>,
         (rigid, elastic): (&[usize], &[usize]),
-    ) -> Form {
+    ) -> StateForm {
         let (order, stiff) = (self.mass.nrows(), elastic.len());
         let identity = DMatrix::<f64>::identity(order, order);
         // Factors of positive definite matrices have no zero on their diagonals.
@@ -76,7 +76,7 @@ impl SecondOrder {
         let mut joined = DMatrix::zeros(2 * order, stiff + order);
         joined.columns_mut(0, stiff).copy_from(&(place(elastic).transpose() * unbent));
         joined.view_mut((order, stiff), (order, order)).copy_from(&back);
-        Form {
+        StateForm {
             carried,
             matrix,
             input,
@@ -87,7 +87,7 @@ impl SecondOrder {
     }
 
     /// In q and q', where a stiffness is negative and there are no energy coordinates.
-    fn balanced(&self, mass: &Cholesky<f64, nalgebra::Dyn>) -> Form {
+    fn balanced(&self, mass: &Cholesky<f64, nalgebra::Dyn>) -> StateForm {
         let order = self.mass.nrows();
         let mut matrix = DMatrix::zeros(2 * order, 2 * order);
         matrix.view_mut((0, order), (order, order)).fill_with_identity();

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::form::Form;
+use super::form::StateForm;
 use super::phi::Pole;
 use super::poles::{Block, blocks};
 use crate::numerics::phasor::{Phasor, abs};
@@ -12,8 +12,8 @@ const LONGEST: f64 = 1e6;
 
 /// A linear flow.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Linear {
-    form: Form,
+pub struct LinearFlow {
+    form: StateForm,
     pub(super) poles: Vec<Simple>,
     pub(super) clusters: Vec<Cluster>,
     /// C_t of each output.
@@ -75,10 +75,10 @@ pub struct Modal {
     pub(super) clusters: Vec<DVector<Phasor>>,
 }
 
-impl Linear {
+impl LinearFlow {
     /// The flow of a plant; none where its numbers leave the range of doubles, or an input moves the rate of an output at
     /// once.
-    pub fn new(form: Form) -> Option<Self> {
+    pub fn new(form: StateForm) -> Option<Self> {
         let [rigid, seen] = form.output.clone();
         if (&seen * &form.input).iter().any(|jump| *jump != 0.0) {
             return None;
@@ -161,7 +161,12 @@ impl Linear {
 }
 
 impl Simple {
-    fn new(block: &Block, form: &Form, (seen, carried): (&DMatrix<f64>, &DMatrix<f64>), window: f64) -> Self {
+    fn new(
+        block: &Block,
+        form: &StateForm,
+        (seen, carried): (&DMatrix<f64>, &DMatrix<f64>),
+        window: f64,
+    ) -> Self {
         let lambda = block.triangle[(0, 0)];
         let (left, right) = (
             DVector::from_iterator(block.left.ncols(), block.left.iter().copied()),
@@ -191,7 +196,7 @@ impl Simple {
 }
 
 impl Cluster {
-    fn new(block: Block, form: &Form, (seen, carried): (&DMatrix<f64>, &DMatrix<f64>)) -> Self {
+    fn new(block: Block, form: &StateForm, (seen, carried): (&DMatrix<f64>, &DMatrix<f64>)) -> Self {
         let complex = |m: &DMatrix<f64>| m.map(|re| Phasor { re, im: 0.0 });
         let t = &block.triangle;
         let angle = complex(seen) * &block.right;

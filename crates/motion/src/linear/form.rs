@@ -19,7 +19,7 @@ pub struct System {
 
 /// The same plant as theta' = E w, w' = F w + B u, y = C_t theta + C_w w.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Form {
+pub struct StateForm {
     /// E: rates of the cyclic coordinates.
     pub carried: DMatrix<f64>,
     /// F.
@@ -36,7 +36,7 @@ pub struct Form {
 
 impl System {
     /// The plant with its cyclic coordinates split off and the rest balanced.
-    pub fn form(&self) -> Form {
+    pub fn form(&self) -> StateForm {
         let order = self.matrix.nrows();
         let (mut a, mut c) = (self.matrix.clone(), self.output.clone());
         // x = shift z, z = unshift x.
@@ -67,7 +67,7 @@ impl System {
         let scale = balance(&mut matrix);
         let scaled = DMatrix::from_diagonal(&scale);
         let unscaled = DMatrix::from_diagonal(&scale.map(|d| 1.0 / d));
-        Form {
+        StateForm {
             carried: a.select_rows(&cyclic).select_columns(&rest) * &scaled,
             matrix,
             input: &unscaled * self.input.select_rows(&rest),

@@ -1,6 +1,6 @@
 //! The certified search on a linear flow: any number of guards on any outputs, in one search.
 
-use super::segment::{Seen, Segment};
+use super::segment::{LinearSegment, LinearSight};
 use crate::crossing::{Approach, first_root};
 use crate::guard::Guard;
 use crate::time::Span;
@@ -10,41 +10,41 @@ const LONG: f64 = 1e3;
 
 /// A guard on one of the outputs.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Level {
+pub struct GuardLevel {
     /// The index of the output.
     pub output: usize,
     /// Its level.
     pub guard: Guard,
 }
 
-impl Approach for Segment {
-    type Guard = Level;
-    type State = Seen;
+impl Approach for LinearSegment {
+    type Guard = GuardLevel;
+    type State = LinearSight;
     type Sensed = ();
 
-    fn begin(&self, seen: &mut Seen) {
+    fn begin(&self, seen: &mut LinearSight) {
         self.origin(seen);
     }
 
-    fn go(&self, h: f64, seen: &mut Seen) {
+    fn go(&self, h: f64, seen: &mut LinearSight) {
         self.at(h, seen);
     }
 
-    fn is_finite(seen: &Seen, (): ()) -> bool {
+    fn is_finite(seen: &LinearSight, (): ()) -> bool {
         seen.outputs.iter().all(|sensed| sensed.angle.is_finite())
     }
 
-    fn holds(level: Level, seen: &Seen, (): ()) -> bool {
+    fn holds(level: GuardLevel, seen: &LinearSight, (): ()) -> bool {
         level.guard.holds(seen.outputs[level.output].angle)
     }
 
-    fn window(seen: &Seen) -> f64 {
+    fn window(seen: &LinearSight) -> f64 {
         seen.window
     }
 
     /// Fast poles that do not grow keep within their residues of a line; slow ones accelerate towards the guard at most as
     /// they do at one of the ends, or by what they turn meanwhile.
-    fn earliest(&self, Level { output, guard }: Level, horizon: Span, seen: &Seen) -> f64 {
+    fn earliest(&self, GuardLevel { output, guard }: GuardLevel, horizon: Span, seen: &LinearSight) -> f64 {
         let (flow, towards) = (&*self.flow, guard.side.sign());
         let horizon = horizon.seconds().min(LONG).min(seen.window);
         let (mut angle, mut rate) = self.origins[output];
@@ -78,7 +78,7 @@ impl Approach for Segment {
         first_root(gap, towards * rate, acceleration).min(horizon)
     }
 
-    fn stride(&self, Level { output, guard }: Level, seen: &Seen, (): ()) -> f64 {
+    fn stride(&self, GuardLevel { output, guard }: GuardLevel, seen: &LinearSight, (): ()) -> f64 {
         let (now, towards) = (seen.outputs[output], guard.side.sign());
         let (gap, speed, acceleration) =
             (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
@@ -87,7 +87,13 @@ impl Approach for Segment {
         first_root(gap, speed, steepest).min(seen.window)
     }
 
-    fn is_clear(&self, Level { output, guard }: Level, seen: &Seen, (): (), time: f64) -> bool {
+    fn is_clear(
+        &self,
+        GuardLevel { output, guard }: GuardLevel,
+        seen: &LinearSight,
+        (): (),
+        time: f64,
+    ) -> bool {
         let (now, towards) = (seen.outputs[output], guard.side.sign());
         guard.gap(now.angle) > time * (towards * now.rate + 0.5 * seen.curvature[output] * time)
     }

@@ -5,14 +5,14 @@ use std::sync::Arc as Shared;
 use nalgebra::DVector;
 
 use super::cluster::moved;
-use super::flow::{Linear, Modal};
+use super::flow::{LinearFlow, Modal};
 use crate::Sensed;
 use crate::numerics::phasor::{Phasor, abs};
 
 /// A motion under one constant input.
 #[derive(Clone, Debug)]
-pub struct Segment {
-    pub(super) flow: Shared<Linear>,
+pub struct LinearSegment {
+    pub(super) flow: Shared<LinearFlow>,
     from: Modal,
     /// Modal rates at departure.
     rates: Vec<Phasor>,
@@ -26,7 +26,7 @@ pub struct Segment {
 
 /// What is seen at one instant, and bounds of what comes.
 #[derive(Clone, Debug, Default)]
-pub struct Seen {
+pub struct LinearSight {
     /// Of each output: value, rate and acceleration.
     pub outputs: Vec<Sensed>,
     /// No |y''| of the output is larger within the window.
@@ -41,9 +41,9 @@ pub struct Seen {
     pub(super) rates: Vec<DVector<Phasor>>,
 }
 
-impl Segment {
+impl LinearSegment {
     /// A motion of a flow, not yet departed.
-    pub fn new(flow: Shared<Linear>) -> Self {
+    pub fn new(flow: Shared<LinearFlow>) -> Self {
         let (outputs, poles) = (flow.outputs(), flow.poles.len());
         Self {
             from: Modal::default(),
@@ -91,7 +91,7 @@ impl Segment {
     }
 
     /// What is seen `h` seconds after departure.
-    pub fn at(&self, h: f64, seen: &mut Seen) {
+    pub fn at(&self, h: f64, seen: &mut LinearSight) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         seen.fit(self);
         for (sensed, (y, v)) in seen.outputs.iter_mut().zip(&self.origins) {
@@ -123,7 +123,7 @@ impl Segment {
     }
 
     /// What is seen at departure, which needs no exponential.
-    pub fn origin(&self, seen: &mut Seen) {
+    pub fn origin(&self, seen: &mut LinearSight) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         seen.fit(self);
         seen.exponentials.fill((Phasor { re: 1.0, im: 0.0 }, 1.0));
@@ -162,8 +162,8 @@ impl Segment {
     }
 }
 
-impl Seen {
-    fn fit(&mut self, segment: &Segment) {
+impl LinearSight {
+    fn fit(&mut self, segment: &LinearSegment) {
         let outputs = segment.origins.len();
         if self.outputs.len() != outputs || self.exponentials.len() != segment.rates.len() {
             self.outputs = vec![Sensed::default(); outputs];

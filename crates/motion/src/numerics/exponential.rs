@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::lanes::{Processor, Real, Work};
+use crate::lanes::{LaneWork, Processor, Real};
 
 /// exp(M), by scaling, Taylor's series and squaring. Every sum has a fixed order: the same bits on every machine.
 pub fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
@@ -46,7 +46,7 @@ pub fn exponentials(matrices: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
 /// As many matrices as there are lanes, or fewer.
 struct Several<'a>(&'a [DMatrix<f64>]);
 
-impl Work for Several<'_> {
+impl LaneWork for Several<'_> {
     type Output = Vec<DMatrix<f64>>;
 
     #[inline(always)]

@@ -7,7 +7,7 @@
 const SUBSTEPS: [u32; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
 
 /// The right-hand side of an equation.
-pub trait Field {
+pub trait RightHandSide {
     /// Puts y' at (t, y) into the last argument.
     fn rate(&self, t: f64, y: &[f64], rate: &mut [f64]);
 }
@@ -38,7 +38,7 @@ impl Extrapolation {
 
     /// One step of at most `h` seconds from (t, y), which is carried along. Returns its length, and a length for the
     /// next one.
-    pub fn step(&mut self, field: &impl Field, t: f64, y: &mut [f64], mut h: f64) -> (f64, f64) {
+    pub fn step(&mut self, field: &impl RightHandSide, t: f64, y: &mut [f64], mut h: f64) -> (f64, f64) {
         loop {
             if let Some(column) = self.converge(field, t, y, h) {
                 y.copy_from_slice(&self.table[0]);
@@ -54,7 +54,7 @@ impl Extrapolation {
     }
 
     /// The column with which a step of `h` seconds met the tolerance, if one did.
-    fn converge(&mut self, field: &impl Field, t: f64, y: &[f64], h: f64) -> Option<usize> {
+    fn converge(&mut self, field: &impl RightHandSide, t: f64, y: &[f64], h: f64) -> Option<usize> {
         let size = y.iter().fold(1.0_f64, |size, y| size.max(y.abs()));
         // Shorter steps gain nothing but rounding; what is not a number is for the caller to find.
         let last_resort = h < 1e-9;
@@ -82,7 +82,7 @@ impl Extrapolation {
     }
 
     /// The modified midpoint rule with the substeps of a column, into its row.
-    fn midpoint(&mut self, field: &impl Field, t: f64, y: &[f64], h: f64, column: usize) {
+    fn midpoint(&mut self, field: &impl RightHandSide, t: f64, y: &[f64], h: f64, column: usize) {
         let Self { table, before, here, rate, .. } = self;
         let small = h / f64::from(SUBSTEPS[column]);
         before.copy_from_slice(y);
@@ -143,7 +143,7 @@ impl Trajectory {
     }
 
     /// Takes one step towards `h` seconds after departure, if it is still ahead; whether it is not.
-    pub fn approach(&mut self, field: &impl Field, h: f64) -> bool {
+    pub fn approach(&mut self, field: &impl RightHandSide, h: f64) -> bool {
         let Self { integrator, node, next, step, .. } = self;
         if next.0 < h {
             node.clone_from(next);
@@ -155,7 +155,7 @@ impl Trajectory {
     }
 
     /// y at `h` seconds after departure, not before one asked for earlier. The field's time counts from the departure.
-    pub fn at(&mut self, field: &impl Field, h: f64) -> &[f64] {
+    pub fn at(&mut self, field: &impl RightHandSide, h: f64) -> &[f64] {
         while !self.approach(field, h) {}
         let Self { integrator, node, here, .. } = self;
         // A look between two steps changes neither.
@@ -175,7 +175,7 @@ mod tests {
     /// A pendulum of unit frequency, and its energy as a check.
     struct Pendulum;
 
-    impl Field for Pendulum {
+    impl RightHandSide for Pendulum {
         fn rate(&self, _: f64, y: &[f64], rate: &mut [f64]) {
             rate[0] = y[1];
             rate[1] = -libm::sin(y[0]);
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn what_blows_up_ends() {
         struct Explosion;
-        impl Field for Explosion {
+        impl RightHandSide for Explosion {
             fn rate(&self, _: f64, y: &[f64], rate: &mut [f64]) {
                 rate[0] = y[0] * y[0];
             }

@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-11;
 
 /// Columns of equal length, and the largest value of the variable of each; the smallest is 0.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Programme {
+pub struct LinearProgramme {
     columns: Vec<Vec<f64>>,
     most: Vec<f64>,
     rows: usize,
@@ -28,7 +28,7 @@ struct Tableau<'a> {
     rhs: Vec<f64>,
 }
 
-impl Programme {
+impl LinearProgramme {
     /// A programme of so many rows.
     pub fn new(rows: usize, columns: Vec<Vec<f64>>, most: Vec<f64>) -> Self {
         Self { columns, most, rows }
@@ -210,7 +210,7 @@ mod tests {
             let mut take = |n: usize| -> Vec<f64> { rest.by_ref().take(n).collect() };
             let columns: Vec<Vec<f64>> = (0..count).map(|_| take(rows)).collect();
             let (most, costs, b, told) = (take(count), take(count), take(rows), take(2));
-            let programme = Programme::new(rows, columns.clone(), most.clone());
+            let programme = LinearProgramme::new(rows, columns.clone(), most.clone());
             let (x, part) = programme.cheapest(&b, &costs);
             let cost: f64 = x.iter().zip(&costs).map(|(x, cost)| x * cost).sum();
             assert!((part - told[0]).abs() < 1e-9, "{cases}: {part} of it, not {}", told[0]);
@@ -230,7 +230,7 @@ mod tests {
     fn little_is_found_as_exactly_as_much() {
         let column = |angle: f64| vec![libm::cos(angle), libm::sin(angle), 0.3 * libm::sin(3.0 * angle)];
         let columns: Vec<Vec<f64>> = (0..9).map(|k| column(0.7 * f64::from(k))).collect();
-        let programme = Programme::new(3, columns, vec![1.0; 9]);
+        let programme = LinearProgramme::new(3, columns, vec![1.0; 9]);
         let costs = [1.0, 1.5, 2.0, 1.0, 1.5, 2.0, 1.0, 1.5, 2.0];
         let of = |size: f64| programme.cheapest(&[0.02 * size, -0.01 * size, 0.004 * size], &costs);
         let (whole, part) = of(1.0);
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn nothing_costs_nothing_and_what_cannot_be_is_not() {
-        let programme = Programme::new(1, vec![vec![2.0], vec![3.0]], vec![1.0, 1.0]);
+        let programme = LinearProgramme::new(1, vec![vec![2.0], vec![3.0]], vec![1.0, 1.0]);
         assert_eq!(programme.cheapest(&[0.0], &[1.0, 1.0]), (vec![0.0, 0.0], 1.0));
         assert_eq!(programme.cheapest(&[-1.0], &[1.0, 1.0]).1, 0.0);
         let (x, part) = programme.cheapest(&[10.0], &[1.0, 1.0]);

@@ -20,12 +20,12 @@ pub struct Bearing {
     /// What a rotor at rest bears before it slips (N m), at least the Coulomb friction.
     pub breakaway: f64,
     /// The imbalance.
-    pub lines: Vec<Line>,
+    pub lines: Vec<HarmonicLine>,
 }
 
 /// A harmonic of the imbalance: the body feels Omega² (c cos k th + s sin k th), k being its order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Line {
+pub struct HarmonicLine {
     /// Periods in a turn.
     pub order: f64,
     /// c and s of the torque on the hub (kg m²).

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::{Acting, Bearing, Flexible, FreeMode, Rotor, Slip, Turned, Turning};
+use super::{Acting, Bearing, Flexible, FreeMode, Rotor, Slip, SlippedRotor, Turning};
 use crate::attitude::Vector;
 
 const INERTIA: f64 = 0.04;
@@ -59,7 +59,7 @@ impl Run {
         Self { turning, rotors, work: 0.0, events: Vec::new(), t: 0.0 }
     }
 
-    fn turned(&self) -> Vec<Turned> {
+    fn turned(&self) -> Vec<SlippedRotor> {
         self.turning.turned(None)
     }
 

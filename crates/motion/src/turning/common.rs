@@ -6,18 +6,18 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use super::model::{Flexible, Model};
 use super::pace::Pace;
-use super::response::Response;
+use super::response::NodeResponse;
 
 /// So many lengths of steps are kept for all.
 const KEPT: usize = 64;
 
 /// What runs have in common, from the first on.
 #[derive(Clone, Debug, Default)]
-pub struct Common(Arc<OnceLock<(Flexible, Arc<Known>)>>);
+pub struct CommonSteps(Arc<OnceLock<(Flexible, Arc<KnownBody>)>>);
 
 /// What is known of a body.
 #[derive(Debug)]
-pub(super) struct Known {
+pub(super) struct KnownBody {
     pub model: Arc<Model>,
     pub pace: Arc<Pace>,
     /// Those that were needed last, and the place of the next.
@@ -28,25 +28,25 @@ pub(super) struct Known {
 #[derive(Clone, Debug)]
 pub(super) struct Regular {
     pub h: f64,
-    pub responses: Arc<[Response]>,
+    pub responses: Arc<[NodeResponse]>,
 }
 
 /// It is no part of what a scenario is.
-impl PartialEq for Common {
+impl PartialEq for CommonSteps {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl Common {
+impl CommonSteps {
     /// What is known of a body; of its own, if it is not the one that was first.
-    pub(super) fn of(&self, body: &Flexible) -> Arc<Known> {
-        let (first, known) = self.0.get_or_init(|| (body.clone(), Arc::new(Known::new(body))));
-        if first == body { known.clone() } else { Arc::new(Known::new(body)) }
+    pub(super) fn of(&self, body: &Flexible) -> Arc<KnownBody> {
+        let (first, known) = self.0.get_or_init(|| (body.clone(), Arc::new(KnownBody::new(body))));
+        if first == body { known.clone() } else { Arc::new(KnownBody::new(body)) }
     }
 }
 
-impl Known {
+impl KnownBody {
     fn new(body: &Flexible) -> Self {
         let model = Model::new(body);
         Self {
@@ -78,6 +78,6 @@ impl Regular {
     /// The responses of a body's modes over a step of `h` seconds.
     pub fn new(model: &Model, h: f64) -> Self {
         let modes = model.modes.iter();
-        Self { h, responses: modes.map(|of| Response::new(of.frequency, of.damping, h)).collect() }
+        Self { h, responses: modes.map(|of| NodeResponse::new(of.frequency, of.damping, h)).collect() }
     }
 }

@@ -4,9 +4,9 @@ use nalgebra::Matrix3;
 
 use super::driven::Pulls;
 use super::model::outward;
-use super::step::{Beside, Felt, Memory, Step};
+use super::step::{Beside, FeltByModes, Memory, TurningStep};
 
-impl Step<'_> {
+impl TurningStep<'_> {
     /// Whether modes are forced by more than Gt and constants.
     pub(super) fn is_loud(&self) -> bool {
         self.model.stretches
@@ -17,7 +17,13 @@ impl Step<'_> {
     }
 
     /// Gives the modes what they feel at a node; tells by how much their forces changed.
-    pub(super) fn feel(&self, felt: &Felt, modes: &mut [Memory], beside: &mut Beside, node: usize) -> f64 {
+    pub(super) fn feel(
+        &self,
+        felt: &FeltByModes,
+        modes: &mut [Memory],
+        beside: &mut Beside,
+        node: usize,
+    ) -> f64 {
         let spun = outward(&felt.rate);
         for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
             memory.g[node] = of.rotation.dot(&felt.turning);

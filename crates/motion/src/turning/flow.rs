@@ -7,16 +7,16 @@ use nalgebra::{Matrix3, Quaternion};
 mod level;
 
 use super::bearing::{Bearing, Borne, Slip, Spin};
-use super::common::{Common, Known, Regular};
+use super::common::{CommonSteps, KnownBody, Regular};
 use super::driven::Driving;
 use super::gimbal::{self, Gimbal, Swung};
-use super::method::Work;
+use super::method::StepMemory;
 use super::model::{Flexible, FreeMode, Model, Rotor, Surroundings, tensor};
 use super::pace::{Amplitude, Pace, Pose};
-use super::response::Response;
+use super::response::NodeResponse;
 use super::rotation::Bend;
-use super::state::{Ahead, Seen, State};
-use super::step::Step;
+use super::state::{Ahead, TurningSight, TurningState};
+use super::step::TurningStep;
 use crate::attitude::Vector;
 
 /// Steps after which the motion asks whether it may go on.
@@ -31,15 +31,15 @@ pub struct Turning {
     pub(super) model: Arc<Model>,
     pub(super) pace: Arc<Pace>,
     /// What it has in common with other runs, as long as it does.
-    pub(super) known: Option<Arc<Known>>,
+    pub(super) known: Option<Arc<KnownBody>>,
     /// The state at the departure, at the instant of the grid that was reached last, and at the instant seen last.
-    pub(super) departed: State,
-    pub(super) grid: State,
-    pub(super) here: State,
+    pub(super) departed: TurningState,
+    pub(super) grid: TurningState,
+    pub(super) here: TurningState,
     /// Seconds since the departure of the last two.
     pub(super) reached: f64,
     pub(super) now: f64,
-    pub(super) seen: Seen,
+    pub(super) seen: TurningSight,
     pub(super) acting: Acting,
     /// The bearings of the rotors, if they have any, how each rotor slips, and whether it has just come to rest or let go.
     pub(super) bearings: Vec<Bearing>,
@@ -56,8 +56,8 @@ pub struct Turning {
     next: Option<usize>,
     /// The amplitude of each mode at the start of a step.
     amplitudes: Vec<Amplitude>,
-    work: Work,
-    effort: Effort,
+    work: StepMemory,
+    effort: FlowEffort,
     /// Drives that turn appendages.
     pub(super) driving: Option<Box<Driving>>,
 }
@@ -81,7 +81,7 @@ pub struct Acting {
 
 /// What the motion took so far.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub struct Effort {
+pub struct FlowEffort {
     /// Steps.
     pub steps: u64,
     /// Passes over the stages of these steps.
@@ -108,16 +108,16 @@ impl Acting {
     fn step<'a>(
         &'a self,
         model: &'a Model,
-        (responses, bearings, slips): (&'a [Response], &'a [Bearing], &'a [Slip]),
+        (responses, bearings, slips): (&'a [NodeResponse], &'a [Bearing], &'a [Slip]),
         h: f64,
         t: f64,
         around: Option<(&'a dyn Surroundings, f64)>,
         driving: Option<&'a Driving>,
-    ) -> Step<'a> {
+    ) -> TurningStep<'a> {
         let count = self.rotors.len().min(bearings.len());
         let borne = Borne { bearings: &bearings[..count], rotors: &self.rotors, slips: &slips[..count] };
         let is_borne = count > 0;
-        Step {
+        TurningStep {
             model,
             responses,
             h,
@@ -139,12 +139,12 @@ impl Turning {
     /// A body whose mean axes have an attitude, with these rates as if it were rigid (rad/s), and q and q' of each mode
     /// (m sqrt(kg), and per second), at rest if they are left out; nothing acts.
     pub fn new(body: &Flexible, attitude: Quaternion<f64>, rigid: Vector, modes: &[[f64; 2]]) -> Self {
-        Self::sharing(&Common::default(), body, (attitude, rigid), modes)
+        Self::sharing(&CommonSteps::default(), body, (attitude, rigid), modes)
     }
 
     /// The same with what runs of this body have in common.
     pub fn sharing(
-        common: &Common,
+        common: &CommonSteps,
         body: &Flexible,
         (attitude, rigid): (Quaternion<f64>, Vector),
         modes: &[[f64; 2]],
@@ -166,7 +166,7 @@ impl Turning {
             let [q, speed] = at(index);
             [q, (speed - mode.rotation.dot(&turning)) / mode.frequency, 0.0, 0.0]
         };
-        let state = State {
+        let state = TurningState {
             attitude,
             momentum: Bend::new(bent).forward(&momentum),
             turned: Vector::zeros(),
@@ -182,7 +182,7 @@ impl Turning {
             here: state.clone(),
             reached: 0.0,
             now: 0.0,
-            seen: Seen::empty(state.modes.len()),
+            seen: TurningSight::empty(state.modes.len()),
             acting: Acting::default(),
             bearings: Vec::new(),
             slips: Vec::new(),
@@ -193,8 +193,8 @@ impl Turning {
             next_beside: 0,
             next: None,
             amplitudes: vec![Amplitude::default(); state.modes.len()],
-            work: Work::new(state.modes.len()),
-            effort: Effort::default(),
+            work: StepMemory::new(state.modes.len()),
+            effort: FlowEffort::default(),
             driving: None,
             departed: state,
             model,
@@ -304,7 +304,7 @@ impl Turning {
     pub(super) fn take_step(
         &mut self,
         level: usize,
-        state: &mut State,
+        state: &mut TurningState,
         around: Option<(&dyn Surroundings, f64)>,
     ) -> Option<f64> {
         let Some(Some(Regular { h, responses })) = self.regular.get(level) else { return None };
@@ -364,7 +364,7 @@ impl Turning {
     }
 
     /// The body at the instant seen last.
-    pub fn seen(&self) -> &Seen {
+    pub fn seen(&self) -> &TurningSight {
         &self.seen
     }
 
@@ -378,7 +378,7 @@ impl Turning {
     }
 
     /// What the motion took so far.
-    pub fn effort(&self) -> Effort {
+    pub fn effort(&self) -> FlowEffort {
         self.effort
     }
 

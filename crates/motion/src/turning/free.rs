@@ -10,7 +10,7 @@ use crate::attitude::Vector;
 
 /// Clamped modes as the free hub sees them, a column each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Held {
+pub struct ClampedModes {
     /// Total mass m (kg).
     pub mass: f64,
     /// Inertia tensor J about the total centre of mass, without the spin inertia of rotors (kg m²).
@@ -36,7 +36,7 @@ pub struct Free {
     pub translations: Matrix3xX<f64>,
 }
 
-impl Held {
+impl ClampedModes {
     /// Mass matrix E of the clamped modes while the centre of mass rests.
     pub fn mass_matrix(&self) -> DMatrix<f64> {
         let order = self.frequencies.len();

@@ -4,7 +4,7 @@
 //! turns about g. The rate of d is constant between departures, so the momentum is known at the nodes of a step, and what
 //! turns the body is the rate of H alone. What the gimbal itself has of momentum is left out.
 
-use super::vectors::{Kept, vector};
+use super::vectors::{StoredVectors, vector};
 use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::NODES;
 
@@ -51,7 +51,7 @@ pub(super) struct Swung {
     /// At its start (N m s), and the rate there (N m).
     pub start: (Vector, Vector),
     /// At its nodes; nothing reads the fourth.
-    pub nodes: Kept,
+    pub nodes: StoredVectors,
 }
 
 impl Swung {

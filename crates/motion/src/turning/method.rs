@@ -11,22 +11,22 @@ use super::bearing::Spun;
 use super::facing::{Facing, inertial};
 use super::nodes::{Guess, Nodes, Passes};
 use super::shape::Sums;
-use super::state::State;
-use super::step::{Beside, Memory, Stage, Step, weights};
+use super::state::TurningState;
+use super::step::{Beside, Memory, StepStage, TurningStep, weights};
 use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::{NODES, WEIGHTS, exact_sum};
 
 /// The memory of steps: what they keep of each mode, and of rotors in bearings.
 #[derive(Clone, Debug)]
-pub(super) struct Work {
+pub(super) struct StepMemory {
     modes: Vec<Memory>,
     nodes: Nodes,
     beside: Beside,
     /// The stage at the start of the last step, if other steps begin there too, and the largest rate of a mode and force on one.
-    start: Option<(Stage, [f64; 2])>,
+    start: Option<(StepStage, [f64; 2])>,
 }
 
-impl Work {
+impl StepMemory {
     /// Memory for so many modes.
     pub fn new(modes: usize) -> Self {
         Self {
@@ -43,10 +43,10 @@ impl Work {
     }
 }
 
-impl Step<'_> {
+impl TurningStep<'_> {
     /// Takes the step; tells the number of passes.
-    pub fn take(&self, state: &mut State, work: &mut Work) -> u32 {
-        let Work { modes, nodes, beside, start } = work;
+    pub fn take(&self, state: &mut TurningState, work: &mut StepMemory) -> u32 {
+        let StepMemory { modes, nodes, beside, start } = work;
         if let Some((driving, t)) = self.driven {
             driving.prepare(t, self.h, &mut beside.driven);
         }
@@ -76,7 +76,12 @@ impl Step<'_> {
     }
 
     /// The stage at the start, and the largest rate of a mode and force on one.
-    fn start(&self, state: &State, modes: &mut [Memory], beside: &mut Beside) -> (Stage, [f64; 2]) {
+    fn start(
+        &self,
+        state: &TurningState,
+        modes: &mut [Memory],
+        beside: &mut Beside,
+    ) -> (StepStage, [f64; 2]) {
         let mut sums = Sums::default();
         for (index, memory) in modes.iter_mut().enumerate() {
             let [q, p, ..] = state.modes[index];
@@ -107,7 +112,7 @@ impl Step<'_> {
     }
 
     /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
-    fn move_on(&self, state: &mut State, stages: &[Stage; 3], facing: &Facing) {
+    fn move_on(&self, state: &mut TurningState, stages: &[StepStage; 3], facing: &Facing) {
         let [position, velocity] = &mut state.moved;
         *position += *velocity * self.h;
         if self.push.is_some() {
@@ -122,8 +127,8 @@ impl Step<'_> {
     /// The state at the end.
     fn end(
         &self,
-        state: &mut State,
-        (stages, facing): (&[Stage; 3], &Facing),
+        state: &mut TurningState,
+        (stages, facing): (&[StepStage; 3], &Facing),
         modes: &[Memory],
         spun: &Spun,
     ) {
@@ -132,7 +137,7 @@ impl Step<'_> {
         let push = stages[0].push * a + stages[1].push * b + stages[2].push * c;
         let turn = facing.turns[0] * a + facing.turns[1] * b + facing.turns[2] * c;
         let rigid = stages[0].rigid * a + stages[1].rigid * b + stages[2].rigid * c;
-        let State { attitude, momentum, turned, lost, modes: states, spins, .. } = state;
+        let TurningState { attitude, momentum, turned, lost, modes: states, spins, .. } = state;
         if self.borne.is_some() {
             for (spin, rates) in spins.iter_mut().zip(&spun.rates) {
                 let change = rates[0] * a + rates[1] * b + rates[2] * c;

@@ -6,11 +6,11 @@ use nalgebra::{Matrix3, Quaternion};
 
 use super::facing::Facing;
 use super::settled::Change;
-use super::state::State;
-use super::step::{Memory, PASSES, Stage, Step};
-use super::vectors::{Kept, Vectors, vector};
+use super::state::TurningState;
+use super::step::{Memory, PASSES, StepStage, TurningStep};
+use super::vectors::{StoredVectors, Vectors, vector};
 use crate::attitude::{Vector, rotation};
-use crate::lanes::{Real, Work};
+use crate::lanes::{LaneWork, Real};
 use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS};
 use crate::turning::model::{outward, tensor};
 use crate::turning::rotation::Bends;
@@ -28,17 +28,17 @@ const fn column(stage: usize) -> [f64; 4] {
 /// The stages of a step at its nodes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Nodes {
-    push: Kept,
-    mean: Kept,
-    rigid: Kept,
-    turning: Kept,
-    pushed: Kept,
+    push: StoredVectors,
+    mean: StoredVectors,
+    rigid: StoredVectors,
+    turning: StoredVectors,
+    pushed: StoredVectors,
 }
 
 impl Nodes {
     /// The stage at a node.
-    pub fn stage(&self, node: usize) -> Stage {
-        Stage {
+    pub fn stage(&self, node: usize) -> StepStage {
+        StepStage {
             push: vector(&self.push, node),
             mean: vector(&self.mean, node),
             rigid: vector(&self.rigid, node),
@@ -48,7 +48,7 @@ impl Nodes {
     }
 
     /// All of them.
-    pub fn stages(&self) -> [Stage; 3] {
+    pub fn stages(&self) -> [StepStage; 3] {
         [self.stage(0), self.stage(1), self.stage(2)]
     }
 
@@ -60,14 +60,14 @@ impl Nodes {
 
 /// The first guess of a step: what modes come to by themselves, and stages like the start, but for the growth of what turns.
 pub(super) struct Guess<'a> {
-    pub step: &'a Step<'a>,
-    pub state: &'a State,
-    pub start: &'a Stage,
+    pub step: &'a TurningStep<'a>,
+    pub state: &'a TurningState,
+    pub start: &'a StepStage,
     pub modes: &'a mut [Memory],
     pub nodes: &'a mut Nodes,
 }
 
-impl Work for Guess<'_> {
+impl LaneWork for Guess<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -114,7 +114,7 @@ fn times<R: Real>(kind: R, h: f64) -> R {
 
 /// The momentum at the nodes that follows from its rates there.
 #[inline(always)]
-fn momentum<R: Real>(kind: R, from: &Vector, push: &Kept, h: f64) -> Vectors<R> {
+fn momentum<R: Real>(kind: R, from: &Vector, push: &StoredVectors, h: f64) -> Vectors<R> {
     let mut momentum = Vectors::of(kind, from);
     for node in 0..3 {
         momentum = momentum.with(&vector(push, node), kind.load(&COLUMNS[node]) * h);
@@ -124,8 +124,8 @@ fn momentum<R: Real>(kind: R, from: &Vector, push: &Kept, h: f64) -> Vectors<R> 
 
 /// The passes of a step in which nothing but modes, momentum, forces and surroundings take part.
 pub(super) struct Passes<'a> {
-    pub step: &'a Step<'a>,
-    pub state: &'a State,
+    pub step: &'a TurningStep<'a>,
+    pub state: &'a TurningState,
     pub modes: &'a mut [Memory],
     pub nodes: &'a mut Nodes,
     pub facing: &'a mut Facing,
@@ -148,7 +148,7 @@ struct Felt<R> {
     tides: [Option<Matrix3<f64>>; 3],
 }
 
-impl Work for Passes<'_> {
+impl LaneWork for Passes<'_> {
     /// The number of passes.
     type Output = u32;
 
@@ -201,7 +201,7 @@ fn size_of<R: Real>(of: &[R; 6]) -> f64 {
 
 /// How the modes are at the nodes; with what they add to the torque where forces have levers.
 #[inline(always)]
-fn shapes<R: Real, const LEVERED: bool>(kind: R, step: &Step<'_>, modes: &mut [Memory]) -> Shapes<R> {
+fn shapes<R: Real, const LEVERED: bool>(kind: R, step: &TurningStep<'_>, modes: &mut [Memory]) -> Shapes<R> {
     let zero = kind.of(0.0);
     let none = Vectors { x: zero, y: zero, z: zero };
     let (mut bent, mut elastic, mut changed, mut levered) = (none, none, [zero; 6], none);
@@ -241,8 +241,8 @@ fn shapes<R: Real, const LEVERED: bool>(kind: R, step: &Step<'_>, modes: &mut [M
 #[inline(always)]
 fn turn<R: Real>(
     kind: R,
-    step: &Step<'_>,
-    (state, facing): (&State, &Facing),
+    step: &TurningStep<'_>,
+    (state, facing): (&TurningState, &Facing),
     shapes: &Shapes<R>,
     nodes: &mut Nodes,
 ) -> (Felt<R>, Change) {
@@ -309,8 +309,8 @@ fn turn<R: Real>(
 #[inline(always)]
 fn surround<R: Real>(
     kind: R,
-    step: &Step<'_>,
-    (state, facing): (&State, &Facing),
+    step: &TurningStep<'_>,
+    (state, facing): (&TurningState, &Facing),
     shapes: &Shapes<R>,
     tides: &mut [Option<Matrix3<f64>>; 3],
 ) -> Vectors<R> {
@@ -333,7 +333,7 @@ fn surround<R: Real>(
 
 /// Gives the modes what they feel at the nodes; tells by how much their forces changed.
 #[inline(always)]
-fn feel<R: Real>(kind: R, step: &Step<'_>, felt: &Felt<R>, modes: &mut [Memory]) -> f64 {
+fn feel<R: Real>(kind: R, step: &TurningStep<'_>, felt: &Felt<R>, modes: &mut [Memory]) -> f64 {
     let Vectors { x, y, z } = felt.rate;
     let spun = [x * x * 0.5, y * y * 0.5, z * z * 0.5, y * z, z * x, x * y];
     let (stretches, loud) = (step.model.stretches, step.is_loud());
@@ -364,9 +364,9 @@ fn feel<R: Real>(kind: R, step: &Step<'_>, felt: &Felt<R>, modes: &mut [Memory])
     step.force(&rate, &felt.tides, modes)
 }
 
-impl Step<'_> {
+impl TurningStep<'_> {
     /// Forces modes at the nodes by more than the centrifugal acceleration; tells by how much their forces changed.
-    fn force(&self, rate: &Kept, tides: &[Option<Matrix3<f64>>; 3], modes: &mut [Memory]) -> f64 {
+    fn force(&self, rate: &StoredVectors, tides: &[Option<Matrix3<f64>>; 3], modes: &mut [Memory]) -> f64 {
         let mut change = 0.0_f64;
         for node in 0..3 {
             let spun = outward(&vector(rate, node));

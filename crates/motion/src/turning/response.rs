@@ -15,7 +15,7 @@ const NEAR_CRITICAL: f64 = 0.99;
 
 /// The responses of a mode at the three nodes and at the end of a step.
 #[derive(Clone, Debug)]
-pub struct Response {
+pub struct NodeResponse {
     /// Transitions of (q, P/W), row by row, each entry at the nodes and the end.
     pub free: [[f64; 4]; 4],
     /// By how much the squares of the last transition's columns exceed 1 by rounding, halved; 0 with damping.
@@ -41,7 +41,7 @@ pub struct End {
     pub of_force: [Vector2<f64>; 3],
 }
 
-impl Response {
+impl NodeResponse {
     /// The responses of a mode with this frequency W (rad/s) and damping ratio over a step of `h` seconds.
     pub fn new(frequency: f64, damping: f64, h: f64) -> Self {
         let mut response = Self {
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn parabolas_are_answered_exactly() {
         let (w, zeta, h) = (3.0, 0.2, 0.7);
-        let response = Response::new(w, zeta, h);
+        let response = NodeResponse::new(w, zeta, h);
         let (g, s) = (|t: f64| 0.3 - t + 2.0 * t * t, |t: f64| -1.0 + 0.5 * t + t * t);
         let rate = |t: f64, [q, p]: [f64; 2]| {
             let v = w * p + g(t);

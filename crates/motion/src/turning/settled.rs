@@ -1,7 +1,7 @@
 //! When the stages of a step have settled: what a pass changed, and what the next one would.
 
 use super::model::Model;
-use super::step::{Stage, Step};
+use super::step::{StepStage, TurningStep};
 
 /// Passes end when the next would change less than this part of the state.
 pub(super) const SETTLED: f64 = 1e-18;
@@ -24,7 +24,7 @@ pub(super) struct Change {
 
 impl Change {
     /// Takes a stage into account.
-    pub fn see(&mut self, last: &Stage, found: &Stage) {
+    pub fn see(&mut self, last: &StepStage, found: &StepStage) {
         self.push = self.push.max((found.push - last.push).norm_squared());
         self.mean = self.mean.max((found.mean - last.mean).norm_squared());
         self.turning = self.turning.max((found.turning - last.turning).norm_squared());
@@ -44,7 +44,7 @@ impl Change {
     }
 }
 
-impl Step<'_> {
+impl TurningStep<'_> {
     /// Whether the next pass would change nothing that counts: by the rate of the last two, or by what this one changed.
     #[inline(always)]
     pub(super) fn settles(&self, change: &Change, size: f64, speed: f64, before: f64) -> bool {

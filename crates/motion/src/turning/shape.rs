@@ -3,11 +3,11 @@
 use nalgebra::Matrix3;
 
 use super::model::{Constants, tensor};
-use super::step::Step;
+use super::step::TurningStep;
 use crate::attitude::Vector;
 
 /// How the modes are at an instant: sum phi q, sum phi P, and the change of the inertia.
-pub(super) struct Shape {
+pub(super) struct Deformation {
     pub bent: Vector,
     pub elastic: Vector,
     pub changed: Matrix3<f64>,
@@ -35,13 +35,18 @@ impl Sums {
     }
 
     /// What the mode adds to the torque.
-    pub fn lever(&mut self, step: &Step<'_>, index: usize, q: f64) {
+    pub fn lever(&mut self, step: &TurningStep<'_>, index: usize, q: f64) {
         if let Some(lever) = step.levers.get(index) {
             self.levered += lever * q;
         }
     }
 
-    pub fn shape(&self) -> Shape {
-        Shape { bent: self.bent, elastic: self.elastic, changed: tensor(self.changed), levered: self.levered }
+    pub fn shape(&self) -> Deformation {
+        Deformation {
+            bent: self.bent,
+            elastic: self.elastic,
+            changed: tensor(self.changed),
+            levered: self.levered,
+        }
     }
 }

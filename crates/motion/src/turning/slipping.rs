@@ -8,7 +8,7 @@ use super::bearing::{Borne, Slip, Spin};
 use super::flow::{Acting, Turning};
 use super::model::{Surroundings, tensor};
 use super::rotation::Bend;
-use super::state::Seen;
+use super::state::TurningSight;
 use crate::attitude::Vector;
 use nalgebra::Matrix3;
 
@@ -20,7 +20,7 @@ const AT_REST: f64 = 1e-12;
 
 /// A rotor in a bearing, as seen at an instant.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Turned {
+pub struct SlippedRotor {
     /// Absolute angular momentum about its axis (N m s).
     pub momentum: f64,
     /// Speed against the body (rad/s).
@@ -139,7 +139,7 @@ impl Turning {
     }
 
     /// The rotors in bearings at the instant seen last.
-    pub fn turned(&self, around: Option<(&dyn Surroundings, f64)>) -> Vec<Turned> {
+    pub fn turned(&self, around: Option<(&dyn Surroundings, f64)>) -> Vec<SlippedRotor> {
         let borne = self.borne_by(&self.slips);
         let acceleration =
             if borne.sticks() { self.acceleration(&self.slips, around) } else { Vector::zeros() };
@@ -149,10 +149,10 @@ impl Turning {
             if slip == Slip::Stuck {
                 let friction = rotor.torque - bearing.inertia * rotor.axis.dot(&acceleration);
                 let momentum = bearing.inertia * rotor.axis.dot(&self.seen.rate);
-                return Turned { momentum, speed: 0.0, angle, friction, heat, slip };
+                return SlippedRotor { momentum, speed: 0.0, angle, friction, heat, slip };
             }
             let speed = borne.speed(index, spin.sums.x, &self.seen.rate);
-            Turned {
+            SlippedRotor {
                 momentum: spin.sums.x,
                 speed,
                 angle,
@@ -166,7 +166,7 @@ impl Turning {
 }
 
 /// What the modes change of the inertia (kg m²), and its rate (kg m²/s).
-pub(super) fn shapes(turning: &Turning, seen: &Seen) -> (Matrix3<f64>, Matrix3<f64>) {
+pub(super) fn shapes(turning: &Turning, seen: &TurningSight) -> (Matrix3<f64>, Matrix3<f64>) {
     let sum = |of: &[f64]| {
         let modes = turning.model.modes.iter().zip(of);
         modes.fold(Matrix3::zeros(), |sum: Matrix3<f64>, (mode, q)| sum + tensor(mode.moments) * *q)

@@ -6,18 +6,18 @@ use super::bearing::Spun;
 use super::facing::Facing;
 use super::rotation::Bend;
 use super::settled::Change;
-use super::shape::{Shape, Sums};
-use super::state::State;
-use super::step::{Beside, Felt, Memory, PASSES, Stage, Step, answer, means, weights};
+use super::shape::{Deformation, Sums};
+use super::state::TurningState;
+use super::step::{Beside, FeltByModes, Memory, PASSES, StepStage, TurningStep, answer, means, weights};
 use crate::attitude::{Vector, rotation};
 use crate::numerics::gauss_legendre::{MATRIX, NODES};
 
-impl Step<'_> {
+impl TurningStep<'_> {
     /// Finds the stages, each from those before it; tells the number of passes.
     pub(super) fn one_by_one(
         &self,
-        state: &State,
-        (stages, facing): (&mut [Stage; 3], &mut Facing),
+        state: &TurningState,
+        (stages, facing): (&mut [StepStage; 3], &mut Facing),
         (modes, beside): (&mut [Memory], &mut Beside),
         speed: f64,
     ) -> u32 {
@@ -51,11 +51,11 @@ impl Step<'_> {
     fn stage(
         &self,
         node: usize,
-        state: &State,
-        (stages, facing): (&[Stage; 3], &Quaternion<f64>),
+        state: &TurningState,
+        (stages, facing): (&[StepStage; 3], &Quaternion<f64>),
         (modes, beside): (&mut [Memory], &mut Beside),
         change: &mut Change,
-    ) -> Stage {
+    ) -> StepStage {
         let shape = self.shape(node, modes, beside);
         let [a, b, c] = weights(&MATRIX[node], self.h);
         let momentum = state.momentum + stages[0].push * a + stages[1].push * b + stages[2].push * c;
@@ -73,7 +73,7 @@ impl Step<'_> {
     }
 
     /// How the modes are at a node.
-    fn shape(&self, node: usize, modes: &mut [Memory], beside: &mut Beside) -> Shape {
+    fn shape(&self, node: usize, modes: &mut [Memory], beside: &mut Beside) -> Deformation {
         let mut sums = Sums::default();
         let loud = self.is_loud();
         let all = modes.iter_mut().zip(self.responses).zip(&self.model.modes);
@@ -98,11 +98,11 @@ impl Step<'_> {
     pub(super) fn turning(
         &self,
         (stage, t): (usize, f64),
-        shape: &Shape,
+        shape: &Deformation,
         momentum: &Vector,
         facing: &Quaternion<f64>,
         beside: &mut Beside,
-    ) -> (Stage, Felt) {
+    ) -> (StepStage, FeltByModes) {
         let model = self.model;
         let bend = Bend::new(shape.bent);
         let (rotors, change) = &self.rotors;
@@ -141,13 +141,13 @@ impl Step<'_> {
             torque += borne.feel(&rate, &mut beside.spun);
         }
         let mean = bend.forward(&(rigid + bend.excess(&(rate - rigid))));
-        let made = Stage {
+        let made = StepStage {
             push: bend.forward(&torque) - mean.cross(momentum),
             mean,
             rigid,
             turning,
             pushed: self.push.map_or_else(Vector::zeros, |push| bend.forward(&push)),
         };
-        (made, Felt { turning, rate, tide, t, stage })
+        (made, FeltByModes { turning, rate, tide, t, stage })
     }
 }

@@ -9,7 +9,7 @@ use crate::attitude::{Vector, rotation};
 
 /// The state that steps carry on.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct State {
+pub(super) struct TurningState {
     /// Unit quaternion that turns vectors of the mean axes into inertial ones.
     pub attitude: Quaternion<f64>,
     /// Total angular momentum in mean axes (N m s), rotors included.
@@ -26,7 +26,7 @@ pub(super) struct State {
     pub spins: Vec<Spin>,
 }
 
-impl State {
+impl TurningState {
     /// Takes over another state, without allocation.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { attitude, momentum, turned, moved, lost, modes, spins } = self;
@@ -39,7 +39,7 @@ impl State {
 
 /// A turning body as seen at an instant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct TurningSight {
     /// Unit quaternion that turns vectors of the hub into inertial ones.
     pub attitude: Quaternion<f64>,
     /// The same of the mean axes, which no mode turns: the attitude as if the body were rigid.
@@ -71,7 +71,7 @@ pub struct Seen {
     pub inertia: Option<Matrix3<f64>>,
 }
 
-impl Seen {
+impl TurningSight {
     /// A view of so many modes, to be filled.
     pub(super) fn empty(modes: usize) -> Self {
         let (one, zero) = (Quaternion::identity(), Vector::zeros());
@@ -95,7 +95,13 @@ impl Seen {
 
     /// Looks at a state, in which rotors have this momentum (N m s), and those that are stuck add such a tensor to the inertia
     /// (kg m²).
-    pub(super) fn look(&mut self, model: &Model, state: &State, rotors: &Vector, locked: &Matrix3<f64>) {
+    pub(super) fn look(
+        &mut self,
+        model: &Model,
+        state: &TurningState,
+        rotors: &Vector,
+        locked: &Matrix3<f64>,
+    ) {
         let (mut bent, mut elastic, mut changed) = (Vector::zeros(), Vector::zeros(), [0.0; 6]);
         for (of, [q, p, ..]) in model.modes.iter().zip(&state.modes) {
             bent += of.rotation * *q;
@@ -128,7 +134,7 @@ pub(super) struct Ahead {
     /// Seconds from the departure to the start of the step.
     pub from: f64,
     /// The state at its end.
-    pub to: State,
+    pub to: TurningState,
     /// The first instant since the departure (s) at which a rotor comes to rest or lets go, and which one.
     pub meets: Option<(f64, usize)>,
 }

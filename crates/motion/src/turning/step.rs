@@ -6,8 +6,8 @@ use super::bearing::{Borne, Spun};
 use super::driven::{Driving, Scratch};
 use super::gimbal::Swung;
 use super::model::{Model, Surroundings};
-use super::response::Response;
-use super::state::State;
+use super::response::NodeResponse;
+use super::state::TurningState;
 use crate::attitude::Vector;
 
 /// Passes after which the stages are taken as they are.
@@ -17,10 +17,10 @@ pub(super) const PASSES: u32 = 60;
 const ROTORS: f64 = 1e-2;
 
 /// A step: what moves, for how long, and what acts.
-pub(super) struct Step<'a> {
+pub(super) struct TurningStep<'a> {
     pub model: &'a Model,
     /// The modes' responses over the step.
-    pub responses: &'a [Response],
+    pub responses: &'a [NodeResponse],
     /// Length (s).
     pub h: f64,
     /// Torque on the hub in its axes (N m).
@@ -65,7 +65,7 @@ pub(super) struct Memory {
 
 /// What a stage comes to.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct Stage {
+pub(super) struct StepStage {
     /// H_m'.
     pub push: Vector,
     /// w_m.
@@ -78,7 +78,7 @@ pub(super) struct Stage {
 }
 
 /// Gt, the hub's rate and the surroundings' tide, which modes feel.
-pub(super) struct Felt {
+pub(super) struct FeltByModes {
     pub turning: Vector,
     pub rate: Vector,
     pub tide: Option<Matrix3<f64>>,
@@ -88,9 +88,9 @@ pub(super) struct Felt {
     pub stage: usize,
 }
 
-impl Step<'_> {
+impl TurningStep<'_> {
     /// What the momentum is measured by (N m s): sums of rotors' momenta are no more exact than a part of these.
-    pub(super) fn size(&self, state: &State) -> f64 {
+    pub(super) fn size(&self, state: &TurningState) -> f64 {
         let swung = self.swung.as_ref().map_or(0.0, |swung| swung.start.0.norm());
         state.momentum.norm() + self.h * self.torque.norm() + ROTORS * (self.rotors.0.norm() + swung)
     }
@@ -105,7 +105,7 @@ impl Step<'_> {
 }
 
 /// The rates of the mean axes.
-pub(super) fn means(stages: &[Stage; 3]) -> [Vector; 3] {
+pub(super) fn means(stages: &[StepStage; 3]) -> [Vector; 3] {
     [stages[0].mean, stages[1].mean, stages[2].mean]
 }
 

@@ -8,7 +8,7 @@ use crate::attitude::Vector;
 use crate::lanes::Real;
 
 /// Four vectors as they are kept: along x, y and z, each.
-pub(super) type Kept = [[f64; 4]; 3];
+pub(super) type StoredVectors = [[f64; 4]; 3];
 
 /// A vector in each lane.
 #[derive(Copy, Clone)]
@@ -20,7 +20,7 @@ pub(super) struct Vectors<R> {
 
 /// The vector in a lane of those that are kept.
 #[inline]
-pub(super) fn vector([x, y, z]: &Kept, lane: usize) -> Vector {
+pub(super) fn vector([x, y, z]: &StoredVectors, lane: usize) -> Vector {
     Vector::new(x[lane], y[lane], z[lane])
 }
 
@@ -33,13 +33,13 @@ impl<R: Real> Vectors<R> {
 
     /// Those that were kept.
     #[inline(always)]
-    pub fn load(kind: R, from: &Kept) -> Self {
+    pub fn load(kind: R, from: &StoredVectors) -> Self {
         Self { x: kind.load(&from[0]), y: kind.load(&from[1]), z: kind.load(&from[2]) }
     }
 
     /// Keeps them.
     #[inline(always)]
-    pub fn store(self, to: &mut Kept) {
+    pub fn store(self, to: &mut StoredVectors) {
         self.x.store(&mut to[0]);
         self.y.store(&mut to[1]);
         self.z.store(&mut to[2]);

@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use flexsc_core::actuator::{Actuate, Demand, Effector, Setting as EngineSetting};
+use flexsc_core::actuator::{Actuate, Demand, Effector, TorquerSetting as EngineSetting};
 use flexsc_core::attitude::Vector;
 use flexsc_core::body::Wrench;
 use flexsc_core::own::Halt;

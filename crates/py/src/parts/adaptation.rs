@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use flexsc_core::adaptation::{Adapt, Decision, Learn, Objective, Step};
+use flexsc_core::adaptation::{Adapt, Decision, Learn, Objective, SearchStep};
 use flexsc_core::own::Halt;
 use flexsc_core::random::Seed;
 use flexsc_core::time::{Instant, Span};
@@ -76,7 +76,7 @@ struct Learning {
 }
 
 impl Learn for Learning {
-    fn learn(&mut self, now: Instant, measured: f64) -> Option<Step> {
+    fn learn(&mut self, now: Instant, measured: f64) -> Option<SearchStep> {
         let before = std::mem::replace(&mut self.last, measured);
         let told = Python::attach(|py| {
             self.method.other(py, |part| {
@@ -87,7 +87,7 @@ impl Learn for Learning {
         self.value = told.flatten()?;
         let change = ((measured - before) / measured).abs();
         let decision = if before.is_nan() { Decision::Begin } else { Decision::Keep };
-        Some(Step { decision, change, draw: 0.0, gain: self.value, settled: 0 })
+        Some(SearchStep { decision, change, draw: 0.0, gain: self.value, settled: 0 })
     }
 
     fn halted(&self) -> Option<Halt> {

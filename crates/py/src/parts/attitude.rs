@@ -1,7 +1,7 @@
 //! What an attitude filter written in Python knows, beside the truth, for the log.
 
 use flexsc_core::attitude::Vector;
-use flexsc_core::estimator::attitude::Filter;
+use flexsc_core::estimator::attitude::AttitudeFilterState;
 use flexsc_core::record::{AttitudeEstimate, AxisEstimate};
 use flexsc_core::sensor::Orientation;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Quaternion};
@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use super::object::{exactly, numbers};
 
 /// What a part tells: its filter, and what its last sample told that filter, if it measured the attitude.
-type Told = (Filter, Option<Innovation>);
+type Told = (AttitudeFilterState, Option<Innovation>);
 
 /// What a sample told.
 #[derive(Copy, Clone, Debug, Default)]
@@ -65,7 +65,7 @@ pub fn told(of: &Bound<'_, PyAny>) -> PyResult<Option<Told>> {
     }
     let covariance = Matrix6::from_fn(|row, column| rows[row][column]);
     let learnt = learnt.filter(|learnt| !learnt.is_none()).map(innovation).transpose()?;
-    Ok(Some((Filter { attitude: q / q.norm(), bias, covariance, swinging: None }, learnt)))
+    Ok(Some((AttitudeFilterState { attitude: q / q.norm(), bias, covariance, swinging: None }, learnt)))
 }
 
 /// Its row of the log, where these are the true orientation and the true bias of the gyro (rad/s).

@@ -1,7 +1,7 @@
 //! What there is to measure, and what sensors measured, for Python.
 
 use flexsc_core::attitude::Vector;
-use flexsc_core::sensor::{Orientation, Reading as Engine, Sight, Truth as EngineTruth};
+use flexsc_core::sensor::{Orientation, Reading as Engine, Truth as EngineTruth, VectorSight};
 use flexsc_core::time::Instant as Exact;
 use nalgebra::Quaternion;
 use pyo3::exceptions::PyValueError;
@@ -41,7 +41,7 @@ pub struct Reading {
     /// Where the body points, of a sensor that tells it.
     at: Option<Orientation>,
     rate: Option<[f64; 3]>,
-    sight: Option<Sight>,
+    sight: Option<VectorSight>,
 }
 
 impl Reading {
@@ -101,9 +101,11 @@ impl Reading {
             vector.map(|of| exactly::<3>(of, what)).transpose()
         };
         let sight = match (of(vector, "vector")?, of(inertial, "inertial")?) {
-            (Some(vector), Some(inertial)) => {
-                Some(Sight { vector: Vector::from(vector), inertial: Vector::from(inertial), is_direction })
-            }
+            (Some(vector), Some(inertial)) => Some(VectorSight {
+                vector: Vector::from(vector),
+                inertial: Vector::from(inertial),
+                is_direction,
+            }),
             (None, None) => None,
             _ => return Err(PyValueError::new_err("a reading needs both vector and inertial, or neither")),
         };

@@ -3,7 +3,7 @@
 use std::io::{self, Cursor};
 
 use flexsc_core::Scenario;
-use flexsc_core::campaign::{Campaign, Run};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::record::{Detail, McapLog, RunEnd};
 use prost::Message as _;
 use prost_types::field_descriptor_proto::{Label, Type};
@@ -51,7 +51,7 @@ pub fn seeds(seeds: &Seeds) -> io::Result<Vec<Vec<u8>>> {
 fn logged(text: &str, detail: Detail) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
     let scenario = Scenario::parse("s.toml", text)?;
     let study = Campaign::new(scenario, "s.toml", None)?;
-    let run = Run { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() };
+    let run = CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() };
     let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(&run, detail), detail)?;
     let metrics = Campaign::simulate(&run, &mut log)?;
     Ok(log.finish(&metrics, RunEnd::Complete)?.into_inner())

@@ -1,7 +1,7 @@
 //! Figure `curve`: metrics of a sweep over its key.
 
 use flexsc_core::count::counted;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::table::{Key, Metric, Runs};
 
@@ -16,13 +16,13 @@ pub fn figure(runs: &Runs, metrics: &[&Metric], key: &Key) -> Figure {
         let line: Vec<Point> = order.iter().map(|run| (key.values[*run], metric.values[*run])).collect();
         let ends = order.first().map_or(0.0, |run| key.values[*run])
             ..order.last().map_or(1.0, |run| key.values[*run]);
-        let x = Axis::exact(&runs.label_of(key), "", ends);
-        let mut layers = vec![Layer::new("", colour::BLUE, Shape::Line(1.2), line.clone())];
+        let x = FigureAxis::exact(&runs.label_of(key), "", ends);
+        let mut layers = vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), line.clone())];
         if line.len() <= MARKS {
-            layers.push(Layer::new("", colour::BLUE, Shape::Dot, line));
+            layers.push(Layer::new("", colour::BLUE, LayerShape::Dot, line));
         }
         let x = if index + 1 == metrics.len() { x } else { x.unnamed() };
-        Panel::new(x, Axis::around(&name, unit, metric.values.iter().copied()), layers)
+        Panel::new(x, FigureAxis::around(&name, unit, metric.values.iter().copied()), layers)
     };
     let panels = metrics.iter().enumerate().map(panel).collect();
     let title = format!("{}: metrics over {} ({})", runs.name, key.name, counted(runs.numbers.len(), "run"));

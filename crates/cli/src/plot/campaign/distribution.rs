@@ -3,7 +3,7 @@
 
 use flexsc_core::count::counted;
 use flexsc_core::statistics::quantile;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour, round_to_nice};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice};
 
 use super::table::{Metric, Runs};
 
@@ -16,11 +16,11 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     let sorted = metric.sorted();
     let (name, unit) = metric.label();
     let bars = bars(&sorted);
-    let x = Axis::around(&name, unit, bars.iter().flat_map(|((from, to), _)| [*from, *to]));
+    let x = FigureAxis::around(&name, unit, bars.iter().flat_map(|((from, to), _)| [*from, *to]));
     // Numbers of runs are whole.
     let highest = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(LOWEST);
-    let counts = Axis::from_zero("runs", "", [highest as f64]);
-    let parts = Axis::exact("fraction of runs", "", 0.0..1.0);
+    let counts = FigureAxis::from_zero("runs", "", [highest as f64]);
+    let parts = FigureAxis::exact("fraction of runs", "", 0.0..1.0);
     let outline = bars.iter().flat_map(|((from, to), count)| {
         let height = *count as f64;
         let corners = [(*from, 0.0), (*from, height), (*to, height), (*to, 0.0)];
@@ -33,21 +33,21 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
         steps.extend([(*value, index as f64 / n), (*value, (index + 1) as f64 / n)]);
     }
     steps.push((x.range.end, 1.0));
-    let marks = |y: &Axis, named: bool| {
+    let marks = |y: &FigureAxis, named: bool| {
         let line = |q: f64| vec![(quantile(&sorted, q), y.range.start), (quantile(&sorted, q), y.range.end)];
         let name = |name: &str| if named { name.to_owned() } else { String::new() };
         [
-            Layer::new(&name("median"), colour::VERMILLION, Shape::Line(1.6), line(0.5)),
-            Layer::new(&name("5 and 95 %"), colour::VERMILLION, Shape::Dashes, line(0.05)),
-            Layer::new("", colour::VERMILLION, Shape::Dashes, line(0.95)),
+            Layer::new(&name("median"), colour::VERMILLION, LayerShape::Line(1.6), line(0.5)),
+            Layer::new(&name("5 and 95 %"), colour::VERMILLION, LayerShape::Dashes, line(0.05)),
+            Layer::new("", colour::VERMILLION, LayerShape::Dashes, line(0.95)),
         ]
     };
     let histogram = [
-        Layer::new("", colour::SKY, Shape::Area(0.6), outline.clone()),
-        Layer::new("", colour::BLUE, Shape::Line(0.8), outline),
+        Layer::new("", colour::SKY, LayerShape::Area(0.6), outline.clone()),
+        Layer::new("", colour::BLUE, LayerShape::Line(0.8), outline),
     ];
     let above: Vec<Layer> = histogram.into_iter().chain(marks(&counts, true)).collect();
-    let curve = Layer::new("", colour::BLUE, Shape::Line(1.4), steps);
+    let curve = Layer::new("", colour::BLUE, LayerShape::Line(1.4), steps);
     let below: Vec<Layer> = [curve].into_iter().chain(marks(&parts, false)).collect();
     let panels = vec![Panel::new(x.unnamed(), counts, above), Panel::new(x, parts, below)];
     Figure { title: title(runs, &name, sorted.len()), panels, panel_height: 200 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use flexsc_core::count::counted;
 use flexsc_core::record::Log;
 use flexsc_core::statistics::quantile;
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 use rayon::prelude::*;
 
 use super::super::motion::Motion;
@@ -91,13 +91,17 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, Failure> {
         };
         let named = |name: &'static str| if signal == 0 { name } else { "" };
         let layers = vec![
-            Layer::new(named("5 to 95 %"), colour::SKY, Shape::Area(0.3), band(&line(0), &line(4))),
-            Layer::new(named("25 to 75 %"), colour::BLUE, Shape::Area(0.4), band(&line(1), &line(3))),
-            Layer::new(named("median"), colour::BLACK, Shape::Line(1.4), line(2)),
+            Layer::new(named("5 to 95 %"), colour::SKY, LayerShape::Area(0.3), band(&line(0), &line(4))),
+            Layer::new(named("25 to 75 %"), colour::BLUE, LayerShape::Area(0.4), band(&line(1), &line(3))),
+            Layer::new(named("median"), colour::BLACK, LayerShape::Line(1.4), line(2)),
         ];
         let shown = quantiles.iter().flatten().copied();
         let positive = shown.clone().all(|value| value.is_nan() || value >= 0.0);
-        let y = if positive { Axis::from_zero(name, unit, shown) } else { Axis::around(name, unit, shown) };
+        let y = if positive {
+            FigureAxis::from_zero(name, unit, shown)
+        } else {
+            FigureAxis::around(name, unit, shown)
+        };
         let x = time(0.0..end);
         Panel::new(if signal + 1 == count { x } else { x.unnamed() }, y, layers)
     };

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-use flexsc_core::campaign::{Column, Work};
+use flexsc_core::campaign::{ColumnCells, Work};
 use flexsc_figure::{Figure, Named};
 
 use super::Args;
@@ -89,7 +89,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 /// The figures of a campaign whose columns are at hand: of one kind, or the natural ones.
 pub fn of_columns(
     work: &Work,
-    column: &dyn Fn(&str) -> Option<Column>,
+    column: &dyn Fn(&str) -> Option<ColumnCells>,
     kind: Option<What>,
     metric: &[String],
 ) -> Result<Vec<Named>, Failure> {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flexsc_core::campaign::{Column, Directory, ERROR, Field, Kind, RUN, Work};
+use flexsc_core::campaign::{ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, Work};
 use flexsc_core::metrics::{self, goal};
 
 use super::table::{Key, Metric, Runs, Source, Texts};
@@ -28,13 +28,13 @@ fn runs(path: &Path, named: &[String]) -> Result<Runs, Failure> {
 /// The runs of a campaign, whose columns are read by their names; `path` is where they are.
 pub fn of(
     work: &Work,
-    read: impl Fn(&[&str]) -> Result<Vec<Option<Column>>, Failure>,
+    read: impl Fn(&[&str]) -> Result<Vec<Option<ColumnCells>>, Failure>,
     path: &Path,
     named: &[String],
 ) -> Result<Runs, Failure> {
     let (campaign, scenario) = (&work.campaign, work.campaign.scenario());
     let mut about = read(&[RUN, ERROR])?.into_iter();
-    let (Some(Some(Column::Integers(numbers))), Some(Some(Column::Words(errors)))) =
+    let (Some(Some(ColumnCells::Integers(numbers))), Some(Some(ColumnCells::Words(errors)))) =
         (about.next(), about.next())
     else {
         return Err(Failure::Arguments(format!("{}: has no runs", path.display())));
@@ -43,16 +43,16 @@ pub fn of(
         return Err(Failure::Arguments(format!("{}: contains no runs yet", path.display())));
     }
     let keys: Vec<&str> = campaign.keys().collect();
-    let is_number = |field: &&Field| match field.kind {
-        Kind::Integers | Kind::Numbers => true,
-        Kind::Words => goal::NAMES.contains(&field.name.as_str()),
-        Kind::Lists => false,
+    let is_number = |field: &&ColumnHeading| match field.kind {
+        ColumnKind::Integers | ColumnKind::Numbers => true,
+        ColumnKind::Words => goal::NAMES.contains(&field.name.as_str()),
+        ColumnKind::Lists => false,
     };
-    let of_metrics = |field: &&Field| !keys.contains(&field.name.as_str()) && is_number(field);
+    let of_metrics = |field: &&ColumnHeading| !keys.contains(&field.name.as_str()) && is_number(field);
     let all = work.fields().iter().filter(of_metrics).collect::<Vec<_>>();
     let few = all.len() * numbers.len() <= HELD;
     let wanted = |name: &str| few || MAIN.contains(&name) || named.iter().any(|named| named == name);
-    let fields: Vec<(&Field, _)> = all
+    let fields: Vec<(&ColumnHeading, _)> = all
         .into_iter()
         .filter(|field| wanted(&field.name))
         .filter_map(|field| Some((field, metrics::meaning(&field.name, Some(scenario))?)))
@@ -61,8 +61,8 @@ pub fn of(
         keys.iter().copied().chain(fields.iter().map(|(field, _)| field.name.as_str())).collect();
     let mut columns = read(&names)?.into_iter().map(|column| {
         let texts = match &column {
-            Some(Column::Integers(_)) => Texts::Integers,
-            Some(Column::Words(_)) => Texts::Goals,
+            Some(ColumnCells::Integers(_)) => Texts::Integers,
+            Some(ColumnCells::Words(_)) => Texts::Goals,
             _ => Texts::Numbers,
         };
         (texts, column.map_or_else(Vec::new, |column| column.numbers()))

@@ -2,7 +2,7 @@
 
 use flexsc_core::count::counted;
 use flexsc_figure::palette::viridis;
-use flexsc_figure::{Axis, Bar, Figure, Layer, Panel, Point, RGBColor, Shape, colour};
+use flexsc_figure::{Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::table::{Metric, Runs};
 
@@ -47,15 +47,15 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
     let none = areas.pop().unwrap_or_default();
     let shades = areas.into_iter().zip(viridis(SHADES));
     let mut layers: Vec<Layer> =
-        shades.map(|(points, shade)| Layer::new("", shade, Shape::Area(1.0), points)).collect();
-    layers.push(Layer::new("no value", NONE, Shape::Area(1.0), none));
+        shades.map(|(points, shade)| Layer::new("", shade, LayerShape::Area(1.0), points)).collect();
+    layers.push(Layer::new("no value", NONE, LayerShape::Area(1.0), none));
     let least = sorted.first().and_then(|least| metric.values.iter().position(|value| value == least));
     let least = least.map(|run| (first.values[run], second.values[run]));
-    layers.push(Layer::new("least", colour::VERMILLION, Shape::Diamond, least.into_iter().collect()));
+    layers.push(Layer::new("least", colour::VERMILLION, LayerShape::Diamond, least.into_iter().collect()));
     let ends = |borders: &[f64]| borders[0]..borders[borders.len() - 1];
     let (x, y) = (
-        Axis::exact(&runs.label_of(first), "", ends(&across)),
-        Axis::exact(&runs.label_of(second), "", ends(&up)),
+        FigureAxis::exact(&runs.label_of(first), "", ends(&across)),
+        FigureAxis::exact(&runs.label_of(second), "", ends(&up)),
     );
     let bar = Bar { name: classes.axis.label(), colours: viridis(SHADES), edges: classes.texts() };
     let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
@@ -65,7 +65,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
 
 /// Shades of values, and the axis with their unit.
 struct Classes {
-    axis: Axis,
+    axis: FigureAxis,
     /// The least and the largest value, or their logarithms.
     ends: [f64; 2],
     by_ratio: bool,
@@ -76,7 +76,7 @@ impl Classes {
         let (low, high) = (sorted.first().copied().unwrap_or(0.0), sorted.last().copied().unwrap_or(0.0));
         let by_ratio = low > 0.0 && high / low > FAR;
         let ends = if by_ratio { [low.log10(), high.log10()] } else { [low, high] };
-        Self { axis: Axis::exact(name, unit, low..high), ends, by_ratio }
+        Self { axis: FigureAxis::exact(name, unit, low..high), ends, by_ratio }
     }
 
     /// Where a value lies, from 0 to 1.

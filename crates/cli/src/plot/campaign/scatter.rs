@@ -1,6 +1,6 @@
 //! Figure `scatter`: a metric against each key that was drawn, or else swept, the most telling ones first.
 
-use flexsc_figure::{Axis, Figure, Layer, Panel, Point, Shape, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::table::{Key, Metric, Runs};
 
@@ -16,11 +16,11 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     let more = keys.len().saturating_sub(PANELS);
     let panel = |(r, key): (f64, &Key)| {
         let points: Vec<Point> = key.values.iter().copied().zip(metric.values.iter().copied()).collect();
-        let x = Axis::around(&runs.label_of(key), "", key.values.iter().copied());
-        let y = Axis::around(&name, unit, metric.values.iter().copied());
+        let x = FigureAxis::around(&runs.label_of(key), "", key.values.iter().copied());
+        let y = FigureAxis::around(&name, unit, metric.values.iter().copied());
         let told =
             if r.is_nan() { String::new() } else { format!("rank correlation {r:+.2}").replace('-', "−") };
-        Panel::new(x, y, vec![Layer::new(&told, colour::BLUE, Shape::Dot, points)])
+        Panel::new(x, y, vec![Layer::new(&told, colour::BLUE, LayerShape::Dot, points)])
     };
     let panels = keys.into_iter().take(PANELS).map(panel).collect();
     let left = if more > 0 { format!(", keys left out: {more}") } else { String::new() };

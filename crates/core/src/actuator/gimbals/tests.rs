@@ -5,7 +5,7 @@ use super::*;
 fn start(keys: &str) -> Gimbals {
     let text = format!("arrangement = \"pyramid\"\nmomentum = 15.0\n{keys}");
     let gyros: ControlMomentGyros = crate::document::from_text(&text).unwrap();
-    let setting = |axis| Setting {
+    let setting = |axis| TorquerSetting {
         axis,
         inertia: 100.0,
         planned_inertia: 100.0,

@@ -10,7 +10,7 @@ fn start(keys: &str) -> Spinning {
          speeds = [200.0, -200.0, 200.0, -200.0]"
     );
     let wheels: Wheels = crate::document::from_text(&text).unwrap();
-    let setting = |axis| Setting {
+    let setting = |axis| TorquerSetting {
         axis,
         inertia: 1000.0,
         planned_inertia: 1000.0,

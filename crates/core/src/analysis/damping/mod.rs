@@ -21,7 +21,7 @@ pub use floquet::Margin;
 
 /// A mode under a relay.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
-pub struct Damped {
+pub struct DampedMode {
     /// Natural frequency (rad/s).
     pub frequency_rad_s: f64,
     /// Part of the push that damps: negative where it feeds the mode.
@@ -88,18 +88,18 @@ impl PulsedDamping {
     }
 
     /// What the relay does to a mode of each of these natural frequencies (rad/s).
-    pub fn table(&self, frequencies: &[f64]) -> Vec<Damped> {
+    pub fn table(&self, frequencies: &[f64]) -> Vec<DampedMode> {
         frequencies.iter().map(|frequency| self.mode(*frequency)).collect()
     }
 
-    fn mode(&self, frequency: f64) -> Damped {
+    fn mode(&self, frequency: f64) -> DampedMode {
         let Self { timing, damping, acceleration, amplitude, threshold } = *self;
         let factor = timing.phase_factor(frequency);
         let decay = Decay::new(acceleration * factor, damping * frequency);
         let margin = delay_margin(frequency, timing.mean_delay(), damping);
         let reached = decay.threshold_time(amplitude, threshold);
         let thrust = decay.thrust_time(amplitude, threshold);
-        Damped {
+        DampedMode {
             frequency_rad_s: frequency,
             phase_factor: factor,
             slope_rad_s2: decay.slope,

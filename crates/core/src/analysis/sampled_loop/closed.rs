@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::Shape;
+use super::CommandPath;
 
 /// Samples that one product with a matrix gives.
 const BLOCK: usize = 32;
@@ -11,7 +11,7 @@ const LANES: usize = 8;
 
 /// A closed loop: u = shape(-feedback s), s+ = free s + forced u, x = angle s.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Closed {
+pub struct ClosedLoop {
     /// Transition without the command.
     pub free: DMatrix<f64>,
     /// What a unit of the command adds.
@@ -25,10 +25,10 @@ pub struct Closed {
     /// Period of the samples (s).
     pub period: f64,
     /// What shapes the command; none for a linear loop.
-    pub shape: Option<Shape>,
+    pub shape: Option<CommandPath>,
 }
 
-impl Closed {
+impl ClosedLoop {
     /// A loop of so many states in which nothing happens.
     pub(super) fn resting(order: usize) -> Self {
         Self {

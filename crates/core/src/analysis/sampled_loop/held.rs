@@ -2,13 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Closed, Loop};
+use super::{ClosedLoop, Loop};
 use crate::body::Coupled;
 use crate::law::Differentiation;
 
 /// A loop's body in discrete time, z+ = Ad z + sum of B_i u_{k-n-i}.
 #[derive(Clone, Debug)]
-pub struct Held<'a> {
+pub struct DiscreteBody<'a> {
     of: &'a Loop,
     transition: DMatrix<f64>,
     /// What a unit of the command from n samples ago adds, and of the one before that where a delay parts the period.
@@ -37,7 +37,7 @@ impl Loop {
     }
 }
 
-impl<'a> Held<'a> {
+impl<'a> DiscreteBody<'a> {
     /// A loop at its own frequencies times these ratios.
     pub fn new(of: &'a Loop, ratios: &[f64]) -> Self {
         let coupled = Coupled::new(&of.body, of.back_emf, of.total, ratios);
@@ -76,7 +76,7 @@ impl<'a> Held<'a> {
     /// The loop closed with a gain of the extra loop.
     ///
     /// Its state is (z, y_{k-1} where the law takes differences, u_{k-1}, u_{k-2}, ... as far as they are still to come).
-    pub fn closed(&self, gain: f64) -> Closed {
+    pub fn closed(&self, gain: f64) -> ClosedLoop {
         let of = self.of;
         let body = self.transition.nrows();
         let differs = of.differentiation != Differentiation::Exact;
@@ -91,7 +91,7 @@ impl<'a> Held<'a> {
             Differentiation::Difference => (k_p + k_d / of.period, 0.0, -k_d / of.period),
             Differentiation::Raw => (k_p + k_d, 0.0, -k_d),
         };
-        let mut closed = Closed::resting(order);
+        let mut closed = ClosedLoop::resting(order);
         for j in 0..body {
             let (shown, fed) = if j % 2 == 0 { (1.0, angle) } else { (0.0, rate) };
             closed.angle[j] = shown;

@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Held, Loop, Scaling, Window};
+use super::{DiscreteBody, Loop, Scaling, SettlingWindow};
 
 /// One cell of the map.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
-pub struct Cell {
+pub struct MapCell {
     /// Frequency of the dominant mode (rad/s).
     pub frequency_rad_s: f64,
     /// Period of the samples (s).
@@ -29,16 +29,16 @@ pub fn map(
     periods: &[f64],
     scaling: Scaling,
     gain: impl Fn(f64) -> f64 + Sync,
-    window: Window,
-) -> Vec<Cell> {
-    let row = |frequency: &f64| -> Vec<Cell> {
+    window: SettlingWindow,
+) -> Vec<MapCell> {
+    let row = |frequency: &f64| -> Vec<MapCell> {
         let ratios = of.ratios(*frequency, scaling);
         let mut changed = of.clone();
         let cell = |period: &f64| {
             (changed.period, changed.delay) = (*period, of.delay / of.period * period);
-            let closed = Held::new(&changed, &ratios).closed(gain(*frequency));
+            let closed = DiscreteBody::new(&changed, &ratios).closed(gain(*frequency));
             let settling = closed.settle(window);
-            Cell {
+            MapCell {
                 frequency_rad_s: *frequency,
                 period_s: *period,
                 spectral_radius: closed.spectral_radius(),
@@ -48,6 +48,6 @@ pub fn map(
         };
         periods.iter().map(cell).collect()
     };
-    let rows: Vec<Vec<Cell>> = frequencies.par_iter().map(row).collect();
+    let rows: Vec<Vec<MapCell>> = frequencies.par_iter().map(row).collect();
     rows.into_iter().flatten().collect()
 }

@@ -18,12 +18,12 @@ use crate::actuator::Wheel;
 use crate::body::{Mode, Planar};
 use crate::law::Differentiation;
 
-pub use closed::Closed;
-pub use held::Held;
-pub use map::{Cell, map};
+pub use closed::ClosedLoop;
+pub use held::DiscreteBody;
+pub use map::{MapCell, map};
 pub use region::{Gains, Region, Scaling, midpoints, region, regions};
-pub use robust::{Doubt, Goal, Robust, Search, robust};
-pub use settling::{Settling, Window};
+pub use robust::{Doubt, Robust, RobustGoal, RobustSearch, robust};
+pub use settling::{Settling, SettlingWindow};
 pub use spectrum::Slowest;
 
 /// A body under a sampled PD law, by way of a wheel or not.
@@ -50,19 +50,19 @@ pub struct Loop {
     /// Time from a sample to the command that is computed from it (s).
     pub delay: f64,
     /// What shapes the command; none where all of it is executed.
-    pub shape: Option<Shape>,
+    pub shape: Option<CommandPath>,
 }
 
 /// What becomes of a command before it is executed: the law's limit, then what the wheel makes of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub struct CommandPath {
     /// The law's limit (units of the command).
     pub limit: f64,
     /// The wheel.
     pub wheel: Option<Wheel>,
 }
 
-impl Shape {
+impl CommandPath {
     /// The command that is executed.
     pub fn of(&self, command: f64) -> f64 {
         let command = command.clamp(-self.limit, self.limit);

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Closed, Held, Loop, Window};
+use super::{ClosedLoop, DiscreteBody, Loop, SettlingWindow};
 
 /// Which modes follow when the frequency of the dominant one changes.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub struct Region {
 }
 
 /// Whether a loop settles in time and is stable: an angle may stay small while a mode grows.
-fn does(closed: &Closed, window: Window, limit: f64) -> bool {
+fn does(closed: &ClosedLoop, window: SettlingWindow, limit: f64) -> bool {
     closed.settle(window).time_s.is_some_and(|time| time <= limit) && closed.spectral_radius() < 1.0
 }
 
@@ -67,10 +67,10 @@ pub fn region(
     frequency: f64,
     scaling: Scaling,
     gains: Gains,
-    window: Window,
+    window: SettlingWindow,
     limit: f64,
 ) -> Region {
-    let held = Held::new(of, &of.ratios(frequency, scaling));
+    let held = DiscreteBody::new(of, &of.ratios(frequency, scaling));
     let (mut best, mut run): (Option<Run>, Option<Run>) = (None, None);
     for gain in gains.values() {
         run = does(&held.closed(gain), window, limit)
@@ -87,7 +87,7 @@ pub fn region(
         gain: best.map(|(low, high, _)| (low, high)),
         midpoint,
         settling_s: middle.as_ref().and_then(|closed| closed.settle(window).time_s),
-        spectral_radius: middle.as_ref().map(Closed::spectral_radius),
+        spectral_radius: middle.as_ref().map(ClosedLoop::spectral_radius),
         settling_without_s: without.settle(window).time_s,
         spectral_radius_without: without.spectral_radius(),
     }
@@ -99,7 +99,7 @@ pub fn regions(
     frequencies: &[f64],
     scaling: Scaling,
     gains: Gains,
-    window: Window,
+    window: SettlingWindow,
     limit: f64,
 ) -> Vec<Region> {
     frequencies.par_iter().map(|w| region(of, *w, scaling, gains, window, limit)).collect()

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Gains, Held, Loop, Scaling, Window};
+use super::{DiscreteBody, Gains, Loop, Scaling, SettlingWindow};
 use crate::quantity::{Finite, Frequency};
 
 /// How far off the model may be.
@@ -24,7 +24,7 @@ pub struct Doubt {
 
 /// What is minimised.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub enum Goal {
+pub enum RobustGoal {
     /// The settling time, and among equal ones the integral of time times |angle|.
     #[default]
     Settling,
@@ -102,7 +102,7 @@ fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
 }
 
 /// What a gain comes to; none if a loop has too little margin, or if the worst one settles later than that (s).
-fn score(held: &[Held], gain: f64, search: &Search, beat: f64) -> Option<Score> {
+fn score(held: &[DiscreteBody], gain: f64, search: &RobustSearch, beat: f64) -> Option<Score> {
     let (mut radius, mut settled) = (0.0_f64, Vec::with_capacity(held.len()));
     for held in held {
         let closed = held.closed(gain);
@@ -124,17 +124,17 @@ fn score(held: &[Held], gain: f64, search: &Search, beat: f64) -> Option<Score> 
 
 /// How a schedule is searched.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Search {
+pub struct RobustSearch {
     /// Gains that are tried.
     pub gains: Gains,
     /// Which modes follow the dominant one.
     pub scaling: Scaling,
     /// What counts as settled.
-    pub window: Window,
+    pub window: SettlingWindow,
     /// How far off the model may be.
     pub doubt: Doubt,
     /// What is minimised.
-    pub goal: Goal,
+    pub goal: RobustGoal,
     /// The quantile of it over the perturbed loops; 1 is the worst.
     pub quantile: f64,
     /// By how much every spectral radius stays below 1.
@@ -142,20 +142,20 @@ pub struct Search {
 }
 
 /// The best gain at each of these frequencies (rad/s), on the threads of the current rayon pool, in their order.
-pub fn robust(of: &Loop, frequencies: &[f64], search: Search) -> Vec<Robust> {
+pub fn robust(of: &Loop, frequencies: &[f64], search: RobustSearch) -> Vec<Robust> {
     let loops = search.doubt.loops(of);
     let gains = search.gains.values();
     let best = |frequency: &f64| {
         let ratios = of.ratios(*frequency, search.scaling);
-        let held: Vec<Held> = loops.iter().map(|of| Held::new(of, &ratios)).collect();
+        let held: Vec<DiscreteBody> = loops.iter().map(|of| DiscreteBody::new(of, &ratios)).collect();
         let key = |score: &Score| match search.goal {
-            Goal::Settling => (score.settling, score.itae),
-            Goal::Itae => (score.itae, score.settling),
+            RobustGoal::Settling => (score.settling, score.itae),
+            RobustGoal::Itae => (score.itae, score.settling),
         };
         let mut best: Option<(f64, Score)> = None;
         for gain in &gains {
             let beat = match (search.goal, &best) {
-                (Goal::Settling, Some((_, best))) => best.settling,
+                (RobustGoal::Settling, Some((_, best))) => best.settling,
                 _ => f64::INFINITY,
             };
             let Some(score) = score(&held, *gain, &search, beat) else { continue };

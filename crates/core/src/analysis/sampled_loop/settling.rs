@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::Closed;
+use super::ClosedLoop;
 
 /// What counts as settled, and for how long it is watched.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Window {
+pub struct SettlingWindow {
     /// Half width of the band (rad).
     pub band: f64,
     /// How long the loop is watched (s): longer than any settling time that is of interest.
@@ -26,7 +26,7 @@ pub struct Settling {
     pub itae_rad_s2: f64,
 }
 
-impl Window {
+impl SettlingWindow {
     /// The number of samples within it, its ends included.
     pub fn samples(&self, period: f64) -> usize {
         // A sample at the horizon itself counts, whatever its last bits.
@@ -34,11 +34,11 @@ impl Window {
     }
 }
 
-impl Closed {
+impl ClosedLoop {
     /// How the loop settles, as seen at its samples.
-    pub fn settle(&self, window: Window) -> Settling {
+    pub fn settle(&self, window: SettlingWindow) -> Settling {
         let count = window.samples(self.period);
-        let Window { band, .. } = window;
+        let SettlingWindow { band, .. } = window;
         let (mut index, mut outside) = (0_usize, None);
         let (mut weighted, mut before, mut entry) = (0.0, 0.0_f64, 0.0);
         self.each_angle(count, |angle| {

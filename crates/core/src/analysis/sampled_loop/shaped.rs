@@ -3,11 +3,11 @@
 use nalgebra::DMatrix;
 
 use super::closed::Panels;
-use super::{Closed, Shape};
+use super::{ClosedLoop, CommandPath};
 
-impl Closed {
+impl ClosedLoop {
     /// One product a sample: the state, and from it angle and command of the next sample.
-    pub(super) fn each_shaped(&self, shape: &Shape, count: usize, mut tell: impl FnMut(f64)) {
+    pub(super) fn each_shaped(&self, shape: &CommandPath, count: usize, mut tell: impl FnMut(f64)) {
         let order = self.free.nrows();
         let dense = |row: &nalgebra::RowDVector<f64>| DMatrix::from_iterator(1, order, row.iter().copied());
         let (angle_row, feedback_row) = (dense(&self.angle), dense(&self.feedback));

@@ -4,7 +4,7 @@ use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::Serialize;
 
-use super::Closed;
+use super::ClosedLoop;
 
 /// Sweeps after which the search for eigenvalues is given up.
 const SWEEPS: usize = 10_000;
@@ -24,7 +24,7 @@ pub struct Slowest {
     pub settling_s: Option<f64>,
 }
 
-impl Closed {
+impl ClosedLoop {
     /// The eigenvalues of the linear loop, in the order in which they come out; none if the search finds no end.
     pub fn eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
         let matrix = self.matrix();

@@ -1,6 +1,6 @@
 //! The sampled loop that a scenario describes.
 
-use super::{Loop, Shape, Window};
+use super::{CommandPath, Loop, SettlingWindow};
 use crate::Scenario;
 use crate::actuator::{Actuator, Opposes, Wheel};
 use crate::body::Drive;
@@ -73,7 +73,7 @@ impl Loop {
             wheel.limit.is_some() || wheel.quantum.get() > 0.0 || wheel.dead_zone.get() > 0.0
         };
         let shaping = wheel.filter(shapes);
-        let shape = (law.limit.is_some() || shaping.is_some()).then(|| Shape {
+        let shape = (law.limit.is_some() || shaping.is_some()).then(|| CommandPath {
             limit: law.limit.map_or(f64::INFINITY, Positive::get),
             wheel: shaping.cloned(),
         });
@@ -125,9 +125,9 @@ impl Loop {
     ///
     /// # Errors
     /// The body starts at angle 0.
-    pub fn window(&self, band: Option<f64>, horizon: f64) -> Result<Window, Fault> {
+    pub fn window(&self, band: Option<f64>, horizon: f64) -> Result<SettlingWindow, Fault> {
         match band.unwrap_or(0.05 * self.angle().abs()) {
-            band if band > 0.0 => Ok(Window { band, horizon }),
+            band if band > 0.0 => Ok(SettlingWindow { band, horizon }),
             _ => Err(Fault::new("body", "must start at an angle other than 0, or the band be given")),
         }
     }

@@ -2,13 +2,13 @@
 
 use super::Runs;
 use crate::flight::Flight;
-use crate::lanes::{Real, Work};
+use crate::lanes::{LaneWork, Real};
 use crate::motion::damping::Damped;
 
 /// Runs of which all have damped modes.
 pub(super) struct DampedRuns<'r, 'a>(pub &'r mut Runs<'a>);
 
-impl Work for DampedRuns<'_, '_> {
+impl LaneWork for DampedRuns<'_, '_> {
     type Output = ();
 
     #[allow(clippy::inline_always, reason = "a function of its own would lack the processor's instructions")]

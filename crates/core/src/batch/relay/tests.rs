@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Side;
 use crate::Scenario;
 use crate::batch::{Batch, Job};
-use crate::campaign::{Campaign, Run};
+use crate::campaign::{Campaign, CampaignRun};
 use crate::lanes::Processor;
 use crate::metrics::Selection;
 
@@ -25,7 +25,7 @@ fn shipped(name: &str, changes: &[(&str, String)]) -> Scenario {
 
 /// Metrics as text, whose digits are those of all bits.
 fn alone(number: u64, scenario: &Scenario) -> String {
-    let run = Run { number, scenario: scenario.clone(), drawn: Vec::new() };
+    let run = CampaignRun { number, scenario: scenario.clone(), drawn: Vec::new() };
     Campaign::simulate(&run, ()).expect("a run").to_json().to_string()
 }
 

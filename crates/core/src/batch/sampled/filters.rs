@@ -1,7 +1,7 @@
 //! The filters of runs side by side: each sample is read ahead, and what is matrices of it is done at once.
 
 use super::Run;
-use crate::estimator::kalman::{Filter, Filters};
+use crate::estimator::kalman::{Filters, KalmanFilter};
 use crate::lanes::Real;
 use crate::metrics::Gather;
 
@@ -16,7 +16,7 @@ pub fn of<R: Real>(kind: R, runs: &mut [Run]) -> Option<Filters<R>> {
     Filters::new(kind, &mut all(runs))
 }
 
-fn all(runs: &mut [Run]) -> Vec<&mut Filter> {
+fn all(runs: &mut [Run]) -> Vec<&mut KalmanFilter> {
     runs.iter_mut().filter_map(|run| run.simulation.filter()).map(|(filter, _)| filter).collect()
 }
 
@@ -64,7 +64,7 @@ pub fn sample<R: Real>(
     }
     let zero = kind.of(0.0);
     let [innovation, nis] = filters.learn(kind.load(&measured), zero.lt(kind.load(&still)));
-    let sound = predicted & filters.are_sound() & zero.le(nis) & nis.le(kind.of(Filter::FARTHEST));
+    let sound = predicted & filters.are_sound() & zero.le(nis) & nis.le(kind.of(KalmanFilter::FARTHEST));
     filters.give_means(&mut each, &takes);
     if let Some(before) = before {
         filters.restore(&before, zero.lt(kind.load(&flags)));

@@ -13,7 +13,7 @@ use super::turned::Turned;
 use crate::attitude::{Vector, tensor, vector};
 use crate::body::Damping;
 use crate::body::spatial::NamedPoint;
-use crate::motion::turning::{Panel, PanelMode};
+use crate::motion::turning::{DrivenPanel, PanelMode};
 use crate::quantity::{Finite, Positive};
 use crate::structure::mode_table::ModeTable;
 
@@ -88,14 +88,14 @@ impl Appendage {
     }
 
     /// What it is to its drive, if it has one: the next of so many.
-    pub(super) fn panel(&self, drives: usize) -> Panel {
+    pub(super) fn panel(&self, drives: usize) -> DrivenPanel {
         let mode = |mode: &ClampedMode| PanelMode {
             frequency: mode.frequency.get(),
             damping: mode.damping.get(),
             translation: self.translation(mode),
             moments: self.moments(mode),
         };
-        Panel {
+        DrivenPanel {
             mass: self.mass.get(),
             root: vector(&self.at),
             axes: self.turned.matrix(),

@@ -12,12 +12,12 @@ use super::damping::FreeDamping;
 use super::mass::MassProperties;
 use super::spacecraft::Spacecraft;
 use super::thermal;
-use super::{Craft, Rotor};
+use super::{Craft, HubRotor};
 use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
 use crate::body::spatial::{NamedPoint, SpatialMode};
 use crate::document::Fault;
-use crate::motion::turning::{Driven, Flexible, Free, FreeMode, Held};
+use crate::motion::turning::{ClampedModes, DrivenSpacecraft, Flexible, Free, FreeMode};
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
 
@@ -56,14 +56,14 @@ impl Craft {
         spacecraft: &Spacecraft,
         appendages: &[Appendage],
         angles: &[f64],
-        rotors: &[Rotor],
+        rotors: &[HubRotor],
     ) -> Result<Self, Fault> {
         check::check(spacecraft, appendages)?;
         let turned: Vec<_> = appendages.iter().zip(angles).map(|(of, angle)| (of, of.axes(*angle))).collect();
         let bodies = turned.iter().map(|(appendage, axes)| appendage.mass_properties(axes));
         let bodies: Vec<_> = std::iter::once(spacecraft.mass_properties()).chain(bodies).collect();
         let whole = MassProperties::together(&bodies);
-        let spinning: Matrix3<f64> = rotors.iter().map(Rotor::spinning).sum();
+        let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::spinning).sum();
         let parts = parts(&turned, &whole.centre);
         for (index, appendage) in appendages.iter().enumerate() {
             let thermal = appendage.thermal.as_ref();
@@ -71,7 +71,7 @@ impl Craft {
                 return Err(fault.within(&format!("appendage[{index}]")));
             }
         }
-        let held = Held {
+        let held = ClampedModes {
             mass: whole.mass,
             inertia: whole.inertia - spinning,
             frequencies: parts.iter().map(|part| part.frequency).collect(),
@@ -111,9 +111,14 @@ impl Craft {
 }
 
 /// The spacecraft as drives turn it, if it has any.
-fn driven(spacecraft: &Spacecraft, appendages: &[Appendage], spinning: &Matrix3<f64>) -> Option<Arc<Driven>> {
+fn driven(
+    spacecraft: &Spacecraft,
+    appendages: &[Appendage],
+    spinning: &Matrix3<f64>,
+) -> Option<Arc<DrivenSpacecraft>> {
     let hub = spacecraft.mass_properties();
-    let mut driven = Driven { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
+    let mut driven =
+        DrivenSpacecraft { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
     for appendage in appendages {
         let drives = driven.drives();
         driven.panels.push(appendage.panel(drives));
@@ -121,7 +126,7 @@ fn driven(spacecraft: &Spacecraft, appendages: &[Appendage], spinning: &Matrix3<
     driven.turns().then(|| Arc::new(driven))
 }
 
-impl Rotor {
+impl HubRotor {
     /// Its inertia tensor about its axis alone (kg m²).
     pub fn spinning(&self) -> Matrix3<f64> {
         self.spin_inertia * self.axis * self.axis.transpose()
@@ -193,7 +198,7 @@ fn points(places: &[Place], centre: &Vector) -> Result<Vec<NamedPoint>, Fault> {
 /// The free modes with their state at the start and their shapes at all points.
 fn modes(
     appendages: &[Appendage],
-    held: &Held,
+    held: &ClampedModes,
     free: &Free,
     damping: &FreeDamping,
     places: &[Place],

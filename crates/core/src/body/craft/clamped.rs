@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::{Vector, tensor, vector};
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
-use crate::structure::mode_table::{Common, Row};
+use crate::structure::mode_table::{ModeCommon, ModeRow};
 
 /// A mass-normalised mode of an appendage clamped at its root: the integral of phi_i . phi_j dm is 1 for i = j, else 0.
 ///
@@ -65,7 +65,7 @@ pub fn rotation_of(moments: &Matrix3<f64>) -> Vector {
     Vector::new(n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)])
 }
 
-impl Row for ClampedMode {
+impl ModeRow for ClampedMode {
     const LIST: &'static str = "ClampedModes";
     const FILES: &'static str = ".csv, .f06, .frd, .dat or .flex";
     const OWN: &'static [&'static str] =
@@ -85,8 +85,8 @@ impl Row for ClampedMode {
         }
     }
 
-    fn common(&mut self) -> Common<'_> {
-        Common {
+    fn common(&mut self) -> ModeCommon<'_> {
+        ModeCommon {
             damping: &mut self.damping,
             displacement: &mut self.displacement,
             rate: &mut self.rate,

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 use crate::attitude::Vector;
 use crate::body::Spatial;
-use crate::motion::turning::{Driven, Flexible};
+use crate::motion::turning::{DrivenSpacecraft, Flexible};
 
 pub use appendage::{Appendage, Plate};
 pub use assembly::Part;
@@ -36,7 +36,7 @@ pub use turned::{Turn, Turned};
 
 /// A rotor of the hub that turns freely about its axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Rotor {
+pub struct HubRotor {
     /// Unit vector along its axis, in the body's axes.
     pub axis: Vector,
     /// Moment of inertia about that axis (kg m²).
@@ -61,5 +61,5 @@ pub struct Craft {
     /// Off-diagonal damping of the free modes, the largest |Dq_ij| W/|W_i² - W_j²|.
     pub damping_coupling: f64,
     /// The same parts as drives turn them, if any does.
-    pub driven: Option<Arc<Driven>>,
+    pub driven: Option<Arc<DrivenSpacecraft>>,
 }

@@ -4,7 +4,7 @@ use nalgebra::Quaternion;
 
 use crate::attitude::{Vector, vector};
 use crate::body::spatial::Spatial;
-use crate::motion::turning::Seen;
+use crate::motion::turning::TurningSight;
 
 /// A spacecraft that is pushed, and the point of its hub whose place is told.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ impl Moving {
     }
 
     /// Where the point is, in inertial axes from where the centre of mass was at the start (m), and how fast it moves (m/s).
-    pub fn place(&self, seen: &Seen) -> [Vector; 2] {
+    pub fn place(&self, seen: &TurningSight) -> [Vector; 2] {
         let sum = |of: &[f64]| -> Vector {
             self.shifts.iter().zip(of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)
         };

@@ -13,8 +13,8 @@ use crate::body::spatial::NamedPoint;
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
-use crate::structure::fe::{Format, Mode, Place};
-use crate::structure::mode_table::{MOST_MODES, Row};
+use crate::structure::fe::{FileMode, ResultFormat, StructurePoint};
+use crate::structure::mode_table::{MOST_MODES, ModeRow};
 
 /// The structure of a file weighs what the appendage weighs, but for this part: its clamped nodes, or what is no structure.
 const OWN_MASS: f64 = 0.2;
@@ -57,7 +57,7 @@ impl Appendage {
     pub fn read_modes(&mut self, directory: &Path, others: Option<&Self>) -> Result<(), Fault> {
         self.modes.locate(directory);
         let file = self.modes.file();
-        let Some((file, format)) = file.and_then(|file| Some((file, Format::of(file)?))) else {
+        let Some((file, format)) = file.and_then(|file| Some((file, ResultFormat::of(file)?))) else {
             self.no_keys_of_results()?;
             return self.modes.read(others.map(|other| &other.modes)).map_err(|why| Fault::new("modes", why));
         };
@@ -68,7 +68,7 @@ impl Appendage {
             self.modes = others.modes.clone();
             return Ok(());
         }
-        if format == Format::Flex && self.units.is_some() {
+        if format == ResultFormat::Flex && self.units.is_some() {
             return Err(Fault::new("units", "must be left out: files of 42 are in SI"));
         }
         if self.is_point() {
@@ -115,9 +115,9 @@ impl Appendage {
     }
 
     /// Its points in the units of the file.
-    fn places(&self) -> Vec<Place> {
+    fn places(&self) -> Vec<StructurePoint> {
         let unit = self.units.unwrap_or_default().length();
-        let place = |point: &NamedPoint| Place {
+        let place = |point: &NamedPoint| StructurePoint {
             name: point.name.clone(),
             at: point.position.map(|part| part.get() / unit),
         };
@@ -138,7 +138,7 @@ impl Appendage {
     }
 
     /// The damping ratios: those that are given, or else those of the file.
-    fn dampings(&self, modes: &[Mode]) -> Result<Vec<NonNegative>, Fault> {
+    fn dampings(&self, modes: &[FileMode]) -> Result<Vec<NonNegative>, Fault> {
         let count = modes.len();
         match &self.damping {
             Some(damping) => damping.of(count).map_err(|why| Fault::new("damping", why)),
@@ -153,7 +153,7 @@ impl Appendage {
     }
 
     /// A mode in SI.
-    fn clamped(&self, mode: &Mode, damping: NonNegative) -> Result<ClampedMode, String> {
+    fn clamped(&self, mode: &FileMode, damping: NonNegative) -> Result<ClampedMode, String> {
         let units = self.units.unwrap_or_default();
         let root = libm::sqrt(units.mass());
         let three = |parts: [f64; 3], unit: f64| -> Result<[Finite; 3], String> {

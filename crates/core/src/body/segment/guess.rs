@@ -5,7 +5,7 @@ use crate::body::Planar;
 use crate::guard::Guard;
 use crate::motion::crossing::Trip;
 use crate::motion::damping::{Damped, Damping, Undamped};
-use crate::motion::guess::{self, Departure, FARTHEST_TURN, Found, Level, Oscillator};
+use crate::motion::guess::{self, Departure, FARTHEST_TURN, GuessLevel, GuessOscillator, GuessedTrip};
 use crate::motion::{Sensed, State};
 use crate::time::Span;
 
@@ -18,8 +18,8 @@ pub struct Guess {
 
 #[derive(Clone, Debug)]
 enum Modes {
-    Undamped(Vec<Oscillator<f64>>),
-    Damped(Vec<Oscillator<f64, Damped<f64>>>),
+    Undamped(Vec<GuessOscillator<f64>>),
+    Damped(Vec<GuessOscillator<f64, Damped<f64>>>),
 }
 
 impl Guess {
@@ -39,8 +39,8 @@ impl Guess {
     }
 }
 
-fn oscillator<D>(frequency: f64, damping: D) -> Oscillator<f64, D> {
-    Oscillator { frequency, equilibrium: 0.0, displacement: 0.0, quadrature: 0.0, damping }
+fn oscillator<D>(frequency: f64, damping: D) -> GuessOscillator<f64, D> {
+    GuessOscillator { frequency, equilibrium: 0.0, displacement: 0.0, quadrature: 0.0, damping }
 }
 
 impl Segment {
@@ -63,7 +63,7 @@ impl Segment {
     fn polish<D: Damping<f64>>(
         &self,
         fastest: f64,
-        modes: &mut [Oscillator<f64, D>],
+        modes: &mut [GuessOscillator<f64, D>],
         guards: &[Guard],
         horizon: Span,
         state: &mut State,
@@ -79,8 +79,8 @@ impl Segment {
             fastest,
             longest: FARTHEST_TURN / fastest,
         };
-        let level = |guard: &Guard| Level { angle: guard.level, towards: guard.side.sign() };
-        let found: Found<f64> = match guards {
+        let level = |guard: &Guard| GuessLevel { angle: guard.level, towards: guard.side.sign() };
+        let found: GuessedTrip<f64> = match guards {
             [one] => guess::locate(&from, &[level(one)], modes),
             [one, other] => guess::locate(&from, &[level(one), level(other)], modes),
             _ => return None,

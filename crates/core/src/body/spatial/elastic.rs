@@ -3,14 +3,14 @@
 use super::{Spatial, SpatialMode};
 use crate::attitude::Vector;
 use crate::body::Mode;
-use crate::body::mode::Flow;
+use crate::body::mode::ModeFlow;
 use crate::motion::Phase;
 use crate::quantity::Finite;
 
 /// The flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
 #[derive(Clone, Debug)]
 pub struct Elastic {
-    flows: Vec<Flow>,
+    flows: Vec<ModeFlow>,
     /// A span that comes again and again (s), and the transitions over it.
     cycle: f64,
     transitions: Vec<[f64; 4]>,
@@ -19,9 +19,10 @@ pub struct Elastic {
 impl Elastic {
     /// The modes of a body that is often moved on by `cycle` seconds.
     pub fn new(body: &Spatial, cycle: f64) -> Self {
-        let flow =
-            |mode: &SpatialMode| Flow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping));
-        let flows: Vec<Flow> = body.modes.iter().map(flow).collect();
+        let flow = |mode: &SpatialMode| {
+            ModeFlow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping))
+        };
+        let flows: Vec<ModeFlow> = body.modes.iter().map(flow).collect();
         let transitions = flows.iter().map(|flow| flow.transition(cycle)).collect();
         Self { flows, cycle, transitions }
     }

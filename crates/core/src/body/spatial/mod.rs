@@ -27,7 +27,7 @@ pub use disturbance::Periodic;
 pub use drifting::DriftingModes;
 pub use elastic::Elastic;
 pub use modes::SpatialModes;
-pub use rigid::{LONGEST_TURN, Rigid, Turn};
+pub use rigid::{LONGEST_TURN, Rigid, RigidTurn};
 pub use state::SpatialState;
 
 /// A spatial body: three axes and elastic modes.

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::SpatialMode;
 use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::structure::mode_table::{Common, ModeTable, Row};
+use crate::structure::mode_table::{ModeCommon, ModeRow, ModeTable};
 
 /// The modes, which are a slice; those of a file once it is read.
 pub type SpatialModes = ModeTable<SpatialMode>;
 
-impl Row for SpatialMode {
+impl ModeRow for SpatialMode {
     const LIST: &'static str = "SpatialModes";
     const FILES: &'static str = ".csv";
     const OWN: &'static [&'static str] = &[];
@@ -24,8 +24,8 @@ impl Row for SpatialMode {
         }
     }
 
-    fn common(&mut self) -> Common<'_> {
-        Common {
+    fn common(&mut self) -> ModeCommon<'_> {
+        ModeCommon {
             damping: &mut self.damping,
             displacement: &mut self.displacement,
             rate: &mut self.rate,

@@ -33,7 +33,7 @@ pub struct Rigid {
 
 /// Where a rigid body is and how it turns.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Turn {
+pub struct RigidTurn {
     /// Unit quaternion that turns vectors of the body into inertial ones.
     pub attitude: Quaternion<f64>,
     /// Angular momentum J w in the body's axes (N m s).
@@ -61,28 +61,28 @@ impl Rigid {
     }
 
     /// The motion with an attitude and rates in the body's axes (rad/s).
-    pub fn start(&self, attitude: Quaternion<f64>, rate: Vector) -> Turn {
+    pub fn start(&self, attitude: Quaternion<f64>, rate: Vector) -> RigidTurn {
         let (momentum, zero) = (self.inertia * rate, Vector::zeros());
-        Turn { attitude, momentum, turned: zero, lost: (Quaternion::default(), zero, zero) }
+        RigidTurn { attitude, momentum, turned: zero, lost: (Quaternion::default(), zero, zero) }
     }
 
     /// Rates in the body's axes (rad/s).
-    pub fn rate(&self, turn: &Turn) -> Vector {
+    pub fn rate(&self, turn: &RigidTurn) -> Vector {
         self.inverse * turn.momentum
     }
 
     /// Angular momentum in the body's axes (N m s).
-    pub fn momentum(turn: &Turn) -> Vector {
+    pub fn momentum(turn: &RigidTurn) -> Vector {
         turn.momentum
     }
 
     /// The integral of the rates since the start (rad).
-    pub fn turned(turn: &Turn) -> Vector {
+    pub fn turned(turn: &RigidTurn) -> Vector {
         turn.turned
     }
 
     /// Kinetic energy of the rotation (J).
-    pub fn energy(&self, turn: &Turn) -> f64 {
+    pub fn energy(&self, turn: &RigidTurn) -> f64 {
         0.5 * turn.momentum.dot(&self.rate(turn))
     }
 
@@ -90,7 +90,7 @@ impl Rigid {
     /// is `around` it, as long as it may `go_on`. Rotors have a momentum (N m s) that changes at a rate (N m); the torque has what that gives the body.
     pub fn advance<E>(
         &self,
-        turn: &mut Turn,
+        turn: &mut RigidTurn,
         torque: &Vector,
         rotors: Option<(Vector, Vector)>,
         around: Option<&dyn Surroundings>,
@@ -130,13 +130,13 @@ impl Rigid {
     /// after the start (s). Each pass over the stages errs less by `contraction`.
     fn step(
         &self,
-        turn: &mut Turn,
+        turn: &mut RigidTurn,
         torques: &[Vector; 3],
         rotors: Option<&[Vector; 3]>,
         around: Option<(&dyn Surroundings, f64)>,
         (h, contraction): (f64, f64),
     ) {
-        let Turn { attitude, momentum, turned: angle, lost } = turn;
+        let RigidTurn { attitude, momentum, turned: angle, lost } = turn;
         let mut pushes = torques.map(|torque| momentum.cross(&(self.inverse * *momentum)) + torque);
         let mut rates = [Vector::zeros(); 3];
         let mut turns = [spin(attitude, &(self.inverse * *momentum)); 3];

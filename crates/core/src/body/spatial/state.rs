@@ -1,6 +1,6 @@
 //! The state of a spatial body.
 
-use super::{Elastic, Rigid, Spatial, Turn};
+use super::{Elastic, Rigid, RigidTurn, Spatial};
 use crate::attitude::vector;
 use crate::motion::Phase;
 
@@ -8,7 +8,7 @@ use crate::motion::Phase;
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpatialState {
     /// The rigid motion.
-    pub turn: Turn,
+    pub turn: RigidTurn,
     /// One phase for each elastic mode: displacement (m sqrt(kg)), and rate over natural frequency.
     pub modes: Vec<Phase>,
 }

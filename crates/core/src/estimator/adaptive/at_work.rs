@@ -1,9 +1,9 @@
 //! The adaptive observers of a run: what they are fed with, what laws believe of them, and how that compares with the body.
 
-use super::{Channel, Estimate, Merged, ObserverDesign};
+use super::{Channel, Merged, ModeEstimate, ObserverDesign};
 use crate::belief::Damped;
 use crate::belief::{Belief, Dominant, ElasticRate};
-use crate::estimator::{self, Given, Taken};
+use crate::estimator::{self, GivenRecord, Taken};
 use crate::record::{ChannelState, TrackedMode, Tracking};
 use crate::time::Instant;
 
@@ -13,8 +13,8 @@ pub struct Observers {
     plan: ObserverDesign,
     channels: Vec<Channel>,
     /// What they know of their modes after the last sample.
-    modes: Vec<Vec<Estimate>>,
-    given: Given,
+    modes: Vec<Vec<ModeEstimate>>,
+    given: GivenRecord,
     /// Whether there was a sample.
     sampled: bool,
 }
@@ -24,7 +24,7 @@ impl Observers {
     pub fn new(plan: &ObserverDesign) -> Self {
         let channels = plan.channels();
         let modes = vec![Vec::new(); channels.len()];
-        Self { plan: plan.clone(), channels, modes, given: Given::default(), sampled: false }
+        Self { plan: plan.clone(), channels, modes, given: GivenRecord::default(), sampled: false }
     }
 }
 
@@ -48,7 +48,7 @@ impl estimator::Estimate for Observers {
             channel.put_modes(&mut self.modes[axis]);
             belief.rate = channel.rate();
             let rates = channel.predict(taken.ahead, &waiting).into_iter();
-            let mode = |(rate, mode): (f64, &Estimate)| ElasticRate {
+            let mode = |(rate, mode): (f64, &ModeEstimate)| ElasticRate {
                 rate,
                 frequency: mode.frequency,
                 influence: channel.influence(mode),
@@ -80,7 +80,7 @@ impl estimator::Estimate for Observers {
                 damping_on_s: damped.on,
             });
             let own = design.own(axis);
-            let state = |(mode, truth): (&Estimate, &Merged)| TrackedMode {
+            let state = |(mode, truth): (&ModeEstimate, &Merged)| TrackedMode {
                 axis: axis as u64,
                 frequency_rad_s: mode.frequency,
                 true_frequency_rad_s: truth.tracker.frequency.get(),
@@ -101,7 +101,7 @@ impl estimator::Estimate for Observers {
 }
 
 /// The mode that moves most: its angle is what its quadrature tells.
-fn dominant(modes: &[Estimate]) -> Dominant {
+fn dominant(modes: &[ModeEstimate]) -> Dominant {
     let largest = modes.iter().max_by(|a, b| a.amplitude().total_cmp(&b.amplitude()));
     largest.map_or_else(Dominant::default, |mode| Dominant {
         displacement: mode.displacement(),

@@ -1,7 +1,8 @@
 //! The observer of one axis at work, between the jets of a spatial body and the belief of its law.
 
 use super::{
-    Design, Estimate, Form, GradientObserver, Observer, ObserverDesign, Pulse, RecurrenceObserver, Residual,
+    AxisObserver, Form, GradientObserver, ModeEstimate, MovingResidual, Observer, ObserverDesign, Pulse,
+    RecurrenceObserver,
 };
 
 /// The innovations are small if below this part of the elastic rate, in mean square, or below the floor (rad/s); ours.
@@ -42,7 +43,7 @@ impl ObserverDesign {
     /// The observers at the start of a run.
     pub fn channels(&self) -> Vec<Channel> {
         let channel = |axis: usize| {
-            let design: &Design = &self.axes[axis];
+            let design: &AxisObserver = &self.axes[axis];
             let observer = match (&self.form, design.start.first()) {
                 (Form::Recurrence(of), Some(tracker)) => {
                     Either::Recurrence(of.observer(tracker, self.period))
@@ -84,17 +85,17 @@ impl Channel {
     }
 
     /// Writes down the modes, in the place of those of the sample before.
-    pub fn put_modes(&self, modes: &mut Vec<Estimate>) {
+    pub fn put_modes(&self, modes: &mut Vec<ModeEstimate>) {
         self.observer.seen().put_modes(modes);
     }
 
     /// The influence of the axis' own jets on a mode.
-    pub fn influence(&self, mode: &Estimate) -> f64 {
+    pub fn influence(&self, mode: &ModeEstimate) -> f64 {
         mode.influence.get(self.own).copied().unwrap_or(0.0)
     }
 
     /// How well it follows.
-    pub fn residual(&self) -> Residual {
+    pub fn residual(&self) -> MovingResidual {
         self.observer.seen().residual()
     }
 

@@ -11,14 +11,14 @@ pub struct ObserverDesign {
     /// Form and settings of the observers.
     pub form: Form,
     /// Each axis.
-    pub axes: Vec<Design>,
+    pub axes: Vec<AxisObserver>,
     /// Period of the samples (s).
     pub period: f64,
 }
 
 /// The observer of one axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Design {
+pub struct AxisObserver {
     /// What really is, by frequency.
     pub modes: Vec<Merged>,
     /// What the observer starts with.
@@ -33,18 +33,18 @@ pub struct Design {
 
 /// What rates are measured of a body, and what changes them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct MeasuredRates {
     /// Natural frequencies of the modes.
     pub frequencies: Vec<Frequency>,
     /// For each axis, the rotation of each mode where rates are measured.
     pub seen: Vec<Vec<f64>>,
     /// For each axis, what its actuator does.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<ActuatorInput>,
 }
 
 /// What the actuator of an axis does while it gives a torque.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Input {
+pub struct ActuatorInput {
     /// Modal forces.
     pub forces: Vec<f64>,
     /// Acceleration about its own axis (rad/s²).
@@ -58,7 +58,7 @@ impl ObserverDesign {
     ///
     /// # Errors
     /// A key within the estimator, and why.
-    pub fn of(spec: &Adaptive, measured: &Measured, period: f64) -> Result<Self, Fault> {
+    pub fn of(spec: &Adaptive, measured: &MeasuredRates, period: f64) -> Result<Self, Fault> {
         if let Some(fault) = spec.inconsistency() {
             return Err(fault);
         }
@@ -69,8 +69,8 @@ impl ObserverDesign {
             return Err(Fault::new("trackers", why));
         }
         let form = spec.working_form();
-        let axis = |axis: usize| Design::of(spec, &form, axis, measured, period);
-        let axes: Vec<Design> = (0..axes).map(axis).collect::<Result<_, _>>()?;
+        let axis = |axis: usize| AxisObserver::of(spec, &form, axis, measured, period);
+        let axes: Vec<AxisObserver> = (0..axes).map(axis).collect::<Result<_, _>>()?;
         if axes.iter().all(|design| design.start.is_empty()) {
             return Err(Fault::new("", "must have a mode to track, and the gyro sees none"));
         }
@@ -78,15 +78,15 @@ impl ObserverDesign {
     }
 }
 
-impl Design {
+impl AxisObserver {
     fn of(
         spec: &Adaptive,
         form: &Form,
         axis: usize,
-        measured: &Measured,
+        measured: &MeasuredRates,
         period: f64,
     ) -> Result<Self, Fault> {
-        let Measured { frequencies, seen, inputs: sources } = measured;
+        let MeasuredRates { frequencies, seen, inputs: sources } = measured;
         let inputs = if spec.crosses() { (0..sources.len()).collect() } else { vec![axis] };
         let influence = |input: usize, mode: usize| {
             let source = &sources[input];

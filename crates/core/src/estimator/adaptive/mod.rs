@@ -23,25 +23,25 @@ pub use crate::actuator::Pulse;
 pub use at_work::Observers;
 pub use axes::{Adaptive, Form, Given};
 pub use channel::Channel;
-pub use design::{Design, Input, Measured, ObserverDesign};
+pub use design::{ActuatorInput, AxisObserver, MeasuredRates, ObserverDesign};
 pub use gradient::{Gradient, GradientObserver};
-pub use oscillator::{Oscillator, Phase};
+pub use oscillator::{ModelOscillator, ModelPhase};
 pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
-pub use residual::Residual;
+pub use residual::MovingResidual;
 pub use tracker::{Merged, Tracker, bounds, merged};
 
 /// An observer's estimate of a mode.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Estimate {
+pub struct ModeEstimate {
     /// Elastic rate g of the mode in the channel, and s, a quarter of a period behind it (rad/s).
-    pub phase: Phase,
+    pub phase: ModelPhase,
     /// Natural frequency (rad/s).
     pub frequency: f64,
     /// Influence of each input (dimensionless).
     pub influence: Vec<f64>,
 }
 
-impl Estimate {
+impl ModeEstimate {
     /// Amplitude of the elastic rate (rad/s).
     pub fn amplitude(&self) -> f64 {
         libm::hypot(self.phase[0], self.phase[1])
@@ -94,15 +94,15 @@ pub trait Observer {
     fn rate(&self) -> f64;
 
     /// Writes down the modes, in the place of those of the sample before.
-    fn put_modes(&self, modes: &mut Vec<Estimate>);
+    fn put_modes(&self, modes: &mut Vec<ModeEstimate>);
 
     /// The modes.
-    fn modes(&self) -> Vec<Estimate> {
+    fn modes(&self) -> Vec<ModeEstimate> {
         let mut modes = Vec::new();
         self.put_modes(&mut modes);
         modes
     }
 
     /// How well it follows.
-    fn residual(&self) -> Residual;
+    fn residual(&self) -> MovingResidual;
 }

@@ -4,20 +4,20 @@
 //! K = [[-2 zeta w, -w], [w, 0]] (\[Timakov14\], equation (2); the closed forms are ours).
 
 /// A vector of the state: the modal rate p and, a quarter of a period behind it, s = w q, in the same unit.
-pub type Phase = [f64; 2];
+pub type ModelPhase = [f64; 2];
 
 /// A mode of a model.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Oscillator {
+pub struct ModelOscillator {
     /// Natural frequency w (rad/s).
     pub frequency: f64,
     /// Damping ratio zeta, below 1.
     pub damping: f64,
 }
 
-impl Oscillator {
+impl ModelOscillator {
     /// The transition over a time (s), exp(K t), by rows.
-    pub fn transition(&self, time: f64) -> [Phase; 2] {
+    pub fn transition(&self, time: f64) -> [ModelPhase; 2] {
         let zeta = self.damping;
         let root = libm::sqrt((1.0 - zeta) * (1.0 + zeta));
         let turn = self.frequency * time;
@@ -27,7 +27,12 @@ impl Oscillator {
     }
 
     /// What a transition over a time (s) makes of a state, and its derivative by ln w.
-    pub fn turned(&self, transition: &[Phase; 2], time: f64, phase: Phase) -> (Phase, Phase) {
+    pub fn turned(
+        &self,
+        transition: &[ModelPhase; 2],
+        time: f64,
+        phase: ModelPhase,
+    ) -> (ModelPhase, ModelPhase) {
         let at = times(transition, phase);
         let turn = self.frequency * time;
         (at, [turn * (-2.0 * self.damping * at[0] - at[1]), turn * at[0]])
@@ -35,13 +40,13 @@ impl Oscillator {
 
     /// State that a pulse of unit acceleration leaves, which began and ended so long ago (s), and its derivative by ln w.
     /// Of a pulse that has not yet ended, with a negative time, only what was counts.
-    pub fn pulse(&self, began: f64, ended: f64) -> (Phase, Phase) {
+    pub fn pulse(&self, began: f64, ended: f64) -> (ModelPhase, ModelPhase) {
         let (whole, rest) = (self.step(began.max(0.0)), self.step(ended.max(0.0)));
         (minus(whole.0, rest.0), minus(whole.1, rest.1))
     }
 
     /// State after a unit acceleration over a time (s), and its derivative by ln w.
-    fn step(&self, time: f64) -> (Phase, Phase) {
+    fn step(&self, time: f64) -> (ModelPhase, ModelPhase) {
         if time == 0.0 {
             return ([0.0; 2], [0.0; 2]);
         }
@@ -52,11 +57,11 @@ impl Oscillator {
 }
 
 /// A matrix, by rows, times a vector.
-fn times(matrix: &[Phase; 2], v: Phase) -> Phase {
+fn times(matrix: &[ModelPhase; 2], v: ModelPhase) -> ModelPhase {
     [matrix[0][0] * v[0] + matrix[0][1] * v[1], matrix[1][0] * v[0] + matrix[1][1] * v[1]]
 }
 
-fn minus(a: Phase, b: Phase) -> Phase {
+fn minus(a: ModelPhase, b: ModelPhase) -> ModelPhase {
     [a[0] - b[0], a[1] - b[1]]
 }
 
@@ -64,7 +69,7 @@ fn minus(a: Phase, b: Phase) -> Phase {
 mod tests {
     use super::*;
 
-    const MODE: Oscillator = Oscillator { frequency: 0.4 * std::f64::consts::PI, damping: 0.005 };
+    const MODE: ModelOscillator = ModelOscillator { frequency: 0.4 * std::f64::consts::PI, damping: 0.005 };
 
     #[track_caller]
     fn close(value: f64, exact: f64, within: f64) {
@@ -93,15 +98,15 @@ mod tests {
     #[test]
     fn slopes_are_those_of_finite_differences() {
         let h = 1e-5;
-        let off = |factor: f64| Oscillator { frequency: MODE.frequency * libm::exp(factor * h), ..MODE };
+        let off = |factor: f64| ModelOscillator { frequency: MODE.frequency * libm::exp(factor * h), ..MODE };
         let phase = [0.3, -0.7];
-        let turned = |of: Oscillator| of.turned(&of.transition(0.2), 0.2, phase).0;
+        let turned = |of: ModelOscillator| of.turned(&of.transition(0.2), 0.2, phase).0;
         let (_, slope) = MODE.turned(&MODE.transition(0.2), 0.2, phase);
         let pulse = MODE.pulse(0.17, 0.04).1;
         for axis in 0..2 {
             let turn = (turned(off(1.0))[axis] - turned(off(-1.0))[axis]) / (2.0 * h);
             close(slope[axis], turn, 1e-9);
-            let pushed = |of: Oscillator| of.pulse(0.17, 0.04).0[axis];
+            let pushed = |of: ModelOscillator| of.pulse(0.17, 0.04).0[axis];
             let push = (pushed(off(1.0)) - pushed(off(-1.0))) / (2.0 * h);
             close(pulse[axis], push, 1e-9);
         }

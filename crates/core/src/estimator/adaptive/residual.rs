@@ -5,14 +5,14 @@ const WEIGHT: f64 = 0.02;
 
 /// Moving means of squares ((rad/s)²): exponential, over about 50 samples.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Residual {
+pub struct MovingResidual {
     /// Of the innovation, the measured rate less the predicted one.
     pub innovation: f64,
     /// Of the estimated elastic rate, all modes together.
     pub elastic: f64,
 }
 
-impl Residual {
+impl MovingResidual {
     /// Takes the innovation (rad/s) of a sample, or none for one that was dropped, and the elastic rate (rad/s).
     pub(super) fn take(&mut self, innovation: Option<f64>, elastic: f64) {
         // An estimate that nothing confirms may be wrong by all of itself.

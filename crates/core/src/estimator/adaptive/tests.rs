@@ -38,7 +38,7 @@ fn burst(cycle: usize) -> Vec<Pulse> {
 
 /// The measured rate at each sample under the bursts, without noise.
 fn measured() -> Vec<f64> {
-    let of = Oscillator { frequency: MODE.0, damping: 0.005 };
+    let of = ModelOscillator { frequency: MODE.0, damping: 0.005 };
     let (mut rate, mut phase) = (0.0, [0.0; 2]);
     let sample = |cycle| {
         let y = rate + MODE.1 * phase[0];
@@ -180,7 +180,7 @@ fn gradient_tells_two_modes_and_two_inputs_apart() {
         }
         observer.advance(&pulses);
         for (phase, (hertz, influence)) in phases.iter_mut().zip(truths) {
-            let of = Oscillator { frequency: 2.0 * PI * hertz, damping: 0.005 };
+            let of = ModelOscillator { frequency: 2.0 * PI * hertz, damping: 0.005 };
             *phase = of.turned(&of.transition(CYCLE), CYCLE, *phase).0;
             for Pulse { input, acceleration, start, duration } in &pulses {
                 let push = of.pulse(CYCLE - start, CYCLE - start - duration).0;

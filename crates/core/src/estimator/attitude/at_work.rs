@@ -2,9 +2,9 @@
 
 use nalgebra::Quaternion;
 
-use super::spec::{AttitudeFilter, Role, Setting};
+use super::spec::{AttitudeFilter, AttitudeSetting, Role};
 use super::swinging::Swinging;
-use super::{Correction, Filter, Fix, History, Measured};
+use super::{AttitudeFilterState, AttitudeMeasurement, Correction, FilterHistory, Fix};
 use crate::attitude::{Vector, rotation};
 use crate::belief::Belief;
 use crate::estimator::kalman::Prior;
@@ -18,10 +18,10 @@ use crate::time::Instant;
 #[derive(Clone, Debug)]
 pub struct Tracking {
     spec: AttitudeFilter,
-    setting: Setting,
+    setting: AttitudeSetting,
     draws: Stream,
     /// From the first sample on.
-    history: Option<History>,
+    history: Option<FilterHistory>,
     /// The last gyro reading (rad/s), and when the filter took a gyro reading last.
     rate: Vector,
     since: Instant,
@@ -34,7 +34,7 @@ pub struct Tracking {
 
 impl Tracking {
     /// The filter before the first sample; `draws` gives a drawn prior.
-    pub fn new(spec: &AttitudeFilter, setting: Setting, draws: Stream) -> Self {
+    pub fn new(spec: &AttitudeFilter, setting: AttitudeSetting, draws: Stream) -> Self {
         Self {
             spec: spec.clone(),
             setting,
@@ -49,7 +49,7 @@ impl Tracking {
     }
 
     /// What the filter takes for the truth at the start, where this is the true attitude.
-    fn prior(&mut self, attitude: &Quaternion<f64>) -> Filter {
+    fn prior(&mut self, attitude: &Quaternion<f64>) -> AttitudeFilterState {
         let deviations = [self.spec.initial.angle.get(), self.spec.initial.bias.get()];
         let mut off = [Vector::zeros(); 2];
         if self.spec.prior == Prior::Drawn {
@@ -57,7 +57,8 @@ impl Tracking {
                 *off = Vector::from_fn(|_, _| deviation * self.draws.normal());
             }
         }
-        let mut filter = Filter::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations);
+        let mut filter =
+            AttitudeFilterState::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations);
         filter.swinging =
             self.setting.modes.clone().map(|known| Box::new(Swinging::new(known, &filter.covariance)));
         filter
@@ -80,8 +81,8 @@ impl Tracking {
         {
             let Role::Corrects { latency, noise, gain } = role else { continue };
             let measured = match (reading.sight, reading.at) {
-                (Some(sight), _) => Measured::Vector(sight),
-                (None, Orientation::Attitude(attitude)) => Measured::Attitude(attitude),
+                (Some(sight), _) => AttitudeMeasurement::Vector(sight),
+                (None, Orientation::Attitude(attitude)) => AttitudeMeasurement::Attitude(attitude),
                 (None, Orientation::Angle(_)) => continue,
             };
             // What is told at the start is of the start.
@@ -127,7 +128,7 @@ impl Tracking {
     }
 }
 
-impl Setting {
+impl AttitudeSetting {
     /// The readings of sensors with a role.
     fn of<'a>(
         &'a self,
@@ -156,7 +157,7 @@ impl Estimate for Tracking {
             let beyond = Vector::from_fn(|axis, _| 0.5 * (taken.truth)(axis).rigid_angle);
             let real = libm::sqrt((1.0 - beyond.norm_squared()).max(0.0));
             let filter = self.prior(&(origin * Quaternion::from_parts(real, beyond)));
-            let mut history = History::new(now, filter, self.setting.noise, self.setting.reach);
+            let mut history = FilterHistory::new(now, filter, self.setting.noise, self.setting.reach);
             history.push(now, self.torque);
             self.history = Some(history);
         }
@@ -188,7 +189,7 @@ impl Estimate for Tracking {
         };
         let (estimate, bias) = (Tracking::attitude(self, now)?, Vector::from(bias));
         let ([angle_sd, bias_sd], off) =
-            (filter.deviations(), Filter { attitude: estimate, ..filter.clone() });
+            (filter.deviations(), AttitudeFilterState { attitude: estimate, ..filter.clone() });
         let [angle_error, bias_error] = off.error(truth, &bias);
         let axis = |axis: usize| AxisEstimate {
             angle_error_rad: -angle_error[axis],

@@ -10,16 +10,16 @@ use nalgebra::{
     Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
 };
 
-use super::measurement::{GyroNoise, Measured, across};
-use super::swinging::{Swinging, Told};
+use super::measurement::{AttitudeMeasurement, GyroNoise, across};
+use super::swinging::{SwingInnovation, Swinging};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::environment::into;
 use crate::numerics::stumpff::stumpff;
-use crate::sensor::Sight;
+use crate::sensor::VectorSight;
 
 /// The filter: what it knows at one instant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Filter {
+pub struct AttitudeFilterState {
     /// The attitude, which turns vectors of the body's axes into inertial ones.
     pub attitude: Quaternion<f64>,
     /// The bias of the gyro (rad/s).
@@ -41,7 +41,7 @@ pub struct Correction {
     pub numbers: u64,
 }
 
-impl Filter {
+impl AttitudeFilterState {
     /// The filter that knows an attitude and a bias with these standard deviations about each axis (rad, rad/s).
     pub fn new(attitude: Quaternion<f64>, bias: Vector, deviations: [f64; 2]) -> Self {
         let variance = |row: usize, _| deviations[row / 3] * deviations[row / 3];
@@ -87,18 +87,20 @@ impl Filter {
     pub fn correct_at(
         &mut self,
         sensor: usize,
-        measured: &Measured,
+        measured: &AttitudeMeasurement,
         noise: &Matrix3<f64>,
     ) -> Option<Correction> {
         let mut swinging = self.swinging.take()?;
         let noise = DMatrix::from_fn(3, 3, |row, column| noise[(row, column)]);
         let told = match measured {
-            Measured::Attitude(attitude) => swinging.correct(&self.attitude, attitude, &noise, sensor),
-            Measured::Vector(sight) => swinging.correct_by(&self.attitude, sight, &noise, sensor),
+            AttitudeMeasurement::Attitude(attitude) => {
+                swinging.correct(&self.attitude, attitude, &noise, sensor)
+            }
+            AttitudeMeasurement::Vector(sight) => swinging.correct_by(&self.attitude, sight, &noise, sensor),
         };
         self.covariance = swinging.first();
         self.swinging = Some(swinging);
-        let (innovation, Told { error: [angle, bias], nis }) = told?;
+        let (innovation, SwingInnovation { error: [angle, bias], nis }) = told?;
         self.attitude = unit(self.attitude * rotation(&angle));
         self.bias += bias;
         Some(Correction { innovation, nis, numbers: measured.numbers() })
@@ -123,7 +125,7 @@ impl Filter {
     }
 
     /// Takes a measured vector whose error in the body's axes has this covariance.
-    pub fn correct_by(&mut self, sight: &Sight, noise: &Matrix3<f64>) -> Option<Correction> {
+    pub fn correct_by(&mut self, sight: &VectorSight, noise: &Matrix3<f64>) -> Option<Correction> {
         let expected = into(&self.attitude, &sight.inertial);
         let (off, moved) = (sight.vector - expected, expected.cross_matrix());
         let nis = if sight.is_direction {
@@ -140,13 +142,15 @@ impl Filter {
     /// which this gain leaves.
     pub fn correct_with(
         &mut self,
-        measured: &Measured,
+        measured: &AttitudeMeasurement,
         noise: &Matrix3<f64>,
         gain: &Matrix6x3<f64>,
     ) -> Option<Correction> {
         let (off, moved, gain) = match measured {
-            Measured::Attitude(attitude) => (beyond(&self.attitude, attitude), Matrix3::identity(), *gain),
-            Measured::Vector(sight) => {
+            AttitudeMeasurement::Attitude(attitude) => {
+                (beyond(&self.attitude, attitude), Matrix3::identity(), *gain)
+            }
+            AttitudeMeasurement::Vector(sight) => {
                 let expected = into(&self.attitude, &sight.inertial);
                 let to_angle = expected.cross_matrix() / -expected.norm_squared();
                 (sight.vector - expected, expected.cross_matrix(), gain * to_angle)
@@ -158,8 +162,8 @@ impl Filter {
         let nis = 3.0 / numbers as f64 * off.dot(&spread.solve(&off));
         let error = gain * off;
         let innovation = match measured {
-            Measured::Attitude(_) => off,
-            Measured::Vector(sight) => {
+            AttitudeMeasurement::Attitude(_) => off,
+            AttitudeMeasurement::Vector(sight) => {
                 let expected = into(&self.attitude, &sight.inertial);
                 off.cross(&expected) / expected.norm_squared()
             }

@@ -96,7 +96,7 @@ impl Form {
 mod tests {
     use super::*;
     use crate::attitude::Vector;
-    use crate::estimator::attitude::Filter;
+    use crate::estimator::attitude::AttitudeFilterState;
 
     #[test]
     fn steady_gains_are_those_that_the_covariance_has_in_the_end() {
@@ -104,7 +104,7 @@ mod tests {
         let (period, tracker) = (0.5, Vector::new(2.4e-5, 5e-5, 1.5e-4));
         let covariance = Matrix3::from_diagonal(&tracker.component_mul(&tracker));
         let still = nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0);
-        let mut filter = Filter::new(still, Vector::zeros(), [1e-3, 1e-5]);
+        let mut filter = AttitudeFilterState::new(still, Vector::zeros(), [1e-3, 1e-5]);
         for _ in 0..40_000 {
             filter.correct(&still, &covariance);
             filter.predict(&Vector::zeros(), period, &noise);

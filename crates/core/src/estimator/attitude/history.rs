@@ -8,8 +8,8 @@ use std::collections::VecDeque;
 
 use nalgebra::{Matrix3, Matrix6x3};
 
-use super::filter::{Correction, Filter};
-use super::measurement::{GyroNoise, Measured};
+use super::filter::{AttitudeFilterState, Correction};
+use super::measurement::{AttitudeMeasurement, GyroNoise};
 use crate::attitude::Vector;
 use crate::time::{Instant, Span};
 
@@ -19,7 +19,7 @@ pub struct Fix {
     /// When the body was exposed.
     pub exposed: Instant,
     /// What was measured.
-    pub measured: Measured,
+    pub measured: AttitudeMeasurement,
     /// Covariance of its error in the body's axes (rad², or that of the vector's unit).
     pub noise: Matrix3<f64>,
     /// The constant gain of a filter that has one.
@@ -29,13 +29,13 @@ pub struct Fix {
 }
 
 impl Fix {
-    fn correct(&self, filter: &mut Filter) -> Option<Correction> {
+    fn correct(&self, filter: &mut AttitudeFilterState) -> Option<Correction> {
         if filter.swinging.is_some() {
             return filter.correct_at(self.sensor, &self.measured, &self.noise);
         }
         match (&self.measured, &self.gain) {
-            (Measured::Attitude(attitude), None) => filter.correct(attitude, &self.noise),
-            (Measured::Vector(sight), None) => filter.correct_by(sight, &self.noise),
+            (AttitudeMeasurement::Attitude(attitude), None) => filter.correct(attitude, &self.noise),
+            (AttitudeMeasurement::Vector(sight), None) => filter.correct_by(sight, &self.noise),
             (measured, Some(gain)) => filter.correct_with(measured, &self.noise, gain),
         }
     }
@@ -43,7 +43,7 @@ impl Fix {
 
 /// A filter and its recent past.
 #[derive(Clone, Debug)]
-pub struct History {
+pub struct FilterHistory {
     noise: GyroNoise,
     /// How late a measurement may be.
     reach: Span,
@@ -60,18 +60,18 @@ struct Entry {
     /// The gyro reading of the interval that ends here (rad/s).
     reading: Vector,
     fixes: Vec<Fix>,
-    filter: Filter,
+    filter: AttitudeFilterState,
 }
 
-impl History {
+impl FilterHistory {
     /// The history of a filter that begins at an instant, to which nothing is later than `reach`.
-    pub fn new(at: Instant, filter: Filter, noise: GyroNoise, reach: Span) -> Self {
+    pub fn new(at: Instant, filter: AttitudeFilterState, noise: GyroNoise, reach: Span) -> Self {
         let entry = Entry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
         Self { noise, reach, entries: VecDeque::from([entry]), early: Vec::new(), torques: VecDeque::new() }
     }
 
     /// The filter after all that it was told.
-    pub fn latest(&self) -> &Filter {
+    pub fn latest(&self) -> &AttitudeFilterState {
         // There is always an entry.
         &self.entries[self.entries.len() - 1].filter
     }
@@ -113,7 +113,7 @@ impl History {
     }
 
     /// Carries a filter on from one instant to another, with a reading of an interval that has both in it.
-    fn carry(&self, filter: &mut Filter, reading: &Vector, [from, to]: [Instant; 2]) {
+    fn carry(&self, filter: &mut AttitudeFilterState, reading: &Vector, [from, to]: [Instant; 2]) {
         let seconds = to.since(from).seconds();
         if filter.swinging.is_some() {
             filter.predict_under(reading, seconds, &self.noise, &self.pushed(from, to));

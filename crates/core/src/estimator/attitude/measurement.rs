@@ -3,7 +3,7 @@
 use nalgebra::{Quaternion, SMatrix};
 
 use crate::attitude::Vector;
-use crate::sensor::Sight;
+use crate::sensor::VectorSight;
 
 /// Noise of a gyro as the filter knows it, the same about each axis.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -16,17 +16,17 @@ pub struct GyroNoise {
 
 /// What corrects an attitude.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Measured {
+pub enum AttitudeMeasurement {
     /// An attitude.
     Attitude(Quaternion<f64>),
     /// A vector.
-    Vector(Sight),
+    Vector(VectorSight),
 }
 
-impl Measured {
+impl AttitudeMeasurement {
     /// How many numbers it has: a direction has two.
     pub fn numbers(&self) -> u64 {
-        if matches!(self, Self::Vector(Sight { is_direction: true, .. })) { 2 } else { 3 }
+        if matches!(self, Self::Vector(VectorSight { is_direction: true, .. })) { 2 } else { 3 }
     }
 }
 

@@ -15,9 +15,9 @@ mod tests;
 
 pub use at_work::Tracking;
 pub use elastic::{ElasticStates, KnownMode, KnownModes};
-pub use filter::{Correction, Filter};
+pub use filter::{AttitudeFilterState, Correction};
 pub use gains::{Complementary, Form};
-pub use history::{Fix, History};
-pub use measurement::{GyroNoise, Measured};
-pub use spec::{AttitudeFilter, Initial, Role, Setting};
+pub use history::{FilterHistory, Fix};
+pub use measurement::{AttitudeMeasurement, GyroNoise};
+pub use spec::{AttitudeFilter, AttitudeSetting, Initial, Role};
 pub use swinging::Swinging;

@@ -92,7 +92,7 @@ pub enum Role {
 
 /// What the sensors of a scenario are to a filter.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Setting {
+pub struct AttitudeSetting {
     /// Each sensor, in the order of the scenario.
     pub roles: Vec<Role>,
     /// Noise of the gyro.
@@ -118,7 +118,7 @@ impl AttitudeFilter {
         sensors: &[Sensor],
         cycle: Option<Span>,
         mounted: Option<Mounted<'_>>,
-    ) -> Result<Setting, Fault> {
+    ) -> Result<AttitudeSetting, Fault> {
         let gyro = sensors.iter().enumerate().find_map(|(index, sensor)| match sensor {
             Sensor::Gyro(gyro) => Some((index, gyro)),
             _ => None,
@@ -157,7 +157,7 @@ impl AttitudeFilter {
         }
         let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
         let modes = self.modes(gyro, read, mounted)?.map(Arc::new);
-        Ok(Setting { roles, noise: gyro_noise, bias, reach: latest + period, modes })
+        Ok(AttitudeSetting { roles, noise: gyro_noise, bias, reach: latest + period, modes })
     }
 
     /// The modes that it shall know of a body with sensors at these points.

@@ -12,7 +12,7 @@ use super::measurement::{GyroNoise, across};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::environment::into;
 use crate::numerics::exponential::exponential;
-use crate::sensor::Sight;
+use crate::sensor::VectorSight;
 
 /// The modes of a filter at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Swinging {
 }
 
 /// What a measurement told beyond what was expected.
-pub struct Told {
+pub struct SwingInnovation {
     /// The error that it finds in attitude and bias (rad, rad/s).
     pub error: [Vector; 2],
     /// Normalised square of the innovation.
@@ -134,7 +134,7 @@ impl Swinging {
         measured: &Quaternion<f64>,
         noise: &DMatrix<f64>,
         sensor: usize,
-    ) -> Option<(Vector, Told)> {
+    ) -> Option<(Vector, SwingInnovation)> {
         let off = beyond(&(attitude * rotation(&self.mounted(sensor))), measured);
         let told =
             self.take(&DMatrix::identity(3, 3), &DVector::from_column_slice(off.as_slice()), noise, sensor)?;
@@ -145,10 +145,10 @@ impl Swinging {
     pub fn correct_by(
         &mut self,
         attitude: &Quaternion<f64>,
-        sight: &Sight,
+        sight: &VectorSight,
         noise: &DMatrix<f64>,
         sensor: usize,
-    ) -> Option<(Vector, Told)> {
+    ) -> Option<(Vector, SwingInnovation)> {
         let expected: Vector = into(&(attitude * rotation(&self.mounted(sensor))), &sight.inertial);
         let off = sight.vector - expected;
         let moved = expected.cross_matrix();
@@ -159,7 +159,7 @@ impl Swinging {
             let off = &rows * DVector::from_column_slice(off.as_slice());
             let told =
                 self.take(&(&rows * whole(&moved)), &off, &(&rows * noise * rows.transpose()), sensor)?;
-            Told { nis: told.nis * 1.5, ..told }
+            SwingInnovation { nis: told.nis * 1.5, ..told }
         } else {
             self.take(&whole(&moved), &DVector::from_column_slice(off.as_slice()), noise, sensor)?
         };
@@ -174,7 +174,7 @@ impl Swinging {
         off: &DVector<f64>,
         noise: &DMatrix<f64>,
         sensor: usize,
-    ) -> Option<Told> {
+    ) -> Option<SwingInnovation> {
         let order = self.covariance.nrows();
         let mut seen = DMatrix::zeros(3, order);
         for axis in 0..3 {
@@ -196,7 +196,7 @@ impl Swinging {
             state[1] += error[7 + 2 * index];
         }
         let part = |from: usize| Vector::new(error[from], error[from + 1], error[from + 2]);
-        Some(Told { error: [part(0), part(3)], nis: off.dot(&(inverse * off)) })
+        Some(SwingInnovation { error: [part(0), part(3)], nis: off.dot(&(inverse * off)) })
     }
 }
 

@@ -2,11 +2,11 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::filter::{Correction, Filter};
-use super::history::{Fix, History};
-use super::measurement::{GyroNoise, Measured};
+use super::filter::{AttitudeFilterState, Correction};
+use super::history::{FilterHistory, Fix};
+use super::measurement::{AttitudeMeasurement, GyroNoise};
 use crate::attitude::Vector;
-use crate::sensor::Sight;
+use crate::sensor::VectorSight;
 use crate::time::{Instant, Span};
 
 /// Gyro readings, measured attitudes and truth of a made-up run; a filter in forty digits with the covariance of Van Loan,
@@ -26,14 +26,14 @@ fn quaternion(of: &[f64]) -> Quaternion<f64> {
     Quaternion::new(of[0], of[1], of[2], of[3])
 }
 
-fn first() -> Filter {
+fn first() -> AttitudeFilterState {
     let attitude = Quaternion::new(
         0.799_372_729_975_218_5,
         0.360_841_357_110_226_4,
         -0.480_412_696_190_943,
         0.000_628_418_145_252_526_5,
     );
-    Filter::new(attitude, Vector::zeros(), [1e-3, 1e-5])
+    AttitudeFilterState::new(attitude, Vector::zeros(), [1e-3, 1e-5])
 }
 
 /// Variances in the tracker's axes, with its boresight z, turned into the body's.
@@ -50,7 +50,7 @@ fn at(k: usize) -> Instant {
 fn fix(read: &[Vec<f64>], k: usize) -> Fix {
     Fix {
         exposed: at(k),
-        measured: Measured::Attitude(quaternion(&read[k][5..9])),
+        measured: AttitudeMeasurement::Attitude(quaternion(&read[k][5..9])),
         noise: tracker(),
         gain: None,
         sensor: 0,
@@ -58,9 +58,9 @@ fn fix(read: &[Vec<f64>], k: usize) -> Fix {
 }
 
 /// The run, with the filter after each reading, where attitudes arrive this many readings after exposure.
-fn replay(late: usize) -> (Vec<History>, Vec<Correction>) {
+fn replay(late: usize) -> (Vec<FilterHistory>, Vec<Correction>) {
     let read = rows(READ);
-    let mut history = History::new(at(0), first(), NOISE, Span::from_seconds(0.5));
+    let mut history = FilterHistory::new(at(0), first(), NOISE, Span::from_seconds(0.5));
     let (mut states, mut told) = (vec![history.clone()], Vec::new());
     for k in 1..read.len() {
         history.read(at(k), Vector::from_column_slice(&read[k][2..5]));
@@ -106,7 +106,7 @@ fn whatever_is_late_comes_to_the_same() {
     }
     let read = rows(READ);
     let build = |order: [usize; 2]| {
-        let mut history = History::new(at(0), first(), NOISE, Span::from_seconds(1.0));
+        let mut history = FilterHistory::new(at(0), first(), NOISE, Span::from_seconds(1.0));
         for row in &read[1..6] {
             history.read(at(row[0] as usize), Vector::from_column_slice(&row[2..5]));
         }
@@ -126,7 +126,7 @@ fn whatever_is_late_comes_to_the_same() {
 fn a_measurement_waits_for_its_reading_and_not_for_ever() {
     let read = rows(READ);
     let reading = |k: usize| Vector::from_column_slice(&read[k][2..5]);
-    let mut history = History::new(at(0), first(), NOISE, Span::from_seconds(0.5));
+    let mut history = FilterHistory::new(at(0), first(), NOISE, Span::from_seconds(0.5));
     assert!(history.fix(fix(&read, 4)).is_none());
     for k in 1..12 {
         assert_eq!(history.read(at(k), reading(k)).len(), usize::from(k == 4));
@@ -140,13 +140,14 @@ fn a_measurement_waits_for_its_reading_and_not_for_ever() {
 fn a_vector_corrects_across_itself_alone() {
     let truth = crate::attitude::rotation(&Vector::new(0.3, -0.7, 1.1));
     let off = Vector::new(2e-6, -3e-6, 1e-6);
-    let begins = Filter::new(truth * crate::attitude::rotation(&off), Vector::zeros(), [1e-3, 1e-5]);
+    let begins =
+        AttitudeFilterState::new(truth * crate::attitude::rotation(&off), Vector::zeros(), [1e-3, 1e-5]);
     let inertial = Vector::new(2.0, -1.0, 0.5) * 1e-5;
     let body = crate::environment::into(&truth, &inertial);
     let (deviation, along) = (1e-8, body.normalize());
     for is_direction in [false, true] {
         let scale = if is_direction { body.norm() } else { 1.0 };
-        let sight = Sight { vector: body / scale, inertial: inertial / scale, is_direction };
+        let sight = VectorSight { vector: body / scale, inertial: inertial / scale, is_direction };
         let noise = Matrix3::from_diagonal_element(deviation * deviation / (scale * scale));
         let mut filter = begins.clone();
         let correction = filter.correct_by(&sight, &noise).unwrap();

@@ -58,7 +58,7 @@ pub struct Tuning {
 
 /// A filter.
 #[derive(Clone, Debug)]
-pub struct Filter {
+pub struct KalmanFilter {
     tuning: Tuning,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
@@ -77,7 +77,7 @@ pub struct Filter {
     gated_for: f64,
     trusted: Dominant,
     /// What a step beside other filters came to, whose covariance is kept there.
-    beside: lent::Step,
+    beside: lent::LentStep,
 }
 
 /// What a sample told the filter.
@@ -89,7 +89,7 @@ pub struct Innovation {
     pub nis: Option<f64>,
 }
 
-impl Filter {
+impl KalmanFilter {
     /// A filter before its first sample.
     pub fn new(tuning: Tuning) -> Self {
         let order = tuning.model.order();
@@ -107,7 +107,7 @@ impl Filter {
             gated: false,
             gated_for: 0.0,
             trusted: Dominant::default(),
-            beside: lent::Step::default(),
+            beside: lent::LentStep::default(),
             tuning,
         };
         let input = DVector::from_fn(order, |i, _| filter.tuning.model.input(i));

@@ -20,7 +20,7 @@ use crate::body::{Coupled, Mode, Planar};
 use crate::quantity::{NonNegative, Positive};
 use crate::random::Stream;
 
-pub use filter::{Filter, Filters, Innovation, Prediction, Tuning};
+pub use filter::{Filters, Innovation, KalmanFilter, Prediction, Tuning};
 pub use model::Model;
 pub use steady::Steady;
 
@@ -177,7 +177,7 @@ impl Ratios {
 
 /// The part of a study that a filter uses.
 #[derive(Clone, Debug)]
-pub struct Setting<'a> {
+pub struct KalmanSetting<'a> {
     /// The body.
     pub body: &'a Planar,
     /// Back-EMF of the wheel on it (1/s), and whether it opposes the total rate.
@@ -192,14 +192,14 @@ pub struct Setting<'a> {
 
 impl Kalman {
     /// The filter in a setting; `draws` gives a drawn prior.
-    pub fn filter(&self, setting: &Setting<'_>, draws: &mut Stream) -> Filter {
+    pub fn filter(&self, setting: &KalmanSetting<'_>, draws: &mut Stream) -> KalmanFilter {
         let body = believed(setting.body, self.modes.as_deref());
         let ones = vec![1.0; body.modes.len()];
         let (transition, push) =
             Coupled::new(&body, setting.back_emf.0, setting.back_emf.1, &ones).discrete(setting.period);
         let model = Model::new(&body.modes, 0, setting.back_emf, 1, [1.0; 2]);
         let (mean, spread) = start(setting.body, &model, self.initial, &[], self.prior, draws);
-        Filter::new(Tuning {
+        KalmanFilter::new(Tuning {
             model,
             prediction: Prediction::Linear(transition, push),
             period: setting.period,
@@ -218,7 +218,12 @@ impl Kalman {
 
 impl FrequencyTracking {
     /// The filter in a setting, extended or unscented; `draws` gives a drawn prior.
-    pub fn filter(&self, setting: &Setting<'_>, prediction: Prediction, draws: &mut Stream) -> Filter {
+    pub fn filter(
+        &self,
+        setting: &KalmanSetting<'_>,
+        prediction: Prediction,
+        draws: &mut Stream,
+    ) -> KalmanFilter {
         let body = believed(setting.body, self.modes.as_deref());
         let bounds = self.bounds.map(Positive::get);
         let ratios = self.ratios.count(body.modes.len());
@@ -245,7 +250,7 @@ impl FrequencyTracking {
             let at = filter.model.motion() + 2 * index;
             filter.mean[at] = filter.mean[at].clamp(bounds[0], bounds[1]);
         }
-        Filter::new(filter)
+        KalmanFilter::new(filter)
     }
 }
 

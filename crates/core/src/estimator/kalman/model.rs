@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::body::{Flow, Mode};
+use crate::body::{Mode, ModeFlow};
 
 /// The model.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Model {
 
 #[derive(Clone, Debug)]
 pub(super) struct ModeModel {
-    pub(super) flow: Flow,
+    pub(super) flow: ModeFlow,
     pub(super) frequency: f64,
     pub(super) gain: f64,
     pub(super) drag: f64,
@@ -47,7 +47,7 @@ impl Model {
         bounds: [f64; 2],
     ) -> Self {
         let swing = |mode: &Mode| ModeModel {
-            flow: Flow::new(mode),
+            flow: ModeFlow::new(mode),
             frequency: mode.frequency.get(),
             gain: mode.gain.get(),
             drag: 2.0 * mode.damping.get(),

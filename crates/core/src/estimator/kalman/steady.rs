@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use super::filter::{Filter, Prediction};
+use super::filter::{KalmanFilter, Prediction};
 
 /// So many samples are taken until the gains settle.
 const MOST: usize = 2_000_000;
@@ -22,7 +22,7 @@ pub struct Steady {
     pub gains: Vec<Vec<f64>>,
 }
 
-impl Filter {
+impl KalmanFilter {
     /// The filter in the end, if it is linear and settles.
     pub fn steady(&self) -> Option<Steady> {
         let Prediction::Linear(transition, push) = &self.tuning().prediction else { return None };

@@ -14,16 +14,16 @@ fn scenario(estimator: &str) -> Scenario {
 }
 
 /// A filter, with a back-EMF of 1e-4/s, with a gyro or without.
-fn filter(estimator: &str, rate_noise: Option<f64>) -> Filter {
+fn filter(estimator: &str, rate_noise: Option<f64>) -> KalmanFilter {
     drawn(estimator, rate_noise, 3)
 }
 
 /// A filter that starts from a prior of its own.
-fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> Filter {
+fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> KalmanFilter {
     use crate::estimator::Estimator;
     let scenario = scenario(estimator);
     let body = scenario.one_angle().expect("one angle");
-    let setting = Setting { body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise };
+    let setting = KalmanSetting { body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise };
     let draws = &mut Seed { scenario: scenario_seed, run: 0 }.stream("prior");
     match &scenario.estimator {
         Some(Estimator::Kalman(spec)) => spec.filter(&setting, draws),

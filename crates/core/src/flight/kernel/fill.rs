@@ -5,11 +5,11 @@
 
 use super::{Flight, MOST, NEVER, ROWS};
 use crate::flight::clock::Clock;
-use crate::flight::crew::{Crew, Setup, Sight};
-use crate::flight::track::Track;
+use crate::flight::crew::{Crew, LaneSight, Setup};
+use crate::flight::track::PhasorTrack;
 use crate::lanes::{Four, Real};
 use crate::motion::damping::Damping;
-use crate::motion::guess::{FARTHEST_TURN, Oscillator};
+use crate::motion::guess::{FARTHEST_TURN, GuessOscillator};
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Lanes without runs, of bodies and envelopes with so many modes.
@@ -18,9 +18,14 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let (zero, one) = (kind.of(0.0), kind.of(1.0));
         let (start, never) = (Clock { whole: zero, part: zero }, Clock { whole: kind.of(NEVER), part: zero });
         let damping = D::none(kind);
-        let still =
-            Oscillator { frequency: one, equilibrium: zero, displacement: zero, quadrature: zero, damping };
-        let track = Track {
+        let still = GuessOscillator {
+            frequency: one,
+            equilibrium: zero,
+            displacement: zero,
+            quadrature: zero,
+            damping,
+        };
+        let track = PhasorTrack {
             frequency: one,
             excitability: zero,
             frame: [zero; 2],
@@ -58,7 +63,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             window: never,
             active: [false; MOST],
             rows: vec![[0.0; MOST]; ROWS + 2 * modes],
-            sight: Sight::default(),
+            sight: LaneSight::default(),
         };
         for _ in 0..modes {
             flight.totals.push(zero);

@@ -5,14 +5,21 @@
 
 use super::Flight;
 use crate::flight::clock::Clock;
-use crate::flight::crew::{Crew, Place, Rest};
+use crate::flight::crew::{Crew, CyclePlace, LaneRest};
 use crate::lanes::{Mask, Real};
 use crate::motion::damping::Damping;
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Where bounds do not keep the angle within the band on the motion that ends, the crew has to see for itself.
     #[inline(always)]
-    pub(super) fn stray<C: Crew>(&mut self, crew: &mut C, place: Place, moment: R, span: R, until: Clock<R>) {
+    pub(super) fn stray<C: Crew>(
+        &mut self,
+        crew: &mut C,
+        place: CyclePlace,
+        moment: R,
+        span: R,
+        until: Clock<R>,
+    ) {
         let zero = span.of(0.0);
         let (mut centre, mut reach) = (zero, zero);
         for mode in &self.modes {
@@ -42,7 +49,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
 
     /// Tells a switching of each lane.
     #[inline(always)]
-    pub(super) fn tell<C: Crew>(&mut self, crew: &mut C, to: Place) {
+    pub(super) fn tell<C: Crew>(&mut self, crew: &mut C, to: CyclePlace) {
         if !crew.listens() {
             return;
         }
@@ -56,7 +63,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     }
 
     /// Hands the run of the first lane back at its departure to this place.
-    pub(super) fn hand_back<C: Crew>(&mut self, crew: &mut C, place: Place) {
+    pub(super) fn hand_back<C: Crew>(&mut self, crew: &mut C, place: CyclePlace) {
         self.active[0] = false;
         self.write();
         self.look(0);
@@ -68,7 +75,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             let [re, im, equilibrium, x, y] = mirrored;
             tracks.push([re, im, track.axis[0].lane(0), track.axis[1].lane(0), equilibrium, x, y]);
         }
-        crew.take_back(Rest {
+        crew.take_back(LaneRest {
             place: Some(place),
             from: self.sight.clone(),
             pushed: self.pushed.lane(0),

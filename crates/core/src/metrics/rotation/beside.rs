@@ -29,14 +29,14 @@ pub struct Passed<'a, R> {
 
 /// Gathers motions of runs towards angle 0 from their start on.
 #[derive(Clone, Debug)]
-pub struct Courses<R> {
+pub struct MotionMetrics<R> {
     torque: R,
     feedback: R,
     error: R,
     itae: (R, R),
 }
 
-impl<R: Real> Courses<R> {
+impl<R: Real> MotionMetrics<R> {
     /// Nothing seen.
     #[inline(always)]
     pub fn new(kind: R) -> Self {

@@ -4,7 +4,7 @@ mod one_angle;
 mod run;
 mod three_axes;
 
-use super::foxglove::{self, Level, Plumes};
+use super::foxglove::{self, LogLevel, Plumes};
 use super::row::{Topic, TopicRow};
 use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 use crate::adaptation::Decision;
@@ -78,7 +78,7 @@ pub fn label_of(identifier: &str) -> String {
         &Watch::LABELS,
         &Light::LABELS,
     ];
-    let others = [&Phase::LABELS, &Trigger::LABELS, &Sliding::LABELS, &Decision::LABELS, &Level::LABELS];
+    let others = [&Phase::LABELS, &Trigger::LABELS, &Sliding::LABELS, &Decision::LABELS, &LogLevel::LABELS];
     let mut labels = others.iter().chain(&states).flat_map(|of| of.values);
     let label = labels.find(|label| Labels::identifier(label) == identifier);
     label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())

@@ -9,9 +9,9 @@ use std::borrow::Cow;
 
 use super::SimulationError;
 use crate::body::{Axes, Wrench};
-use crate::environment::Seen;
+use crate::environment::SkySight;
 use crate::guard::Guard;
-use crate::motion::turning::Turned;
+use crate::motion::turning::SlippedRotor;
 use crate::motion::{Sensed, State};
 use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
@@ -57,7 +57,7 @@ impl Plant {
     }
 
     /// Wheels in bearings at the instant seen last.
-    pub fn borne(&self) -> Vec<Turned> {
+    pub fn borne(&self) -> Vec<SlippedRotor> {
         if let Self::Spatial(plant) = self { plant.borne() } else { Vec::new() }
     }
 
@@ -73,7 +73,7 @@ impl Plant {
                     rate: [rate, 0.0, 0.0],
                     rigid: [plant.state().rigid_rate, 0.0, 0.0],
                     turned: [angle, 0.0, 0.0],
-                    sky: Seen::default(),
+                    sky: SkySight::default(),
                 })
             }
             Self::Spatial(plant) => plant.view(),

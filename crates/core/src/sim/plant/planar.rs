@@ -3,7 +3,7 @@
 mod course;
 
 use super::lent::Elsewhere;
-use crate::body::{Coupling, Flight, Input, Lent, Output, Planar, Segment, Wrench};
+use crate::body::{ChainMotion, Coupling, ForcedInput, Lent, Output, Planar, Segment, Wrench};
 use crate::guard::Guard;
 use crate::motion::crossing::locate;
 use crate::motion::{Sensed, State};
@@ -32,7 +32,7 @@ enum Motion {
     /// In closed form.
     Planar(Segment),
     /// Integrated.
-    Chain(Box<Flight>),
+    Chain(Box<ChainMotion>),
     /// Of coupled or drifting modes.
     Coupled(Box<Coupling>),
     /// Of drifting modes, computed elsewhere.
@@ -55,10 +55,10 @@ impl PlanarPlant {
     pub fn new(scenario: &Scenario, body: &Planar) -> Self {
         let state = body.start();
         let mut arc = Segment::new(body);
-        arc.depart(&state, &Input::default());
+        arc.depart(&state, &ForcedInput::default());
         let sight = arc.origin();
         let motion = match (scenario.model.chain(), scenario.coupling(body)) {
-            (Some(chain), _) => Motion::Chain(Box::new(Flight::new(chain, sight.angle, sight.rate))),
+            (Some(chain), _) => Motion::Chain(Box::new(ChainMotion::new(chain, sight.angle, sight.rate))),
             (None, Some(coupling)) => Motion::Coupled(Box::new(coupling)),
             (None, None) => Motion::Planar(arc),
         };
@@ -154,13 +154,13 @@ impl PlanarPlant {
 
     /// Begins a new motion at the instant seen last.
     pub fn depart(&mut self, wrench: &Wrench) {
-        let input = Input { constant: wrench.hub[0], waveform: wrench.waveform.clone() };
+        let input = ForcedInput { constant: wrench.hub[0], waveform: wrench.waveform.clone() };
         self.begin(&input);
     }
 
     /// The same under a constant torque alone (N m).
     pub fn depart_under(&mut self, constant: f64) {
-        self.begin(&Input { constant, waveform: None });
+        self.begin(&ForcedInput { constant, waveform: None });
     }
 
     /// Puts the body into a state at an instant.
@@ -172,7 +172,7 @@ impl PlanarPlant {
         self.ahead.2 = Instant::START;
     }
 
-    fn begin(&mut self, input: &Input) {
+    fn begin(&mut self, input: &ForcedInput) {
         match &mut self.motion {
             Motion::Planar(arc) => arc.depart(&self.state, input),
             Motion::Chain(flight) => flight.depart(input),

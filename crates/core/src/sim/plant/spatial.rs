@@ -6,8 +6,8 @@ use super::two_way::{Mount, TwoWay};
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
 use crate::body::spatial::{DriftingModes, Elastic, Periodic, Rigid, SpatialState};
-use crate::environment::{Around, Seen};
-use crate::motion::turning::{Flexible, Rotor, Slip, Surroundings, Turned};
+use crate::environment::{Around, SkySight};
+use crate::motion::turning::{Flexible, Rotor, Slip, SlippedRotor, Surroundings};
 use crate::motion::{Phase, State};
 use crate::record::{Energy, Pointing, Position, Record, RecordError};
 use crate::scenario::Study;
@@ -177,7 +177,7 @@ impl SpatialPlant {
     }
 
     /// Wheels in bearings at the instant seen last; none without friction, imbalance and tachometer.
-    pub fn borne(&self) -> Vec<Turned> {
+    pub fn borne(&self) -> Vec<SlippedRotor> {
         let began = self.departed.seconds();
         self.two_way.as_deref().map_or_else(Vec::new, |two_way| two_way.turned(began))
     }
@@ -225,7 +225,7 @@ impl SpatialPlant {
             rate: (rigid + elastic).into(),
             rigid: rigid.into(),
             turned: (Rigid::turned(&self.state.turn) + angle).into(),
-            sky: Seen::default(),
+            sky: SkySight::default(),
         };
         (truth, elastic)
     }

@@ -8,10 +8,11 @@ use crate::attitude::{Vector, rotation, vector};
 use crate::body::Wrench;
 use crate::body::craft::Moving;
 use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
-use crate::environment::{Around, Seen};
+use crate::environment::{Around, SkySight};
 use crate::motion::Phase;
 use crate::motion::turning::{
-    Acting, Angles, Bearing, Common, Driving, Flexible, Heated, Slip, Surroundings, Turned, Turning,
+    Acting, Angles, Bearing, CommonSteps, Driving, Flexible, Heated, Slip, SlippedRotor, Surroundings,
+    Turning,
 };
 use crate::scenario::{Courses, Drives};
 use crate::sensor::{Orientation, Truth};
@@ -121,7 +122,7 @@ impl TwoWay {
         around: Option<Around>,
         moving: Option<Moving>,
         [sensed, acts]: [&[Vector]; 2],
-        (bearings, common): (&[Bearing], &Common),
+        (bearings, common): (&[Bearing], &CommonSteps),
     ) -> Self {
         let frequencies: Vec<f64> = flexible.modes.iter().map(|mode| mode.frequency).collect();
         let start = Elastic::start(body);
@@ -221,7 +222,7 @@ impl TwoWay {
     }
 
     /// Rotors in bearings at the instant seen last, after a departure so long after the start (s).
-    pub fn turned(&self, began: f64) -> Vec<Turned> {
+    pub fn turned(&self, began: f64) -> Vec<SlippedRotor> {
         self.turning.turned(self.outside.since(began))
     }
 
@@ -278,7 +279,7 @@ impl TwoWay {
             rate: (seen.rigid + elastic).into(),
             rigid: seen.rigid.into(),
             turned: (seen.turned + sum(sensed, &seen.displacements)).into(),
-            sky: Seen::default(),
+            sky: SkySight::default(),
         };
         (truth, elastic)
     }

@@ -5,9 +5,9 @@
 
 use std::io::BufRead;
 
-use super::tables::{Table, of_factors};
-use super::text::{Line, Lines};
-use super::{Natural, Results, lowest};
+use super::tables::{ParticipationTable, of_factors};
+use super::text::{Lines, TextLine};
+use super::{FileResults, Natural, lowest};
 
 /// The table that the lines are of.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -23,11 +23,11 @@ enum At {
 ///
 /// # Errors
 /// What is wrong with it, with its line.
-pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> {
+pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
     let mut at = At::Elsewhere;
     let mut natural: Vec<Natural> = Vec::new();
-    let mut factors = Table::new("participation factors");
-    let mut masses = Table::new("effective modal masses");
+    let mut factors = ParticipationTable::new("participation factors");
+    let mut masses = ParticipationTable::new("effective modal masses");
     let mut mass = None;
     let mut lines = Lines::of(text);
     while let Some(line) = lines.next()? {
@@ -73,10 +73,10 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> 
                 .to_owned(),
         );
     }
-    Ok(Results { modes: of_factors(&natural, &factors, &masses, 1.0)?, mass })
+    Ok(FileResults { modes: of_factors(&natural, &factors, &masses, 1.0)?, mass })
 }
 
-fn eigenvalue(line: &Line, last: Option<&Natural>) -> Result<Natural, String> {
+fn eigenvalue(line: &TextLine, last: Option<&Natural>) -> Result<Natural, String> {
     let fields = line.fields(["MODE NO", "EIGENVALUE", "RAD/TIME", "CYCLES/TIME", "IMAGINARY PART"])?;
     let (number, mode, imaginary) = (line.number, fields.whole(0)?, fields.real(4)?);
     if last.is_some_and(|last| last.mode >= mode) {
@@ -93,7 +93,7 @@ fn eigenvalue(line: &Line, last: Option<&Natural>) -> Result<Natural, String> {
 }
 
 /// The mass of the free nodes: what moves along one axis, in the direction with most of it.
-fn total(line: &Line) -> Result<f64, String> {
+fn total(line: &TextLine) -> Result<f64, String> {
     let fields =
         line.fields(["X-COMPONENT", "Y-COMPONENT", "Z-COMPONENT", "X-ROTATION", "Y-ROTATION", "Z-ROTATION"])?;
     Ok(fields.six(0)?[..3].iter().fold(0.0, |most: f64, part| most.max(*part)))

@@ -5,28 +5,28 @@ use std::io::BufRead;
 
 use nalgebra::Vector3;
 
-use super::element::Rule;
-use super::text::{Line, Lines, real};
+use super::element::MassRule;
+use super::text::{Lines, TextLine, real};
 
 /// Element types: their name, how many nodes a line of the deck gives them, and how their mass is integrated; none of a
 /// point mass. Those with incompatible modes (C3D8I, S4, B31) move in ways that results do not show.
-const TYPES: [(&str, usize, Option<Rule>); 17] = [
-    ("C3D20", 20, Some(Rule::Full)),
-    ("C3D20R", 20, Some(Rule::Reduced)),
-    ("C3D8", 8, Some(Rule::Full)),
-    ("C3D8R", 8, Some(Rule::Reduced)),
-    ("C3D10", 10, Some(Rule::Full)),
-    ("C3D4", 4, Some(Rule::Full)),
-    ("C3D15", 15, Some(Rule::Full)),
-    ("C3D6", 6, Some(Rule::Full)),
-    ("S8", 8, Some(Rule::Full)),
-    ("S8R", 8, Some(Rule::Reduced)),
-    ("S6", 6, Some(Rule::Full)),
-    ("S4R", 4, Some(Rule::Reduced)),
-    ("S3", 3, Some(Rule::Full)),
-    ("B32", 3, Some(Rule::Full)),
-    ("B32R", 3, Some(Rule::Reduced)),
-    ("B31R", 2, Some(Rule::Reduced)),
+const TYPES: [(&str, usize, Option<MassRule>); 17] = [
+    ("C3D20", 20, Some(MassRule::Full)),
+    ("C3D20R", 20, Some(MassRule::Reduced)),
+    ("C3D8", 8, Some(MassRule::Full)),
+    ("C3D8R", 8, Some(MassRule::Reduced)),
+    ("C3D10", 10, Some(MassRule::Full)),
+    ("C3D4", 4, Some(MassRule::Full)),
+    ("C3D15", 15, Some(MassRule::Full)),
+    ("C3D6", 6, Some(MassRule::Full)),
+    ("S8", 8, Some(MassRule::Full)),
+    ("S8R", 8, Some(MassRule::Reduced)),
+    ("S6", 6, Some(MassRule::Full)),
+    ("S4R", 4, Some(MassRule::Reduced)),
+    ("S3", 3, Some(MassRule::Full)),
+    ("B32", 3, Some(MassRule::Full)),
+    ("B32R", 3, Some(MassRule::Reduced)),
+    ("B31R", 2, Some(MassRule::Reduced)),
     ("MASS", 1, None),
 ];
 
@@ -47,7 +47,7 @@ pub struct Deck {
     /// Densities of materials, by their names in capitals.
     pub densities: BTreeMap<String, f64>,
     /// How the mass of each element is integrated.
-    pub rules: BTreeMap<usize, Rule>,
+    pub rules: BTreeMap<usize, MassRule>,
     /// Masses at nodes.
     pub masses: Vec<PointMass>,
     /// Positions of the nodes.
@@ -125,7 +125,7 @@ fn parameter(keyword: &str, name: &str) -> Option<String> {
 }
 
 impl Reader {
-    fn open(&mut self, keyword: &str, line: &Line) -> Result<At, String> {
+    fn open(&mut self, keyword: &str, line: &TextLine) -> Result<At, String> {
         let number = line.number;
         let needed = |name: &str| {
             parameter(keyword, name).ok_or_else(|| format!("line {number}: must have a parameter {name}"))
@@ -164,7 +164,7 @@ impl Reader {
         })
     }
 
-    fn take(&mut self, line: &Line, at: &mut At) -> Result<(), String> {
+    fn take(&mut self, line: &TextLine, at: &mut At) -> Result<(), String> {
         let number = line.number;
         let words: Vec<&str> = line.text.split(',').map(str::trim).filter(|word| !word.is_empty()).collect();
         let whole = |index: usize, name: &str| -> Result<usize, String> {

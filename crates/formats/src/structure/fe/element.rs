@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 
 /// The kinds of elements, with the order of nodes that `CalculiX` writes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum ElementKind {
     /// A brick with nodes at its corners.
     Brick8,
     /// A brick with nodes at its corners and edges.
@@ -23,7 +23,7 @@ pub enum Kind {
 
 /// How densely mass is integrated.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rule {
+pub enum MassRule {
     /// As few points as a program that integrates such an element by a reduced rule takes.
     Reduced,
     /// All.
@@ -35,7 +35,7 @@ type Point = ([f64; 3], f64);
 
 /// The shape functions of a kind: each a sum of monomials.
 pub struct Functions {
-    kind: Kind,
+    kind: ElementKind,
     monomials: Vec<[i32; 3]>,
     /// A column a function.
     coefficients: DMatrix<f64>,
@@ -49,7 +49,7 @@ pub struct Values {
     pub derivatives: Vec<Vector3<f64>>,
 }
 
-impl Kind {
+impl ElementKind {
     /// The kind with a number of the format.
     pub const fn of(number: usize) -> Option<Self> {
         Some(match number {
@@ -120,7 +120,7 @@ impl Kind {
     }
 
     /// The points at which mass is integrated, and their weights.
-    pub fn points(self, rule: Rule) -> Vec<Point> {
+    pub fn points(self, rule: MassRule) -> Vec<Point> {
         let line = |count: usize| -> &[(f64, f64)] {
             match count {
                 1 => &[(0.0, 2.0)],
@@ -132,7 +132,7 @@ impl Kind {
                 ],
             }
         };
-        let full = rule == Rule::Full;
+        let full = rule == MassRule::Full;
         match self {
             Self::Brick8 | Self::Brick20 => {
                 let along = line(match (self, full) {
@@ -177,7 +177,7 @@ impl Kind {
 
 impl Functions {
     /// Those of a kind.
-    pub fn of(kind: Kind) -> Self {
+    pub fn of(kind: ElementKind) -> Self {
         let (nodes, monomials) = (kind.nodes(), kind.monomials());
         let count = kind.count();
         let at_nodes = DMatrix::from_fn(count, count, |node, power| monomial(monomials[power], nodes[node]));
@@ -187,7 +187,7 @@ impl Functions {
     }
 
     /// Their kind.
-    pub const fn kind(&self) -> Kind {
+    pub const fn kind(&self) -> ElementKind {
         self.kind
     }
 

@@ -6,9 +6,9 @@
 use std::io::BufRead;
 
 use super::mystran::Reactions;
-use super::tables::{Table, of_factors, of_masses};
-use super::text::{Line, Lines, real};
-use super::{Natural, Results, lowest};
+use super::tables::{ParticipationTable, of_factors, of_masses};
+use super::text::{Lines, TextLine, real};
+use super::{FileResults, Natural, lowest};
 
 const ASK: &str = "ask for `MEFFMASS(ALL) = YES`, in MYSTRAN for `MPFACTOR = ALL`";
 const NO_EIGENVALUES: &str =
@@ -50,8 +50,8 @@ struct Reader {
     eigenvalues: Vec<Eigenvalues>,
     /// A title was read, and the rows have not begun.
     titled: Option<Remark>,
-    factors: Table,
-    masses: Table,
+    factors: ParticipationTable,
+    masses: ParticipationTable,
     /// Whether the factors are MYSTRAN's.
     mystran: bool,
     /// The mode that MYSTRAN's lines are about.
@@ -64,14 +64,14 @@ struct Reader {
 ///
 /// # Errors
 /// What is wrong with it, with its line.
-pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> {
+pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
     let mut reader = Reader {
         at: At::Elsewhere,
         head: 0,
         eigenvalues: Vec::new(),
         titled: None,
-        factors: Table::new("participation factors"),
-        masses: Table::new("effective masses"),
+        factors: ParticipationTable::new("participation factors"),
+        masses: ParticipationTable::new("effective masses"),
         mystran: false,
         eigenvector: None,
         reactions: Reactions::default(),
@@ -85,7 +85,7 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> 
 }
 
 impl Reader {
-    fn take(&mut self, line: &Line) -> Result<(), String> {
+    fn take(&mut self, line: &TextLine) -> Result<(), String> {
         let text = &line.text;
         if text.contains("FATAL MESSAGE") || text.trim_start().starts_with("*ERROR") {
             let shown: String = text.trim().chars().take(80).collect();
@@ -124,7 +124,7 @@ impl Reader {
         Ok(())
     }
 
-    fn row(&mut self, line: &Line) -> Result<(), String> {
+    fn row(&mut self, line: &TextLine) -> Result<(), String> {
         match self.at {
             At::Eigenvalues => self.eigenvalue(line),
             At::Factors => self.factors.take_with_cycles(line),
@@ -137,7 +137,7 @@ impl Reader {
         }
     }
 
-    fn eigenvalue(&mut self, line: &Line) -> Result<(), String> {
+    fn eigenvalue(&mut self, line: &TextLine) -> Result<(), String> {
         let fields = line.fields([
             "MODE",
             "ORDER",
@@ -171,7 +171,7 @@ impl Reader {
     }
 
     /// The first row of a matrix in stars, which begins with the mass.
-    fn mass_row(&mut self, line: &Line) -> Result<(), String> {
+    fn mass_row(&mut self, line: &TextLine) -> Result<(), String> {
         let Some(row) = line.text.trim_start().strip_prefix('*').filter(|row| !row.starts_with('*')) else {
             return Ok(());
         };
@@ -185,7 +185,7 @@ impl Reader {
         Ok(())
     }
 
-    fn results(mut self, keep: Option<usize>) -> Result<Results, String> {
+    fn results(mut self, keep: Option<usize>) -> Result<FileResults, String> {
         let natural = self.chosen()?;
         if natural.is_empty() {
             return Err(NO_EIGENVALUES.to_owned());
@@ -204,7 +204,7 @@ impl Reader {
         } else {
             of_factors(&natural, &self.factors, &self.masses, 1.0)?
         };
-        Ok(Results { modes, mass: self.mass })
+        Ok(FileResults { modes, mass: self.mass })
     }
 
     /// The modes of one table: the one that residual vectors were added to, if there is such a one.

@@ -6,8 +6,8 @@ use std::io::BufRead;
 
 use nalgebra::DMatrix;
 
-use super::text::{Line, Lines};
-use super::{Mode, Results, kept};
+use super::text::{Lines, TextLine};
+use super::{FileMode, FileResults, kept};
 use crate::structure::eigen;
 use crate::structure::mode_table::MOST_MODES;
 use crate::structure::reduced::Unsolved;
@@ -56,7 +56,7 @@ struct Reader {
 ///
 /// # Errors
 /// What is wrong with it, with its line.
-pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> {
+pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
     let mut lines = Lines::of(text);
     let first = lines.next()?.map(|line| line.squeezed()).unwrap_or_default();
     if !first.contains("Flex") {
@@ -86,9 +86,9 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<Results, String> 
 }
 
 /// A line without its comment.
-fn values(line: &Line) -> Line {
+fn values(line: &TextLine) -> TextLine {
     let text = line.text.split('!').next().unwrap_or_default().trim_end().to_owned();
-    Line { number: line.number, text, ended: line.ended }
+    TextLine { number: line.number, text, ended: line.ended }
 }
 
 impl Holds {
@@ -111,7 +111,7 @@ impl Holds {
 }
 
 impl Reader {
-    fn take(&mut self, line: &Line) -> Result<(), String> {
+    fn take(&mut self, line: &TextLine) -> Result<(), String> {
         let squeezed = line.squeezed();
         if squeezed.starts_with('*') || squeezed.starts_with("[EOF]") {
             self.close(&format!("before line {}", line.number))?;
@@ -136,7 +136,7 @@ impl Reader {
         self.element(&line, holds, row)
     }
 
-    fn element(&mut self, line: &Line, holds: Holds, row: usize) -> Result<(), String> {
+    fn element(&mut self, line: &TextLine, holds: Holds, row: usize) -> Result<(), String> {
         let within = |index: usize, size: usize, name: &str| {
             let found = format!("line {}: `{name}` must be 0 to {}, got {index}", line.number, size - 1);
             if index < size { Ok(index) } else { Err(found) }
@@ -190,7 +190,7 @@ impl Reader {
         Ok(())
     }
 
-    fn results(self, keep: Option<usize>) -> Result<Results, String> {
+    fn results(self, keep: Option<usize>) -> Result<FileResults, String> {
         let needed = [Holds::Mass, Holds::Stiffness, Holds::Damping, Holds::Pf, Holds::Hf, Holds::L];
         if let Some(holds) = needed.iter().find(|holds| !self.complete.contains(holds)) {
             return Err(format!("must have a section {holds:?}: is the file cut?"));
@@ -215,7 +215,7 @@ impl Reader {
         let mode = |index: usize| {
             let frequency = solved.frequencies[index];
             let three = |from: usize| std::array::from_fn(|axis| solved.values[(index, modes + from + axis)]);
-            Mode {
+            FileMode {
                 frequency,
                 translation: three(0),
                 rotation: three(3),
@@ -224,7 +224,7 @@ impl Reader {
                 shapes: Vec::new(),
             }
         };
-        Ok(Results { modes: (0..count).map(mode).collect(), mass: None })
+        Ok(FileResults { modes: (0..count).map(mode).collect(), mass: None })
     }
 
     /// The integrals, of which rotations follow from first moments where these are there.

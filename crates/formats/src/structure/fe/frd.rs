@@ -9,8 +9,8 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::Natural;
-use super::element::Kind;
-use super::text::{Line, Lines};
+use super::element::ElementKind;
+use super::text::{Lines, TextLine};
 
 /// A node's number and displacement each have so many columns.
 const NODE: Range<usize> = 3..13;
@@ -24,7 +24,7 @@ pub struct Element {
     /// Its number.
     pub number: usize,
     /// What it is.
-    pub kind: Kind,
+    pub kind: ElementKind,
     /// The number of its material.
     pub material: usize,
     /// The places of its nodes.
@@ -33,7 +33,7 @@ pub struct Element {
 
 /// A mode: its frequency, and the displacement of each node.
 #[derive(Debug)]
-pub struct Shape {
+pub struct NodalMode {
     /// Its frequency.
     pub natural: Natural,
     /// Displacements, in the order of positions.
@@ -52,7 +52,7 @@ pub struct Frd {
     /// The elements.
     pub elements: Vec<Element>,
     /// The modes.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<NodalMode>,
 }
 
 /// The block that the lines are of.
@@ -128,7 +128,7 @@ pub fn read(text: impl BufRead) -> Result<Frd, String> {
 }
 
 impl Head {
-    fn take(&mut self, line: &Line) -> Result<(), String> {
+    fn take(&mut self, line: &TextLine) -> Result<(), String> {
         let words: Vec<&str> = line.text.split_whitespace().collect();
         let [name, value] = words[..] else { return Ok(()) };
         let number = line.number;
@@ -145,7 +145,7 @@ impl Head {
 
 impl Frd {
     /// Begins the displacements of a mode.
-    fn open(&mut self, line: &Line, head: &mut Head) -> Result<At, String> {
+    fn open(&mut self, line: &TextLine, head: &mut Head) -> Result<At, String> {
         let Head { generalised_mass, eigenvalue, mode, cycles } = std::mem::take(head);
         // Displacements of another kind of step have no mode.
         let (Some(mode), Some((number, cycles))) = (mode, cycles) else { return Ok(At::Elsewhere) };
@@ -161,12 +161,12 @@ impl Frd {
         let natural =
             Natural { line: number, mode, frequency: libm::sqrt(eigenvalue.max(0.0)), generalised_mass };
         let natural = natural.checked(eigenvalue, cycles)?;
-        self.shapes.push(Shape { natural, displacements: Vec::with_capacity(self.positions.len()) });
+        self.shapes.push(NodalMode { natural, displacements: Vec::with_capacity(self.positions.len()) });
         Ok(At::Displacements)
     }
 
     /// Takes a row of a block.
-    fn take(&mut self, line: &Line, at: &At) -> Result<(), String> {
+    fn take(&mut self, line: &TextLine, at: &At) -> Result<(), String> {
         let second = line.text.starts_with(" -2");
         let number = line.number;
         match at {
@@ -204,7 +204,7 @@ impl Frd {
             }
             At::Elements => {
                 let code = line.column(13..18, "type")?.whole()?;
-                let kind = Kind::of(code).ok_or_else(|| {
+                let kind = ElementKind::of(code).ok_or_else(|| {
                     let why = match code {
                         7..=12 => ": write `*NODE FILE, OUTPUT=3D`, which has the solids that shells and beams become",
                         _ => "",
@@ -238,7 +238,7 @@ impl Frd {
     }
 
     /// Ends a block.
-    fn close(&self, at: &At, line: &Line) -> Result<(), String> {
+    fn close(&self, at: &At, line: &TextLine) -> Result<(), String> {
         if *at == At::Elements {
             self.is_whole()?;
         }
@@ -266,7 +266,7 @@ impl Frd {
 }
 
 /// The three numbers of a node.
-fn three(line: &Line) -> Result<Vector3<f64>, String> {
+fn three(line: &TextLine) -> Result<Vector3<f64>, String> {
     let mut three = Vector3::zeros();
     for (axis, name) in ["D1", "D2", "D3"].into_iter().enumerate() {
         let from = NODE.end + axis * WIDE;

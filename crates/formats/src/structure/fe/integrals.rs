@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::deck::{Deck, PointMass};
-use super::element::{Functions, Kind, Rule, Values};
+use super::element::{ElementKind, Functions, MassRule, Values};
 use super::frd::{Element, Frd};
-use super::{Mode, Place, Results, lowest, tables::Table};
+use super::{FileMode, FileResults, StructurePoint, lowest, tables::ParticipationTable};
 
 /// Shapes are normalised by the mass of the structure, and orthogonal in it, to this part.
 const NORMALISED: f64 = 1e-3;
@@ -22,12 +22,18 @@ const MIDDLE: f64 = 1e-3;
 ///
 /// # Errors
 /// What does not fit, with its line.
-pub fn modes(mut frd: Frd, deck: &Deck, keep: Option<usize>, points: &[Place]) -> Result<Results, String> {
+pub fn modes(
+    mut frd: Frd,
+    deck: &Deck,
+    keep: Option<usize>,
+    points: &[StructurePoint],
+) -> Result<FileResults, String> {
     let natural: Vec<_> = frd.shapes.iter().map(|shape| shape.natural.clone()).collect();
     if let Some(first) = natural.first().filter(|first| first.mode != 1) {
         return Err(format!("line {}: must begin with mode 1, got mode {}", first.line, first.mode));
     }
-    let natural = lowest(natural, [&Table::new("factors"), &Table::new("masses")], keep)?;
+    let natural =
+        lowest(natural, [&ParticipationTable::new("factors"), &ParticipationTable::new("masses")], keep)?;
     let mut shapes = Vec::with_capacity(natural.len());
     for natural in &natural {
         if let Some(at) = frd.shapes.iter().position(|shape| shape.natural.mode == natural.mode) {
@@ -54,7 +60,7 @@ pub fn modes(mut frd: Frd, deck: &Deck, keep: Option<usize>, points: &[Place]) -
         }
         let n = moments;
         let rotation = [n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)]];
-        Mode {
+        FileMode {
             frequency: natural.frequency,
             translation: translation.into(),
             rotation,
@@ -63,22 +69,22 @@ pub fn modes(mut frd: Frd, deck: &Deck, keep: Option<usize>, points: &[Place]) -
             shapes: places.iter().map(|place| place.shape(&frd, shape, scale)).collect(),
         }
     });
-    Ok(Results { modes: modes.collect(), mass: Some(sums.masses.iter().sum()) })
+    Ok(FileResults { modes: modes.collect(), mass: Some(sums.masses.iter().sum()) })
 }
 
 /// Shape functions, each made once.
 #[derive(Default)]
 struct Rules {
-    functions: BTreeMap<Kind, Functions>,
-    points: BTreeMap<(Kind, Rule), Vec<(Values, f64)>>,
+    functions: BTreeMap<ElementKind, Functions>,
+    points: BTreeMap<(ElementKind, MassRule), Vec<(Values, f64)>>,
 }
 
 impl Rules {
-    fn functions(&mut self, kind: Kind) -> &Functions {
+    fn functions(&mut self, kind: ElementKind) -> &Functions {
         self.functions.entry(kind).or_insert_with(|| Functions::of(kind))
     }
 
-    fn points(&mut self, kind: Kind, rule: Rule) -> &[(Values, f64)] {
+    fn points(&mut self, kind: ElementKind, rule: MassRule) -> &[(Values, f64)] {
         let functions = self.functions.entry(kind).or_insert_with(|| Functions::of(kind));
         self.points.entry((kind, rule)).or_insert_with(|| {
             kind.points(rule).into_iter().map(|(at, weight)| (functions.at(at), weight)).collect()
@@ -182,7 +188,7 @@ impl Sums {
             .get(&node)
             .ok_or_else(|| format!("line {line} of the deck: must have a node of the deck, got {node}"))?;
         let wrong = |why| format!("line {line} of the deck: {why}");
-        let place = Place { name: format!("node {node}"), at: position.into() };
+        let place = StructurePoint { name: format!("node {node}"), at: position.into() };
         let found = Found::of(&place, frd, rules).map_err(wrong)?;
         let part = point.mass / found.within.len() as f64;
         for within in &found.within {
@@ -248,7 +254,7 @@ impl Within {
 }
 
 impl Found {
-    fn of(point: &Place, frd: &Frd, rules: &mut Rules) -> Result<Self, String> {
+    fn of(point: &StructurePoint, frd: &Frd, rules: &mut Rules) -> Result<Self, String> {
         let at = Vector3::from(point.at);
         let mut within = Vec::new();
         for (index, element) in frd.elements.iter().enumerate() {
@@ -265,7 +271,7 @@ impl Found {
             }
         }
         if within.is_empty() {
-            let Place { name, at: [x, y, z] } = point;
+            let StructurePoint { name, at: [x, y, z] } = point;
             return Err(format!("must have an element at point `{name}`, and has none at [{x}, {y}, {z}]"));
         }
         Ok(Self { within })

@@ -21,7 +21,7 @@ use std::path::Path;
 
 use super::file::open_text_up_to;
 use super::mode_table::MOST_MODES;
-use tables::Table;
+use tables::ParticipationTable;
 
 /// Files are no longer (bytes): what is has shapes or stresses of thousands of nodes, of which nothing is read.
 const LONGEST: u64 = 64 << 20;
@@ -32,7 +32,7 @@ const PRINTED: f64 = 1e-5;
 
 /// A format of results.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum ResultFormat {
     /// The printed results of Nastran or MYSTRAN.
     F06,
     /// The tables of CalculiX.
@@ -45,7 +45,7 @@ pub enum Format {
 
 /// A mode of a clamped structure, in the file's units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mode {
+pub struct FileMode {
     /// Natural frequency (rad/s).
     pub frequency: f64,
     /// The integral of phi dm (sqrt(mass)).
@@ -63,7 +63,7 @@ pub struct Mode {
 
 /// A point of a structure, in the file's axes and units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct StructurePoint {
     /// What errors call it.
     pub name: String,
     /// Where it is.
@@ -72,14 +72,14 @@ pub struct Place {
 
 /// What a file has.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Results {
+pub struct FileResults {
     /// The modes with the lowest frequencies, increasing.
-    pub modes: Vec<Mode>,
+    pub modes: Vec<FileMode>,
     /// The mass of the structure, where the file has it: that of the nodes that are free, or of all.
     pub mass: Option<f64>,
 }
 
-impl Format {
+impl ResultFormat {
     /// The format of a file, by the end of its name.
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_ascii_lowercase().to_str()? {
@@ -100,7 +100,12 @@ impl Format {
     ///
     /// # Errors
     /// What is wrong with it, with its line.
-    pub fn read(self, path: &Path, keep: Option<usize>, points: &[Place]) -> Result<Results, String> {
+    pub fn read(
+        self,
+        path: &Path,
+        keep: Option<usize>,
+        points: &[StructurePoint],
+    ) -> Result<FileResults, String> {
         let text = open_text_up_to(path, LONGEST)?;
         match self {
             Self::F06 => f06::read(text, keep),
@@ -129,9 +134,9 @@ struct Natural {
 
 impl Natural {
     /// The mode with its participations.
-    fn with(&self, [a, b, c, d, e, f]: [f64; 6]) -> Mode {
+    fn with(&self, [a, b, c, d, e, f]: [f64; 6]) -> FileMode {
         let (translation, rotation) = ([a, b, c], [d, e, f]);
-        Mode {
+        FileMode {
             frequency: self.frequency,
             translation,
             rotation,
@@ -167,7 +172,7 @@ impl Natural {
 /// The modes with the lowest frequencies, increasing, out of all that the other tables of a file may name.
 fn lowest(
     mut natural: Vec<Natural>,
-    tables: [&Table; 2],
+    tables: [&ParticipationTable; 2],
     keep: Option<usize>,
 ) -> Result<Vec<Natural>, String> {
     if let Some(pair) = natural.windows(2).find(|pair| pair[1].mode != pair[0].mode + 1) {

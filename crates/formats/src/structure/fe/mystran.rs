@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use super::text::Line;
-use super::{Mode, Natural};
+use super::text::TextLine;
+use super::{FileMode, Natural};
 
 /// A grid is clamped if its force or moment is more than this part of the largest.
 const CLAMPED: f64 = 1e-6;
@@ -24,7 +24,7 @@ impl Reactions {
     ///
     /// # Errors
     /// Fields that are not of this form.
-    pub fn take(&mut self, mode: usize, line: &Line) -> Result<(), String> {
+    pub fn take(&mut self, mode: usize, line: &TextLine) -> Result<(), String> {
         let fields = line.fields(["GRID", "COORD", "T1", "T2", "T3", "R1", "R2", "R3"])?;
         self.modes.entry(mode).or_default().push((fields.whole(0)?, fields.six(2)?));
         Ok(())
@@ -34,7 +34,7 @@ impl Reactions {
     ///
     /// # Errors
     /// No forces, several grids, or other forces.
-    pub fn confirm(&self, natural: &[Natural], modes: &[Mode]) -> Result<(), String> {
+    pub fn confirm(&self, natural: &[Natural], modes: &[FileMode]) -> Result<(), String> {
         let mut grids: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
         for (natural, mode) in natural.iter().zip(modes) {
             let Some(rows) = self.modes.get(&natural.mode) else {

@@ -18,18 +18,18 @@ fn rows(table: &str, structure: &str) -> Vec<Vec<f64>> {
     text(table).lines().filter_map(|line| line.strip_prefix(&format!("{structure},"))).map(row).collect()
 }
 
-fn read(frd: &str, deck: &str, points: &[Place]) -> Result<Results, String> {
+fn read(frd: &str, deck: &str, points: &[StructurePoint]) -> Result<FileResults, String> {
     let deck = deck::read(deck.as_bytes()).map_err(|why| format!("the deck: {why}"))?;
     integrals::modes(frd::read(frd.as_bytes())?, &deck, None, points)
 }
 
-fn file(name: &str, points: &[Place]) -> Results {
+fn file(name: &str, points: &[StructurePoint]) -> FileResults {
     let path = golden(name);
-    Format::of(&path).expect("a format").read(&path, None, points).expect("modes")
+    ResultFormat::of(&path).expect("a format").read(&path, None, points).expect("modes")
 }
 
-fn tip(at: [f64; 3]) -> Place {
-    Place { name: "tip".to_owned(), at }
+fn tip(at: [f64; 3]) -> StructurePoint {
+    StructurePoint { name: "tip".to_owned(), at }
 }
 
 #[test]
@@ -185,7 +185,8 @@ fn sets_of_masses_may_be_written_anyhow() {
 fn every_kind_of_element_weighs_what_the_run_took_it_to_weigh() {
     // A block of 2 m by 0.2 m, askew, by 0.3 m: 6 modes of each kind, which are not normalised by another rule of integration.
     for kind in ["c3d4", "c3d6", "c3d8", "c3d8r", "c3d10", "c3d15", "c3d20r", "s3", "s4r", "b31r"] {
-        let results = Format::Frd.read(&golden(&format!("elements/{kind}.frd")), None, &[]).expect(kind);
+        let results =
+            ResultFormat::Frd.read(&golden(&format!("elements/{kind}.frd")), None, &[]).expect(kind);
         assert_eq!(results.modes.len(), 6);
         let mass = match kind {
             "b31r" => 2700.0 * 2.0 * 0.02 * 0.03,

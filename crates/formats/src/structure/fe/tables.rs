@@ -2,8 +2,8 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use super::text::{Fields, Line};
-use super::{Mode, Natural};
+use super::text::{Fields, TextLine};
+use super::{FileMode, Natural};
 
 /// Tables with more rows are none of modes.
 const MOST_ROWS: usize = 20_000;
@@ -16,7 +16,7 @@ const NOTHING: f64 = 1e-8;
 
 /// A row: a mode, and its six numbers in translation and rotation.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct ParticipationRow {
     line: usize,
     mode: usize,
     /// Frequency (Hz), where the row has it.
@@ -26,12 +26,12 @@ pub struct Row {
 
 /// A table of such rows, in rising order of modes.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct ParticipationTable {
     name: &'static str,
-    rows: Vec<Row>,
+    rows: Vec<ParticipationRow>,
 }
 
-impl Table {
+impl ParticipationTable {
     /// An empty table, and what errors call it.
     pub fn new(name: &'static str) -> Self {
         Self { name, rows: Vec::new() }
@@ -41,7 +41,7 @@ impl Table {
     ///
     /// # Errors
     /// Fields that are not of this form, and modes that begin again.
-    pub fn take_with_cycles(&mut self, line: &Line) -> Result<(), String> {
+    pub fn take_with_cycles(&mut self, line: &TextLine) -> Result<(), String> {
         let fields = line.fields(["mode", "frequency", "T1", "T2", "T3", "R1", "R2", "R3"])?;
         let cycles = Some(fields.real(1)?);
         self.push(line, &fields, cycles, 2)
@@ -51,7 +51,7 @@ impl Table {
     ///
     /// # Errors
     /// Fields that are not of this form, and modes that begin again.
-    pub fn take(&mut self, line: &Line) -> Result<(), String> {
+    pub fn take(&mut self, line: &TextLine) -> Result<(), String> {
         let fields = line.fields([
             "MODE NO.",
             "X-COMPONENT",
@@ -66,7 +66,7 @@ impl Table {
 
     fn push<const N: usize>(
         &mut self,
-        line: &Line,
+        line: &TextLine,
         fields: &Fields<'_, N>,
         cycles: Option<f64>,
         from: usize,
@@ -81,7 +81,7 @@ impl Table {
         if self.rows.len() == MOST_ROWS {
             return Err(format!("line {number}: must have at most {MOST_ROWS} {}", self.name));
         }
-        self.rows.push(Row { line: number, mode, cycles, parts: fields.six(from)? });
+        self.rows.push(ParticipationRow { line: number, mode, cycles, parts: fields.six(from)? });
         Ok(())
     }
 
@@ -105,7 +105,7 @@ impl Table {
     }
 
     /// The row of a mode.
-    fn of(&self, natural: &Natural) -> Result<&Row, String> {
+    fn of(&self, natural: &Natural) -> Result<&ParticipationRow, String> {
         let mode = natural.mode;
         let row = self.rows.iter().find(|row| row.mode == mode).ok_or_else(|| {
             format!(
@@ -133,10 +133,10 @@ impl Table {
 /// Modes without factors, and tables that contradict each other.
 pub fn of_factors(
     natural: &[Natural],
-    factors: &Table,
-    masses: &Table,
+    factors: &ParticipationTable,
+    masses: &ParticipationTable,
     sign: f64,
-) -> Result<Vec<Mode>, String> {
+) -> Result<Vec<FileMode>, String> {
     natural
         .iter()
         .map(|natural| {
@@ -155,7 +155,11 @@ pub fn of_factors(
 ///
 /// # Errors
 /// A mode with two directions, with what to ask the solver for.
-pub fn of_masses(natural: &[Natural], masses: &Table, ask: &str) -> Result<Vec<Mode>, String> {
+pub fn of_masses(
+    natural: &[Natural],
+    masses: &ParticipationTable,
+    ask: &str,
+) -> Result<Vec<FileMode>, String> {
     let largest = |rows: Range<usize>| {
         masses
             .rows
@@ -187,7 +191,7 @@ pub fn of_masses(natural: &[Natural], masses: &Table, ask: &str) -> Result<Vec<M
 }
 
 /// Whether effective masses are the squares of the factors, times the generalised mass.
-fn agree(natural: &Natural, factors: &Row, masses: &Row) -> Result<(), String> {
+fn agree(natural: &Natural, factors: &ParticipationRow, masses: &ParticipationRow) -> Result<(), String> {
     const NAMES: [&str; 6] = ["T1", "T2", "T3", "R1", "R2", "R3"];
     for kind in [0..3, 3..6] {
         let most = masses.parts[kind.clone()].iter().fold(0.0, |most: f64, part| most.max(part.abs()));

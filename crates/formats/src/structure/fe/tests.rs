@@ -13,21 +13,21 @@ fn bytes(name: &str) -> Vec<u8> {
     std::fs::read(golden(name)).expect("there")
 }
 
-fn parse(format: Format, text: &[u8], keep: Option<usize>) -> Result<Results, String> {
+fn parse(format: ResultFormat, text: &[u8], keep: Option<usize>) -> Result<FileResults, String> {
     match format {
-        Format::F06 => f06::read(text, keep),
-        Format::CalculiX => calculix::read(text, keep),
-        Format::Flex => flex::read(text, keep),
-        Format::Frd => {
+        ResultFormat::F06 => f06::read(text, keep),
+        ResultFormat::CalculiX => calculix::read(text, keep),
+        ResultFormat::Flex => flex::read(text, keep),
+        ResultFormat::Frd => {
             let deck = deck::read(&bytes("boom.inp")[..])?;
             integrals::modes(frd::read(text)?, &deck, keep, &[])
         }
     }
 }
 
-fn file(name: &str) -> Results {
+fn file(name: &str) -> FileResults {
     let path = golden(name);
-    Format::of(&path).expect("a format").read(&path, None, &[]).expect("modes")
+    ResultFormat::of(&path).expect("a format").read(&path, None, &[]).expect("modes")
 }
 
 /// The modes of a structure by another computation: frequency, t, r, r phi'.
@@ -39,7 +39,7 @@ fn expected(structure: &str) -> Vec<[f64; 16]> {
 }
 
 /// The largest deviations in frequency (relative), of t in sqrt(mass) and of r in sqrt(inertia).
-fn deviations(modes: &[Mode], structure: &str, mass: f64, inertia: f64) -> [f64; 3] {
+fn deviations(modes: &[FileMode], structure: &str, mass: f64, inertia: f64) -> [f64; 3] {
     let expected = expected(structure);
     let mut worst = [0.0_f64; 3];
     for (mode, row) in modes.iter().zip(&expected) {
@@ -127,7 +127,7 @@ fn matrices_of_42_that_are_not_diagonal_are_solved() {
         three(1),
         three(4)
     );
-    let modes = parse(Format::Flex, text.as_bytes(), Some(3)).expect("modes").modes;
+    let modes = parse(ResultFormat::Flex, text.as_bytes(), Some(3)).expect("modes").modes;
     assert_eq!(modes.len(), 3);
     for (mode, row) in modes.iter().zip(&rows) {
         assert!((mode.frequency / row[0] - 1.0).abs() < 1e-12);
@@ -155,7 +155,7 @@ fn a_table_goes_on_over_pages_and_is_of_mass_normalised_modes() {
             assert!((found - expected).abs() < 1e-6 * 4.0 / k, "mode {k}: {found} {expected}");
         }
     }
-    let six = parse(Format::F06, &bytes("pages-nx.f06"), Some(6)).expect("modes");
+    let six = parse(ResultFormat::F06, &bytes("pages-nx.f06"), Some(6)).expect("modes");
     assert_eq!(six.modes[..], results.modes[..6]);
 }
 
@@ -181,7 +181,7 @@ fn what_is_wrong_is_told_with_its_line_and_field() {
     let told = |name: &str, from: &str, to: &str| {
         let text = String::from_utf8(bytes(name)).expect("text");
         assert!(text.contains(from), "{name}: {from}");
-        let format = Format::of(Path::new(name)).expect("a format");
+        let format = ResultFormat::of(Path::new(name)).expect("a format");
         parse(format, text.replacen(from, to, 1).as_bytes(), None).expect_err("wrong")
     };
     let cases = [
@@ -240,7 +240,7 @@ fn effective_masses_alone_do_for_modes_of_one_direction() {
     let one_way =
         rows.skip(1).take(10).map(|line| format!("{}{}\n", &line[..42], "      0.000000E+00".repeat(5)));
     let text = format!("{head}MODAL EFFECTIVE MASS\n\n   MODE\n{}", one_way.collect::<String>());
-    let modes = parse(Format::F06, text.as_bytes(), None).expect("modes").modes;
+    let modes = parse(ResultFormat::F06, text.as_bytes(), None).expect("modes").modes;
     for (mode, row) in modes.iter().zip(expected("bars")) {
         assert!((mode.translation[0] - row[1].abs()).abs() < 1e-6 && mode.translation[1] == 0.0);
     }
@@ -256,9 +256,12 @@ fn residual_vectors_leave_one_table() {
         ["(BEFORE AUGMENTATION OF RESIDUAL VECTORS)", "", "(AFTER AUGMENTATION OF RESIDUAL VECTORS)"];
     let tables = tables.map(|remark| text[from..until].replacen(title, &format!("{title}  {remark}\n"), 1));
     let three = format!("{}{}\n{}", &text[..from], tables.concat(), &text[until..]);
-    assert_eq!(parse(Format::F06, three.as_bytes(), None).expect("modes").modes, file("bars-msc.f06").modes);
+    assert_eq!(
+        parse(ResultFormat::F06, three.as_bytes(), None).expect("modes").modes,
+        file("bars-msc.f06").modes
+    );
     let two = format!("{}{}\n{}", &text[..from], tables[..2].concat(), &text[until..]);
-    assert!(parse(Format::F06, two.as_bytes(), None).expect_err("two").contains("several subcases"));
+    assert!(parse(ResultFormat::F06, two.as_bytes(), None).expect_err("two").contains("several subcases"));
 }
 
 /// Numbers that look drawn.
@@ -276,7 +279,7 @@ fn damaged_files_are_refused_or_read_and_never_crash() {
     let mut draws = Draws(7);
     for name in ["bars.F06", "feet.F06", "bars-msc.f06", "pages-nx.f06", "panel.dat", "bars.flex", "boom.frd"]
     {
-        let format = Format::of(Path::new(name)).expect("a format");
+        let format = ResultFormat::of(Path::new(name)).expect("a format");
         let whole = bytes(name);
         let sound = parse(format, &whole, None).ok();
         for _ in 0..200 {
@@ -297,5 +300,5 @@ fn damaged_files_are_refused_or_read_and_never_crash() {
         }
     }
     let long = vec![b'1'; 10_000];
-    assert!(parse(Format::F06, &long, None).expect_err("long").contains("is this a text file"));
+    assert!(parse(ResultFormat::F06, &long, None).expect_err("long").contains("is this a text file"));
 }

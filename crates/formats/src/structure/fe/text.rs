@@ -8,7 +8,7 @@ const LONGEST: usize = 4096;
 
 /// A line.
 #[derive(Debug)]
-pub struct Line {
+pub struct TextLine {
     /// Its number, from 1.
     pub number: usize,
     /// What is on it, without its end and the blanks before that.
@@ -34,7 +34,7 @@ impl<R: BufRead> Lines<R> {
     ///
     /// # Errors
     /// A line that cannot be read, or is too long for one.
-    pub fn next(&mut self) -> Result<Option<Line>, String> {
+    pub fn next(&mut self) -> Result<Option<TextLine>, String> {
         self.number += 1;
         let number = self.number;
         self.bytes.clear();
@@ -49,11 +49,11 @@ impl<R: BufRead> Lines<R> {
         }
         // Titles may be in any encoding, and nothing that is read is.
         let text = String::from_utf8_lossy(&self.bytes).trim_end().to_owned();
-        Ok(Some(Line { number, text, ended }))
+        Ok(Some(TextLine { number, text, ended }))
     }
 }
 
-impl Line {
+impl TextLine {
     /// The line without blanks: titles are spaced.
     pub fn squeezed(&self) -> String {
         self.text.chars().filter(|c| !c.is_whitespace()).collect()
@@ -88,7 +88,7 @@ pub struct Column<'a> {
     word: &'a str,
 }
 
-impl Line {
+impl TextLine {
     /// What stands between two columns, without blanks around it; columns count from 0.
     ///
     /// # Errors

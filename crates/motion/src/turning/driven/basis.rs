@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-use super::{Angles, Driven, Posed};
+use super::{Angles, DrivenSpacecraft, Posed};
 use crate::attitude::Vector;
 use crate::turning::free::Free;
 use crate::turning::model::{Flexible, FreeMode};
@@ -31,7 +31,7 @@ pub struct Basis {
 
 impl Basis {
     /// That of the start, as the body is written.
-    pub fn first(of: &Driven, angles: &dyn Angles) -> Option<Self> {
+    pub fn first(of: &DrivenSpacecraft, angles: &dyn Angles) -> Option<Self> {
         let mut posed = Posed::default();
         of.pose(|drive| angles.at(drive, 0.0), &mut posed);
         let free = posed.free(of)?;
@@ -40,14 +40,19 @@ impl Basis {
     }
 
     /// That of another time since the start (s), each mode the one that is most like it here.
-    pub fn at(&self, of: &Driven, angles: &dyn Angles, t: f64) -> Option<Self> {
+    pub fn at(&self, of: &DrivenSpacecraft, angles: &dyn Angles, t: f64) -> Option<Self> {
         let mut posed = Posed::default();
         of.pose(|drive| angles.at(drive, t), &mut posed);
         let free = self.followed(&posed.free(of)?);
         Some(Self::of(of, &posed, free, (self.first_centre, self.start.clone())))
     }
 
-    fn of(of: &Driven, posed: &Posed, free: Free, (first_centre, start): (Vector, DMatrix<f64>)) -> Self {
+    fn of(
+        of: &DrivenSpacecraft,
+        posed: &Posed,
+        free: Free,
+        (first_centre, start): (Vector, DMatrix<f64>),
+    ) -> Self {
         let inverse = inverse(of, &free);
         let own: Vec<f64> = of.modes().map(|mode| 2.0 * mode.damping * mode.frequency).collect();
         let damped =
@@ -152,7 +157,7 @@ impl Basis {
 }
 
 /// Y⁻¹ = W⁻² Y' O².
-pub fn inverse(of: &Driven, free: &Free) -> DMatrix<f64> {
+pub fn inverse(of: &DrivenSpacecraft, free: &Free) -> DMatrix<f64> {
     let held: Vec<f64> = of.modes().map(|mode| mode.frequency).collect();
     DMatrix::from_fn(held.len(), held.len(), |row, column| {
         let ratio = held[column] / free.frequencies[row];

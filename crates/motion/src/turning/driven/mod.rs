@@ -53,7 +53,7 @@ pub struct PanelMode {
 
 /// An appendage, in its own axes but for its place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
+pub struct DrivenPanel {
     /// Mass (kg).
     pub mass: f64,
     /// Where its root is, in the body's axes (m).
@@ -72,14 +72,14 @@ pub struct Panel {
 
 /// A spacecraft as its drives turn it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Driven {
+pub struct DrivenSpacecraft {
     /// Mass (kg), centre (m) and inertia tensor about it (kg m²) of the hub, without what rotors have about their axes.
     pub hub: (f64, Vector, Matrix3<f64>),
     /// The appendages, in the order of the modes.
-    pub panels: Vec<Panel>,
+    pub panels: Vec<DrivenPanel>,
 }
 
-impl Driven {
+impl DrivenSpacecraft {
     /// Whether anything turns.
     pub fn turns(&self) -> bool {
         self.panels.iter().any(|panel| panel.drive.is_some())
@@ -119,7 +119,7 @@ impl Driven {
 /// Drives at work: how they turn, and the modes in which the state is carried now.
 #[derive(Clone, Debug)]
 pub struct Driving {
-    pub(super) of: Arc<Driven>,
+    pub(super) of: Arc<DrivenSpacecraft>,
     pub(super) angles: Arc<dyn Angles>,
     pub(super) basis: Basis,
     /// Seconds from the start to the departure.
@@ -128,7 +128,7 @@ pub struct Driving {
 
 impl Driving {
     /// Drives of a body that is `flexible` with their angles of the start: the modes in which it is written.
-    pub fn new(of: Arc<Driven>, angles: Arc<dyn Angles>) -> Option<Self> {
+    pub fn new(of: Arc<DrivenSpacecraft>, angles: Arc<dyn Angles>) -> Option<Self> {
         let basis = Basis::first(&of, &*angles)?;
         Some(Self { of, angles, basis, began: 0.0 })
     }

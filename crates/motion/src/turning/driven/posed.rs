@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Matrix3xX};
 
-use super::Driven;
+use super::DrivenSpacecraft;
 use crate::attitude::Vector;
-use crate::turning::free::{Free, Held};
+use crate::turning::free::{ClampedModes, Free};
 
 /// The coefficients at an instant, all in the body's axes and about the centre of mass.
 #[derive(Clone, Debug, Default)]
@@ -59,7 +59,7 @@ fn of_point(mass: f64, at: &Vector) -> Matrix3<f64> {
     mass * (Matrix3::identity() * at.norm_squared() - at * at.transpose())
 }
 
-impl Driven {
+impl DrivenSpacecraft {
     /// Fills in what the body is where drives have these angles (rad) and rates (rad/s).
     pub fn pose(&self, at: impl Fn(usize) -> [f64; 2], posed: &mut Posed) {
         let (hub_mass, hub_centre, hub_inertia) = &self.hub;
@@ -127,9 +127,9 @@ impl Driven {
 
 impl Posed {
     /// The free modes, if there is mass left.
-    pub fn free(&self, of: &Driven) -> Option<Free> {
+    pub fn free(&self, of: &DrivenSpacecraft) -> Option<Free> {
         let columns = |of: &[Vector]| Matrix3xX::from_fn(of.len(), |row, column| of[column][row]);
-        let held = Held {
+        let held = ClampedModes {
             mass: self.mass,
             inertia: self.inertia,
             frequencies: of.modes().map(|mode| mode.frequency).collect(),

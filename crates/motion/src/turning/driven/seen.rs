@@ -10,7 +10,7 @@ use crate::turning::flow::Turning;
 use crate::turning::model::Model;
 use crate::turning::pace::Pace;
 use crate::turning::rotation::Bend;
-use crate::turning::state::{Seen, State};
+use crate::turning::state::{TurningSight, TurningState};
 
 /// What a state is without its mean axes.
 struct Bare {
@@ -23,7 +23,7 @@ struct Bare {
 }
 
 impl Driving {
-    fn bare(&self, state: &State) -> Bare {
+    fn bare(&self, state: &TurningState) -> Bare {
         let q: Vec<f64> = state.modes.iter().map(|[q, _, lost, _]| q + lost).collect();
         let p = state.modes.iter().zip(&self.basis.frequencies).map(|([_, p, _, lost], w)| w * (p + lost));
         let p: Vec<f64> = p.collect();
@@ -38,7 +38,13 @@ impl Driving {
     }
 
     /// Looks at a state `now` seconds after the departure, in which rotors have this momentum (N m s): in the modes of that instant.
-    pub(in crate::turning) fn look(&self, now: f64, state: &State, rotors: &Vector, seen: &mut Seen) {
+    pub(in crate::turning) fn look(
+        &self,
+        now: f64,
+        state: &TurningState,
+        rotors: &Vector,
+        seen: &mut TurningSight,
+    ) {
         let mut posed = Posed::default();
         self.posed(self.began + now, &mut posed);
         let Bare { attitude, momentum, eta, mut pi, .. } = self.bare(state);
@@ -71,13 +77,13 @@ impl Driving {
     }
 
     /// By how much modes turn the hub from the axes in which the state is carried (rad).
-    fn bare_turn(&self, state: &State) -> Vector {
+    fn bare_turn(&self, state: &TurningState) -> Vector {
         let q: Vec<f64> = state.modes.iter().map(|[q, ..]| *q).collect();
         self.basis.bent(&q)
     }
 
     /// The state of a body whose hub and clamped modes are so.
-    fn carried(&self, bare: &Bare, state: &mut State) {
+    fn carried(&self, bare: &Bare, state: &mut TurningState) {
         let (q, p) = (self.basis.free(&bare.eta), self.basis.forced(&bare.pi));
         let bent = self.basis.bent(&q);
         state.attitude = bare.attitude * rotation(&-bent);

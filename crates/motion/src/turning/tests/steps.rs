@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::lanes::Four;
-use crate::turning::Common;
+use crate::turning::CommonSteps;
 
 /// The step of the rule errs by less than 1e-10 rad in 1e4 s: against steps a quarter as long, over 200 s.
 #[test]
@@ -168,8 +168,8 @@ fn no_bit_depends_on_the_processor() {
 #[test]
 fn what_runs_have_in_common_changes_nothing() {
     let (craft, other) = (craft().undamped(), self::craft().undamped().stiff());
-    let common = Common::default();
-    let run = |craft: &Craft, common: &Common, ends: &[f64]| {
+    let common = CommonSteps::default();
+    let run = |craft: &Craft, common: &CommonSteps, ends: &[f64]| {
         let start = (Quaternion::identity(), TUMBLE);
         let mut turning = Turning::sharing(common, &craft.body, start, &[[0.0; 2]; 8]);
         turning.depart(&Acting { rotors: rotors(SPUN, [0.1; 4]), ..Acting::default() });
@@ -182,7 +182,7 @@ fn what_runs_have_in_common_changes_nothing() {
     let many: Vec<f64> = (1..100).map(|step| f64::from(step) * 0.011).collect();
     for craft in [&craft, &other] {
         for _ in 0..2 {
-            assert_eq!(run(craft, &common, &many), run(craft, &Common::default(), &[1.089]));
+            assert_eq!(run(craft, &common, &many), run(craft, &CommonSteps::default(), &[1.089]));
         }
     }
     assert_ne!(run(&craft, &common, &[1.0]), run(&other, &common, &[1.0]));

@@ -1,11 +1,11 @@
 //! The gradient observer at work.
 
-use super::super::oscillator::{Oscillator, Phase};
-use super::super::residual::Residual;
+use super::super::oscillator::{ModelOscillator, ModelPhase};
+use super::super::residual::MovingResidual;
 use super::super::tracker::{self, Tracker};
-use super::super::{Estimate, Observer, Pulse};
+use super::super::{ModeEstimate, Observer, Pulse};
 use super::Gradient;
-use super::parameter::{Motion, Parameter};
+use super::parameter::{ChannelState, Parameter};
 use crate::quantity::Fraction;
 
 /// The largest step of ln w, and of an influence by its value at the start.
@@ -22,7 +22,7 @@ impl Gradient {
         let (modes, inputs) = (trackers.len(), rigid.len());
         let gain = ELASTIC_GAIN[usize::from(modes > 1)];
         let gate = self.gate.get();
-        let rest = || Motion { rate: 0.0, phases: vec![[0.0; 2]; modes] };
+        let rest = || ChannelState { rate: 0.0, phases: vec![[0.0; 2]; modes] };
         let mut parameters = Vec::with_capacity(modes * (1 + inputs));
         for (tracker, bounds) in trackers.iter().zip(tracker::bounds(trackers, self.reach.get(), period)) {
             parameters.push(Parameter {
@@ -58,7 +58,7 @@ impl Gradient {
             motion: rest(),
             frequencies: parameters[..modes].iter().map(|parameter| libm::exp(parameter.value)).collect(),
             parameters,
-            residual: Residual::default(),
+            residual: MovingResidual::default(),
         }
     }
 }
@@ -74,12 +74,12 @@ pub struct GradientObserver {
     /// What each input adds to the rigid rate.
     rigid: Vec<f64>,
     period: f64,
-    motion: Motion,
+    motion: ChannelState,
     /// w of each mode (rad/s).
     frequencies: Vec<f64>,
     /// ln w of each mode, then the influences of each input on the first mode, on the second, ...
     parameters: Vec<Parameter>,
-    residual: Residual,
+    residual: MovingResidual,
 }
 
 impl GradientObserver {
@@ -89,8 +89,8 @@ impl GradientObserver {
         self.parameters.iter().map(|parameter| parameter.slope.measured()).collect()
     }
 
-    fn oscillator(&self, mode: usize) -> Oscillator {
-        Oscillator { frequency: self.frequencies[mode], damping: self.damping }
+    fn oscillator(&self, mode: usize) -> ModelOscillator {
+        ModelOscillator { frequency: self.frequencies[mode], damping: self.damping }
     }
 
     /// The index of the first influence on a mode.
@@ -179,7 +179,7 @@ impl Observer for GradientObserver {
     }
 
     fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64> {
-        let of_mode = |(mode, phase): (usize, &Phase)| {
+        let of_mode = |(mode, phase): (usize, &ModelPhase)| {
             let (of, first) = (self.oscillator(mode), self.influences(mode));
             let free = of.turned(&of.transition(ahead), ahead, *phase).0[0];
             let pushed = self.sound(pulses).map(|pulse| {
@@ -195,8 +195,8 @@ impl Observer for GradientObserver {
         self.motion.rate
     }
 
-    fn put_modes(&self, modes: &mut Vec<Estimate>) {
-        modes.resize_with(self.motion.phases.len(), Estimate::default);
+    fn put_modes(&self, modes: &mut Vec<ModeEstimate>) {
+        modes.resize_with(self.motion.phases.len(), ModeEstimate::default);
         for (index, (mode, phase)) in modes.iter_mut().zip(&self.motion.phases).enumerate() {
             let first = self.influences(index);
             let influences = &self.parameters[first..first + self.rigid.len()];
@@ -206,7 +206,7 @@ impl Observer for GradientObserver {
         }
     }
 
-    fn residual(&self) -> Residual {
+    fn residual(&self) -> MovingResidual {
         self.residual
     }
 }

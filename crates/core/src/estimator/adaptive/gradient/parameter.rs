@@ -1,6 +1,6 @@
 //! A parameter that is identified, and the derivative of the state by it.
 
-use super::super::oscillator::Phase;
+use super::super::oscillator::ModelPhase;
 
 /// What a sample weighs in the mean square of a sensitivity.
 const WEIGHT: f64 = 0.01;
@@ -11,14 +11,14 @@ const HUGE: f64 = 1e100;
 
 /// A state of the channel, or its derivative by a parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct ChannelState {
     /// Rigid rate.
     pub rate: f64,
     /// Elastic rate and its quadrature, of each mode.
-    pub phases: Vec<Phase>,
+    pub phases: Vec<ModelPhase>,
 }
 
-impl Motion {
+impl ChannelState {
     /// The measured rate.
     pub fn measured(&self) -> f64 {
         self.rate + self.elastic()
@@ -65,7 +65,7 @@ pub struct Parameter {
     /// Mean square of the prediction's derivative ((rad/s)²).
     pub power: f64,
     /// Derivative of the state by the parameter.
-    pub slope: Motion,
+    pub slope: ChannelState,
 }
 
 impl Parameter {

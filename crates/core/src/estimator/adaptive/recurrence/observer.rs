@@ -1,9 +1,9 @@
 //! The recurrence observer at work.
 
-use super::super::oscillator::{Oscillator, Phase};
-use super::super::residual::Residual;
+use super::super::oscillator::{ModelOscillator, ModelPhase};
+use super::super::residual::MovingResidual;
 use super::super::tracker::{self, Tracker};
-use super::super::{Estimate, Observer, Pulse};
+use super::super::{ModeEstimate, Observer, Pulse};
 use super::Recurrence;
 
 /// What a sample weighs in the mean square of the elastic rate.
@@ -18,7 +18,7 @@ const HUGE: f64 = 1e100;
 impl Recurrence {
     /// An observer of a channel with one mode and one input, its own thrusters. The tracker is consistent.
     pub fn observer(&self, tracker: &Tracker, period: f64) -> RecurrenceObserver {
-        let mode = Oscillator { frequency: tracker.frequency.get(), damping: self.damping.get() };
+        let mode = ModelOscillator { frequency: tracker.frequency.get(), damping: self.damping.get() };
         let influence = tracker.influence.first().map_or(0.0, |influence| influence.get());
         let shrink = libm::exp(-mode.damping * mode.frequency * period);
         let root = libm::sqrt((1.0 - mode.damping) * (1.0 + mode.damping));
@@ -34,7 +34,7 @@ impl Recurrence {
             influence,
             influence_bounds: [a.min(b), a.max(b)],
             motion: Motion::default(),
-            residual: Residual::default(),
+            residual: MovingResidual::default(),
         }
     }
 }
@@ -52,7 +52,7 @@ pub struct RecurrenceObserver {
     influence: f64,
     influence_bounds: [f64; 2],
     motion: Motion,
-    residual: Residual,
+    residual: MovingResidual,
 }
 
 /// What is not a parameter; n is the last sample.
@@ -90,13 +90,13 @@ impl RecurrenceObserver {
         pulses.iter().filter(|pulse| pulse.input == 0 && pulse.is_sound())
     }
 
-    fn oscillator(&self) -> Oscillator {
+    fn oscillator(&self) -> ModelOscillator {
         let frequency = libm::acos(self.turn / (2.0 * self.shrink)) / self.period;
-        Oscillator { frequency, damping: self.spec.damping.get() }
+        ModelOscillator { frequency, damping: self.spec.damping.get() }
     }
 
     /// The state [g, s] by g(n), g(n - 1) and the impulse at the sample n.
-    fn phase(&self) -> Phase {
+    fn phase(&self) -> ModelPhase {
         let Motion { elastic, elastic_before, push, .. } = self.motion;
         let back = self.oscillator().transition(-self.period)[0];
         [elastic, (elastic_before - back[0] * (elastic - self.influence * push)) / back[1]]
@@ -176,16 +176,16 @@ impl Observer for RecurrenceObserver {
         self.motion.rate
     }
 
-    fn put_modes(&self, modes: &mut Vec<Estimate>) {
+    fn put_modes(&self, modes: &mut Vec<ModeEstimate>) {
         modes.clear();
-        modes.push(Estimate {
+        modes.push(ModeEstimate {
             phase: self.phase(),
             frequency: self.oscillator().frequency,
             influence: vec![self.influence],
         });
     }
 
-    fn residual(&self) -> Residual {
+    fn residual(&self) -> MovingResidual {
         self.residual
     }
 }

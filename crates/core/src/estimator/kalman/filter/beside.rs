@@ -1,6 +1,6 @@
 //! Extended Kalman filters of runs side by side: what is matrices of them, each operation in the order of one filter.
 
-use super::{Filter, Prediction};
+use super::{KalmanFilter, Prediction};
 use crate::estimator::kalman::Ranking;
 use crate::lanes::Real;
 use crate::numerics::exponential::multiply;
@@ -33,10 +33,10 @@ pub struct Filters<R> {
 
 impl<R: Real> Filters<R> {
     /// Filters before their first sample; none unless they are of one structure.
-    pub fn new(kind: R, filters: &mut [&mut Filter]) -> Option<Self> {
+    pub fn new(kind: R, filters: &mut [&mut KalmanFilter]) -> Option<Self> {
         let first = filters.first()?.tuning.clone();
         let model = &first.model;
-        let alike = |filter: &&mut Filter| {
+        let alike = |filter: &&mut KalmanFilter| {
             let (tuning, other) = (&filter.tuning, &filter.tuning.model);
             matches!(tuning.prediction, Prediction::Extended)
                 && tuning.rate_noise.is_none()
@@ -52,14 +52,14 @@ impl<R: Real> Filters<R> {
             return None;
         }
         let (order, modes) = (model.order(), model.modes.len());
-        let beside = |of: &dyn Fn(&Filter) -> f64| {
+        let beside = |of: &dyn Fn(&KalmanFilter) -> f64| {
             let mut each = [0.0; 16];
             for lane in 0..R::LANES {
                 each[lane] = of(&*filters[lane.min(filters.len() - 1)]);
             }
             kind.load(&each)
         };
-        let list = |count: usize, of: &dyn Fn(&Filter, usize) -> f64| -> Vec<R> {
+        let list = |count: usize, of: &dyn Fn(&KalmanFilter, usize) -> f64| -> Vec<R> {
             (0..count).map(|at| beside(&|filter| of(filter, at))).collect()
         };
         let step = first.period / f64::from(model.substeps);
@@ -92,7 +92,7 @@ impl<R: Real> Filters<R> {
 
     /// Predicts all states over one period, in which the mean reduced moments were these (rad/s²).
     #[inline(always)]
-    pub fn predict(&mut self, filters: &[&mut Filter], moment: R) {
+    pub fn predict(&mut self, filters: &[&mut KalmanFilter], moment: R) {
         let order = self.order;
         let zero = moment.of(0.0);
         for at in 0..order * order {
@@ -151,7 +151,7 @@ impl<R: Real> Filters<R> {
     /// The free turns of all modes over `h` seconds, at the ratios that the states come to `middle` seconds after the start
     /// of the period.
     #[inline(always)]
-    fn turn(&mut self, filters: &[&mut Filter], h: f64, middle: f64) {
+    fn turn(&mut self, filters: &[&mut KalmanFilter], h: f64, middle: f64) {
         for mode in 0..self.frequency.len() {
             let ratio = self.ratio_at(mode, middle);
             let mut times = [0.0; 16];
@@ -316,7 +316,7 @@ impl<R: Real> Filters<R> {
 
     /// Takes the means over from the filters.
     #[inline(always)]
-    pub fn take_means(&mut self, filters: &[&mut Filter]) {
+    pub fn take_means(&mut self, filters: &[&mut KalmanFilter]) {
         let mut each = [0.0; 16];
         for at in 0..self.order {
             for (lane, filter) in filters.iter().enumerate() {
@@ -328,7 +328,7 @@ impl<R: Real> Filters<R> {
 
     /// Lets the filters of some lanes have their means.
     #[inline(always)]
-    pub fn give_means(&self, filters: &mut [&mut Filter], lanes: &[bool]) {
+    pub fn give_means(&self, filters: &mut [&mut KalmanFilter], lanes: &[bool]) {
         let mut each = [0.0; 16];
         for at in 0..self.order {
             self.mean[at].store(&mut each);

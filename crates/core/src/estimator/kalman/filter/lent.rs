@@ -1,12 +1,12 @@
 //! What a filter does on its own while its mean and covariance are carried on beside those of other runs.
 
 use super::beside::dot;
-use super::{FARTHEST, Filter, Filters, Innovation};
+use super::{FARTHEST, Filters, Innovation, KalmanFilter};
 use crate::lanes::Real;
 
 /// What a filter has of a step that was made beside others.
 #[derive(Copy, Clone, Debug, Default)]
-pub struct Step {
+pub struct LentStep {
     /// What the sample told; none if it was not taken so.
     told: Option<Innovation>,
     /// The normalised error of the estimate, if it is assessed.
@@ -22,7 +22,7 @@ impl<R: Real> Filters<R> {
     }
 
     /// Lets a filter draw its conclusions from what its sample told.
-    pub fn settle(&mut self, lane: usize, filter: &mut Filter, gated: bool, innovation: f64, nis: f64) {
+    pub fn settle(&mut self, lane: usize, filter: &mut KalmanFilter, gated: bool, innovation: f64, nis: f64) {
         filter.before.0.copy_from(&filter.mean);
         let (told, rests) = filter.settle(gated, innovation, Some(nis));
         filter.beside.told = Some(told);
@@ -76,7 +76,7 @@ impl<R: Real> Filters<R> {
     }
 }
 
-impl Filter {
+impl KalmanFilter {
     /// The largest normalised square of an innovation.
     pub const FARTHEST: f64 = FARTHEST * FARTHEST;
 

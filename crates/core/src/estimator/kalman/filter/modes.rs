@@ -2,9 +2,9 @@
 
 use nalgebra::{Cholesky, DVector};
 
-use super::{FARTHEST, Filter};
+use super::{FARTHEST, KalmanFilter};
 
-impl Filter {
+impl KalmanFilter {
     /// Estimated amplitude of a mode, sqrt(x² + (x'/w)²), and its standard deviation (rad).
     pub fn amplitude(&self, mode: usize) -> (f64, f64) {
         let (x, v) = (2 + 2 * mode, 3 + 2 * mode);
