@@ -1,4 +1,4 @@
-"""Exponentials in 40 digits: the argument, the nearest double, and how far the exact value is from it in its last place.
+"""Exponentials in 40 digits: argument, nearest double, and the distance of the exact value in its last place.
 
 python3 tests/golden/decay_oracle.py > tests/golden/decay.csv     # needs mpmath
 """

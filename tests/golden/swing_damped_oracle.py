@@ -1,4 +1,4 @@
-"""Integrals of |c + W exp(-(s + i w) t)| over [0, h] by quadrature in 30 digits: a check of the quadrature in lanes.
+"""Integrals of |c + W exp(-(s + i w) t)| over [0, h] by quadrature in 30 digits, for the quadrature in lanes.
 
 python3 tests/golden/swing_damped_oracle.py > tests/golden/swing_damped.csv     # needs mpmath
 """
@@ -9,7 +9,27 @@ from mpmath import mp, mpf, quad
 
 mp.dps = 24
 # Ratios of |W| at the start to |c|: on both sides of every branch of the code.
-RATIOS = [0.0, 1e-6, 0.01, 0.05, 0.0999, 0.11, 0.3, 0.6, 0.85, 1.0, 1.01, 1.2, 1.9, 4.0, 9.0, 11.0, 30.0, 1e3, 1e9]
+RATIOS = [
+    0.0,
+    1e-6,
+    0.01,
+    0.05,
+    0.0999,
+    0.11,
+    0.3,
+    0.6,
+    0.85,
+    1.0,
+    1.01,
+    1.2,
+    1.9,
+    4.0,
+    9.0,
+    11.0,
+    30.0,
+    1e3,
+    1e9,
+]
 
 
 def integral(c, z, s, w, h):

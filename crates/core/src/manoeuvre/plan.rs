@@ -69,7 +69,7 @@ impl Plan {
         line
     }
 
-    /// What is left in the hub's angle and in each output, as of a [`Residual`](super::FinalResidual), of a body whose
+    /// What is left in the hub's angle and in each output, as of a [`FinalResidual`](super::FinalResidual), of a body whose
     /// frequencies are all `factor` times its own. Gains and weights stay as they are.
     pub fn left(&self, body: &Planar, factor: f64) -> Vec<f64> {
         residual::left(self, body, &residual::coordinates(body), factor)
