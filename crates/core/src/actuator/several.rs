@@ -49,7 +49,7 @@ impl Several {
                     several.executing.push((actuator, *shares));
                 }
                 ActuatorTask::Unloads(unloads) => {
-                    several.unloader = Some(Unloader::new(unloads, kind, actuator))
+                    several.unloader = Some(Unloader::new(unloads, kind, actuator));
                 }
             }
         }

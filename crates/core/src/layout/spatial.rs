@@ -11,40 +11,29 @@ use crate::scene::Extent;
 
 /// The tabs of a scenario.
 pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
+    let plot = LayoutPanel::plot;
     let mut motion = vec![
         LayoutPanel::scene(Extent::of(scenario)),
-        LayoutPanel::plot("error", "Beyond the target (rad)", errors(scenario)),
-        LayoutPanel::plot(
-            "rigid",
-            "Rigid rates (rad/s)",
-            rates(&[("rigid_rad_s", ""), ("believed_rad_s", ", believed")]),
-        ),
-        LayoutPanel::plot("elastic", "Elastic rates at the sensor (rad/s)", rates(&[("elastic_rad_s", "")])),
+        plot("error", "Beyond the target (rad)", errors(scenario)),
+        plot("rigid", "Rigid rates (rad/s)", rates(&[("rigid_rad_s", ""), ("believed_rad_s", ", believed")])),
+        plot("elastic", "Elastic rates at the sensor (rad/s)", rates(&[("elastic_rad_s", "")])),
     ];
     if !scenario.study.jets_alone {
-        motion.push(LayoutPanel::plot("torques", "Torques of the actuator (N m)", torques("applied_nm")));
+        motion.push(plot("torques", "Torques of the actuator (N m)", torques("applied_nm")));
     }
     if scenario.study.fires() {
         let pulses = AXES.iter().map(|axis| line(format!("/jets.{axis}_on_s"), *axis).dots());
-        motion.push(LayoutPanel::plot("jets", "Pulses of the jets (s)", pulses.collect()));
-        motion.push(LayoutPanel::plot("fuel", "Propellant (kg)", vec![line("/jets.fuel_kg", "used")]));
+        motion.push(plot("jets", "Pulses of the jets (s)", pulses.collect()));
+        motion.push(plot("fuel", "Propellant (kg)", vec![line("/jets.fuel_kg", "used")]));
     }
     if scenario.environment.is_some() {
-        motion.push(LayoutPanel::plot(
-            "around",
-            "Torques of the surroundings (N m)",
-            torques("disturbance_nm"),
-        ));
+        motion.push(plot("around", "Torques of the surroundings (N m)", torques("disturbance_nm")));
     }
     if scenario.environment.as_ref().is_some_and(|around| around.magnetic_field.is_some()) {
-        motion.push(LayoutPanel::plot("field", "Magnetic field (T)", along("/orbit", "field_t")));
+        motion.push(plot("field", "Magnetic field (T)", along("/orbit", "field_t")));
     }
     if scenario.actuator.magnetorquers().is_some() {
-        motion.push(LayoutPanel::plot(
-            "moments",
-            "Magnetic moments (A m²)",
-            along("/magnetorquers", "moment_am2"),
-        ));
+        motion.push(plot("moments", "Magnetic moments (A m²)", along("/magnetorquers", "moment_am2")));
     }
     for (index, accelerometer) in scenario.sensor.accelerometers().take(1) {
         let (count, name) = (accelerometer.axis_count(), &scenario.study.sensed_at[index]);
@@ -52,15 +41,15 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
             line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {}", axis + 1))
         };
         let title = format!("Specific force at {name} (m/s²)");
-        motion.push(LayoutPanel::plot("accelerations", &title, (0..count).map(axis).collect()));
+        motion.push(plot("accelerations", &title, (0..count).map(axis).collect()));
     }
     if scenario.study.wheels.is_some() {
-        motion.push(LayoutPanel::plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
+        motion.push(plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }
     motion.extend(gimbals(scenario));
     if scenario.study.moving.is_some() {
         let along = ["x", "y", "z"].map(|axis| line(format!("/position.{axis}_m"), axis));
-        motion.push(LayoutPanel::plot("position", "Position (m)", along.into()));
+        motion.push(plot("position", "Position (m)", along.into()));
     }
     if scenario.study.bearings.iter().any(Bearing::grips) {
         let each = |field: &str| -> Vec<PlotLine> {
@@ -69,24 +58,24 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
             };
             (0..scenario.study.bearings.len().min(MOST_LINES)).map(of).collect()
         };
-        motion.push(LayoutPanel::plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
+        motion.push(plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
         motion.push(LayoutPanel::states("sliding", "Which way wheels turn", each("sliding")));
     }
     if let Some(drives) = &scenario.study.drives {
         let of =
             |drive: usize| line(format!("/drives.drives[{drive}].angle_rad"), format!("drive {}", drive + 1));
         let angles = (0..drives.courses.count().min(MOST_LINES)).map(of).collect();
-        motion.push(LayoutPanel::plot("drives", "Angles of the drives (rad)", angles));
+        motion.push(plot("drives", "Angles of the drives (rad)", angles));
     }
-    let mut elastic = vec![LayoutPanel::plot("energy", "Elastic energy (J)", energies(scenario, body))];
+    let mut elastic = vec![plot("energy", "Elastic energy (J)", energies(scenario, body))];
     if scenario.study.drives.is_some() {
         let of = |mode: usize| line(format!("/drives.modes[{mode}].frequency_rad_s"), format!("mode {mode}"));
         let each = (0..body.modes.len().min(MOST_LINES)).map(of).collect();
-        elastic.push(LayoutPanel::plot("drifting", "Natural frequencies (rad/s)", each));
+        elastic.push(plot("drifting", "Natural frequencies (rad/s)", each));
     }
     if let Some(plan) = &scenario.study.adaptive {
         let tracked: Vec<usize> = plan.axes.iter().map(|design| design.modes.len()).collect();
-        elastic.push(LayoutPanel::plot(
+        elastic.push(plot(
             "frequencies",
             "Natural frequencies, estimated and true (rad/s)",
             frequencies(&tracked),
@@ -104,7 +93,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
                 lines.push(line(value.to_string(), format!("{sign} threshold of {axis}")));
             }
         }
-        elastic.push(LayoutPanel::plot("damping", "Elastic rates that damping acts on (rad/s)", lines));
+        elastic.push(plot("damping", "Elastic rates that damping acts on (rad/s)", lines));
         elastic.push(LayoutPanel::states("latched", "Active damping: the threshold", channels("latched")));
         elastic.push(LayoutPanel::states("resting", "Active damping: the watchdog", channels("resting")));
     }

@@ -1,5 +1,7 @@
 //! Control moment gyros: their steering against numpy, limits, failures, and singular angles.
 
+#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
+
 use super::*;
 
 fn start(keys: &str) -> Gimbals {

@@ -60,6 +60,7 @@ impl Segment {
         trip
     }
 
+    #[expect(clippy::option_option, reason = "not certain, or certain that there is none")]
     fn polish<D: Damping<f64>>(
         &self,
         fastest: f64,
