@@ -41,7 +41,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
             line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {}", axis + 1))
         };
         let title = format!("Specific force at {name} (m/s²)");
-        motion.push(plot("accelerations", &title, (0..count).map(axis).collect()));
+        motion.push(LayoutPanel::plot("accelerations", title, (0..count).map(axis).collect()));
     }
     if scenario.study.wheels.is_some() {
         motion.push(plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
