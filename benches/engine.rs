@@ -123,7 +123,7 @@ fn filters(c: &mut Criterion) {
     for (name, prediction) in [("ekf step", Prediction::Extended), ("ukf step", Prediction::Unscented)] {
         let body = scenario(MODES).model;
         let setting = KalmanSetting {
-            body: &body,
+            body: body.planar().expect("a body with one angle"),
             back_emf: (1e-4, true),
             period: 0.3,
             angle_noise: 1e-5,

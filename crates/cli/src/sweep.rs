@@ -117,7 +117,7 @@ impl Args {
             let key = key.clone();
             match *values {
                 Values::Even { first, last, count } => {
-                    blocks.push(DesignBlock::Even { key, first, last, count })
+                    blocks.push(DesignBlock::Even { key, first, last, count });
                 }
                 Values::List(ref values) => blocks.push(DesignBlock::List { key, values: values.clone() }),
                 Values::Range { from, to } => ranges.push(KeyRange { key, from, to }),

@@ -38,7 +38,7 @@ impl Results for Field {
         match self.common {
             FieldCommon::Time(time) => say!("{name}   every command in {} s", time.seconds()),
             FieldCommon::PeakTorque(peak) => {
-                say!("{name}   every command at a peak of {} {unit}", peak.get())
+                say!("{name}   every command at a peak of {} {unit}", peak.get());
             }
         }
         let (band, hub) = (percent(self.band), "angle");
