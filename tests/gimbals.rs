@@ -128,7 +128,7 @@ fn a_clone_repeats_the_run_to_the_last_bit() {
     let mut second = first.clone();
     let ends = [&mut first, &mut second].map(|run| {
         run.run(&mut Trace::new(Detail::Events)).expect("a run");
-        let mut row = vec![0.0; run.fields(&scenario).iter().map(|field| field.width()).sum()];
+        let mut row = vec![0.0; run.fields(&scenario).iter().map(flexsc_core::LookField::width).sum()];
         run.look(&mut row).expect("a state");
         let names: Vec<&str> = run.fields(&scenario).iter().map(|field| field.name).collect();
         assert!(names.contains(&"gimbal_angles") && names.contains(&"gimbal_rates"));
@@ -176,7 +176,7 @@ fn they_share_the_demand_with_wheels_that_stick_and_slip() {
     let of = |fold: fn(f64, f64) -> f64, from: f64| momentum.iter().copied().fold(from, fold);
     let spread = of(f64::max, 0.0) - of(f64::min, f64::INFINITY);
     assert!(momentum[0] > 1.0 && spread < 1e-9, "{spread}");
-    assert!(trace.topic("/wheel_events").is_some_and(|events| events.len() > 0));
+    assert!(trace.topic("/wheel_events").is_some_and(|events| !events.is_empty()));
     let turned = numbers(&trace, "/pointing", "roll_rad");
     assert!((turned[turned.len() - 1] - turned[0]).abs() > 0.1);
 }
