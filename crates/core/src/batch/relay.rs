@@ -44,7 +44,7 @@ impl Batch for Side {
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
         let mut runs = Runs::new(jobs);
         if jobs.first().is_some_and(|job| is_damped(job.scenario)) {
-            processor.run::<1, _>(DampedRuns(&mut runs));
+            processor.run_narrow(DampedRuns(&mut runs));
         } else {
             processor.run::<1, _>(&mut runs);
         }
