@@ -1,6 +1,9 @@
 //! Relay runs side by side: flights in lanes, windows' ends and metrics one by one.
 
+#[cfg(feature = "damped-lanes")]
 mod damped;
+#[cfg(not(feature = "damped-lanes"))]
+mod left_out;
 #[cfg(test)]
 mod tests;
 
@@ -22,7 +25,10 @@ use crate::random::Seed;
 use crate::record::{self, Command, Course, Record, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
-use damped::DampedRuns;
+#[cfg(feature = "damped-lanes")]
+use damped::fly_damped;
+#[cfg(not(feature = "damped-lanes"))]
+use left_out::fly_damped;
 
 /// Runs that share the lanes of one flight, one after the other.
 const RUNS: usize = 128;
@@ -44,7 +50,7 @@ impl Batch for Side {
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
         let mut runs = Runs::new(jobs);
         if jobs.first().is_some_and(|job| is_damped(job.scenario)) {
-            processor.run_narrow(DampedRuns(&mut runs));
+            fly_damped(processor, &mut runs);
         } else {
             processor.run::<1, _>(&mut runs);
         }

@@ -2,11 +2,15 @@
 
 use super::Runs;
 use crate::flight::Flight;
-use crate::lanes::{LaneWork, Real};
+use crate::lanes::{LaneWork, Processor, Real};
 use crate::motion::damping::Damped;
 
-/// Runs of which all have damped modes.
-pub(super) struct DampedRuns<'r, 'a>(pub &'r mut Runs<'a>);
+/// Makes runs of which all have damped modes.
+pub(super) fn fly_damped(processor: Processor, runs: &mut Runs<'_>) {
+    processor.run_narrow(DampedRuns(runs));
+}
+
+struct DampedRuns<'r, 'a>(&'r mut Runs<'a>);
 
 impl LaneWork for DampedRuns<'_, '_> {
     type Output = ();
