@@ -208,6 +208,8 @@ mod tests {
 
     #[test]
     fn so_do_those_that_cannot_fly() {
+        let critical = "[{ frequency = 0.44, gain = 0.0213, damping = 1.0 }]";
+        let other = "{ window = 500.0, modes = [{ frequency = 0.5, gain = 0.02, damping = 0.01 }] }";
         let damped =
             "[{ frequency = 0.44, gain = 0.0213, damping = 0.01 }, { frequency = 0.755, gain = 0.0 }]";
         for changes in [
@@ -215,7 +217,7 @@ mod tests {
             &[("body.planar.modes", damped)],
             &[("body.planar.modes", damped), ("estimator.envelope.form", "trigonometric")],
             &[("estimator.envelope.form", "truth")],
-            &[("body.planar.modes", "[{ frequency = 0.44, gain = 0.0213, damping = 1.0 }]")],
+            &[("body.planar.modes", critical), ("estimator.envelope", other)],
         ] {
             let scenario = shipped("relay-fixed", changes);
             assert!(Simulation::new(&scenario, 0).quick.flight.is_none(), "{changes:?}");
