@@ -1,9 +1,5 @@
 //! Relay runs side by side: flights in lanes, windows' ends and metrics one by one.
 
-#[cfg(feature = "damped-lanes")]
-mod damped;
-#[cfg(not(feature = "damped-lanes"))]
-mod left_out;
 #[cfg(test)]
 mod tests;
 
@@ -11,24 +7,19 @@ use super::{Batch, Job};
 use crate::body::{ForcedInput, Segment};
 use crate::estimator::Monitor;
 use crate::flight::{
-    Crew, CyclePlace, Flight, LaneSight, MOST, Searched, Setup, flies, instant, is_damped, phase, see, setup,
-    watched,
+    Crew, CyclePlace, LaneSight, MOST, Searched, Setup, flies, fly_beside, guards, instant, phase, see,
+    setup, structure,
 };
 use crate::guard::Guard;
-use crate::lanes::{LaneWork, Processor, Real};
+use crate::lanes::Processor;
 use crate::law::Phase;
 use crate::metrics::{Gather, Metrics};
 use crate::motion::State;
 use crate::motion::crossing::locate;
-use crate::motion::damping::Undamped;
 use crate::random::Seed;
 use crate::record::{self, Command, Course, Record, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
-#[cfg(feature = "damped-lanes")]
-use damped::fly_damped;
-#[cfg(not(feature = "damped-lanes"))]
-use left_out::fly_damped;
 
 /// Runs that share the lanes of one flight, one after the other.
 const RUNS: usize = 128;
@@ -49,10 +40,8 @@ impl Batch for Side {
 
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
         let mut runs = Runs::new(jobs);
-        if jobs.first().is_some_and(|job| is_damped(job.scenario)) {
-            fly_damped(processor, &mut runs);
-        } else {
-            processor.run::<1, _>(&mut runs);
+        if let Some(first) = jobs.first() {
+            fly_beside(processor, structure(first.scenario), &mut runs);
         }
         runs.found
     }
@@ -89,23 +78,6 @@ impl<'a> Runs<'a> {
         let found = vec![None; jobs.len()];
         Self { jobs, next: 0, lanes, found, listens: false, looks: false }
     }
-
-    /// How many modes bodies and envelopes have, and whether any is damped.
-    fn structure(scenario: &Scenario) -> (usize, usize, bool) {
-        (scenario.mode_count(), watched(scenario).len(), is_damped(scenario))
-    }
-}
-
-impl LaneWork for &mut Runs<'_> {
-    type Output = ();
-
-    #[allow(clippy::inline_always, reason = "a function of its own would lack the processor's instructions")]
-    #[inline(always)]
-    fn run<R: Real>(self, kind: R) {
-        let Some(first) = self.jobs.first() else { return };
-        let (modes, tracks, _) = Runs::structure(first.scenario);
-        Flight::<R, Undamped>::fly(kind, modes, tracks, self);
-    }
 }
 
 impl Lane<'_> {
@@ -134,7 +106,7 @@ impl Crew for Runs<'_> {
         while let Some(job) = self.jobs.get(self.next) {
             self.next += 1;
             let Some((model, law)) = flies(job.scenario) else { continue };
-            if Self::structure(job.scenario) != Self::structure(self.jobs[0].scenario) {
+            if structure(job.scenario) != structure(self.jobs[0].scenario) {
                 continue;
             }
             let mut gather = Gather::of(job.scenario, job.selection);
@@ -163,7 +135,7 @@ impl Crew for Runs<'_> {
     fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight) -> Option<Searched> {
         let lane = self.lanes[lane].as_mut()?;
         lane.depart(place, from);
-        let guards = lane.setup.guards(place, from.side);
+        let guards = guards(&lane.setup, place, from.side);
         let horizon = (Instant::START + lane.scenario.duration).since(instant(from.at));
         let trip = locate(&lane.segment, &guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
         lane.is_alone |= !lane.state.is_finite();

@@ -3,14 +3,12 @@
 //! What it comes to, and what it tells, is to the bit what the loop of plain runs comes to, which takes the run over at the last
 //! departure before its end.
 
-mod damped;
-
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
-use crate::flight::{Crew, CyclePlace, Flight, LaneRest, LaneSight, Searched, Setup, instant, phase, see};
-use crate::lanes::{LaneWork, Processor, Real};
+use crate::flight::{
+    Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup, fly_alone, guards, instant, phase, see,
+};
 use crate::law::Command;
-use crate::motion::damping::Undamped;
 use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
 
@@ -46,7 +44,7 @@ impl Simulation {
         let (failed, rest) = (None, LaneRest::default());
         let mut crew =
             Alone { run: self, record, setup, waits: true, listens, band, stopped: false, failed, rest };
-        crew.fly();
+        fly_alone(crew.setup.structure, &mut crew);
         let Alone { failed, rest, .. } = crew;
         self.land(&rest, record)?;
         failed.map_or(Ok(()), Err)
@@ -85,16 +83,6 @@ impl Simulation {
 }
 
 impl Alone<'_> {
-    /// Makes the flight: one function for all records, optimised as this crate is.
-    #[inline(never)]
-    fn fly(&mut self) {
-        if self.setup.is_damped {
-            damped::fly(self);
-        } else {
-            Processor::run_alone(self);
-        }
-    }
-
     /// Keeps why the run cannot go on.
     fn keep<E: Into<SimulationError>>(&mut self, result: Result<(), E>) {
         if let Err(error) = result {
@@ -124,20 +112,7 @@ impl Alone<'_> {
     }
 }
 
-impl LaneWork for &mut Alone<'_> {
-    type Output = ();
-
-    #[allow(clippy::inline_always, reason = "a function of its own would lack the processor's instructions")]
-    #[inline(always)]
-    fn run<K: Real>(self, kind: K) {
-        let (modes, tracks) = (self.setup.modes.len(), self.setup.tracks.len());
-        Flight::<K, Undamped>::fly(kind, modes, tracks, self);
-    }
-}
-
 impl Crew for Alone<'_> {
-    const TAKES_BACK: bool = true;
-
     fn listens(&self) -> bool {
         self.listens
     }
@@ -153,7 +128,7 @@ impl Crew for Alone<'_> {
     fn search(&mut self, _: usize, place: CyclePlace, from: &LaneSight) -> Option<Searched> {
         self.run.set_off(from, self.setup.torque(place, from.side));
         let horizon = instant(self.setup.end).since(instant(from.at));
-        let guards = self.setup.guards(place, from.side);
+        let guards = guards(&self.setup, place, from.side);
         let Plant::Planar(plant) = &mut self.run.plant else { return None };
         let trip = plant.trip(&guards, horizon, &mut self.record);
         let (at, guard) = match trip {

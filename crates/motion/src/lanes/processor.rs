@@ -65,14 +65,16 @@ impl Processor {
             }
     }
 
-    /// Does some work over numbers, one at a time, with the instructions of the best processor that this one can be.
-    pub fn run_alone<W: LaneWork>(work: W) -> W::Output {
-        // Those of AVX-512 add nothing to one number.
-        #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = V3::try_new() {
-            return Simd::vectorize(simd, Alone(work));
+    /// Does some work over numbers, one at a time, with such instructions; those of AVX-512 add nothing to one number.
+    pub fn run_alone<W: LaneWork>(self, work: W) -> W::Output {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512(simd) => Simd::vectorize(*simd, Alone(work)),
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(simd) => Simd::vectorize(simd, Alone(work)),
+            #[cfg(target_arch = "aarch64")]
+            Instructions::Neon(simd) => Simd::vectorize(simd, Alone(work)),
         }
-        work.run(f64::NAN)
     }
 
     /// Does some work over lanes of N registers.

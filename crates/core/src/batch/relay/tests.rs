@@ -91,7 +91,7 @@ fn shipped_scenarios_and_others_come_to_the_same() {
 }
 
 #[test]
-#[cfg_attr(not(feature = "damped-lanes"), ignore = "needs the feature `damped-lanes`")]
+#[cfg_attr(not(feature = "damped-flights"), ignore = "needs the feature `damped-flights`")]
 fn runs_of_damped_modes_come_to_the_same() {
     for name in ["relay-fixed", "relay-adaptive", "relay-no-freeze"] {
         for modes in ["{ frequency = 0.44, gain = 0.0213, damping = 0.01 }", FIVE] {

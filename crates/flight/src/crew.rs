@@ -1,31 +1,44 @@
-//! What a flight of runs asks of who has them, and what it tells: plain numbers of one lane.
+//! What a flight asks of who has the runs, and what it tells: plain numbers of one lane.
 
-use crate::guard::Guard;
-use crate::law::Guards;
+/// What all runs of a flight have in common.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Structure {
+    /// How many modes the body has.
+    pub modes: usize,
+    /// How many modes the envelope's model has.
+    pub tracks: usize,
+    /// Whether a mode of the body or of the envelope is damped.
+    pub is_damped: bool,
+}
 
-/// One run at its start, as plain numbers. A mode: frequency, excitability, displacement and
-/// quadrature, damping ratio; a track of the envelope: the same, with the phasor's imaginary part in place of the quadrature.
+/// One run at its start, as plain numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
-    /// Rigid angle and rate.
+    /// What it has in common with the other runs.
+    pub structure: Structure,
+    /// Rigid angle (rad).
     pub angle: f64,
+    /// Rigid rate (rad/s).
     pub rate: f64,
-    /// Modes of the body, and of the envelope's model.
+    /// Modes of the body: frequency (rad/s), excitability (s²), displacement and quadrature (rad), damping ratio.
     pub modes: Vec<[f64; 5]>,
+    /// Modes of the envelope's model: the same, with the phasor's imaginary part in place of the quadrature.
     pub tracks: Vec<[f64; 5]>,
-    /// Half the width of the dead zone, and where the brake begins.
+    /// Half the width of the dead zone (rad).
     pub edge: f64,
+    /// Where the brake begins (rad).
     pub back: f64,
     /// Strong and weak torque (N m).
     pub torques: [f64; 2],
-    /// Strong and weak moment (rad/s²), and braking gain.
+    /// Strong moment (rad/s²).
     pub strong: f64,
+    /// Weak moment (rad/s²).
     pub weak: f64,
+    /// Braking gain.
     pub k_t: f64,
-    /// Whether a mode of the body or of the envelope is damped.
-    pub is_damped: bool,
-    /// The end, and the length of a window: whole seconds and femtoseconds.
+    /// The end: whole seconds and femtoseconds.
     pub end: (u64, u64),
+    /// The length of a window of the envelope: whole seconds and femtoseconds; none without one.
     pub window: Option<(u64, u64)>,
 }
 
@@ -37,16 +50,6 @@ impl Setup {
             CyclePlace::Coast => side * weak,
             CyclePlace::Push => -side * strong,
             CyclePlace::Brake => side * strong,
-        }
-    }
-
-    /// The guards of a place of the cycle.
-    pub fn guards(&self, place: CyclePlace, side: f64) -> Guards {
-        match place {
-            CyclePlace::Coast => Guards::two(Guard::at_least(self.edge), Guard::at_most(-self.edge)),
-            CyclePlace::Push if side > 0.0 => Guards::one(Guard::at_most(self.back)),
-            CyclePlace::Push => Guards::one(Guard::at_least(-self.back)),
-            CyclePlace::Brake => Guards::NONE,
         }
     }
 }
@@ -67,9 +70,11 @@ pub enum CyclePlace {
 pub struct LaneSight {
     /// Whole seconds and femtoseconds.
     pub at: (u64, u64),
+    /// Rigid angle (rad).
     pub angle: f64,
+    /// Rigid rate (rad/s).
     pub rate: f64,
-    /// Displacement and quadrature of each mode.
+    /// Displacement and quadrature of each mode (rad).
     pub modes: Vec<[f64; 2]>,
     /// 1, or -1 in the mirror.
     pub side: f64,
@@ -84,8 +89,9 @@ pub struct LaneRest {
     pub place: Option<CyclePlace>,
     /// The body.
     pub from: LaneSight,
-    /// When the last push began, and until when the envelope was followed.
+    /// When the last push began.
     pub pushed: (u64, u64),
+    /// Until when the envelope was followed.
     pub seen: (u64, u64),
     /// The integral of the envelope since the last window closed.
     pub integral: f64,
@@ -106,9 +112,6 @@ pub struct Searched {
 
 /// Who has the runs.
 pub trait Crew {
-    /// Whether it takes runs back where they end, to go on with them elsewhere.
-    const TAKES_BACK: bool = false;
-
     /// Whether it wants switchings.
     fn listens(&self) -> bool;
     /// Whether it wants to know where bounds do not keep the angle within the band.
@@ -131,6 +134,6 @@ pub trait Crew {
     fn stops(&self) -> bool {
         false
     }
-    /// Takes a run back at the last departure before its end.
+    /// Takes a run that was alone back at the last departure before its end, to go on with it elsewhere.
     fn take_back(&mut self, _rest: LaneRest) {}
 }

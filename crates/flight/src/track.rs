@@ -3,12 +3,12 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
-use crate::lanes::{Four, LaneWork, Mask, Real};
-use crate::motion::damping::{Damping, Undamped};
-use crate::numerics::decay::exp;
-use crate::numerics::swing_damped::damped;
-use crate::numerics::swing_integral::undamped;
-use crate::numerics::trig::sincos;
+use flexsc_motion::damping::{Damping, Undamped};
+use flexsc_motion::lanes::{Four, LaneWork, Mask, Real};
+use flexsc_motion::numerics::decay::exp;
+use flexsc_motion::numerics::swing_damped::damped;
+use flexsc_motion::numerics::swing_integral::undamped;
+use flexsc_motion::numerics::trig::sincos;
 
 /// Phasors that stand side by side.
 const SIDE: usize = 4;

@@ -1,22 +1,19 @@
-//! Flights: runs of the relay law about a body with modes, with motions, crossings and envelopes in lanes, or one alone.
-
-mod clock;
-mod crew;
-mod kernel;
-mod track;
+//! Flights of runs of the relay law: which runs of a scenario can fly, how they begin, and what is told of them.
 
 use crate::adaptation::Adaptation;
 use crate::body::{Drive, Mode, Planar};
 use crate::estimator::{Estimator, Form};
-use crate::law::{Law, Phase, Relay, Sides};
+use crate::guard::Guard;
+use crate::law::{Guards, Law, Phase, Relay, Sides};
 use crate::motion::damping::Damped;
 use crate::motion::{self, State};
 use crate::numerics::trig::FARTHEST;
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-pub use crew::{Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup};
-pub use kernel::{Flight, MOST};
+pub use flexsc_flight::{
+    Crew, CyclePlace, LaneRest, LaneSight, MOST, Searched, Setup, Structure, fly_alone, fly_beside,
+};
 
 /// The body and the law of a scenario whose runs can fly.
 pub fn flies(scenario: &Scenario) -> Option<(&Planar, &Relay)> {
@@ -54,6 +51,7 @@ fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
     let begins = model.start().angle().abs() < law.dead_zone.get();
     let has_band = scenario.promise().band(f64::NAN) > 0.0;
     scenario.is_plain()
+        && flexsc_flight::flies(structure(scenario))
         && model.drive == Drive::Torque
         && observes
         && learns
@@ -71,9 +69,11 @@ pub fn alone(scenario: &Scenario) -> Option<Setup> {
     modes.all(|mode| mode.gain.get() != 0.0).then(|| setup(scenario, model, law))
 }
 
-/// Whether any mode of a scenario or of its envelope is damped.
-pub fn is_damped(scenario: &Scenario) -> bool {
-    own(scenario).iter().chain(watched(scenario)).any(|mode| mode.damping.get() > 0.0)
+/// What runs of a scenario have in common in a flight.
+pub fn structure(scenario: &Scenario) -> Structure {
+    let (modes, tracks) = (own(scenario), watched(scenario));
+    let is_damped = modes.iter().chain(tracks).any(|mode| mode.damping.get() > 0.0);
+    Structure { modes: modes.len(), tracks: tracks.len(), is_damped }
 }
 
 /// A run at its start.
@@ -103,9 +103,19 @@ pub fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
         strong: law.strong.get() * mobility,
         weak: law.weak.get() * mobility,
         k_t: law.k_t.get(),
-        is_damped: is_damped(scenario),
+        structure: structure(scenario),
         end: (Instant::START + scenario.duration).parts(),
         window: envelope.map(|envelope| (Instant::START + envelope.window).parts()),
+    }
+}
+
+/// The guards of a place of the cycle.
+pub fn guards(setup: &Setup, place: CyclePlace, side: f64) -> Guards {
+    match place {
+        CyclePlace::Coast => Guards::two(Guard::at_least(setup.edge), Guard::at_most(-setup.edge)),
+        CyclePlace::Push if side > 0.0 => Guards::one(Guard::at_most(setup.back)),
+        CyclePlace::Push => Guards::one(Guard::at_least(-setup.back)),
+        CyclePlace::Brake => Guards::NONE,
     }
 }
 

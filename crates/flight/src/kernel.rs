@@ -11,11 +11,11 @@ mod fill;
 mod look;
 
 use super::clock::{Clock, nearest_ticks};
-use super::crew::{Crew, CyclePlace, LaneSight};
+use super::crew::{Crew, CyclePlace, LaneSight, Structure};
 use super::track::{self, PhasorTrack};
-use crate::lanes::{Four, Mask, Real};
-use crate::motion::damping::Damping;
-use crate::motion::guess::{Departure, GuessLevel, GuessOscillator, GuessedTrip, locate};
+use flexsc_motion::damping::Damping;
+use flexsc_motion::guess::{Departure, GuessLevel, GuessOscillator, GuessedTrip, locate};
+use flexsc_motion::lanes::{Four, Mask, Real};
 
 /// Most lanes.
 pub const MOST: usize = 16;
@@ -76,16 +76,19 @@ pub struct Flight<R: Real, D> {
 }
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
-    /// Makes all runs of a crew, of bodies and envelopes with so many modes.
+    /// A run alone is handed back where it ends.
+    const IS_ALONE: bool = R::LANES == 1;
+
+    /// Makes all runs of a crew.
     #[inline(always)]
-    pub fn fly<C: Crew>(kind: R, modes: usize, tracks: usize, crew: &mut C) {
-        let mut flight = Self::new(kind, modes, tracks);
+    pub fn fly(kind: R, structure: Structure, crew: &mut dyn Crew) {
+        let mut flight = Self::new(kind, structure.modes, structure.tracks);
         let mut place = CyclePlace::Brake;
         // One place at a time, whose code is here once.
         loop {
             place = match place {
-                CyclePlace::Coast if !C::TAKES_BACK || flight.active[0] => CyclePlace::Push,
-                CyclePlace::Push if !C::TAKES_BACK || flight.active[0] => CyclePlace::Brake,
+                CyclePlace::Coast if !Self::IS_ALONE || flight.active[0] => CyclePlace::Push,
+                CyclePlace::Push if !Self::IS_ALONE || flight.active[0] => CyclePlace::Brake,
                 _ => {
                     if !flight.fill(crew) {
                         return;
@@ -99,7 +102,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
 
     /// The motion of one place, and the switching at its end.
     #[inline(always)]
-    fn go<C: Crew>(&mut self, crew: &mut C, place: CyclePlace) {
+    fn go(&mut self, crew: &mut dyn Crew, place: CyclePlace) {
         let one = self.angle.of(1.0);
         let (moment, towards, level) = match place {
             CyclePlace::Coast => (self.weak, one, self.edge),
@@ -124,7 +127,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         // Seen in the mirror, what reaches the left boundary reaches the right one.
         let mirror = if place == CyclePlace::Coast { Some(R::select(right, one, -one)) } else { None };
         self.arrive(crew, place, moment, span, mirror);
-        if C::TAKES_BACK && !self.active[0] {
+        if Self::IS_ALONE && !self.active[0] {
             return;
         }
         self.tell(
@@ -153,7 +156,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
 
     /// The brake, which lasts as long as the law says.
     #[inline(always)]
-    fn brake<C: Crew>(&mut self, crew: &mut C) -> (Clock<R>, R) {
+    fn brake(&mut self, crew: &mut dyn Crew) -> (Clock<R>, R) {
         let nearest = nearest_ticks(self.k_t * self.lasted);
         // So long a brake is for a run alone.
         let fits = nearest.lt(nearest.of(SHORT * 1e15));
@@ -192,9 +195,9 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
 
     /// Finds the first trip: after how long, and of which level.
     #[inline(always)]
-    fn guarded<C: Crew, const LEVELS: usize>(
+    fn guarded<const LEVELS: usize>(
         &mut self,
-        crew: &mut C,
+        crew: &mut dyn Crew,
         place: CyclePlace,
         moment: R,
         levels: &[GuessLevel<R>; LEVELS],
@@ -262,9 +265,9 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Ends the motion that departed last, such a span after its departure: windows close on the way, and runs
     /// that end do so. What comes of it is seen in the mirror, if there is one.
     #[inline(always)]
-    fn arrive<C: Crew>(
+    fn arrive(
         &mut self,
-        crew: &mut C,
+        crew: &mut dyn Crew,
         place: CyclePlace,
         moment: R,
         (span, h): (Clock<R>, R),
@@ -274,7 +277,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let until = self.now.plus(span);
         let ends = !until.not_after(self.end);
         let until = Clock::select(ends, self.end, until);
-        if C::TAKES_BACK && (ends.any() || crew.stops()) {
+        if Self::IS_ALONE && (ends.any() || crew.stops()) {
             self.hand_back(crew, place);
             return;
         }
@@ -314,7 +317,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Follows the envelope to an instant of each lane, by the windows that close on the way. It was followed last so many
     /// seconds before, if that is known.
     #[inline(always)]
-    fn follow<C: Crew>(&mut self, crew: &mut C, until: Clock<R>, mut whole: Option<R>) {
+    fn follow(&mut self, crew: &mut dyn Crew, until: Clock<R>, mut whole: Option<R>) {
         if !self.watches {
             return;
         }
@@ -328,7 +331,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
                 Some(whole) if !due.any() => whole,
                 _ => at.since(self.seen).seconds(),
             };
-            if R::LANES == 1 && !D::IS_DAMPED && self.tracks.len() > 1 {
+            if Self::IS_ALONE && !D::IS_DAMPED && self.tracks.len() > 1 {
                 self.integral = track::follow(self.four, &mut self.tracks, time, span, self.integral);
             } else {
                 self.follow_each(goes_on, time, span);
@@ -360,7 +363,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     }
 
     /// Windows close now in the lanes that have a 1.
-    fn close<C: Crew>(&mut self, crew: &mut C, closing: R) {
+    fn close(&mut self, crew: &mut dyn Crew, closing: R) {
         for lane in 0..R::LANES {
             if closing.lane(lane) > 0.0 {
                 let (integral, gain) = (self.integral.lane(lane), self.k_t.lane(lane));

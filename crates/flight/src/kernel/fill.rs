@@ -4,12 +4,12 @@
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 use super::{Flight, MOST, NEVER, ROWS};
-use crate::flight::clock::Clock;
-use crate::flight::crew::{Crew, LaneSight, Setup};
-use crate::flight::track::PhasorTrack;
-use crate::lanes::{Four, Real};
-use crate::motion::damping::Damping;
-use crate::motion::guess::{FARTHEST_TURN, GuessOscillator};
+use crate::clock::Clock;
+use crate::crew::{Crew, LaneSight, Setup};
+use crate::track::PhasorTrack;
+use flexsc_motion::damping::Damping;
+use flexsc_motion::guess::{FARTHEST_TURN, GuessOscillator};
+use flexsc_motion::lanes::{Four, Real};
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Lanes without runs, of bodies and envelopes with so many modes.
@@ -78,7 +78,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     }
 
     /// Gives lanes that have none the next runs; tells whether any has one.
-    pub(super) fn fill<C: Crew>(&mut self, crew: &mut C) -> bool {
+    pub(super) fn fill(&mut self, crew: &mut dyn Crew) -> bool {
         let mut any = false;
         for lane in 0..R::LANES {
             if !self.active[lane]

@@ -4,17 +4,17 @@
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 use super::Flight;
-use crate::flight::clock::Clock;
-use crate::flight::crew::{Crew, CyclePlace, LaneRest};
-use crate::lanes::{Mask, Real};
-use crate::motion::damping::Damping;
+use crate::clock::Clock;
+use crate::crew::{Crew, CyclePlace, LaneRest};
+use flexsc_motion::damping::Damping;
+use flexsc_motion::lanes::{Mask, Real};
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Where bounds do not keep the angle within the band on the motion that ends, the crew has to see for itself.
     #[inline(always)]
-    pub(super) fn stray<C: Crew>(
+    pub(super) fn stray(
         &mut self,
-        crew: &mut C,
+        crew: &mut dyn Crew,
         place: CyclePlace,
         moment: R,
         span: R,
@@ -49,7 +49,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
 
     /// Tells a switching of each lane.
     #[inline(always)]
-    pub(super) fn tell<C: Crew>(&mut self, crew: &mut C, to: CyclePlace) {
+    pub(super) fn tell(&mut self, crew: &mut dyn Crew, to: CyclePlace) {
         if !crew.listens() {
             return;
         }
@@ -63,7 +63,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     }
 
     /// Hands the run of the first lane back at its departure to this place.
-    pub(super) fn hand_back<C: Crew>(&mut self, crew: &mut C, place: CyclePlace) {
+    pub(super) fn hand_back(&mut self, crew: &mut dyn Crew, place: CyclePlace) {
         self.active[0] = false;
         self.write();
         self.look(0);

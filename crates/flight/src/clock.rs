@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
-use crate::lanes::Real;
+use flexsc_motion::lanes::Real;
 
 /// Femtoseconds in a second.
 const FEMTOSECONDS: f64 = 1e15;

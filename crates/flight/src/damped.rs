@@ -1,0 +1,34 @@
+//! Kernels of runs with damped modes.
+
+#![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
+
+use flexsc_motion::damping::Damped;
+use flexsc_motion::lanes::{LaneWork, Processor, Real};
+
+use crate::crew::{Crew, Structure};
+use crate::kernel::Flight;
+
+/// Runs of a crew.
+struct Runs<'a> {
+    structure: Structure,
+    crew: &'a mut dyn Crew,
+}
+
+impl LaneWork for Runs<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self, kind: R) {
+        Flight::<R, Damped<R>>::fly(kind, self.structure, self.crew);
+    }
+}
+
+/// Makes all runs of a crew side by side.
+pub fn fly_beside(processor: Processor, structure: Structure, crew: &mut dyn Crew) {
+    processor.run_narrow(Runs { structure, crew });
+}
+
+/// Makes the one run of a crew.
+pub fn fly_alone(processor: Processor, structure: Structure, crew: &mut dyn Crew) {
+    processor.run_alone(Runs { structure, crew });
+}
