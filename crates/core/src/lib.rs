@@ -39,38 +39,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod actuator;
-pub mod adaptation;
 pub mod analysis;
-pub mod axes;
 pub mod batch;
-pub mod belief;
-pub mod body;
 pub mod campaign;
-pub mod disturbance;
-pub mod environment;
-pub mod estimator;
 mod flight;
-mod label;
-pub mod law;
 pub mod layout;
-pub mod manoeuvre;
 pub mod metrics;
-pub mod outage;
-pub mod own;
-pub mod parts;
-pub mod record;
 pub mod scenario;
 pub mod scene;
-pub mod sensor;
 mod sim;
-pub mod sine;
 pub mod statistics;
 pub mod uncertain;
-pub mod whole;
 
+pub use flexsc_control::{actuator, adaptation, belief, estimator, law, outage, own, parts, sensor};
 pub use flexsc_formats::{count, document, structure};
 pub use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};
+pub use flexsc_output::{record, whole};
+pub use flexsc_spacecraft::{axes, body, disturbance, environment, manoeuvre, sine};
 
 pub use document::{Document, LONGEST, Mistake, ScenarioError, nearest};
 pub use scenario::Scenario;

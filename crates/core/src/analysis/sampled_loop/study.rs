@@ -5,7 +5,7 @@ use crate::Scenario;
 use crate::actuator::{Actuator, Opposes, Wheel};
 use crate::body::Drive;
 use crate::document::Fault;
-use crate::law::{Extra, Law, Pd};
+use crate::law::{Law, Pd};
 use crate::quantity::Positive;
 use crate::scenario::Cost;
 
@@ -130,12 +130,5 @@ impl Loop {
             band if band > 0.0 => Ok(SettlingWindow { band, horizon }),
             _ => Err(Fault::new("body", "must start at an angle other than 0, or the band be given")),
         }
-    }
-}
-
-impl Pd {
-    /// The gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
-    pub fn extra_gain(&self, frequency: f64) -> f64 {
-        self.extra.as_ref().map_or(0.0, |extra: &Extra| extra.gain(frequency))
     }
 }

@@ -1,0 +1,147 @@
+//! Imbalance of wheels: forces and torques that turn with them, and their harmonics.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::per_wheel::PerWheel;
+use crate::attitude::{Vector, vector};
+use crate::body::Spatial;
+use crate::body::craft::HubRotor;
+use crate::count::counted;
+use crate::document::Fault;
+use crate::motion::turning::{Flexible, HarmonicLine};
+use crate::quantity::{Finite, NonNegative, Positive};
+
+/// Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th.
+///
+/// Each force and torque is its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1 is z x a of the
+/// wheel's axis a, or x of one along z, and e2 is a x e1.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Imbalance {
+    /// Static imbalance (kg m): the force once per turn; one number for all wheels, or one for each.
+    #[serde(default, rename = "static")]
+    pub static_: PerWheel<NonNegative>,
+    /// Dynamic imbalance (kg m²): the torque once per turn; one number for all wheels, or one for each.
+    #[serde(default)]
+    pub dynamic: PerWheel<NonNegative>,
+    /// Phase lead of the torque over the force (rad); one number for all wheels, or one for each.
+    #[serde(default)]
+    pub phase: PerWheel<Finite>,
+    /// Further harmonics of the speed, the same for all wheels.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub harmonics: Vec<Harmonic>,
+    /// Point of the structure at which the wheels are mounted; default: the first of the body's points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub point: Option<String>,
+    /// Position of each wheel relative to that point (m); default: at the point.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub positions: Vec<[Finite; 3]>,
+}
+
+/// A harmonic of the imbalance.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Harmonic {
+    /// Order k: periods per turn of the wheel; it may be fractional.
+    pub order: Positive,
+    /// Force perpendicular to the axis per (rad/s)² (kg m).
+    #[serde(default)]
+    pub force: NonNegative,
+    /// Torque perpendicular to the axis per (rad/s)² (kg m²).
+    #[serde(default)]
+    pub torque: NonNegative,
+    /// Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase).
+    #[serde(default)]
+    pub axial: NonNegative,
+    /// Its phase (rad).
+    #[serde(default)]
+    pub phase: Finite,
+}
+
+impl Imbalance {
+    /// What single values cannot show to be wrong, of so many wheels.
+    ///
+    /// # Errors
+    /// A key within the imbalance, and why.
+    pub fn check(&self, wheels: usize) -> Result<(), Fault> {
+        self.static_.check("static", wheels)?;
+        self.dynamic.check("dynamic", wheels)?;
+        self.phase.check("phase", wheels)?;
+        if !self.positions.is_empty() && self.positions.len() != wheels {
+            let why =
+                format!("must be one for each of {}, got {}", counted(wheels, "wheel"), self.positions.len());
+            return Err(Fault::new("positions", why));
+        }
+        Ok(())
+    }
+
+    /// The lines of a wheel on a body, mounted at its point.
+    ///
+    /// # Errors
+    /// A key within the imbalance, and why.
+    pub fn lines(
+        &self,
+        wheel: usize,
+        rotor: &HubRotor,
+        (body, flexible): (&Spatial, &Flexible),
+    ) -> Result<Vec<HarmonicLine>, Fault> {
+        let first = body.points.first().map_or("", |point| point.name.as_str());
+        let name = self.point.as_deref().unwrap_or(first);
+        let Some(point) = body.point(name) else {
+            let points = body.point_names();
+            return Err(Fault::new(
+                "point",
+                format!("must be one of the body's points, {points}, got `{name}`"),
+            ));
+        };
+        let offset = self.positions.get(wheel).map_or_else(Vector::zeros, vector);
+        let shapes = body.shapes(name);
+        let line = |order: f64, force: [Vector; 2], moment: [Vector; 2]| {
+            // About the point, then about the centre of mass.
+            let moment = [0, 1].map(|part| moment[part] + offset.cross(&force[part]));
+            let torque = [0, 1].map(|part| moment[part] + point.cross(&force[part]));
+            let beyond = |part: usize| -> Vec<f64> {
+                let modes = shapes.iter().zip(&flexible.modes);
+                let of = |((translation, rotation), mode): (
+                    &(Vector, Vector),
+                    &crate::motion::turning::FreeMode,
+                )| {
+                    translation.dot(&force[part]) + rotation.dot(&moment[part])
+                        - mode.rotation.dot(&torque[part])
+                };
+                modes.map(of).collect()
+            };
+            HarmonicLine { order, torque, force, forces: [beyond(0), beyond(1)] }
+        };
+        let (first, second) = across(&rotor.axis);
+        // Along e1 cos(x + phase) + e2 sin(x + phase), of cos x and of sin x.
+        let turning = |phase: f64| {
+            let (sin, cos) = libm::sincos(phase);
+            [first * cos + second * sin, second * cos - first * sin]
+        };
+        let times = |of: [Vector; 2], by: f64| of.map(|part| part * by);
+        let plus = |a: [Vector; 2], b: [Vector; 2]| [a[0] + b[0], a[1] + b[1]];
+        let (force, torque) = (self.static_.of(wheel).get(), self.dynamic.of(wheel).get());
+        let mut lines = Vec::new();
+        if force > 0.0 || torque > 0.0 {
+            let ahead = turning(self.phase.of(wheel).get());
+            lines.push(line(1.0, times(turning(0.0), force), times(ahead, torque)));
+        }
+        for harmonic in &self.harmonics {
+            let (sin, cos) = libm::sincos(harmonic.phase.get());
+            let across = turning(harmonic.phase.get());
+            let along = times([rotor.axis * cos, rotor.axis * -sin], harmonic.axial.get());
+            let force = plus(times(across, harmonic.force.get()), along);
+            lines.push(line(harmonic.order.get(), force, times(across, harmonic.torque.get())));
+        }
+        Ok(lines)
+    }
+}
+
+/// Two unit vectors across a wheel's axis, which follow each other as it turns.
+fn across(axis: &Vector) -> (Vector, Vector) {
+    let level = Vector::z().cross(axis);
+    let first = if level.norm() > 1e-9 { level.normalize() } else { Vector::x() };
+    (first, axis.cross(&first))
+}

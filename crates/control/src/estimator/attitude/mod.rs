@@ -1,0 +1,21 @@
+//! Attitude and gyro bias, by a multiplicative extended Kalman filter to which measurements may be late.
+
+mod at_work;
+mod elastic;
+mod filter;
+mod gains;
+mod history;
+mod measurement;
+mod spec;
+mod swinging;
+#[cfg(test)]
+mod tests;
+
+pub use at_work::Tracking;
+pub use elastic::{ElasticStates, KnownMode, KnownModes};
+pub use filter::{AttitudeFilterState, Correction};
+pub use gains::{Complementary, Form};
+pub use history::{FilterHistory, Fix};
+pub use measurement::{AttitudeMeasurement, GyroNoise};
+pub use spec::{AttitudeFilter, AttitudeSetting, Initial, Role};
+pub use swinging::Swinging;

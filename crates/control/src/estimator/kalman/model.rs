@@ -1,0 +1,330 @@
+//! What a filter takes the body for: coupled modes whose frequencies are those at the start, times ratios.
+//!
+//! The state is (x_r, x_r', x_1, x_1', ..., theta_1, theta_1', ...). Between back-EMF and free motion the flow is split
+//! (Strang): each half is exact, whatever the damping of the modes, and so is the derivative of the split flow. The
+//! ratios move on straight lines, and each substep has those of its middle.
+
+use nalgebra::DMatrix;
+
+use crate::body::{Mode, ModeFlow};
+
+/// The model.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(super) modes: Vec<ModeModel>,
+    /// How many ratios the state has: none, one for all modes, or one for each.
+    ratios: usize,
+    /// Back-EMF a (1/s), and whether it opposes the total rate or the rigid one.
+    pub(super) back_emf: (f64, bool),
+    pub(super) substeps: u32,
+    /// The ratios stay within.
+    pub(super) bounds: [f64; 2],
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct ModeModel {
+    pub(super) flow: ModeFlow,
+    pub(super) frequency: f64,
+    pub(super) gain: f64,
+    pub(super) drag: f64,
+}
+
+/// One mode's free flow over a substep: x+ = a x + b x' + push, x'+ = c x + d x' + kick.
+struct Turn {
+    matrix: [f64; 4],
+    shift: [f64; 2],
+    /// Derivative of what comes out by the ratio.
+    slope: [f64; 2],
+}
+
+impl Model {
+    /// The model of a body with these modes and so many ratios. Back-EMF in 1/s opposes the total rate, or the rigid rate alone.
+    pub fn new(
+        modes: &[Mode],
+        ratios: usize,
+        back_emf: (f64, bool),
+        substeps: u32,
+        bounds: [f64; 2],
+    ) -> Self {
+        let swing = |mode: &Mode| ModeModel {
+            flow: ModeFlow::new(mode),
+            frequency: mode.frequency.get(),
+            gain: mode.gain.get(),
+            drag: 2.0 * mode.damping.get(),
+        };
+        Self { modes: modes.iter().map(swing).collect(), ratios, back_emf, substeps, bounds }
+    }
+
+    /// How many components of the state move: rigid angle and rate, and two for each mode.
+    pub fn motion(&self) -> usize {
+        2 + 2 * self.modes.len()
+    }
+
+    /// How many components the state has.
+    pub fn order(&self) -> usize {
+        self.motion() + 2 * self.ratios
+    }
+
+    /// Where the ratio of a mode is in the state; nowhere if the frequencies are constant.
+    pub fn ratio_of(&self, mode: usize) -> Option<usize> {
+        let index = if self.ratios == 1 { 0 } else { mode };
+        (index < self.ratios).then(|| self.motion() + 2 * index)
+    }
+
+    /// The ratio of a mode in a state.
+    pub fn ratio(&self, mode: usize, state: &[f64]) -> f64 {
+        self.ratio_of(mode).map_or(1.0, |at| state[at])
+    }
+
+    /// The natural frequency of a mode in a state (rad/s).
+    pub fn frequency(&self, mode: usize, state: &[f64]) -> f64 {
+        self.modes[mode].frequency * self.ratio(mode, state)
+    }
+
+    /// How many modes there are.
+    pub fn modes(&self) -> usize {
+        self.modes.len()
+    }
+
+    /// Excitability k/w² of a mode in a state (s²).
+    pub fn excitability(&self, mode: usize, state: &[f64]) -> f64 {
+        let w = self.frequency(mode, state);
+        self.modes[mode].gain / (w * w)
+    }
+
+    /// What a unit of the reduced moment accelerates: 1 for the rigid rate, k_i for that of a mode, 0 else.
+    pub fn input(&self, component: usize) -> f64 {
+        match component {
+            1 => 1.0,
+            odd if odd % 2 == 1 && odd < self.motion() => self.modes[odd / 2 - 1].gain,
+            _ => 0.0,
+        }
+    }
+
+    /// Carries a state over `h` seconds under a constant reduced moment (rad/s²). `tangent` holds the derivative of the
+    /// state by something, transposed: column i is the gradient of component i.
+    pub fn propagate(&self, h: f64, moment: f64, state: &mut [f64], mut tangent: Option<&mut DMatrix<f64>>) {
+        let step = h / f64::from(self.substeps);
+        for substep in 0..self.substeps {
+            let middle = (f64::from(substep) + 0.5) * step;
+            if self.back_emf.0 > 0.0 {
+                self.coast(0.5 * step, middle, moment, state, tangent.as_deref_mut());
+                self.brake(step, state, tangent.as_deref_mut());
+                self.coast(0.5 * step, middle, moment, state, tangent.as_deref_mut());
+            } else {
+                self.coast(step, middle, moment, state, tangent.as_deref_mut());
+            }
+        }
+        for at in (self.motion()..self.order()).step_by(2) {
+            state[at] += h * state[at + 1];
+            if let Some(tangent) = tangent.as_deref_mut() {
+                add_column(tangent, at, at + 1, h);
+            }
+        }
+    }
+
+    /// Free motion, with the ratios that the state comes to `middle` seconds after the start of the period.
+    fn coast(
+        &self,
+        h: f64,
+        middle: f64,
+        moment: f64,
+        state: &mut [f64],
+        mut tangent: Option<&mut DMatrix<f64>>,
+    ) {
+        state[0] += h * (state[1] + 0.5 * h * moment);
+        state[1] += h * moment;
+        if let Some(tangent) = tangent.as_deref_mut() {
+            add_column(tangent, 0, 1, h);
+        }
+        for (index, swing) in self.modes.iter().enumerate() {
+            let (x, v, at) = (2 + 2 * index, 3 + 2 * index, self.ratio_of(index));
+            let [low, high] = self.bounds;
+            let ratio = at.map_or(1.0, |at| (state[at] + middle * state[at + 1]).clamp(low, high));
+            let turn = swing.turn(h, ratio, moment, (state[x], state[v]), tangent.is_some() && at.is_some());
+            let [a, b, c, d] = turn.matrix;
+            (state[x], state[v]) =
+                (a * state[x] + b * state[v] + turn.shift[0], c * state[x] + d * state[v] + turn.shift[1]);
+            let Some(tangent) = tangent.as_deref_mut() else { continue };
+            mix_columns(tangent, x, turn.matrix);
+            if let Some(at) = at {
+                // The gradient of the ratio at `middle`: what moves the period's first ratio and its rate.
+                add_column(tangent, x, at, turn.slope[0]);
+                add_column(tangent, x, at + 1, turn.slope[0] * middle);
+                add_column(tangent, v, at, turn.slope[1]);
+                add_column(tangent, v, at + 1, turn.slope[1] * middle);
+            }
+        }
+    }
+
+    /// The rates of so many modes are opposed by the back-EMF.
+    pub(super) fn felt(&self) -> usize {
+        if self.back_emf.1 { self.modes.len() } else { 0 }
+    }
+
+    /// What part of the rate back-EMF takes from the rigid one in `h` seconds.
+    pub(super) fn taken(&self, h: f64) -> f64 {
+        let a = self.back_emf.0;
+        let s = 1.0 + self.modes[..self.felt()].iter().map(|swing| swing.gain).sum::<f64>();
+        if s == 0.0 { a * h } else { -libm::expm1(-a * h * s) / s }
+    }
+
+    /// Back-EMF alone: z' = -a g c z, a matrix of rank one, whose exponential is z - g (1 - exp(-a s h))/s c z with s = c g.
+    fn brake(&self, h: f64, state: &mut [f64], tangent: Option<&mut DMatrix<f64>>) {
+        let (felt, part) = (self.felt(), self.taken(h));
+        let rate = (0..=felt).map(|i| state[1 + 2 * i]).sum::<f64>();
+        state[1] -= part * rate;
+        for (index, swing) in self.modes.iter().enumerate() {
+            state[3 + 2 * index] -= swing.gain * part * rate;
+        }
+        if let Some(tangent) = tangent {
+            let mut rate = tangent.column(1).into_owned();
+            for index in 1..=felt {
+                rate += tangent.column(1 + 2 * index);
+            }
+            for index in 0..=self.modes.len() {
+                let gain = if index == 0 { 1.0 } else { self.modes[index - 1].gain };
+                tangent.column_mut(1 + 2 * index).axpy(-gain * part, &rate, 1.0);
+            }
+        }
+    }
+}
+
+impl ModeModel {
+    fn turn(&self, h: f64, ratio: f64, moment: f64, (x, v): (f64, f64), with_slope: bool) -> Turn {
+        // The flow in (x, x'/w) depends on w h alone, so that of another frequency is that of another time.
+        let [a, b, c, d] = self.flow.transition(ratio * h);
+        let w = ratio * self.frequency;
+        let (b, c) = (b / w, c * w);
+        let centre = self.gain * moment / (w * w);
+        let mut turn =
+            Turn { matrix: [a, b, c, d], shift: [centre * (1.0 - a), -centre * c], slope: [0.0; 2] };
+        if with_slope {
+            // With A the generator, E = diag(0, 1): dR/dw = (h A R + E R - R E)/w, and the centre falls as 1/w².
+            let (p, q) = (a * (x - centre) + b * v, c * (x - centre) + d * v);
+            let slope = [
+                h * q - b * v - 2.0 * centre * (1.0 - a),
+                -h * w * (w * p + self.drag * q) + q - d * v + 2.0 * centre * c,
+            ];
+            turn.slope = slope.map(|by_frequency| by_frequency / ratio);
+        }
+        turn
+    }
+}
+
+/// Adds a multiple of one column to another.
+fn add_column(matrix: &mut DMatrix<f64>, to: usize, from: usize, factor: f64) {
+    let rows = matrix.nrows();
+    let all = matrix.as_mut_slice();
+    for row in 0..rows {
+        all[to * rows + row] += factor * all[from * rows + row];
+    }
+}
+
+/// Turns a column and the one after it by a 2 x 2 matrix.
+fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) {
+    let rows = matrix.nrows();
+    let pair = &mut matrix.as_mut_slice()[first * rows..(first + 2) * rows];
+    let (left, right) = pair.split_at_mut(rows);
+    for (x, v) in left.iter_mut().zip(right) {
+        (*x, *v) = (a * *x + b * *v, c * *x + d * *v);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Coupled;
+    use crate::body::Planar;
+
+    const WIDE: [f64; 2] = [0.1, 3.0];
+
+    /// Four modes, of which the third is damped and the last overdamped.
+    fn body() -> Planar {
+        let text = "modes = [{ frequency = 0.3, gain = 1.44 }, \
+                    { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165, damping = 0.02 }, \
+                    { frequency = 2.0, gain = 0.72, damping = 1.5 }]";
+        crate::document::from_text(text).expect("valid")
+    }
+
+    const STATE: [f64; 10] = [0.06, -1e-3, 4e-3, 2e-3, -1e-3, 3e-4, 2e-4, -5e-4, 1e-4, 7e-4];
+
+    /// The exact motion at a constant ratio, by the matrix exponential.
+    fn exact(back_emf: (f64, bool), ratio: f64, moment: f64, h: f64) -> Vec<f64> {
+        let (transition, push) = Coupled::new(&body(), back_emf.0, back_emf.1, &[ratio; 4]).discrete(h);
+        (transition * nalgebra::DVector::from_row_slice(&STATE) + push * moment).as_slice().to_vec()
+    }
+
+    fn split(
+        back_emf: (f64, bool),
+        ratio: f64,
+        moment: f64,
+        h: f64,
+        substeps: u32,
+    ) -> (Vec<f64>, DMatrix<f64>) {
+        let model = Model::new(&body().modes, 1, back_emf, substeps, WIDE);
+        let mut state = STATE.to_vec();
+        state.extend([ratio, 0.0]);
+        let mut tangent = DMatrix::identity(12, 12);
+        model.propagate(h, moment, &mut state, Some(&mut tangent));
+        (state, tangent.transpose())
+    }
+
+    #[test]
+    fn without_back_emf_the_flow_is_the_matrix_exponential() {
+        let (state, tangent) = split((0.0, true), 0.7, 3e-5, 0.3, 1);
+        for (value, exact) in state.iter().zip(exact((0.0, true), 0.7, 3e-5, 0.3)) {
+            assert!((value - exact).abs() < 1e-15, "{value} {exact}");
+        }
+        let (transition, _) = Coupled::new(&body(), 0.0, true, &[0.7; 4]).discrete(0.3);
+        assert!((tangent.view((0, 0), (10, 10)) - transition).amax() < 1e-14);
+    }
+
+    #[test]
+    fn splitting_is_of_second_order() {
+        for total in [true, false] {
+            let error = |substeps| {
+                let (transition, _) = Coupled::new(&body(), 0.05, total, &[0.7; 4]).discrete(0.3);
+                (split((0.05, total), 0.7, 3e-5, 0.3, substeps).1.view((0, 0), (10, 10)) - transition).amax()
+            };
+            let (coarse, fine) = (error(8), error(16));
+            assert!(coarse > 1e-6 && (coarse / fine - 4.0).abs() < 0.02, "{total}: {coarse} {fine}");
+        }
+    }
+
+    #[test]
+    fn derivative_by_the_ratio_is_that_of_the_exact_motion() {
+        let (back_emf, moment, h, step) = ((1e-3, true), 3e-5, 0.3, 1e-5);
+        let (_, tangent) = split(back_emf, 0.7, moment, h, 100);
+        let (above, below) = (exact(back_emf, 0.7 + step, moment, h), exact(back_emf, 0.7 - step, moment, h));
+        for (row, (a, b)) in above.iter().zip(&below).enumerate() {
+            let slope = (a - b) / (2.0 * step);
+            assert!((tangent[(row, 10)] - slope).abs() < 2e-11, "{row}: {} {slope}", tangent[(row, 10)]);
+        }
+    }
+
+    #[test]
+    fn derivative_by_the_rate_is_that_of_the_flow_itself() {
+        for ratios in [1, 4] {
+            let model = Model::new(&body().modes, ratios, (1e-3, true), 3, WIDE);
+            let mut start = STATE.to_vec();
+            (0..ratios).for_each(|_| start.extend([0.7, -3e-3]));
+            let order = model.order();
+            let mut tangent = DMatrix::identity(order, order);
+            model.propagate(0.3, 3e-5, &mut start.clone(), Some(&mut tangent));
+            for column in 0..order {
+                let moved = |by: f64| {
+                    let mut state = start.clone();
+                    state[column] += by;
+                    model.propagate(0.3, 3e-5, &mut state, None);
+                    state
+                };
+                let (above, below) = (moved(1e-4), moved(-1e-4));
+                for row in 0..order {
+                    let slope = (above[row] - below[row]) / 2e-4;
+                    assert!((tangent[(column, row)] - slope).abs() < 1e-9, "{ratios} {row} {column}");
+                }
+            }
+        }
+    }
+}

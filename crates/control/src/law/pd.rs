@@ -1,0 +1,194 @@
+//! The sampled PD law, u = -k_p (y - y_goal) - k_d (y' - y'_goal), held between its samples.
+//!
+//! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the dominant
+//! mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule, Tunable,
+    TunedNumbers,
+};
+use crate::belief::Belief;
+use crate::quantity::{Finite, NonNegative, Positive};
+use crate::time::{Instant, Span};
+
+/// The PD law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pd {
+    /// Proportional gain (N m/rad; for a wheel, units of its command per rad).
+    pub k_p: NonNegative,
+    /// Derivative gain (N m s/rad; without the second where the difference is raw).
+    pub k_d: NonNegative,
+    /// Period of its samples (s).
+    pub period: Span,
+    /// How the derivative is taken.
+    #[serde(default)]
+    pub differentiation: Differentiation,
+    /// How a rotation is converted into an error, on a body with three axes.
+    #[serde(default, skip_serializing_if = "Measure::is_default")]
+    pub error: Measure,
+    /// Extra loop on the dominant mode.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extra: Option<Extra>,
+    /// Largest torque (N m); no limit by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<Positive>,
+    /// Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the manoeuvre.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub track: bool,
+    #[serde(skip)]
+    active: bool,
+    /// Numbers as an adaptation has tuned them.
+    #[serde(skip)]
+    tuned: TunedNumbers,
+    /// What was fed back at the last sample.
+    #[serde(skip)]
+    last: Option<f64>,
+}
+
+/// How the derivative is taken.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Differentiation {
+    /// The measured rate.
+    #[default]
+    Exact,
+    /// The difference of two samples divided by their period.
+    Difference,
+    /// The difference of two samples: the derivative gain then has the unit of the proportional one.
+    Raw,
+}
+
+/// The extra loop on the dominant mode; its gain is k_d of the papers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Extra {
+    /// A constant gain.
+    Gain(Finite),
+    /// A gain scheduled by the estimated frequency: linear interpolation between points, constant before the first and after
+    /// the last.
+    Schedule(Vec<ScheduledGain>),
+}
+
+/// A point of a schedule.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScheduledGain {
+    /// Frequency of the dominant mode (rad/s).
+    pub frequency: Positive,
+    /// Gain at that frequency.
+    pub gain: Finite,
+}
+
+impl Pd {
+    /// The gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
+    pub fn extra_gain(&self, frequency: f64) -> f64 {
+        self.extra.as_ref().map_or(0.0, |extra| extra.gain(frequency))
+    }
+}
+
+impl Extra {
+    /// The gain at a frequency of the dominant mode (rad/s).
+    pub fn gain(&self, frequency: f64) -> f64 {
+        match self {
+            Self::Gain(gain) => gain.get(),
+            Self::Schedule(points) => {
+                let after = points.partition_point(|point| point.frequency.get() <= frequency);
+                let at = |index: usize| (points[index].frequency.get(), points[index].gain.get());
+                match (after, points.len()) {
+                    (_, 0) => 0.0,
+                    (0, _) => at(0).1,
+                    (after, count) if after == count => at(count - 1).1,
+                    (after, _) => {
+                        let ((low, from), (high, to)) = (at(after - 1), at(after));
+                        from + (to - from) * (frequency - low) / (high - low)
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Rule for Pd {
+    fn start(&self, _: &Authority) -> Box<dyn Control> {
+        self.copy()
+    }
+
+    fn period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    /// The usual 5 % of a step.
+    fn promise(&self) -> Promise {
+        Promise::Part(0.05)
+    }
+
+    fn reads(&self) -> Reads {
+        if self.extra.is_some() { Reads::DominantMode } else { Reads::Motion }
+    }
+
+    fn tunable(&self) -> Vec<Tunable> {
+        let mut numbers =
+            vec![Tunable::not_negative("k_p", self.k_p), Tunable::not_negative("k_d", self.k_d)];
+        if let Some(Extra::Gain(gain)) = self.extra {
+            numbers.push(Tunable::free("extra.gain", gain.get()));
+        }
+        numbers.extend(self.limit.map(|limit| Tunable::positive("limit", limit)));
+        numbers
+    }
+}
+
+impl Control for Pd {
+    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+        self.active = now >= goal.from;
+        if !self.active {
+            return Hold { until: Some(goal.from), ..Hold::NONE };
+        }
+        let (angle, rate) = goal.at(now);
+        let gain = self
+            .extra
+            .as_ref()
+            .map_or(0.0, |extra| self.tuned.of("extra.gain", extra.gain(belief.dominant.frequency)));
+        let error = self.error.of(belief) - angle + gain * belief.dominant.displacement;
+        let difference = error - self.last.unwrap_or(error);
+        let derivative = match self.differentiation {
+            Differentiation::Exact => belief.rate - rate + gain * belief.dominant.rate,
+            Differentiation::Difference => difference / self.period.seconds(),
+            Differentiation::Raw => difference,
+        };
+        self.last = Some(error);
+        let limit = self.tuned.of("limit", self.limit.map_or(f64::INFINITY, Positive::get));
+        let (k_p, k_d) = (self.tuned.of("k_p", self.k_p.get()), self.tuned.of("k_d", self.k_d.get()));
+        let torque = -k_p * error - k_d * derivative;
+        let command = Command::Torque(torque.clamp(-limit, limit));
+        Hold { command, until: Some(now + self.period), guards: Guards::NONE }
+    }
+
+    fn state(&self) -> Phase {
+        if self.active { Phase::Feedback } else { Phase::Open }
+    }
+
+    fn tracks(&self) -> bool {
+        self.track
+    }
+
+    fn copy(&self) -> Box<dyn Control> {
+        Box::new(self.clone())
+    }
+
+    fn tuned(&self) -> f64 {
+        self.tuned.last().unwrap_or(f64::NAN)
+    }
+
+    fn tune(&mut self, key: &str, value: f64) {
+        self.tuned.take(key, value, &["k_p", "k_d", "extra.gain", "limit"]);
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_false(value: &bool) -> bool {
+    !value
+}

@@ -1,0 +1,84 @@
+//! The topics of a log: what each row holds, with its units.
+
+mod one_angle;
+mod run;
+mod three_axes;
+
+use super::foxglove::{self, LogLevel, Plumes};
+use super::row::{Topic, TopicRow};
+use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
+use crate::label::Labels;
+
+pub use one_angle::{
+    Adaptation, Arrival, Attitude, Command, Decision, Envelope, Estimate, GoalMotion, Law, ModeEnvelope,
+    ModeEstimate, ModeMotion, Modes, Objective, OutputMotion, Outputs, Rate, Residual, Torque, Trigger,
+    WheelMotion, WindowMean,
+};
+pub use run::{FaultEvent, Metric, MetricLine, MetricPage, Metrics, OutputName, Params, Summary};
+pub use three_axes::{
+    Acceleration, Accelerations, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
+    ChannelState, ControlMomentGyro, ControlMomentGyros, DriveMotion, DrivenMode, DrivesMotion, Energy,
+    Estimates, Jets, Magnetorquer, Magnetorquers, Orbit, OrbitAxis, Pointing, Position, Rates, Sliding,
+    ThrusterPulse, Thrusters, Torques, TrackedMode, Tracking, Vibration, Vibrations, Wheel, WheelEvent,
+    Wheels,
+};
+
+/// The declarations, in the order of the list.
+const PARTS: [&[Topic]; 4] = [one_angle::DECLARED, three_axes::DECLARED, run::DECLARED, foxglove::DECLARED];
+
+const COUNT: usize = PARTS[0].len() + PARTS[1].len() + PARTS[2].len() + PARTS[3].len() + 1;
+
+/// All topics.
+pub const TOPICS: &[Topic] = {
+    const ALL: [Topic; COUNT] = {
+        let mut all = [Plumes::TOPIC; COUNT];
+        let (mut part, mut of_part, mut index) = (0, 0, 0);
+        while part < PARTS.len() {
+            if of_part < PARTS[part].len() {
+                all[index] = PARTS[part][of_part];
+                of_part += 1;
+                index += 1;
+            } else {
+                part += 1;
+                of_part = 0;
+            }
+        }
+        all
+    };
+    &ALL
+};
+
+/// The position of a topic in [`TOPICS`], found when the program is compiled.
+pub const fn index_of(name: &str) -> usize {
+    let mut index = 0;
+    while !same(TOPICS[index].name.as_bytes(), name.as_bytes()) {
+        index += 1;
+    }
+    index
+}
+
+const fn same(a: &[u8], b: &[u8]) -> bool {
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
+}
+
+/// The label of an enumeration's value, by its identifier in the schema of a log.
+pub fn label_of(identifier: &str) -> String {
+    let states = [
+        &Lock::LABELS,
+        &Onset::LABELS,
+        &Gate::LABELS,
+        &Use::LABELS,
+        &Trust::LABELS,
+        &Latch::LABELS,
+        &Watch::LABELS,
+        &Light::LABELS,
+    ];
+    let others = [&Phase::LABELS, &Trigger::LABELS, &Sliding::LABELS, &Decision::LABELS, &LogLevel::LABELS];
+    let mut labels = others.iter().chain(&states).flat_map(|of| of.values);
+    let label = labels.find(|label| Labels::identifier(label) == identifier);
+    label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())
+}

@@ -1,0 +1,134 @@
+//! What is controlled: the ways to describe a body, and its exact flow under a constant input.
+
+mod chain;
+mod coupled;
+pub mod craft;
+mod damping;
+mod drift;
+mod drifting;
+mod forced;
+#[cfg(test)]
+mod guess_tests;
+mod hub;
+mod matrices;
+mod mode;
+mod model;
+mod output;
+mod panels;
+mod planar;
+mod reduction;
+mod segment;
+mod series;
+pub mod spatial;
+mod weights;
+mod wheeled;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::document::Fault;
+
+pub use chain::{Chain, ChainMotion, Flown};
+pub use coupled::Coupled;
+pub use craft::Craft;
+pub use damping::Damping;
+pub use drift::{Drift, Point, Profile, Ramp, SERIES, Sinusoid};
+pub use drifting::Drifting;
+pub use forced::{Forced, ForcedInput, Push, Wrench};
+pub use matrices::{Matrices, Sum};
+pub use mode::Mode;
+pub use mode::ModeFlow;
+pub use model::{Axes, Model};
+pub use output::Output;
+pub use panels::{Kinematics, Panels, Section};
+pub use planar::{Drive, Planar};
+pub use segment::Segment;
+pub use series::{Ratio, Springs};
+pub use spatial::Spatial;
+pub use weights::Weights;
+pub use wheeled::{Constant, Coupling, Lent, Unfolding};
+
+/// The kinds of body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Body {
+    /// One angle and any number of elastic modes.
+    Planar(Planar),
+    /// The matrices of a structure.
+    Matrices(Matrices),
+    /// A hub with panels of hinged sections.
+    Panels(Panels),
+    /// Three axes, and elastic modes with shapes at points of the structure.
+    Spatial(Spatial),
+}
+
+impl Body {
+    /// The kind, as a scenario names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Planar(_) => "planar",
+            Self::Matrices(_) => "matrices",
+            Self::Panels(_) => "panels",
+            Self::Spatial(_) => "spatial",
+        }
+    }
+
+    /// Makes the paths of files absolute: relative ones begin at a directory.
+    pub fn locate(&mut self, directory: &Path) {
+        match self {
+            Self::Matrices(matrices) => {
+                matrices.mass.locate(directory);
+                matrices.stiffness.locate(directory);
+                if let Some(damping) = &mut matrices.damping_matrix {
+                    damping.locate(directory);
+                }
+            }
+            Self::Spatial(spatial) => spatial.modes.locate(directory),
+            Self::Planar(_) | Self::Panels(_) => {}
+        }
+    }
+
+    /// Reads the modes of a spatial body that are in a file; those of another body from the same file are taken over.
+    ///
+    /// # Errors
+    /// What is wrong with the file: a key within the body, and why.
+    pub fn read(&mut self, other: Option<&Self>) -> Result<(), Fault> {
+        let Self::Spatial(spatial) = self else { return Ok(()) };
+        let other =
+            other.and_then(|other| if let Self::Spatial(other) = other { Some(&other.modes) } else { None });
+        spatial.modes.read(other).map_err(|why| Fault::new("modes", why))
+    }
+
+    /// How many axes it has.
+    pub fn axis_count(&self) -> usize {
+        match self {
+            Self::Planar(_) | Self::Matrices(_) | Self::Panels(_) => 1,
+            Self::Spatial(_) => 3,
+        }
+    }
+
+    /// The body as it moves.
+    ///
+    /// # Errors
+    /// What is wrong with the body: a key within it, and why.
+    pub fn assemble(&self) -> Result<Model, Fault> {
+        let body = match self {
+            Self::Planar(planar) => planar.clone(),
+            Self::Matrices(matrices) => matrices.solve()?,
+            Self::Panels(panels) => panels.solve()?,
+            Self::Spatial(spatial) => {
+                spatial.check()?;
+                return Ok(Model::Spatial(Arc::new(spatial.clone())));
+            }
+        };
+        if let Some(fault) = body.inconsistency() {
+            return Err(fault);
+        }
+        let chain = if let Self::Panels(panels) = self { panels.chain(&body) } else { None };
+        let body = Arc::new(body);
+        Ok(chain.map_or(Model::Planar(body.clone()), |chain| Model::Chain(body, Arc::new(chain))))
+    }
+}

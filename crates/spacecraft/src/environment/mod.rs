@@ -1,0 +1,102 @@
+//! The surroundings of a body with three axes: torques that depend on where it faces, and when.
+
+mod around;
+mod dipole;
+mod drag;
+mod gravity_gradient;
+mod kepler;
+mod magnetic_field;
+mod orbit;
+mod sky;
+mod solar_pressure;
+mod sun;
+#[cfg(test)]
+mod tests;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::document::Fault;
+use crate::quantity::Finite;
+
+pub use around::Around;
+pub use dipole::Dipole;
+pub use drag::{Drag, Plate};
+pub use gravity_gradient::GravityGradient;
+pub use kepler::{Kepler, OrbitPosition};
+pub use magnetic_field::MagneticField;
+pub use orbit::into;
+pub use sky::{Sky, SkySight};
+pub use solar_pressure::SolarPressure;
+pub use sun::Sun;
+
+/// The environment of a body with three axes. Its torques add up.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Environment {
+    /// Orbit of the body; default: none, or the one given with a torque below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orbit: Option<Kepler>,
+    /// The magnetic field of the orbit's planet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub magnetic_field: Option<MagneticField>,
+    /// Direction to the Sun in inertial axes, of any length, or from the date of the start; the orbit's planet casts a shadow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sun: Option<Sun>,
+    /// Gravity gradient of a circular orbit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity_gradient: Option<GravityGradient>,
+    /// Pressure of sunlight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solar_pressure: Option<SolarPressure>,
+    /// A magnetic moment of the body in the field of its planet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dipole: Option<Dipole>,
+    /// Drag of the atmosphere on plates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drag: Option<Drag>,
+    /// A torque that is constant in inertial axes (N m).
+    #[serde(default)]
+    pub torque: [Finite; 3],
+}
+
+impl Environment {
+    /// What single values cannot show to be wrong: a key within the environment, and why.
+    pub fn fault(&self) -> Option<Fault> {
+        if let Some(fault) = self.orbit.as_ref().and_then(Kepler::fault) {
+            return Some(fault.within("orbit"));
+        }
+        if self.sun.is_some_and(|sun| sun.is_nowhere()) {
+            return Some(Fault::new("sun", "must not be zero, got [0, 0, 0]"));
+        }
+        if self.magnetic_field.is_some() && self.orbit.is_none() {
+            return Some(Fault::new("magnetic_field", "needs an `orbit`, and there is none"));
+        }
+        if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
+            return Some(fault.within("drag"));
+        }
+        let shadow = self.solar_pressure.as_ref().and_then(SolarPressure::fault);
+        shadow.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
+    }
+
+    /// An orbit that is there twice, or missing.
+    fn orbit_fault(&self) -> Option<Fault> {
+        let (gradient, dipole) = (self.gravity_gradient.as_ref(), self.dipole.as_ref());
+        if let Some(fault) = gradient.and_then(|gradient| gradient.fault(self.orbit.is_some())) {
+            return Some(fault.within("gravity_gradient"));
+        }
+        let dipole = dipole?;
+        if let Some(fault) = dipole.fault(self.orbit.is_some(), self.magnetic_field.is_some()) {
+            return Some(fault.within("dipole"));
+        }
+        let gradient = gradient.filter(|_| dipole.own().is_some())?;
+        if let (Some(own), Some(other)) = (dipole.orbit_rate, gradient.orbit_rate)
+            && own != other
+        {
+            let why = format!("must be that of `gravity_gradient`, {} rad/s, got {}", other.get(), own.get());
+            return Some(Fault::new("dipole.orbit_rate", why));
+        }
+        (dipole.local != gradient.local)
+            .then(|| Fault::new("dipole.local", "must be that of `gravity_gradient`: there is one orbit"))
+    }
+}

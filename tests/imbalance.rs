@@ -1,0 +1,216 @@
+//! Imbalance on the reference spacecraft: steady motion through a mode's line, and a run-up through it, against two oracles.
+
+use nalgebra::{Complex, DMatrix, DVector, Matrix3, Quaternion};
+
+use flexsc_core::Scenario;
+use flexsc_core::actuator::Wheels;
+use flexsc_core::attitude::Vector;
+use flexsc_core::motion::turning::{Acting, Bearing, Flexible, Rotor, Turning};
+
+const CRAFT: &str = include_str!("golden/craft.toml");
+const MODES: &str = include_str!("golden/turning/modes.csv");
+/// Speed of the wheel; amplitudes of the rate about x, y and z; their norm.
+const LINE: &str = include_str!("golden/turning/f.csv");
+/// Time; rate about x, y and z; speed of the wheel.
+const RUN_UP: &str = include_str!("golden/turning/run-up.csv");
+const INERTIA: f64 = 0.04;
+
+type C = Complex<f64>;
+
+fn wave(angle: f64) -> C {
+    let (sin, cos) = angle.sin_cos();
+    C::new(cos, sin)
+}
+
+fn rows(text: &str) -> Vec<Vec<f64>> {
+    let row = |line: &str| line.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>().ok();
+    text.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect()
+}
+
+fn wheels(imbalance: &str) -> Wheels {
+    flexsc_core::document::from_text(&format!(
+        "arrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\nimbalance = {{ {imbalance} }}"
+    ))
+    .unwrap()
+}
+
+/// Of craft.json: the first wheel alone is out of balance.
+const FIRST: &str = "static = [7.2e-6, 0, 0, 0], dynamic = [3e-7, 0, 0, 0], \
+                     positions = [[0.3, 0.3, -0.4], [-0.3, 0.3, -0.4], [-0.3, -0.3, -0.4], [0.3, -0.3, -0.4]]";
+
+/// The same, but a thousandth: a body that moves so little is linear to 1e-11.
+const SLIGHT: &str = "static = [7.2e-9, 0, 0, 0], dynamic = [3e-10, 0, 0, 0], \
+                      positions = [[0.3, 0.3, -0.4], [-0.3, 0.3, -0.4], [-0.3, -0.3, -0.4], [0.3, -0.3, -0.4]]";
+
+/// The reference spacecraft with its damping matrix whole, and the bearings and axes of its wheels.
+fn craft(imbalance: &str) -> (Flexible, Vec<Bearing>, Vec<Vector>) {
+    let text = format!(
+        "{CRAFT}\n[actuator.wheels]\narrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\n"
+    );
+    let scenario = Scenario::parse("craft", &text).unwrap();
+    let craft = scenario.model.craft().unwrap();
+    let mut flexible = craft.flexible.clone();
+    let rows = rows(MODES);
+    // The table's modes may have other signs.
+    let sign = |mode: usize| {
+        let there = Vector::from_row_slice(&rows[mode + 1][1..4]);
+        there.dot(&flexible.modes[mode].rotation).signum()
+    };
+    let damping = DMatrix::from_fn(8, 8, |row, column| rows[row + 1][17 + column] * sign(row) * sign(column));
+    flexible.damping = Some(damping);
+    flexible.modes.iter_mut().for_each(|mode| mode.moments = Matrix3::zeros());
+    let wheels = wheels(imbalance);
+    let bearings = wheels.bearings((&craft.spatial, &flexible)).unwrap();
+    (flexible, bearings, wheels.rotors().unwrap().iter().map(|rotor| rotor.axis).collect())
+}
+
+/// The complex amplitudes of the modes and of the rate, rigid and whole, at a steady speed (rad/s).
+fn steady(flexible: &Flexible, bearing: &Bearing, speed: f64) -> (DVector<C>, [nalgebra::Vector3<C>; 2]) {
+    let line = &bearing.lines[0];
+    let square = speed * speed;
+    let torque =
+        nalgebra::Vector3::from_fn(|axis, _| C::new(line.torque[0][axis], -line.torque[1][axis]) * square);
+    let damping = flexible.damping.as_ref().unwrap();
+    let (count, modes) = (flexible.modes.len(), &flexible.modes);
+    let force = DVector::from_fn(count, |mode, _| {
+        let own = C::new(line.forces[0][mode], -line.forces[1][mode]) * square;
+        (0..3).fold(own, |sum, axis| sum + torque[axis] * modes[mode].rotation[axis])
+    });
+    let i = C::new(0.0, speed);
+    let matrix = DMatrix::from_fn(count, count, |row, column| {
+        let w = modes[row].frequency;
+        i * damping[(row, column)] + if row == column { C::from(w * w - square) } else { C::from(0.0) }
+    });
+    let q = matrix.lu().solve(&force).unwrap();
+    let inverse = flexible.inertia.try_inverse().unwrap().map(C::from);
+    let rigid = inverse * torque / i;
+    let whole = modes.iter().zip(&q).fold(rigid, |sum, (mode, q)| sum + mode.rotation.map(C::from) * (i * q));
+    (q, [rigid, whole])
+}
+
+/// Wheels of no momentum together, the first of which turns at this speed (rad/s), with torques that cancel (N m).
+fn rotors(axes: &[Vector], speed: f64, torque: f64, rate: &Vector) -> Vec<Rotor> {
+    let rotor = |(axis, sign): (&Vector, f64)| Rotor {
+        axis: *axis,
+        momentum: INERTIA * (sign * speed + axis.dot(rate)),
+        torque: sign * torque,
+    };
+    axes.iter().zip([1.0, -1.0, 1.0, -1.0]).map(rotor).collect()
+}
+
+#[test]
+fn steady_amplitudes_through_the_line_of_a_mode() {
+    let (flexible, bearings, _) = craft(FIRST);
+    let table = rows(LINE);
+    assert!(table.len() > 20);
+    for row in &table {
+        let (_, [_, whole]) = steady(&flexible, &bearings[0], row[0]);
+        for (found, exact) in
+            whole.iter().map(|part| part.re.hypot(part.im)).chain([whole.norm()]).zip(&row[1..5])
+        {
+            // Both codes agree to 2e-12; the table has 13 digits.
+            assert!((found - exact).abs() < 1e-11 * row[4], "{}: {found:e} {exact:e}", row[0]);
+        }
+    }
+}
+
+/// The motion stays on the steady one that it begins with.
+#[test]
+fn the_motion_is_the_steady_one() {
+    let (flexible, bearings, axes) = craft(SLIGHT);
+    for speed in [40.0, 50.2, 50.4, 60.0] {
+        let (q, [rigid, whole]) = steady(&flexible, &bearings[0], speed);
+        let modes: Vec<[f64; 2]> = q.iter().map(|q| [q.re, (q * C::new(0.0, speed)).re]).collect();
+        let rate = rigid.map(|part| part.re);
+        let mut turning = Turning::new(&flexible, Quaternion::identity(), rate, &modes);
+        turning.bear(bearings.clone());
+        let hub = turning.seen().rate;
+        turning.depart(&Acting { rotors: rotors(&axes, speed, 0.0, &hub), ..Acting::default() });
+        turning.settle(None);
+        let mut worst = 0.0_f64;
+        for k in 1..=40 {
+            let t = 0.1 * f64::from(k) + 1e-3;
+            turning.advance(t, None, || Ok::<(), ()>(())).unwrap();
+            let turn = wave(speed * t);
+            let exact = whole.map(|part| (part * turn).re);
+            worst = worst.max((turning.seen().rate - exact).norm() / whole.norm());
+        }
+        assert!(worst < 2e-8, "{speed}: {worst:e}");
+    }
+}
+
+/// The first wheel speeds up by 1 rad/s² from 40 to 60 rad/s, through the line at 50.2 rad/s.
+#[test]
+fn a_run_up_through_the_line() {
+    let (flexible, bearings, axes) = craft(SLIGHT);
+    let mut turning = Turning::new(&flexible, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
+    turning.bear(bearings);
+    turning.depart(&Acting { rotors: rotors(&axes, 40.0, INERTIA, &Vector::zeros()), ..Acting::default() });
+    turning.settle(None);
+    let table = rows(RUN_UP);
+    let most = table.iter().map(|row| Vector::from_row_slice(&row[1..4]).norm()).fold(0.0, f64::max);
+    assert!(table.len() == 80 && most > 3e-10);
+    for row in table {
+        turning.advance(row[0], None, || Ok::<(), ()>(())).unwrap();
+        let off = (turning.seen().rate - Vector::from_row_slice(&row[1..4])).norm();
+        assert!(off < 2e-8 * most, "{}: {off:e}", row[0]);
+        assert!((turning.turned(None)[0].speed - row[4]).abs() < 1e-9);
+    }
+}
+
+/// Twice in a turn, with a force along the axis and a phase.
+#[test]
+fn harmonics_are_followed() {
+    let keys = "harmonics = [{ order = 2.0, force = 1e-6, torque = 1e-7, axial = 2e-6, phase = 0.4 }]";
+    let (flexible, bearings, axes) = craft(keys);
+    assert_eq!((bearings[0].lines.len(), bearings[0].highest()), (1, 2.0));
+    let (q, [rigid, whole]) = steady_at(&flexible, &bearings[..1], 31.0, 2.0);
+    let modes: Vec<[f64; 2]> = q.iter().map(|q| [q.re, (q * C::new(0.0, 62.0)).re]).collect();
+    let mut turning = Turning::new(&flexible, Quaternion::identity(), rigid.map(|part| part.re), &modes);
+    let quiet = Bearing { inertia: INERTIA, ..Bearing::default() };
+    turning.bear(vec![bearings[0].clone(), quiet.clone(), quiet.clone(), quiet]);
+    let hub = turning.seen().rate;
+    turning.depart(&Acting { rotors: rotors(&axes, 31.0, 0.0, &hub), ..Acting::default() });
+    turning.settle(None);
+    for k in 1..=20 {
+        let t = 0.1 * f64::from(k);
+        turning.advance(t, None, || Ok::<(), ()>(())).unwrap();
+        let turn = wave(62.0 * t);
+        let off = (turning.seen().rate - whole.map(|part| (part * turn).re)).norm() / whole.norm();
+        assert!(off < 2e-8, "{t}: {off:e}");
+    }
+}
+
+/// The same amplitudes of a line of this order: a wheel of so many times the speed with a coefficient that is smaller by its square.
+fn steady_at(
+    flexible: &Flexible,
+    bearings: &[Bearing],
+    speed: f64,
+    order: f64,
+) -> (DVector<C>, [nalgebra::Vector3<C>; 2]) {
+    let mut bearing = bearings[0].clone();
+    let line = &mut bearing.lines[0];
+    for part in 0..2 {
+        line.torque[part] /= order * order;
+        line.forces[part].iter_mut().for_each(|force| *force /= order * order);
+    }
+    steady(flexible, &bearing, speed * order)
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_its_key() {
+    let (flexible, spatial) = {
+        let scenario = Scenario::parse("craft", CRAFT).unwrap();
+        let craft = scenario.model.craft().unwrap();
+        (craft.flexible.clone(), craft.spatial.clone())
+    };
+    let found = wheels("static = 1e-6, point = \"nowhere\"").bearings((&spatial, &flexible)).unwrap_err();
+    assert_eq!(found.key, "imbalance.point");
+    for (keys, key) in [
+        ("static = [1e-6, 2e-6]", "imbalance.static"),
+        ("dynamic = [1e-6]", "imbalance.dynamic"),
+        ("positions = [[0, 0, 1]]", "imbalance.positions"),
+    ] {
+        assert_eq!(wheels(keys).allocation().unwrap_err().key, key);
+    }
+}
