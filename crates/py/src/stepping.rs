@@ -148,7 +148,7 @@ impl Simulator {
     fn new(py: Python<'_>, scenario: &Scenario, run: u64) -> PyResult<Self> {
         let mut simulator =
             Self::of(Simulation::new(&scenario.inner, run), &scenario.inner, Some(Commanded::default()));
-        simulator.go(py, Simulation::open)?;
+        simulator.go(py, |simulation, record| simulation.open(record))?;
         Ok(simulator)
     }
 

@@ -32,7 +32,7 @@ impl Accelerometers {
 
 impl Simulation {
     /// Samples the accelerometers that are due now, after all that acts has changed, and tells what they tell.
-    pub(super) fn tell_accelerations(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn tell_accelerations(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if self.telling.accelerometers.due().is_none_or(|due| due > now) {
             return Ok(());

@@ -20,7 +20,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As a run.
-    pub(crate) fn begin_lent(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(crate) fn begin_lent(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.open(record)?;
         self.resume(None, record).map(|_| ())
     }
@@ -90,7 +90,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As a run.
-    pub(crate) fn act(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(crate) fn act(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.serve(record)
     }
 
@@ -98,7 +98,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As a run.
-    pub(crate) fn end(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(crate) fn end(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.plant.view(self.now)?;
         self.finish(record)
     }

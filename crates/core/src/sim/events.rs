@@ -50,22 +50,22 @@ impl Events {
     }
 
     /// The run begins.
-    pub fn begin(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    pub fn begin(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.journal.tell(now, (LogLevel::Info, "run"), self.opening.clone(), record)
     }
 
     /// The run ends.
-    pub fn end(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    pub fn end(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.journal.tell(now, (LogLevel::Info, "run"), "the end of the run".to_owned(), record)
     }
 
     /// The run is left before its end.
-    pub fn left(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    pub fn left(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.journal.tell(now, (LogLevel::Info, "run"), "the run is left before its end".to_owned(), record)
     }
 
     /// The manoeuvre ends.
-    pub fn arrived(&self, now: Instant, row: &Arrival, record: &mut impl Record) -> Result<(), RecordError> {
+    pub fn arrived(&self, now: Instant, row: &Arrival, record: &mut dyn Record) -> Result<(), RecordError> {
         let line = format!(
             "the manoeuvre ends {:.3e} rad from its goal, with a vibration of {:.3e} rad",
             row.angle_error_rad, row.angle_residual_rad
@@ -79,7 +79,7 @@ impl Events {
         now: Instant,
         row: &Adaptation,
         before: f64,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let line = adapted(row.window, row.decision, before, row.gain);
         self.journal.tell(now, (LogLevel::Info, "adaptation"), line, record)
@@ -91,7 +91,7 @@ impl Events {
         now: Instant,
         lost: [bool; 3],
         axes: usize,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let before = std::mem::replace(&mut self.lost, lost);
         for axis in (0..3).filter(|axis| before[*axis] != lost[*axis]) {
@@ -112,7 +112,7 @@ impl Events {
         now: Instant,
         target: (Frame, Quaternion<f64>),
         error: [f64; 3],
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let manoeuvre = (LogLevel::Info, "manoeuvre");
         if self.target != Some(target) {
@@ -137,7 +137,7 @@ impl Events {
         &self,
         now: Instant,
         event: &WheelEvent,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let what = match (event.before, event.after) {
             (_, Sliding::Stuck) => "sticks",
@@ -154,7 +154,7 @@ impl Events {
         now: Instant,
         what: (LogLevel, &str),
         line: String,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         self.journal.tell(now, what, line, record)
     }
@@ -165,7 +165,7 @@ impl Events {
         now: Instant,
         damped: &[Damped],
         trusted: [bool; 3],
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let (debug, info, warning) = (LogLevel::Debug, LogLevel::Info, LogLevel::Warning);
         for (axis, name) in AXES.into_iter().enumerate() {

@@ -38,7 +38,7 @@ impl Failures {
 
 impl Simulation {
     /// Tells what begins or ends to fail now.
-    pub(super) fn tell_failures(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
+    pub(super) fn tell_failures(&mut self, record: &mut dyn Record) -> Result<(), RecordError> {
         let now = self.now;
         while let Some((onset, Failing { part, of, fault, .. })) = self.telling.failures.next(now) {
             let (time_s, time_whole_s, time_fs) = Command::times(now);

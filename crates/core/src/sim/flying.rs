@@ -29,7 +29,7 @@ struct Alone<'a> {
 
 impl Simulation {
     /// Flies from the start as far as an instant, or the last departure before it, if this run can.
-    pub(super) fn fly(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn fly(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
         let band = match record.course() {
             Course::None => f64::INFINITY,
             Course::Beyond(band) if band > 0.0 => band,
@@ -51,7 +51,7 @@ impl Simulation {
     }
 
     /// Takes the run over at a departure.
-    fn land(&mut self, rest: &LaneRest, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn land(&mut self, rest: &LaneRest, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (Some(place), now) = (rest.place, instant(rest.from.at)) else { return Ok(()) };
         if now == Instant::START {
             return Ok(());

@@ -15,7 +15,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As of [`Simulation::run_until`].
-    pub fn run_to(&mut self, seconds: f64, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub fn run_to(&mut self, seconds: f64, record: &mut dyn Record) -> Result<(), SimulationError> {
         let named = (Instant::START + Span::from_seconds(seconds)).min(self.end);
         let early = named.before(Span::from_seconds(seconds * f64::EPSILON));
         self.run_until(early.max(self.now), record)?;
@@ -40,7 +40,7 @@ impl Simulation {
     ///
     /// # Errors
     /// A state that is no longer finite, and a record that cannot be kept.
-    pub fn tell_now(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub fn tell_now(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (now, truth) = (self.now, self.plant.view(self.now)?);
         match &self.plant {
             Plant::Planar(_) => {

@@ -25,7 +25,7 @@ impl Journal {
         now: Instant,
         (level, name): (LogLevel, &str),
         message: String,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let timestamp = self.stamp(now);
         record.record(now, Sample::Log(&Log { timestamp, level, message, name: name.to_owned() }))

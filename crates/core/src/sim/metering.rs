@@ -115,7 +115,7 @@ impl Simulation {
     }
 
     /// Closes the envelope's window that ends now, and lets the law have what the adaptation learned.
-    pub(super) fn close_window(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn close_window(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.plant.view(self.now)?;
         let gain = self.tuned();
         let Some(monitor) = &mut self.monitor else { return Ok(()) };
@@ -127,7 +127,7 @@ impl Simulation {
     }
 
     /// Closes the window of the objective, if it ends now, and lets the law have what the adaptation learned.
-    pub(super) fn close_objective(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn close_objective(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if self.meter.as_ref().is_none_or(|meter| meter.closes != now) {
             return Ok(());
@@ -149,7 +149,7 @@ impl Telling {
         &self,
         now: Instant,
         closed: &WindowEnd,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         record.record(now, Sample::Window(&closed.mean))?;
         let Some((row, before)) = &closed.step else { return Ok(()) };
@@ -162,7 +162,7 @@ impl Telling {
         &self,
         now: Instant,
         measured: &WindowMeans,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         record.record(now, Sample::Objective(&measured.row))?;
         let Some((row, before)) = &measured.step else { return Ok(()) };

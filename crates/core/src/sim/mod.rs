@@ -137,12 +137,12 @@ impl Simulation {
     }
 
     /// Runs to the end of the scenario.
-    pub fn run(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub fn run(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.run_until(Instant::END, record)
     }
 
     /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
-    pub fn run_until(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub fn run_until(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
         let until = until.min(self.end);
         self.open(record)?;
         self.resume(None, record)?;
@@ -154,7 +154,7 @@ impl Simulation {
     }
 
     /// Brings the body to the next instant at which anything is due, until an instant; tells whether anything is.
-    fn arrive(&mut self, until: Instant, record: &mut impl Record) -> Result<bool, SimulationError> {
+    fn arrive(&mut self, until: Instant, record: &mut dyn Record) -> Result<bool, SimulationError> {
         let mut next = self.next();
         if let Some(at) = self.plant.approach(next.min(until), record)? {
             next = at;
@@ -172,7 +172,7 @@ impl Simulation {
         Ok(next <= until)
     }
 
-    fn begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let truth = self.plant.view(self.now)?;
         self.ask(Event::Start);
         self.feel(&truth);
@@ -188,7 +188,7 @@ impl Simulation {
     }
 
     /// Ends the run, if this is its end and it has not ended yet.
-    fn finish(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn finish(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.now == self.end && self.telling.close() {
             self.plant.tell_course(self.now, &self.exerted, record)?;
             self.telling.journal_end(self.now, record)?;
@@ -214,13 +214,13 @@ impl Simulation {
     }
 
     /// Does what is due now.
-    fn serve(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn serve(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let event = self.perceive(record)?;
         self.answer(event, record)
     }
 
     /// Measures and estimates what is due now; tells what has come up for laws.
-    fn perceive(&mut self, record: &mut impl Record) -> Result<Event, SimulationError> {
+    fn perceive(&mut self, record: &mut dyn Record) -> Result<Event, SimulationError> {
         let now = self.now;
         let mut event = Event::Due { sampled: false };
         if let Some((_, guard)) = self.trip.filter(|(at, _)| *at == now) {
@@ -240,7 +240,7 @@ impl Simulation {
     }
 
     /// Laws decide on what has come up, and the actuator acts.
-    fn answer(&mut self, event: Event, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn answer(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if self.steered || self.concerns(event) {
             self.decide(event, record)?;
@@ -261,7 +261,7 @@ impl Simulation {
     }
 
     /// Takes a sample, which the estimator makes a belief of.
-    fn sense(&mut self, truth: &Truth, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn sense(&mut self, truth: &Truth, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         let measured = self.read.take().unwrap_or_else(|| self.measure(truth));
         if self.sensing.next.is_some() {
@@ -332,7 +332,7 @@ impl Simulation {
         }
     }
 
-    fn decide(&mut self, event: Event, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn decide(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.steered = false;
         self.decisions += 1;
@@ -362,7 +362,7 @@ impl Simulation {
     }
 
     /// Begins a motion under what acts from now on, and finds the next trip.
-    fn depart(&mut self, record: &mut impl Record) -> Result<(), RecordError> {
+    fn depart(&mut self, record: &mut dyn Record) -> Result<(), RecordError> {
         let now = self.now;
         self.plant.tell_course(now, &self.exerted, record)?;
         self.measure_course(now);

@@ -40,14 +40,14 @@ impl Simulation {
     pub(super) fn run_quickly(
         &mut self,
         until: Instant,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), SimulationError> {
         self.fly(until, record)?;
         self.run_plainly(until, record)
     }
 
     /// Runs as far as an instant, as long as nothing is due that is not plain.
-    fn run_plainly(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn run_plainly(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
         if !self.goes_plainly() {
             return Ok(());
         }
@@ -70,7 +70,7 @@ impl Simulation {
             && !(self.met || self.steered || self.laws.are_steered())
     }
 
-    fn go_plainly(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn go_plainly(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
         let last = until.min(self.end);
         loop {
             let closes = self.monitor.as_ref().map(|monitor| monitor.closes);
@@ -98,7 +98,7 @@ impl Simulation {
         }
     }
 
-    fn decide_plainly(&mut self, event: Event, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn decide_plainly(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.decisions += 1;
         if self.decisions > MOST_DECISIONS {
@@ -128,7 +128,7 @@ impl Simulation {
     }
 
     /// Finds the next trip of the motion that begins.
-    pub(super) fn seek(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn seek(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (guards, now) = (self.laws.guards(), self.now);
         let Plant::Planar(plant) = &mut self.plant else { return Ok(()) };
         self.trip = if guards.is_empty() {

@@ -8,7 +8,7 @@ use crate::scene::{PlanarView, Scene};
 
 impl Simulation {
     /// What the scene consists of; a scene that no record wants is dropped.
-    pub(super) fn set_the_scene(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn set_the_scene(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (now, telling) = (self.now, &mut self.telling);
         match &telling.scene {
             Some(scene) if record.scene() => {
@@ -21,7 +21,7 @@ impl Simulation {
     }
 
     /// Frames and plumes.
-    pub(super) fn show(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn show(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.telling.scene.is_none() {
             return Ok(());
         }

@@ -53,7 +53,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As a run.
-    pub fn open(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.telling.open(self.now, record)? {
             let truth = self.plant.view(self.now)?;
             self.sense(&truth, record)?;
@@ -67,7 +67,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As a run.
-    pub fn run_up_to(&mut self, until: Instant, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub fn run_up_to(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.walk(until, None, record).map(|_| ())
     }
 
@@ -79,7 +79,7 @@ impl Simulation {
         &mut self,
         occasion: Occasion,
         until: Instant,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<bool, SimulationError> {
         self.walk(until, Some(occasion), record)
     }
@@ -88,7 +88,7 @@ impl Simulation {
     ///
     /// # Errors
     /// A record that cannot be kept.
-    pub fn leave(&self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub fn leave(&self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if !self.is_done() {
             self.plant.tell_course(self.now, &self.exerted, record)?;
             self.telling.events.left(self.now, record)?;
@@ -100,7 +100,7 @@ impl Simulation {
         &mut self,
         until: Instant,
         occasion: Option<Occasion>,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<bool, SimulationError> {
         let until = until.min(self.end);
         self.open(record)?;
@@ -139,7 +139,7 @@ impl Simulation {
     pub(super) fn resume(
         &mut self,
         occasion: Option<Occasion>,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<bool, SimulationError> {
         let event = self.unanswered.take();
         let Some(event) = event.or(self.steered.then_some(Event::Due { sampled: false })) else {
@@ -154,7 +154,7 @@ impl Simulation {
         Ok(event != Event::Start && states(self) != before)
     }
 
-    fn reply(&mut self, event: Event, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn reply(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         if event == Event::Start { self.begin(record) } else { self.answer(event, record) }
     }
 

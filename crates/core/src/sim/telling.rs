@@ -88,7 +88,7 @@ impl Telling {
     }
 
     /// Opens the journal, once; tells whether this is the start.
-    pub fn open(&mut self, now: Instant, record: &mut impl Record) -> Result<bool, RecordError> {
+    pub fn open(&mut self, now: Instant, record: &mut dyn Record) -> Result<bool, RecordError> {
         if self.stage != Stage::Before {
             return Ok(false);
         }
@@ -103,7 +103,7 @@ impl Telling {
     }
 
     /// The last line of the journal.
-    pub fn journal_end(&self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    pub fn journal_end(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.events.end(now, record)
     }
 
@@ -118,7 +118,7 @@ impl Telling {
 
 impl Simulation {
     /// The rows of the start.
-    pub(super) fn tell_begin(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn tell_begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if let Plant::Planar(_) = self.plant {
             record.record(now, Sample::Begin(&self.law_row()))?;
@@ -132,7 +132,7 @@ impl Simulation {
     }
 
     /// The rows that are due now, after all parts have acted.
-    pub(super) fn tell(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn tell(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if self.telling.next_cycle == Some(now) {
             self.telling.next_cycle = self.telling.cycle.map(|cycle| now + cycle);
@@ -158,7 +158,7 @@ impl Simulation {
     }
 
     /// The end of the manoeuvre, if that is now.
-    pub(super) fn tell_arrival(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn tell_arrival(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         let Some(arrival) = self.telling.arrival.take_if(|arrival| arrival.at == now) else { return Ok(()) };
         let truth = self.plant.view(now)?;
@@ -174,7 +174,7 @@ impl Simulation {
         cause: Option<Cause>,
         [angle_rad, rate_rad_s]: [f64; 2],
         torque_nm: f64,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), SimulationError> {
         let (now, state) = (self.now, self.laws.about(0).state());
         let Plant::Planar(plant) = &self.plant else { return Ok(()) };
@@ -201,7 +201,7 @@ impl Simulation {
     }
 
     /// What filters made of the sample that was just taken.
-    pub(super) fn tell_estimates(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn tell_estimates(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.telling.events.lost(now, self.estimator.lost(), self.beliefs.len(), record)?;
         if !record.estimates() {
@@ -225,7 +225,7 @@ impl Simulation {
     }
 
     /// The motion of a body with one angle now, for a dense record.
-    pub(super) fn tell_motion(&self, record: &mut impl Record) -> Result<(), RecordError> {
+    pub(super) fn tell_motion(&self, record: &mut dyn Record) -> Result<(), RecordError> {
         let (Plant::Planar(plant), now) = (&self.plant, self.now) else { return Ok(()) };
         let sampled = self.sensing.next.is_some();
         let measured = self.sensing.reading.map_or(0.0, |_| self.sensing.measured[0][0]);
@@ -248,7 +248,7 @@ impl Simulation {
     }
 
     /// A cycle of a body with three axes, or of adaptive observers.
-    fn tell_cycle(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    fn tell_cycle(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         let truth = self.plant.view(now)?;
         // A law that is never asked aims at the targets all the same.
@@ -319,7 +319,7 @@ impl Simulation {
     }
 
     /// What wheels do otherwise than at the last instant: they pass through zero speed, stick, or slip again.
-    pub(super) fn tell_slips(&mut self, record: &mut impl Record) -> Result<(), SimulationError> {
+    pub(super) fn tell_slips(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (Plant::Spatial(plant), now) = (&self.plant, self.now) else { return Ok(()) };
         let slips = plant.slips();
         if self.telling.slips == slips {

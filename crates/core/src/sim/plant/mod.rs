@@ -48,7 +48,7 @@ impl Plant {
     pub fn approach(
         &mut self,
         now: Instant,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<Option<Instant>, RecordError> {
         match self {
             Self::Planar(plant) => plant.approach(now, record).map(|()| None),
@@ -102,7 +102,7 @@ impl Plant {
         &mut self,
         guards: &[Guard],
         horizon: Span,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<Option<(Instant, usize)>, RecordError> {
         match self {
             Self::Planar(plant) => plant.trip(guards, horizon, record),
@@ -115,7 +115,7 @@ impl Plant {
         &self,
         now: Instant,
         exerted: &Exerted,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let Self::Planar(plant) = self else { return Ok(()) };
         plant.tell_course(now, exerted, record)

@@ -86,7 +86,7 @@ impl PlanarPlant {
 
     /// Integrates up to an instant what has no closed form, as long as the record lets it: seeing the body there is then soon
     /// done.
-    pub fn approach(&mut self, now: Instant, record: &mut impl Record) -> Result<(), RecordError> {
+    pub fn approach(&mut self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         record.poll()?;
         let h = now.since(self.departed).seconds();
         loop {
@@ -187,7 +187,7 @@ impl PlanarPlant {
         &mut self,
         guards: &[Guard],
         horizon: Span,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<Option<(Instant, usize)>, RecordError> {
         let departed = self.departed;
         let arc = match &mut self.motion {

@@ -116,7 +116,7 @@ impl SpatialPlant {
     pub fn approach(
         &mut self,
         now: Instant,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<Option<Instant>, RecordError> {
         record.poll()?;
         if self.two_way.is_some() {
@@ -132,7 +132,7 @@ impl SpatialPlant {
         self.go(now, record)
     }
 
-    fn go(&mut self, now: Instant, record: &mut impl Record) -> Result<Option<Instant>, RecordError> {
+    fn go(&mut self, now: Instant, record: &mut dyn Record) -> Result<Option<Instant>, RecordError> {
         let mut met = None;
         if self.seen != now {
             let h = now.since(self.departed).seconds();

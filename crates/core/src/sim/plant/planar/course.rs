@@ -22,7 +22,7 @@ impl PlanarPlant {
         &self,
         now: Instant,
         exerted: &Exerted,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         match record.course() {
             Course::None => Ok(()),
@@ -40,7 +40,7 @@ impl PlanarPlant {
         &self,
         band: f64,
         until: Instant,
-        record: &mut impl Record,
+        record: &mut dyn Record,
     ) -> Result<bool, RecordError> {
         let Motion::Planar(arc) = &self.motion else { return Ok(false) };
         let span = until.since(self.departed);
