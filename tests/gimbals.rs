@@ -221,9 +221,17 @@ fn what_does_not_fit_is_refused_with_the_reason() {
 }
 
 #[test]
-fn their_figure_shows_gimbals_and_limits() {
+fn their_summary_and_figure_show_gimbals_and_limits() {
+    let (metrics, _) =
+        flown(&parsed(&changed(&[("duration = 120.0", "duration = 45.0")])), 0, Detail::Events);
+    let [rate, measure, off] = ["gimbal_rate_peak_rad_s", "singularity_min", "torque_error_peak_nm"]
+        .map(|name| metrics.number(name).expect(name));
     let dir = Dir::with(&["agile-observer"]);
-    dir.run("simulate agile-observer.toml --set duration=45").exits(0);
+    dir.run("simulate agile-observer.toml --set duration=45").exits(0).says(&[
+        &format!("  gimbals        at most {rate:.3e} rad/s; "),
+        &format!("singularity measure at least {measure:.3}; "),
+        &format!("torque within {off:.3e} N m of the demand"),
+    ]);
     dir.run("plot agile-observer.mcap --what gimbals --format svg").exits(0);
     let drawing = Drawing::at(&dir, "agile-observer-gimbals.svg");
     drawing.shows(&[
