@@ -79,6 +79,15 @@ fn a_rigid_body_turns_as_the_oracle_says() {
     assert!(worst[0] < 1e-11 && worst[1] < 1e-11 && worst[2] < 1e-12, "{worst:?}");
 }
 
+/// A step turns body and gimbals by at most 1/16 rad: at (0.0269 + 0.5) rad/s the longest power of two is 1/16 s, and 40 s have 640.
+#[test]
+fn the_steps_of_fast_gimbals_are_counted() {
+    let text = text(&format!("{GOLDEN}/gimbals.toml"));
+    let rigid = text.split("[[appendage]]").next().expect("the hub");
+    let limited = rigid.replace("momentum = 4.0", "momentum = 4.0\nrate_limit = 0.5");
+    assert_eq!(parsed(&limited).cost(None, false).most, ("`duration`".to_owned(), 640.0));
+}
+
 #[test]
 fn the_shipped_scenario_does_what_its_comment_says() {
     let (metrics, trace) = flown(&parsed(&changed(&[])), 0, Detail::Full);

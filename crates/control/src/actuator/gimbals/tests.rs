@@ -147,6 +147,56 @@ fn the_robust_rule_passes_a_singularity_at_which_the_pseudo_inverse_stays() {
     assert!(locked < 1.16 && slow < 1.9, "{locked} {slow}");
 }
 
+/// At angles of -90, 0, 90 and 0 degrees A A' is diag(0, 2 + 2 cos², 2 sin²) of the cant, diag(0, 8/3, 4/3): with u = -T/h the
+/// rates of the first and the third are 3 u_y/8, those of the others -+ cos 3 u_y/8 + sin 3 u_z/4.
+#[test]
+fn at_singular_angles_the_torques_that_can_be_are_given_without_null_motion() {
+    let angles = "angles = [-1.5707963267948966, 0, 1.5707963267948966, 0]";
+    let keys = format!("steering = \"pseudo_inverse\"\n{angles}");
+    let mut gimbals = start(&keys);
+    ask(&mut gimbals, at(0.0), [30.0, -15.0, 45.0]);
+    let (cos, sin) = ((1.0_f64 / 3.0).sqrt(), (2.0_f64 / 3.0).sqrt());
+    let exact = [0.375, -0.375 * cos - 2.25 * sin, 0.375, 0.375 * cos - 2.25 * sin];
+    for (rate, exact) in gimbals.rates.iter().zip(exact) {
+        assert!((rate - exact).abs() < 1e-6, "{rate} {exact}");
+    }
+    assert!((applied(&gimbals, at(0.0)) - Vector::new(0.0, -15.0, 45.0)).norm() < 1e-5);
+    let mut null = start(&format!("{keys}\nnull_motion = {{ angles = [0, 0, 0, 0], gain = 1.0 }}"));
+    ask(&mut null, at(0.0), [30.0, -15.0, 45.0]);
+    assert_eq!(null.rates, gimbals.rates);
+}
+
+/// At angles of 0 A A' is diag(2 cos², 2 cos², 4 sin²) of the cant: the largest torques are 2 h cos and 4 h sin of the rate limit.
+/// At others they are h of it by the largest number in a column of numpy.linalg.pinv(A).
+#[test]
+fn the_largest_torques_are_those_of_the_rate_limit() {
+    let most = |keys: &str| {
+        let text = format!("arrangement = \"pyramid\"\nmomentum = 15.0\n{keys}");
+        let gyros: ControlMomentGyros = crate::document::from_text(&text).unwrap();
+        let axes = gyros.axes().unwrap();
+        [0, 1, 2].map(|axis| gyros.most(&axes, axis))
+    };
+    let (cos, sin) = ((1.0_f64 / 3.0).sqrt(), (2.0_f64 / 3.0).sqrt());
+    for (keys, exact) in [
+        ("rate_limit = 0.5".to_owned(), [15.0 * cos, 15.0 * cos, 30.0 * sin]),
+        (format!("rate_limit = 0.5\n{ANGLES}"), [9.353895941280454, 7.448828416037603, 11.939013825410136]),
+    ] {
+        for (found, exact) in most(&keys).into_iter().zip(exact) {
+            assert!((found / exact - 1.0).abs() < 1e-13, "{found} {exact}");
+        }
+    }
+    assert_eq!(most(ANGLES), [f64::INFINITY; 3]);
+}
+
+/// A change of 2e-3 rad/s within the law's 0.1 s is 2 N m on 100 kg m².
+#[test]
+fn a_change_of_the_rate_takes_a_period_of_the_law() {
+    let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
+    let demands = [Demand::Change(2e-3), Demand::Torque(-0.5), Demand::Moment(3.0)];
+    gimbals.command(at(0.0), &demands, [0.0; 3]);
+    assert!((applied(&gimbals, at(0.0)) - Vector::new(2.0, -0.5, 0.0)).norm() < 1e-13);
+}
+
 #[test]
 fn null_motion_gives_no_torque_and_goes_where_it_shall() {
     let keys = "steering = \"pseudo_inverse\"\nnull_motion = { angles = [0.5, -0.6, 0.2, 1.1], gain = 1.0 }";
